@@ -130,7 +130,7 @@ def _parsed(content, suffix, resolver, every_colour):
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
         opened = _open(content, suffix, resolver)
-        set_apart(opened)
+        set_apart(opened, content)
         loaded = join_parts(opened, order, every_colour)
     else:
         skip = not (every_colour and suffix == ".ply")

@@ -10,6 +10,7 @@ The colours of an object: those of its file, or one of a palette by its name.
 
 import json
 import zlib
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -50,15 +51,23 @@ def _file(image):
     return content() if content and image.format in ("PNG", "JPEG") else image
 
 
-def set_apart(loaded: trimesh.parent.Geometry) -> None:
+def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
     """Moves all pictures but those of colour from the materials of a file's Scene to the metadata of its parts.
 
-    A copy of a part, as `join_parts` makes, would decode them.
+    A copy of a part, as `join_parts` makes, would decode them. content: the bytes of a GLB, whose pictures on another
+    set of texture coordinates than the first are left out.
     """
     parts = [part for part in getattr(loaded, "geometry", {}).values() if isinstance(part, trimesh.Trimesh)]
     materials = {id(part): getattr(part.visual, "material", None) for part in parts}
+    elsewhere = {
+        (str(material.get("name")), name)
+        for material in _stated_in(_header(content), "materials")
+        for name, use in _uses(material)
+        if use.get("texCoord")
+    }
     for part in parts:
-        part.metadata[BESIDE] = beside_colour(materials[id(part)])
+        said = beside_colour(materials[id(part)])
+        part.metadata[BESIDE] = said and {k: v for k, v in said.items() if (str(said.get("name")), k) not in elsewhere}
     for material in materials.values():
         if isinstance(material, PBRMaterial):
             for name in MAPS:
@@ -68,22 +77,50 @@ def set_apart(loaded: trimesh.parent.Geometry) -> None:
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 REPEAT = 10497  # the usual wrapS and wrapT
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
+DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
 
 
 def not_read(content: bytes) -> list[str]:
-    """Names of what the materials of a GLB's bytes say and `beside_colour` has not; also of animations and the like."""
-    tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
-    found = [name for name in ("animations", "skins", "cameras") if tree.get(name)]
-    for material in tree.get("materials", []):
-        found += material.get("extensions", {})
-        uses = material | material.get("pbrMetallicRoughness", {})
-        for name, use in ((name, use) for name, use in uses.items() if isinstance(use, dict) and "index" in use):
-            texture = tree["textures"][use["index"]]
-            sampler = tree["samplers"][texture["sampler"]] if "sampler" in texture else {}
-            found += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
-            found += [f"{name}.{key}" for key in ("wrapS", "wrapT") if sampler.get(key, REPEAT) != REPEAT]
-            found += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
+    """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
+    tree = _header(content)
+    found = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
+    textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
+    with suppress(*MALFORMED):
+        for primitive in (one for mesh in _stated_in(tree, "meshes") for one in mesh["primitives"]):
+            kept = DERIVED if "material" in primitive else (*DERIVED, "COLOR_0")
+            found += [name for name in primitive["attributes"] if name not in kept]
+        for material in _stated_in(tree, "materials"):
+            found += material.get("extensions", {})
+            for name, use in _uses(material):
+                texture = textures[use["index"]]
+                sampler = samplers[texture["sampler"]] if "sampler" in texture else {}
+                found += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
+                found += [f"{name}.{key}" for key in ("wrapS", "wrapT") if sampler.get(key, REPEAT) != REPEAT]
+                found += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
     return [name for name in dict.fromkeys(found) if not name.endswith(READ)]
+
+
+MALFORMED = AttributeError, LookupError, TypeError, ValueError
+
+
+def _header(content):
+    """The JSON part of a GLB's bytes; empty for others."""
+    try:
+        return json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")]) if content[:4] == b"glTF" else {}
+    except ValueError:
+        return {}
+
+
+def _stated_in(tree, name):
+    """The dicts in the list of a name."""
+    found = tree.get(name) if isinstance(tree, dict) else None
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+
+def _uses(material):
+    """[(name of a picture, how a glTF material uses it)]."""
+    every = material | material.get("pbrMetallicRoughness", {})
+    return [(name, use) for name, use in every.items() if isinstance(use, dict) and "index" in use]
 
 
 def join_parts(

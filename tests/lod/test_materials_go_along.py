@@ -15,6 +15,7 @@ from haptic_glance import as_mesh, to_trimesh
 from haptic_glance.cli.simplify import run
 from haptic_glance.lod.export import write_any
 from haptic_glance.mesh import load
+from haptic_glance.mesh.materials import not_read
 
 
 def picture(colour, kind="PNG"):
@@ -113,6 +114,24 @@ def test_what_cannot_be_carried_is_said(simplified):
     _, said = simplified("out.glb", change)
     assert "dropped from art.glb" in said
     assert all(name in said for name in ("KHR_materials_clearcoat", "normalTexture.scale", "animations"))
+
+
+def test_a_picture_on_other_coordinates_is_left_out(simplified):
+    def change(tree):
+        (varnish,) = (one for one in tree["materials"] if one["name"] == "varnish")
+        varnish["occlusionTexture"] = {**varnish["normalTexture"], "texCoord": 1}
+
+    out, said = simplified("out.glb", change)
+    assert "occlusionTexture.texCoord" in said
+    (varnish,) = (one for one in tree_of(out)[0]["materials"] if one["name"] == "varnish")
+    assert "occlusionTexture" not in varnish and "normalTexture" in varnish
+
+
+@pytest.mark.parametrize("wrong", [3, {}, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
+def test_what_is_malformed_says_nothing(tmp_path, wrong):
+    (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
+    rewritten(tmp_path / "art.glb", lambda tree: tree.update(materials=wrong))
+    assert not_read((tmp_path / "art.glb").read_bytes()) == []
 
 
 @pytest.mark.parametrize("out", ["out.obj", "out.ply"])
