@@ -43,7 +43,7 @@ from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
-from haptic_glance.mesh.materials import bake_texture, not_read
+from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
@@ -270,7 +270,7 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, p
         report(f"{out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
     elif suffix != ".glb" and texture and (said := {name for each in texture.materials for name in each or ()}):
         kept = "colours of vertices" if suffix == ".ply" else "the colours of materials"
-        report(f"{out.suffix} files have {kept} alone, dropped: {', '.join(sorted(said - {'baseColorFactor'}))}")
+        report(f"{out.suffix} files have {kept} alone, dropped: {', '.join(sorted(said - COLOURS_OF))}")
 
 
 def draw(task: SimplificationTask, found: Mesh, path: Path) -> None:

@@ -26,7 +26,7 @@ from trimesh.visual.material import PBRMaterial
 
 from haptic_glance.base.files import whole_file
 from haptic_glance.base.packing import ordered
-from haptic_glance.mesh.materials import MAPS, bake_texture
+from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import with_stated_up
 
@@ -123,12 +123,12 @@ def _material(texture, number, glb):
     clear, plain = (pixels[..., 3] < 255).any(), pixels.shape[:2] == (1, 1)
     if said is None:
         said = {"doubleSided": True, "metallicFactor": 0.0, "roughnessFactor": 1.0}
-        said |= ({"alphaMode": "MASK"} if clear else {}) | ({"baseColorFactor": pixels[0, 0]} if plain else {})
+        said |= {"alphaMode": "MASK"} if clear else {}
+        said |= {"baseColorFactor": pixels[0, 0]} if plain else {"baseColorTexture": True}
     said = {"metallicFactor": 1.0, "roughnessFactor": 1.0, **said}  # what glTF takes for none
-    found = {name: _picture(value, glb) if name in MAPS else value for name, value in said.items()}
-    if not (plain and np.all(said.get("baseColorFactor", pixels) == pixels)):
-        found["baseColorTexture"] = _picture(Image.fromarray(pixels if clear else pixels[..., :3]), glb)
-    return found
+    if "baseColorTexture" in said:
+        said["baseColorTexture"] = Image.fromarray(pixels if clear else pixels[..., :3])
+    return {name: _picture(value, glb) if name.endswith("Texture") else value for name, value in said.items()}
 
 
 class _File:

@@ -32,17 +32,20 @@ FACTORS = (
     "doubleSided",
 )  # fmt: skip
 MAPS = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+COLOURS_OF = {"baseColorFactor", "baseColorTexture"}
 BESIDE = "beside_colour"  # in the metadata of a part
 
 
 def beside_colour(material: Any) -> dict[str, Any] | None:
     """What a glTF material says beside its picture of colour, as arguments of trimesh's PBRMaterial; None of others.
 
-    A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image.
+    A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image. That of
+    colour is True where there is one: it is an image of the Texture.
     """
     if not isinstance(material, PBRMaterial):
         return None
     said = {name: getattr(material, name) for name in FACTORS} | {name: _file(getattr(material, name)) for name in MAPS}
+    said["baseColorTexture"] = material.baseColorTexture is not None or None
     return {name: value for name, value in said.items() if value is not None}
 
 
@@ -274,9 +277,14 @@ def coloured(mesh: Mesh, name: str, colours: str, suffix: str = "") -> Mesh:
 
 
 def bake_texture(mesh: Mesh) -> Mesh:
-    """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture."""
+    """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture.
+
+    Materials that state no colour, but for example a normal map, leave the mesh without colours.
+    """
     if mesh.texture is None:
         return mesh
+    if not any(said is None or COLOURS_OF & set(said) for said in mesh.texture.materials):
+        return replace(mesh, texture=None)
     texture, ids = mesh.texture, mesh.faces.ravel()
     rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))
     count = np.maximum(np.bincount(ids, minlength=len(mesh.vertices)), 1)

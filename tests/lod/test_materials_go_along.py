@@ -15,7 +15,7 @@ from haptic_glance import as_mesh, to_trimesh
 from haptic_glance.cli.simplify import run
 from haptic_glance.lod.export import write_any
 from haptic_glance.mesh import load
-from haptic_glance.mesh.materials import not_read
+from haptic_glance.mesh.materials import bake_texture, not_read
 
 
 def picture(colour, kind="PNG"):
@@ -162,6 +162,27 @@ def test_materials_of_a_scene_of_trimesh_go_to_trimesh():
     found = {part.visual.material.name: part.visual.material for part in back.geometry.values()}
     assert found["varnish"].roughnessFactor == 0.4 and found["varnish"].alphaMode == "BLEND"
     assert np.asarray(found["varnish"].normalTexture)[0, 0] == pytest.approx([128, 128, 255], abs=2)
+
+
+def test_a_material_without_a_colour_keeps_the_rest_and_gives_no_colours(tmp_path):
+    part = ball(0, name="bare", roughnessFactor=0.4, normalTexture=picture((128, 128, 255)))
+    (tmp_path / "bare.glb").write_bytes(trimesh.Scene({"bare": part}).export(file_type="glb"))
+    mesh = load(tmp_path / "bare.glb")
+    assert bake_texture(mesh).colors is None
+    write_any(tmp_path / "again.glb", mesh)
+    ((material,),) = (tree_of(tmp_path / "again.glb")[0]["materials"],)
+    assert "normalTexture" in material and set(material["pbrMetallicRoughness"]) == {
+        "roughnessFactor",
+        "metallicFactor",
+    }
+
+
+def test_a_picture_of_one_pixel_stays_a_picture(tmp_path):
+    part = ball(0, baseColorTexture=Image.new("RGB", (1, 1), (200, 30, 30)))
+    (tmp_path / "red.glb").write_bytes(trimesh.Scene({"red": part}).export(file_type="glb"))
+    write_any(tmp_path / "again.glb", load(tmp_path / "red.glb"))
+    found = load(tmp_path / "again.glb").texture
+    assert found.images[0].ravel().tolist() == [200, 30, 30, 255] and "baseColorTexture" in found.materials[0]
 
 
 def test_meshes_with_other_materials_differ():
