@@ -89,7 +89,7 @@ def run(command: str, argv: Sequence[str]) -> int:
         first_run.start(command)
     from haptic_glance.base.errors import errors_in_one_line
 
-    errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
+    errors_in_one_line(command)  # before the imports that take a second, in which a person may press Ctrl-C
     work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
     return work(argv) or 0
 

@@ -35,6 +35,7 @@ MESHES = {  # public function: its arguments that are meshes
     "follow": ("mesh_or_surface",),
 }  # fmt: skip
 LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
+METRIC = {"press_forces": "depth", "gaps_at": "within"}  # public function: its argument in metres
 TRIES = 8  # lower counts that are tried where one leaves a fold
 LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that points up
 
@@ -42,6 +43,8 @@ LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that
 def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     """The public function of a name, made of the one of the stages."""
     made = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING)
+    if name in METRIC:
+        return with_metres(made, METRIC[name])
     return with_lengths(made, LENGTHS[name]) if name in LENGTHS else made
 
 
@@ -84,6 +87,35 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable
         for name in names:
             if given.arguments[name] is not None:
                 given.arguments[name] = in_units(name, given.arguments[name], diameter, unit)
+        return function(*given.args, **given.kwargs)
+
+    return work
+
+
+def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]:
+    """The function, whose `unit` may be "mm" as well as a number of metres, and whose lengths may be texts as "1mm".
+
+    A number stays what it is: of metres, of the argument named `metric`; of units of the mesh, of the pitch.
+    """
+    known = signature(function)
+
+    @wraps(function)
+    def work(*args: Any, **kwargs: Any) -> Any:
+        given = known.bind(*args, **kwargs)
+        given.apply_defaults()
+        values = given.arguments
+        if isinstance(unit := values["unit"], str):
+            if unit not in METRES:
+                raise ValueError(f"unit={unit!r}: give a number of metres, or one of {', '.join(METRES)}")
+            values["unit"] = METRES[unit]
+        for name in ("pitch", metric):
+            if isinstance(text := values[name], str):
+                try:
+                    found = length(text)
+                except ValueError:
+                    raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
+                real = name == "pitch" and isinstance(found, Metres)
+                values[name] = float(found) / (values["unit"] if real else 1)
         return function(*given.args, **given.kwargs)
 
     return work

@@ -41,15 +41,15 @@ KERNELS = [
     ("lod/kernels/mesh", "_name_corners", "i4[::1], b1[::1], i4[::1], i8, i8[::1], i8[::1], i8[::1]"),
     ("lod/kernels/mesh", "_count", "f8[:,::1], i4[::1], i4[::1], f8, f8, f8[:,::1]"),
     ("lod/kernels/mesh", "_add_volumes", "f8[:,::1], i4[::1], i4[::1], i4[::1], i4[::1], f8[::1], b1[::1]"),
-    ("lod/kernels/nearest", "bounding_box", "f8[:,::1], i8[:,::1]"),
-    ("lod/kernels/nearest", "planes_of", "f8[:,::1], i8[:,::1], f8[::1]"),
-    ("lod/kernels/nearest", "cell_boxes", "f8[:,::1], i8[:,::1], f8[::1], f8, i8[::1]"),
-    ("lod/kernels/nearest", "fill_cells", "i4[:,::1], i8, i8[::1]"),
+    ("mesh/kernels/nearest", "bounding_box", "f8[:,::1], i8[:,::1]"),
+    ("mesh/kernels/nearest", "planes_of", "f8[:,::1], i8[:,::1], f8[::1]"),
+    ("mesh/kernels/nearest", "cell_boxes", "f8[:,::1], i8[:,::1], f8[::1], f8, i8[::1]"),
+    ("mesh/kernels/nearest", "fill_cells", "i4[:,::1], i8, i8[::1]"),
     (
-        "lod/kernels/nearest", "search",
+        "mesh/kernels/nearest", "search",
         "f8[:,::1], f8[:,::1], i8[:,::1], Tuple((i4[::1], i4[::1], f8[::1], f8, i8[::1])), f8[:,::1], f8",
     ),
-    ("lod/kernels/quadrics", "corner_weights", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1]"),
+    ("mesh/kernels/planes", "corner_weights", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1]"),
     ("lod/kernels/refit", "_refit", f"{SURFACE}, f8[:,::1], i4[::1], f8[::1], i8, f8, f8[:,::1], i4[::1]"),
 ]  # fmt: skip
 

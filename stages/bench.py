@@ -30,7 +30,6 @@ from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.timing import WALL, Stopwatch, clock
 from haptic_glance.mesh.mesh import Mesh
-from stages.engine.parallel import progress
 
 ROWS = "reports/measurements/{}/salient_points.csv.gz"
 GAZE = "../shared/data/{}.zip"  # as conf/data has it
@@ -63,6 +62,10 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--objects", action="store_true", help="also list each object, of METHOD or of all methods")
     parser.add_argument("--json", action="store_true", help="print a JSON list of the methods, with each object")
     options = parser.parse_args(argv)
+    # Before the imports below, which take seconds.
+    method = function_of(options.method) if options.method else None
+    if options.gaze and not options.gaze.exists():
+        raise ValueError(f"--gaze {options.gaze}: no such file")
     with from_extra():
         import pandas as pd
 
@@ -71,9 +74,10 @@ def run(argv: Sequence[str]) -> None:
     if not path.exists():
         raise ValueError(f"no {path}: run it in a clone of the project, or name the rows by --rows")
     scores = read_rows(path)[lambda frame: frame["metric"].isin(SCORES)]
-    if options.method:
+    if method:
         archive = options.gaze or Path(GAZE.format(options.set))
-        rows = judged(function_of(options.method), gazed(options.set, archive), options.train)
+        report(f"reading {archive}")
+        rows = judged(method, gazed(options.set, archive), options.train)
         scores = pd.concat([scores, pd.DataFrame(rows)])
     methods = leaderboard(scores, options.by)
     if options.json:
@@ -83,12 +87,19 @@ def run(argv: Sequence[str]) -> None:
         print(f"\n{objects_text([row for row in methods if not options.method or row['method'] == OWN])}")
 
 
+def report(text: str) -> None:
+    """Prints progress to stderr, apart from the results."""
+    print(f"bench: {text}", file=sys.stderr, flush=True)
+
+
 def function_of(text: str) -> Callable:
     """The function that FILE.py:FUNCTION names; ValueError where there is none."""
     file, _, name = text.rpartition(":")
     path = Path(file)
-    if not path.is_file():
+    if not file:
         raise ValueError(f"{text}: name a file and a function of it, such as my_method.py:saliency")
+    if not path.is_file():
+        raise ValueError(f"{file}: no such file")
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
@@ -119,7 +130,8 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
     from haptic_glance.look.agreement import agreement
 
     rows, failed = [], {}
-    for name, (mesh, truth) in progress(objects.items(), "bench"):
+    for number, (name, (mesh, truth)) in enumerate(objects.items(), 1):
+        report(f"{number} of {len(objects)}: {name}")
         row: dict[str, Any] = {"item": name, "method": OWN, "clock": clock()}
         found: dict[str, float] = {}
         try:
@@ -131,7 +143,7 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
             row["seconds"] = watch.seconds
         except Exception as error:  # a method may raise anything; the other objects are judged
             row["note"] = failed[name] = f"{type(error).__name__}: {error}"
-            print(f"bench: {name} is left out: {failed[name]}", file=sys.stderr)
+            report(f"{name} is left out: {failed[name]}")
         rows += [row | {"metric": metric, "value": found.get(metric, np.nan)} for metric in SCORES]
     if len(failed) == len(objects):
         raise ValueError(f"the method failed on every object, on {name} by {failed[name]}")
@@ -149,7 +161,7 @@ def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
 
     files, objects = published_files(dataset, archive), {}
     settings = Params(dataset, str(archive), "y", "unknown", list(only), {}, False)
-    for item in progress(SOURCES[dataset](settings), "meshes"):
+    for item in SOURCES[dataset](settings):
         mesh, _ = prepare_mesh(item)
         amounts = ground_truth_amounts(item.name, dataset, mesh, files.get(item.name, []))
         if amounts is not None:

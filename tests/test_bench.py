@@ -8,13 +8,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import haptic_glance
+from haptic_glance.lod import write_any
 from haptic_glance.look.agreement import METRICS, GroundTruth
 from haptic_glance.mesh.mesh import Mesh
 from stages import bench
 from stages.engine.rows import read_rows
 
 PAGE = (Path(__file__).parents[1] / "docs/judging.md").read_text(encoding="utf-8")
-EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.M | re.S)
+*EXAMPLES, OWN_GAZE = re.findall(r"^```python\n(.*?)^```$", PAGE, re.M | re.S)
 SHORT = 20  # lines of a new method
 OBJECTS = ("first", "second", "third")
 METHODS = """
@@ -127,6 +129,7 @@ def test_values_of_each_object_are_listed_on_request(file, toys, capsys):
 def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(file, toys, capsys):
     bench.run([f"{file}:moody", "--objects"])
     out, err = capsys.readouterr()
+    assert "bench: 3 of 3: third" in err
     assert "bench: first is left out: KeyError: 'no such part'" in err and "bench: third is left out" in err
     assert re.search(r"^ +> yours +1 ", out, re.M) and re.search(r"^yours +third +ValueError: .*NaN", out, re.M)
     yours = listed(capsys, f"{file}:moody")["yours"]
@@ -161,9 +164,26 @@ def test_the_page_names_the_objects_of_each_split(dataset):
     assert names.split(", ") == sorted(read_rows(Path(bench.ROWS.format(dataset)))["item"].unique())
 
 
-def test_a_file_that_is_not_there_is_named():
-    with pytest.raises(ValueError, match="name a file and a function of it"):
-        bench.run(["nowhere.py:saliency"])
+def test_gaze_of_ones_own_is_judged_in_few_lines(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    corners = np.array([[0, 0, 0], [1, 0, 0.2], [0, 1, 0.5], [1, 1, 1.0], [0.5, 0.5, -1]])
+    write_any("mine.obj", Mesh(corners, np.array([[0, 1, 2], [1, 3, 2], [0, 2, 4], [1, 0, 4]]), up="y"))
+    Path("gaze.csv").write_text("x,y,z,seconds\n1.01,1,1,3\n0,0.9,0.5,0.5\n")
+    monkeypatch.setattr(haptic_glance, "saliency", lambda mesh: mesh.vertices[:, 2] - mesh.vertices[:, 2].min())
+    exec(OWN_GAZE, {})
+    assert "'nss': " in capsys.readouterr().out and len(OWN_GAZE.splitlines()) <= SHORT
+
+
+def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):
+    monkeypatch.setattr("stages.engine.rows.read_rows", None)
+    for options, words in (
+        (["nowhere.py:saliency"], "^nowhere.py: no such file"),
+        (["nowhere.py"], "name a file and a function of it"),
+        ([f"{file}:width"], "mine.py has no function 'width'"),
+        ([f"{file}:height", "--gaze", "gone.zip"], "^--gaze gone.zip: no such file"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            bench.run(options)
 
 
 def test_rows_that_are_not_there_are_named_with_the_remedy(tmp_path):

@@ -83,6 +83,19 @@ def test_lengths_are_shares_of_the_diameter_or_have_a_unit(body, scale):
         press(mesh, 7, pitch="wide")
 
 
+def test_forces_take_lengths_as_texts(body):
+    mesh, layer = Mesh(*body), haptic_glance.Layer()
+    place = mesh.vertices[[7]], haptic_glance.sensor_axes(haptic_glance.sensor_normals(mesh, [7]))
+    felt = haptic_glance.press_forces(mesh, *place, layer, pitch="1.5mm", depth="2mm", unit="mm")
+    numbers = haptic_glance.press_forces(mesh, *place, layer, pitch=1.5, depth=0.002, unit=0.001)
+    assert felt.any() and (felt == numbers).all()
+    gaps = haptic_glance.gaps_at(mesh, *place, within="2mm", pitch="0.15cm", unit="mm")
+    assert np.allclose(gaps, haptic_glance.gaps_at(mesh, *place, within=0.002, pitch=1.5, unit=0.001))
+    for wrong, said in ({"unit": "yd"}, "unit='yd': give a number"), ({"pitch": "wide"}, "pitch='wide': give a number"):
+        with pytest.raises(ValueError, match=said):
+            haptic_glance.press_forces(mesh, *place, layer, depth=0.002, **wrong)
+
+
 FORMS = {
     "path": lambda mesh, path: path,
     "arrays": lambda mesh, path: (mesh.vertices, mesh.faces),

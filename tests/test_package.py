@@ -3,6 +3,7 @@
 import ast
 import os
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -232,6 +233,13 @@ def test_the_list_of_commands_imports_no_stage():
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
 
 
+@pytest.mark.parametrize("module", ["numpy", "scipy", "PIL", "numba"])
+def test_ctrl_c_during_imports_is_one_line(ball, module):
+    stop = without([module]).replace("raise ModuleNotFoundError", "raise KeyboardInterrupt  #")
+    done = run_command("saliency", ball, before=stop)
+    assert done.returncode == -signal.SIGINT and done.stderr == "saliency: stopped\n"
+
+
 def test_an_unknown_command_is_named_with_one_like_it():
     done = run_command("salience")
     assert done.returncode == 2 and "Traceback" not in done.stderr
@@ -268,6 +276,28 @@ def test_one_mesh_is_touched_in_a_core_install(ball):
     assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "places.csv"}
     (line,) = (line for line in done.stderr.splitlines() if "imprints.png" in line)
     assert line.endswith("by matplotlib, which is not installed: pip install '.[pictures]'")
+
+
+@pytest.mark.slow
+def test_a_place_beside_vertices_is_touched_in_a_core_install(ball):
+    for place, code, said in (("0,0,0.5", 0, "written: "), ("500,500,500", 1, "is off the mesh")):
+        done = run_command("touch", ball, "--at", place, "--up", "z", "--out", ball.parent / "out", before=CORE)
+        assert done.returncode == code and said in done.stderr, done.stderr
+
+
+def test_perturbations_are_there_in_a_core_install(ball):
+    code = """
+import numpy as np
+from haptic_glance import load
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+
+mesh = load(sys.argv[1])
+PERTURBATIONS["noise"].apply(mesh, 0.001, np.random.default_rng(0))
+PERTURBATIONS["remeshing"].apply(mesh, 0.1, np.random.default_rng(0))
+"""
+    done = python(CORE + code, ball)
+    assert "a mesh is remeshed by pymeshlab, which is not installed: pip install '.[pipeline]'" in done.stderr
 
 
 def test_a_missing_module_of_nobodys_is_left_as_it_is():

@@ -8,6 +8,7 @@ place.
 """
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -27,12 +28,13 @@ from haptic_glance import (
     simplify,
     write_any,
 )
-from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.gallery.demo import sample
 from haptic_glance.lod.pictures import look
 
 folder = Path(tempfile.mkdtemp())
-scanned = PERTURBATIONS["noise"].apply(load(sample()), 0.0005, np.random.default_rng(0)).mesh
+clean = load(sample())
+noise = 0.0005 * clean.diagonal * np.random.default_rng(0).standard_normal((len(clean.vertices), 1))
+scanned = replace(clean, vertices=clean.vertices + noise * clean.vertex_normals)
 write_any(folder / "scan.stl", scanned)
 
 # %%

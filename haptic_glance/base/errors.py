@@ -1,11 +1,14 @@
-"""Shared parts of the commands: whether a command line names a mesh, and errors in one line."""
+"""Errors in one line, for commands. Imports nothing that takes long, in which a person could press Ctrl-C."""
 
 import errno
 import os
 import sys
 from types import TracebackType
 
-from .fetch import FetchError
+
+class FetchError(RuntimeError):
+    """A file could be neither found nor fetched, or is not the one expected; the message says what to do by hand."""
+
 
 REMEDIES = {
     errno.ENOSPC: ": make room on that disk and run it again; it goes on where it stopped",

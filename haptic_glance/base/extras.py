@@ -24,6 +24,16 @@ class MissingExtra(ModuleNotFoundError):
 
 
 @contextmanager
+def about(name: object, kind: type[ValueError] = ValueError) -> Iterator[None]:
+    """Puts a name before the reason of a MissingExtra, or of an error of a kind, for example that of the file read."""
+    try:
+        yield
+    except (kind, MissingExtra) as error:
+        raised = MissingExtra if isinstance(error, MissingExtra) else kind
+        raise raised(f"{name}: {error}").with_traceback(error.__traceback__) from None
+
+
+@contextmanager
 def from_extra(need: str = "") -> Iterator[None]:
     """Around the import of what a core install leaves out: raises MissingExtra where it is not installed.
 

@@ -12,14 +12,11 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO
 
+from .errors import FetchError as FetchError
 from .files import sha256
 from .kept import cache_folder
 
 LARGEST = 2**30  # bytes of one member that are read into memory; what the stages read has at most a tenth of that
-
-
-class FetchError(RuntimeError):
-    """A file could be neither found nor fetched, or is not the one expected; the message says what to do by hand."""
 
 
 def fetch_package(requirement: str, filename: str, digest: str) -> Path:

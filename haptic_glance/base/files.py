@@ -15,7 +15,7 @@ import shutil
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,20 @@ from PIL import Image
 
 PART = ".part-"  # how the name of a file begins that is not whole yet
 LEVEL = 3  # of zlib: views take a third of the time of its default 6 and 13 % more bytes, maps half and 3 %
+
+
+def existing(*paths: Path | None) -> set[Path]:
+    """Those of the paths where there is a file."""
+    return {path for path in paths if path and path.exists()}
+
+
+def said_of(paths: Sequence[Path], before: set[Path]) -> str:
+    """Which paths were written and, as they had existed `before`, replaced: `written: a.png; replaced: b.csv`."""
+    kinds = {
+        "written": [str(path) for path in paths if path not in before],
+        "replaced": [str(path) for path in paths if path in before],
+    }
+    return "; ".join(f"{kind}: {', '.join(names)}" for kind, names in kinds.items() if names)
 
 
 @contextmanager

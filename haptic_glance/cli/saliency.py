@@ -1,8 +1,8 @@
 """Prints where people look at one mesh, and the places to touch first.
 
-Reads STL, OBJ, PLY, OFF, GLB or a point cloud. Prints the salient points, most salient first: vertex, position in the
-file's coordinates, score from 0 to 1 (the saliency around the point, never more than that of the point before it). The
-mesh is left as it is; --out writes a copy coloured by saliency.
+Reads STL, OBJ, PLY, OFF or GLB, or with the extra `pipeline` a point cloud. Prints the salient points, most salient
+first: vertex, position in the file's coordinates, score from 0 to 1 (the saliency around the point, never more than
+that of the point before it). The mesh is left as it is; --out writes a copy coloured by saliency.
 
 examples:
   haptic-glance saliency scan.stl
@@ -21,7 +21,8 @@ import numpy as np
 import trimesh
 from scipy.spatial import KDTree
 
-from haptic_glance.base.files import write_text
+from haptic_glance.base.extras import about
+from haptic_glance.base.files import existing, said_of, write_text
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.export import FORMATS, write_any
 from haptic_glance.lod.pictures import check_look, coloured, write_look
@@ -81,23 +82,30 @@ def run(argv: Sequence[str]) -> None:
 def look_at(chosen: argparse.Namespace) -> None:
     """Prints the points of a mesh and writes what else was asked for."""
     check(chosen)
-    try:
+    report(chosen, f"reading {chosen.mesh.name}")
+    before = existing(chosen.out, chosen.points, chosen.picture, chosen.weights)
+    with about(chosen.mesh):
         mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
+        report(chosen, "looking at it")
         with WallClock() as watch:
             found = detect(bake_texture(mesh), chosen.method, chosen.count)
-    except ValueError as error:
-        raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
     assert found.saliency is not None  # `check` lets no method pass that has none
-    print(f"{chosen.name}: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
+    report(chosen, f"{len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}")
     rows = points_of(mesh, found)
     if chosen.weights:
         write_weights(chosen.weights, upright_for(chosen.weights, mesh)[0], found.saliency)
-        print(f"{chosen.name}: written: {chosen.weights}", file=sys.stderr)
     if chosen.out or chosen.picture:
         write(chosen, *finely(bake_texture(mesh), found.saliency, chosen.method), rows)
     elif chosen.points:
-        write(chosen, mesh, found.saliency, rows)  # before the lines, whose reader may close the pipe
+        write(chosen, mesh, found.saliency, rows)
+    if written := [path for path in (chosen.out, chosen.points, chosen.picture, chosen.weights) if path]:
+        report(chosen, said_of(written, before))  # before the lines, whose reader may close the pipe
     print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
+
+
+def report(chosen: argparse.Namespace, text: str) -> None:
+    """Prints progress to stderr, apart from the results."""
+    print(f"{chosen.name}: {text}", file=sys.stderr, flush=True)
 
 
 def check(chosen: argparse.Namespace) -> None:
@@ -151,16 +159,15 @@ def as_csv(rows: list[tuple]) -> str:
 
 
 def write(chosen: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: list[tuple]) -> None:
-    """Writes the files that were asked for, and names them."""
+    """Writes the files that were asked for, but the weights."""
     if chosen.out:
         turned, note = upright_for(chosen.out, coloured(mesh, saliency))
         write_any(chosen.out, turned)
         if note:
-            print(f"{chosen.name}: {note}", file=sys.stderr)
+            report(chosen, note)
     if chosen.picture:
-        write_look(chosen.picture, mesh, saliency, nearest_vertices(mesh, rows))
+        behind = write_look(chosen.picture, mesh, saliency, nearest_vertices(mesh, rows))
+        if behind:
+            report(chosen, f"{behind} of {len(rows)} points are behind, where {chosen.picture.name} does not show them")
     if chosen.points:
         write_text(chosen.points, as_csv(rows) + "\n")
-    written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]
-    if written:
-        print(f"{chosen.name}: written: {', '.join(written)}", file=sys.stderr)

@@ -1,8 +1,8 @@
 """Simplifies one mesh and spares the places that people look at.
 
-Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with its colours and textures. The error is
-weighted by saliency, so that faces go where people look; nothing is frozen but the boundary (unless --free-borders) and
-borders of materials.
+Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with its colours and textures; from GLB to
+GLB with its materials, but for what is named as dropped. The error is weighted by saliency, so that faces go where
+people look; nothing is frozen but the boundary (unless --free-borders) and borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
 Every mesh of a folder is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
@@ -28,7 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from haptic_glance.base.extras import MissingExtra
+from haptic_glance.base.extras import MissingExtra, about
+from haptic_glance.base.files import existing, said_of
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.attribute_quadrics import check_attributes
 from haptic_glance.lod.export import COLORLESS, FORMATS, face_count, level_path, levels, write_any
@@ -41,7 +42,7 @@ from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
-from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
@@ -202,12 +203,12 @@ def run(argv: Sequence[str]) -> int:
     files, figures = mesh_files(chosen.mesh), []
     for path, name in zip(files, names_of(files), strict=True):
         try:
-            figures.append(simplify_file(path, name, chosen))
+            with about(path):
+                figures.append(simplify_file(path, name, chosen))
         except (ValueError, MissingExtra) as error:
             if not chosen.mesh.is_dir():
-                kind = MissingExtra if isinstance(error, MissingExtra) else ValueError
-                raise kind(f"{path}: {error}").with_traceback(error.__traceback__) from None
-            report(f"{path}: {error}")
+                raise
+            report(str(error))
     if chosen.json:
         print(json.dumps(figures))
     whole = len(figures) == len(files) and all(len(each["levels"]) == len(targets(chosen)) for each in figures)
@@ -225,20 +226,30 @@ def simplify_file(path: Path, name: str, chosen: Namespace) -> dict[str, Any]:
     written = [level_path(chosen.out, name, path, target, chosen.format) for target in found]
     if one_file(chosen):
         written = [chosen.out]
+    before = existing(*written, chosen.picture)
     for out, level in zip(written, meshes, strict=True):
         write_level(out, task, level, given, parts)
     alone = not chosen.levels and chosen.method != PLAIN
     rival = plain(task, len(meshes[0].faces)) if alone else None
+    hint_at_pictures(chosen, mesh)
     report("measuring the errors")
     errors = measure_meshes(task, [*meshes, *([] if rival is None else [rival])], chosen.seed, report)
     if not chosen.json:
         print(summary(task, list(found) if chosen.levels else [method_label(chosen)], meshes, rival, errors))
     if chosen.picture:
         draw(task, meshes[0], chosen.picture)
-    report("written: " + ", ".join(map(str, filter(None, [*written, chosen.picture]))))
+    report(said_of([path for path in (*written, chosen.picture) if path], before))
     rows = zip(written, meshes, errors, strict=False)  # the rival's errors come last
     levels = [{"file": str(out), "faces": len(level.faces), **row} for out, level, row in rows]
     return {"mesh": str(path), "faces": len(task.mesh.faces), "levels": levels}
+
+
+def hint_at_pictures(chosen: Namespace, mesh: Mesh) -> None:
+    """Says once how the error can count a picture that it does not count."""
+    counted = chosen.attributes or chosen.free_borders or chosen.backend == "pymeshlab" or "hinted" in chosen
+    if not counted and mesh.texture and max(image.size for image in mesh.texture.images) > 4:
+        chosen.hinted = True
+        report("the error counts the shape alone; with --attributes uv=1 the picture on it moves less")
 
 
 def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, parts: Parts) -> None:
@@ -248,8 +259,12 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, p
     write_any(out, turned, moved_parts(parts, given, restored))
     if note:
         report(note)
-    if out.suffix.lower() in COLORLESS and (task.given.texture or task.given.colors is not None):
+    suffix, texture = out.suffix.lower(), task.given.texture
+    if suffix in COLORLESS and (texture or task.given.colors is not None):
         report(f"{out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
+    elif suffix != ".glb" and texture and (said := {name for each in texture.materials for name in each or ()}):
+        kept = "colours of vertices" if suffix == ".ply" else "the colours of materials"
+        report(f"{out.suffix} files have {kept} alone, dropped: {', '.join(sorted(said - COLOURS_OF))}")
 
 
 def draw(task: SimplificationTask, found: Mesh, path: Path) -> None:
@@ -267,6 +282,8 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     extent = np.ptp(given.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
+    if path.suffix.lower() == ".glb" and (lost := not_read(path.read_bytes())):
+        report(f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}")
     mesh, notes = repaired(given)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
     return given, mesh

@@ -32,8 +32,8 @@ from typing import Any
 
 import numpy as np
 
-from haptic_glance.base.extras import MissingExtra, from_extra
-from haptic_glance.base.files import write_arrays, write_text
+from haptic_glance.base.extras import MissingExtra, about, from_extra
+from haptic_glance.base.files import existing, said_of, write_arrays, write_text
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.up import add_up
 from haptic_glance.touch.distances import CONTACTS, check_array, distances_at
@@ -41,7 +41,7 @@ from haptic_glance.touch.force import press_forces
 from haptic_glance.touch.places import DEFAULT_COUNT, Places, UserMesh, read_user_mesh
 from haptic_glance.touch.press import normalise
 from haptic_glance.touch.quasi_tangent import misfit
-from haptic_glance.touch.skin import METRES, Layer, Metres, Skin, indent, length
+from haptic_glance.touch.skin import LAYER_UNITS, METRES, Layer, Metres, Skin, indent, length
 from haptic_glance.touch.surface import sensor_axes
 
 SELECTIONS = ("salient", "random")  # of places, which --count applies to
@@ -76,7 +76,8 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--load", metavar="NEWTONS", type=float, help=help_load)
     help_unit = "what the coordinates of the file are in; --load and lengths such as 1mm need it"
     result.add_argument("--unit", choices=list(METRES), help=help_unit)
-    help_layer = f"the foam on the array, for --load; the names are {', '.join(names_of(Layer))}"
+    names = [f"{name} in {LAYER_UNITS[name]}" if name in LAYER_UNITS else name for name in names_of(Layer)]
+    help_layer = f"the foam on the array, for --load; the names are {', '.join(names)}"
     result.add_argument("--layer", metavar="NAME=VALUE,...", help=help_layer)
     add_up(result)
     result.add_argument(
@@ -197,14 +198,13 @@ def run(argv: list[str]) -> None:
             from haptic_glance.touch.pictures import check_window
 
         check_window()
-    try:
+    with about(options.mesh):
         user_mesh = open_mesh(options)
         places = user_mesh.places(options.at, options.count, options.method, options.seed)
         check_size(len(places.positions), options.cells)
-    except ValueError as error:
-        raise ValueError(f"{options.mesh}: {error}").with_traceback(error.__traceback__) from None
     if places.note:
         report_progress(places.note)
+    report_progress("pressing")
     axes = sensor_axes(places.normals)
     raw = distances_at(user_mesh.surface, places.positions, axes, options.cells, options.pitch, contact=options.contact)
     images = make_images(raw, options, user_mesh.name)
@@ -217,6 +217,7 @@ def run(argv: list[str]) -> None:
         for row, peak in zip(rows, pressed.max(axis=(1, 2)).tolist(), strict=True):
             row |= {"peak_newtons": peak, "indentation_metres": peak / stiffness}
     options.out.mkdir(parents=True, exist_ok=True)
+    before = existing(*(options.out / name for name in (PICTURE, ARRAYS, TABLE)))
     arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
     write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
     write_text(options.out / TABLE, as_csv(rows, user_mesh.digits))
@@ -227,7 +228,7 @@ def run(argv: list[str]) -> None:
     except MissingExtra as error:
         report_progress(f"no {PICTURE}: {error}")
     print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
-    report_progress("written: " + ", ".join(str(options.out / name) for name in written))
+    report_progress(said_of([options.out / name for name in written], before))
     if options.show:
         from haptic_glance.touch.pictures import open_window
 
@@ -249,6 +250,9 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     lengths_in_units(options, user_mesh.unit)
     if wrong := misfit(options.cells, options.pitch):
         report_progress(wrong)
+    if options.load is not None and options.layer.thickness > (size := user_mesh.unit * options.metres):
+        thick = f"the layer is {options.layer.thickness:g} m thick, more than the object, {size:.3g} m across"
+        report_progress(f"{thick}: is --unit {options.unit} right?")
     if options.at[0] == "salient":
         report_progress("looking at it, to find what is salient")
     return user_mesh
@@ -280,6 +284,7 @@ def draw_picture(
     with from_extra("it is drawn by matplotlib, which "):
         from haptic_glance.touch.pictures import write_picture
 
+    report_progress("drawing")
     scale = "the depth" if options.depth else "the imprint's relief"
     write_picture(options.out / PICTURE, user_mesh.mesh, places.positions, axes, images, np.asarray(reliefs),
                   options.pitch, scale, user_mesh.source.up)  # fmt: skip

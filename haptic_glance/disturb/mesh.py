@@ -24,9 +24,9 @@ The same object in another unit of length.
 import colorsys
 
 import numpy as np
-import pymeshlab
 from scipy.spatial import KDTree
 
+from haptic_glance.base.extras import from_extra
 from haptic_glance.lod import simplify
 from haptic_glance.look.camera import Viewpoint, pixel_rays
 from haptic_glance.look.views import render
@@ -100,13 +100,13 @@ SETTINGS = {
     "selectedonly": False,
     "featuredeg": 30.0,  # degrees; sharper edges stay
     "checksurfdist": True,
-    "maxsurfdist": pymeshlab.PercentageValue(1.0),  # of the diagonal
     "splitflag": True,
     "collapseflag": True,
     "swapflag": True,
     "smoothflag": True,
     "reprojectflag": True,
 }
+FARTHEST = 1.0  # from the surface, percent of the diagonal
 
 
 def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
@@ -115,12 +115,15 @@ def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> P
     Colours are those of the nearest vertex. Raises ValueError where the surface collapses at this edge length.
     """
     length = 100 * in_range(severity, 1e-3, 1, "the edge length over the diagonal")
+    with from_extra("a mesh is remeshed by pymeshlab, which "):
+        import pymeshlab
+
     work = pymeshlab.MeshSet(verbose=False)
     work.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
     try:
-        work.apply_filter(
-            "meshing_isotropic_explicit_remeshing", targetlen=pymeshlab.PercentageValue(length), **SETTINGS
-        )
+        lengths = {"targetlen": length, "maxsurfdist": FARTHEST}
+        lengths = {name: pymeshlab.PercentageValue(value) for name, value in lengths.items()}
+        work.apply_filter("meshing_isotropic_explicit_remeshing", **lengths, **SETTINGS)
     except pymeshlab.PyMeshLabException as error:
         raise ValueError(f"this mesh cannot be remeshed: {' '.join(str(error).split())}") from None
     vertices, faces = work.current_mesh().vertex_matrix(), work.current_mesh().face_matrix()

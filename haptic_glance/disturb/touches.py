@@ -24,12 +24,12 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
-import point_cloud_utils
 from numpy.typing import ArrayLike
 
 from haptic_glance.base.rng import rng
 from haptic_glance.lod import simplify
 from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.nearest import closest
 from haptic_glance.touch import Skin, Surface, press_at, sensor_axes, sensor_normals, snap_to_surface, touchable
 
 
@@ -144,9 +144,8 @@ def localisation(touches: Touches, severity: float, draw: int) -> PerturbedTouch
 
 def snap_with_blended_normals(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(positions (k, 3), normals (k, 3)): positions nearest to points (k, 3), normals interpolated between corners."""
-    twice = np.concatenate([points, points[:1]])  # point_cloud_utils 0.34 misreads an array of a single point
-    _, face, weights = point_cloud_utils.closest_points_on_mesh(twice, mesh.vertices, mesh.faces)
-    corners, weights = mesh.faces[face[:-1]], np.asarray(weights[:-1], dtype=np.float64)[:, :, None]
+    _, face, weights = closest(mesh, points)
+    corners, weights = mesh.faces[face], weights[:, :, None]
     wanted, back = np.unique(corners, return_inverse=True)
     normals, can = np.zeros((len(wanted), 3)), touchable(mesh, wanted)
     normals[can] = sensor_normals(mesh, wanted[can])

@@ -19,6 +19,7 @@ import numpy as np
 import trimesh
 from trimesh import creation
 
+from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
@@ -288,7 +289,7 @@ def known_objects(folder: Path, most: int = 60) -> tuple[dict[str, Mesh], list[s
     for path in files[:most]:
         try:
             found[path.stem] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
-        except (MeshError, ValueError, KeyError, OSError) as error:
+        except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
             notes.append(f"{path.name}: {error}")
     return found, notes
 

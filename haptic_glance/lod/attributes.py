@@ -5,14 +5,15 @@ is a patch of faces whose coordinates are continuous across the edges between th
 of the coarse mesh takes the chart under its centre, so that no face shows the stretch of image between two charts.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.nearest import SurfaceIndex
 from haptic_glance.mesh.rays import barycentric
-
-from .errors import SurfaceIndex
 
 SAME = 1e-6  # texture coordinates this close are continuous across an edge; an image has some 1e3 pixels per side
 INWARDS = 1e-3  # of the way to the face's centre: a corner on a seam then lies on its own side of it
@@ -85,7 +86,7 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     ahead = _extrapolated(reference, *sides, FAR).reshape(uv.shape)
     astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[under]][:, None] / 2
     uv[astray] = ahead[astray]
-    return Texture(uv, reference.texture.image[under], reference.texture.images)
+    return replace(reference.texture, uv=uv, image=reference.texture.image[under])
 
 
 def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:

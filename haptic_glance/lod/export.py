@@ -13,8 +13,9 @@ import argparse
 import io
 import re
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 import trimesh
@@ -41,18 +42,22 @@ DIGITS = 9  # of the diagonal
 def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     """Writes a Mesh in the format of the path's suffix: glb, obj, off, ply or stl; the file is whole or absent.
 
-    Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices; ply gets
-    the texture's colour at each vertex instead; off and stl have neither. obj and off have nine digits or more, the
-    others single precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned
-    here (haptic_glance.mesh.up.upright_for); the other formats get a comment where another axis than z points up.
-    parts: in a glb the nodes, by name. Raises ValueError for another suffix.
+    Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
+    glb with all that its materials say; ply gets the texture's colour at each vertex instead; off and stl have neither.
+    obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects
+    +y up and metres, but nothing is turned here (haptic_glance.mesh.up.upright_for); the other formats get a comment
+    where another axis than z points up. parts: in a glb the nodes, by name. Raises ValueError for another suffix.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise ValueError(f"{path.name}: meshes are written as {', '.join(FORMATS)}, not as {suffix or 'no suffix'}")
     named = parts if suffix == ".glb" else None
-    loaded = to_trimesh(mesh if suffix in PICTURED else bake_texture(mesh), path.stem, named)
+    if suffix not in PICTURED:
+        mesh = bake_texture(mesh)
+    elif suffix == ".obj" and mesh.texture is not None:  # its materials have no more
+        mesh = replace(mesh, texture=replace(mesh.texture, materials=()))
+    loaded = _converted(mesh, path.stem, named, suffix == ".glb")
     digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), 1)
     options: dict[str, Any] = {"digits": digits} if suffix in (".obj", ".off") else {}
     if suffix == ".obj":
@@ -69,9 +74,18 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
 def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
     """A trimesh.Trimesh, or with a texture a trimesh.Scene with one part per image, vertices doubled at seams.
 
-    name: prefix of the names of its parts and materials. parts: a Scene of these, named so, each with one part per
-    image, the further ones numbered.
+    name: prefix of the names of its parts, and of materials that have none of their own. parts: a Scene of these, named
+    so, each with one part per image, the further ones numbered.
     """
+    return _converted(mesh, name, parts)
+
+
+def for_glb(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
+    """As `to_trimesh`; the pictures are those of files, which trimesh writes to a glb as they are."""
+    return _converted(mesh, name, parts, True)
+
+
+def _converted(mesh, name, parts, glb=False) -> trimesh.Trimesh | trimesh.Scene:
     if mesh.texture is None and not parts:
         return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
     if mesh.texture is None:
@@ -82,7 +96,8 @@ def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> tr
     for part, ids in (parts or {}).items():
         for place, number in enumerate(np.unique(images[ids])):
             scene[f"{part}_{place}" if place else part] = number, ids[images[ids] == number]
-    return trimesh.Scene({part: _part(mesh, number, ids, part) for part, (number, ids) in scene.items()})
+    said = {number: _material(mesh.texture, number, glb) for number in {number for number, _ in scene.values()}}
+    return trimesh.Scene({part: _part(mesh, said[number], ids, part) for part, (number, ids) in scene.items()})
 
 
 def _plain_part(mesh, ids):
@@ -91,28 +106,49 @@ def _plain_part(mesh, ids):
     return trimesh.Trimesh(mesh.vertices[used], faces.reshape(-1, 3), vertex_colors=colors, process=False)
 
 
-def _part(mesh, number, ids, name):
+def _part(mesh, material, ids, name):
     """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
-    own = mesh.texture.of(ids)
     faces = mesh.faces[ids]
-    rows = np.column_stack([faces.ravel(), own.uv.reshape(-1, 2)])
+    rows = np.column_stack([faces.ravel(), mesh.texture.uv[ids].reshape(-1, 2)])
     found, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    image = own.images[number]
-    material = PBRMaterial(name=name, doubleSided=True, metallicFactor=0.0, roughnessFactor=1.0, **_base_color(image))
-    visual = TextureVisuals(uv=found[:, 1:], material=material)
+    own = PBRMaterial(**{"name": name} | material)
     vertices = mesh.vertices[faces.ravel()[first]]
+    visual = TextureVisuals(uv=found[:, 1:], material=own)
     return trimesh.Trimesh(vertices, inverse.reshape(-1, 3), visual=visual, process=False)
 
 
-def _base_color(pixels):
-    """glTF's base colour: the image, or its colour where it is one pixel."""
-    mask = {"alphaMode": "MASK"} if (pixels[..., 3] < 255).any() else {}
-    if pixels.shape[:2] == (1, 1):
-        return {"baseColorFactor": pixels[0, 0], **mask}
-    packed = io.BytesIO()
-    Image.fromarray(pixels if mask else pixels[..., :3]).save(packed, "PNG")  # trimesh writes the format that was read
-    packed.seek(0)
-    return {"baseColorTexture": Image.open(packed), **mask}
+def _material(texture, number, glb):
+    """The arguments of a PBRMaterial: the image, or its colour where it is one pixel, and what a file said besides."""
+    pixels, said = texture.images[number], texture.materials[number]
+    clear, plain = (pixels[..., 3] < 255).any(), pixels.shape[:2] == (1, 1)
+    if said is None:
+        said = {"doubleSided": True, "metallicFactor": 0.0, "roughnessFactor": 1.0}
+        said |= {"alphaMode": "MASK"} if clear else {}
+        said |= {"baseColorFactor": pixels[0, 0]} if plain else {"baseColorTexture": True}
+    said = {"metallicFactor": 1.0, "roughnessFactor": 1.0, **said}  # what glTF takes for none
+    if "baseColorTexture" in said:
+        said["baseColorTexture"] = Image.fromarray(pixels if clear else pixels[..., :3])
+    return {name: _picture(value, glb) if name.endswith("Texture") else value for name, value in said.items()}
+
+
+class _File:
+    """A picture's file, which trimesh writes to a glb without decoding it."""
+
+    def __init__(self, content: bytes) -> None:
+        self.content = content
+        self.format = "PNG" if content.startswith(b"\x89PNG") else "JPEG"
+
+    def save(self, file: IO[bytes], format: str) -> None:  # noqa: ARG002
+        file.write(self.content)
+
+
+def _picture(given, glb):
+    """The picture of a file's bytes or a PIL image, as a PIL image that has a format, or as a _File."""
+    if not isinstance(given, bytes):
+        packed = io.BytesIO()
+        given.save(packed, "PNG")
+        given = packed.getvalue()
+    return _File(given) if glb else Image.open(io.BytesIO(given))
 
 
 def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:

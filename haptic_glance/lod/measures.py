@@ -34,7 +34,7 @@ NAMES = {
 def measure_meshes(
     task: SimplificationTask, meshes: Sequence[Mesh], seed: int = 0, report: Callable[[str], None] = lambda text: None
 ) -> list[dict[str, float | None]]:
-    """[dict name -> error] of Meshes in the frame of the task, by the names of NAMES; colours where they count.
+    """[dict name -> error] of Meshes in the frame of the task, by the names of NAMES; colours of textures, or counted.
 
     Where a coarse mesh exceeds the picture, all are drawn smaller by one scale, so that the columns of a table compare;
     this is reported, since the errors are then smaller too. Errors of pictures that fail are None, with the reason
@@ -51,7 +51,7 @@ def measure_meshes(
     for mesh, picture in zip(meshes, shown, strict=True):
         errors = surface_errors(task.mesh, mesh, {"salient": task.saliency}, seed=seed)
         row: dict[str, float | None] = {name: 100 * value for name, value in errors.items()}
-        if "colors" in task.attributes or "uv" in task.attributes:
+        if task.mesh.texture is not None or "colors" in task.attributes:
             row["colour"] = colour_error(task.mesh, mesh, seed=seed)
         row |= dict.fromkeys(("ssim", "dlap", "dnor"))
         try:

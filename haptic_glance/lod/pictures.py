@@ -32,17 +32,18 @@ MARGIN, ARROW, TIP = 20, 45, 8  # pixels: of the arrow that points up
 KINDS = (".jpg", ".png", ".webp")
 
 
-def write_look(path: Path, mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> None:
+def write_look(path: Path, mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> int:
     """Writes a picture of a mesh turned upright, with the axis that points up: its saliency (n,) and points (k,).
 
-    Points are numbered from 1; those on the far side are not shown. The format follows the suffix of the path;
-    ValueError for an unknown one.
+    Points are numbered from 1; those on the far side are not shown: how many is returned. The format follows the
+    suffix of the path; ValueError for an unknown one.
     """
     check_look(path)
     with whole_file(path) as part:
         Image.fromarray(look(mesh, saliency, points)).save(
             part, format=Image.registered_extensions()[path.suffix.lower()]
         )
+    return int((~visible(normalise(rotate_to_z_up(mesh)), points)).sum())
 
 
 def look(mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> np.ndarray:

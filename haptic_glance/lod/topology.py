@@ -121,7 +121,7 @@ def parts_of(path: Path) -> Parts:
     """The Parts of a file's mesh, as `haptic_glance.mesh.files` joins them; empty unless it is a GLB."""
     if path.suffix.lower() != ".glb":
         return {}
-    loaded = trimesh.load(path, process=False)
+    loaded = trimesh.load(path, process=False, skip_materials=True)
     dumped = loaded.dump() if isinstance(loaded, trimesh.Scene) else []
     parts, start = {}, 0
     for part in dumped:

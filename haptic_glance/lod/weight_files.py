@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 from haptic_glance.base.files import whole_file
 from haptic_glance.mesh.mesh import Mesh
 
-from .export import to_trimesh
+from .export import for_glb
 
 NAME = "saliency"
 
@@ -67,7 +67,7 @@ def _ply(mesh: Mesh, weights: np.ndarray) -> bytes:
 
 
 def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
-    loaded = to_trimesh(mesh)
+    loaded = for_glb(mesh)
     scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
     places = KDTree(mesh.vertices)  # a seam of a texture doubles vertices
     for part in scene.geometry.values():

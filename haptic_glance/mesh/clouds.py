@@ -215,10 +215,10 @@ def surface_of(cloud: Cloud) -> Mesh:
     from the points than they lie from each other is cut away again. Colours are those of the nearest points. Raises
     MeshError for a cloud without a shape.
     """
+    cloud = usable(cloud)
     with from_extra("a point cloud is made a surface by pymeshlab, which "):
         import pymeshlab
 
-    cloud = usable(cloud)
     centre, extent = cloud.points.mean(axis=0), np.ptp(cloud.points, axis=0).max()
     points = (cloud.points - centre) / extent  # far from the origin, digits would be lost
     sensor = None if cloud.sensor is None else (cloud.sensor - centre) / extent

@@ -14,12 +14,12 @@ import trimesh
 from numpy.typing import ArrayLike
 from trimesh.resolvers import FilePathResolver, Resolver
 
-from haptic_glance.base.extras import MissingExtra
+from haptic_glance.base.extras import MissingExtra, about
 
 from . import clouds
 from .axes import AUTO
 from .headers import MeshError, check_header
-from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
+from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
 from .mesh import Mesh
 from .off import read_off
 from .up import UP_OF_FORMAT, stated_up
@@ -55,10 +55,8 @@ def load(path: str | Path) -> Mesh:
 
 def load_as_stated(path: str | Path) -> Mesh:
     """As `load`; `up` is `auto` where the file does not say which axis points up."""
-    try:
+    with about(path, MeshError):
         return load_unnamed(Path(path))
-    except MeshError as error:
-        raise MeshError(f"{path}: {error}") from None
 
 
 def load_unnamed(path: Path) -> Mesh:
@@ -131,13 +129,20 @@ def _parsed(content, suffix, resolver, every_colour):
         return clouds.surface_of(clouds.read_cloud(content, suffix))
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
-        loaded = join_parts(_open(content, suffix, resolver), order, every_colour)
+        opened = _open(content, suffix, resolver)
+        set_apart(opened, content)
+        loaded = join_parts(opened, order, every_colour)
     else:
         skip = not (every_colour and suffix == ".ply")
         loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=skip)
         if isinstance(loaded, trimesh.Scene):
             loaded = loaded.to_geometry() if loaded.geometry else None
-    return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, suffix == ".stl", every_colour)
+    if isinstance(loaded, Mesh):
+        return loaded
+    if isinstance(loaded, trimesh.PointCloud) and (suffix != ".ply" or "face" in loaded.metadata.get("_ply_raw", ())):
+        with about("has no faces, so it is read as a point cloud", MeshError):
+            return _to_mesh(loaded, False, every_colour)
+    return _to_mesh(loaded, suffix == ".stl", every_colour)
 
 
 def _open(content, suffix, resolver, **options):

@@ -2,12 +2,15 @@
 
 Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB.
 
-A material counts by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture.
+A material is seen by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture. What
+else a glTF material says is carried along, its further pictures undecoded.
 
 The colours of an object: those of its file, or one of a palette by its name.
 """
 
+import json
 import zlib
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -16,13 +19,111 @@ import trimesh
 from PIL import Image
 from trimesh.visual import ColorVisuals, TextureVisuals
 from trimesh.visual.color import to_rgba
-from trimesh.visual.material import color_image
+from trimesh.visual.material import PBRMaterial, color_image
 
 from .headers import MeshError
-from .mesh import Mesh, Texture
+from .mesh import Mesh, Texture, content_of
 
 MAX_TEXTURE = 8192  # pixels, of a square texture
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
+
+FACTORS = (
+    "name", "baseColorFactor", "metallicFactor", "roughnessFactor", "emissiveFactor", "alphaMode", "alphaCutoff",
+    "doubleSided",
+)  # fmt: skip
+MAPS = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+COLOURS_OF = {"baseColorFactor", "baseColorTexture"}
+BESIDE = "beside_colour"  # in the metadata of a part
+
+
+def beside_colour(material: Any) -> dict[str, Any] | None:
+    """What a glTF material says beside its picture of colour, as arguments of trimesh's PBRMaterial; None of others.
+
+    A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image. That of
+    colour is True where there is one: it is an image of the Texture.
+    """
+    if not isinstance(material, PBRMaterial):
+        return None
+    said = {name: getattr(material, name) for name in FACTORS} | {name: _file(getattr(material, name)) for name in MAPS}
+    said["baseColorTexture"] = material.baseColorTexture is not None or None
+    return {name: value for name, value in said.items() if value is not None}
+
+
+def _file(image):
+    content = getattr(getattr(image, "fp", None), "getvalue", None)
+    return content() if content and image.format in ("PNG", "JPEG") else image
+
+
+def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
+    """Moves all pictures but those of colour from the materials of a file's Scene to the metadata of its parts.
+
+    A copy of a part, as `join_parts` makes, would decode them. content: the bytes of a GLB, whose pictures on another
+    set of texture coordinates than the first are left out.
+    """
+    parts = [part for part in getattr(loaded, "geometry", {}).values() if isinstance(part, trimesh.Trimesh)]
+    materials = {id(part): getattr(part.visual, "material", None) for part in parts}
+    elsewhere = {
+        (str(material.get("name")), name)
+        for material in _stated_in(_header(content), "materials")
+        for name, use in _uses(material)
+        if use.get("texCoord")
+    }
+    for part in parts:
+        said = beside_colour(materials[id(part)])
+        part.metadata[BESIDE] = said and {k: v for k, v in said.items() if (str(said.get("name")), k) not in elsewhere}
+    for material in materials.values():
+        if isinstance(material, PBRMaterial):
+            for name in MAPS:
+                setattr(material, name, None)
+
+
+USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
+REPEAT = 10497  # the usual wrapS and wrapT
+READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
+DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
+
+
+def not_read(content: bytes) -> list[str]:
+    """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
+    tree = _header(content)
+    found = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
+    textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
+    with suppress(*MALFORMED):
+        for primitive in (one for mesh in _stated_in(tree, "meshes") for one in mesh["primitives"]):
+            kept = DERIVED if "material" in primitive else (*DERIVED, "COLOR_0")
+            found += [name for name in primitive["attributes"] if name not in kept]
+        for material in _stated_in(tree, "materials"):
+            found += material.get("extensions", {})
+            for name, use in _uses(material):
+                texture = textures[use["index"]]
+                sampler = samplers[texture["sampler"]] if "sampler" in texture else {}
+                found += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
+                found += [f"{name}.{key}" for key in ("wrapS", "wrapT") if sampler.get(key, REPEAT) != REPEAT]
+                found += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
+    return [name for name in dict.fromkeys(found) if not name.endswith(READ)]
+
+
+MALFORMED = AttributeError, LookupError, TypeError, ValueError
+
+
+def _header(content):
+    """The JSON part of a GLB's bytes; empty for others."""
+    try:
+        return json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")]) if content[:4] == b"glTF" else {}
+    except ValueError:
+        return {}
+
+
+def _stated_in(tree, name):
+    """The dicts in the list of a name."""
+    found = tree.get(name) if isinstance(tree, dict) else None
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+
+def _uses(material):
+    """[(name of a picture, how a glTF material uses it)]."""
+    every = material | material.get("pbrMetallicRoughness", {})
+    return [(name, use) for name, use in every.items() if isinstance(use, dict) and "index" in use]
 
 
 def join_parts(
@@ -89,16 +190,25 @@ def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
-    """The Texture of all parts, one behind the other, or None when no material states a colour or a picture."""
-    if not any(_stated(part) for part in parts):
+    """The Texture of all parts, one behind the other, or None when no material states more than its name and sides."""
+    said = [_beside(part) for part in parts]
+    if not any(
+        _stated(part) or set(own or ()) - {"name", "doubleSided"} for part, own in zip(parts, said, strict=True)
+    ):
         return None
     images = [_image(part) for part in parts]
     uv = [_corners(part) for part in parts]
     sizes = [len(part.faces) for part in parts]
     names = {}
-    numbers = [names.setdefault((one.shape, one.tobytes()), len(names)) for one in images]
-    distinct = [images[numbers.index(number)] for number in range(len(names))]
-    return Texture(np.concatenate(uv), np.repeat(numbers, sizes), tuple(distinct))
+    keys = [(one.shape, one.tobytes(), *content_of(own)) for one, own in zip(images, said, strict=True)]
+    numbers = [names.setdefault(key, len(names)) for key in keys]
+    first = [numbers.index(number) for number in range(len(names))]
+    distinct, materials = zip(*((images[place], said[place]) for place in first), strict=True)
+    return Texture(np.concatenate(uv), np.repeat(numbers, sizes), distinct, materials)
+
+
+def _beside(part):
+    return part.metadata.get(BESIDE) or beside_colour(getattr(part.visual, "material", None))
 
 
 def _stated(part):
@@ -167,9 +277,14 @@ def coloured(mesh: Mesh, name: str, colours: str, suffix: str = "") -> Mesh:
 
 
 def bake_texture(mesh: Mesh) -> Mesh:
-    """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture."""
+    """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture.
+
+    Materials that state no colour, but for example a normal map, leave the mesh without colours.
+    """
     if mesh.texture is None:
         return mesh
+    if not any(said is None or COLOURS_OF & set(said) for said in mesh.texture.materials):
+        return replace(mesh, texture=None)
     texture, ids = mesh.texture, mesh.faces.ravel()
     rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))
     count = np.maximum(np.bincount(ids, minlength=len(mesh.vertices)), 1)

@@ -5,7 +5,8 @@ Pictures on a surface: texture coordinates per face corner, so that a seam split
 The triangle mesh as arrays, and the few facts of it that several modules ask for.
 """
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,11 +22,13 @@ class Texture:
 
     uv (m, 3, 2) f8, a pair per face corner: u to the right, v up, (0, 0) the lower left corner of the image, which
     repeats outside 0..1. image (m,) i8: which of the images a face shows. images: arrays (h, w, 4) u1, RGBA.
+    materials: for each image what glTF says of it besides (haptic_glance.mesh.materials.beside_colour), or None.
     """
 
     uv: np.ndarray
     image: np.ndarray
     images: tuple[np.ndarray, ...]
+    materials: tuple[Mapping[str, Any] | None, ...] = ()
 
     def __post_init__(self) -> None:
         uv = np.ascontiguousarray(self.uv, dtype=np.float64)
@@ -39,18 +42,21 @@ class Texture:
             raise ValueError(f"image names pictures outside 0..{len(images) - 1}")
         if any(one.ndim != 3 or one.shape[2] != 4 or one.size == 0 for one in images):
             raise ValueError(f"images must have shape (h, w, 4), got {[one.shape for one in images]}")
-        for name, value in (("uv", uv), ("image", image), ("images", images)):
+        materials = tuple(self.materials) or (None,) * len(images)
+        if len(materials) != len(images):
+            raise ValueError(f"materials must be one for each of {len(images)} images, got {len(materials)}")
+        for name, value in (("uv", uv), ("image", image), ("images", images), ("materials", materials)):
             object.__setattr__(self, name, value)
 
     def of(self, faces: np.ndarray) -> "Texture":
         """The Texture of some faces: ids or (m,) boolean."""
-        return Texture(self.uv[faces], self.image[faces], self.images)
+        return replace(self, uv=self.uv[faces], image=self.image[faces])
 
     def turned(self, flips: np.ndarray) -> "Texture":
         """The Texture after the order of the corners was reversed in the faces (m,) boolean."""
         uv = self.uv.copy()
         uv[flips] = uv[flips][:, ::-1]
-        return Texture(uv, self.image, self.images)
+        return replace(self, uv=uv)
 
     def sample(self, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
         """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel."""
@@ -129,7 +135,9 @@ class Mesh:
         """The content of all arrays, each with its shape."""
         texture = () if self.texture is None else (self.texture.image, self.texture.uv, *self.texture.images)
         arrays = (self.vertices, self.faces, *(() if self.colors is None else (self.colors,)), *texture)
-        return [repr((array.shape, array.dtype.str)).encode() + array.tobytes() for array in map(np.asarray, arrays)]
+        found = [repr((array.shape, array.dtype.str)).encode() + array.tobytes() for array in map(np.asarray, arrays)]
+        said = () if self.texture is None else self.texture.materials
+        return found + [content for material in said for content in content_of(material)]
 
     @cached_property
     def face_crosses(self) -> np.ndarray:
@@ -197,6 +205,12 @@ class Mesh:
         for _ in range(count):
             near |= self.adjacency @ near
         return near
+
+
+def content_of(material: Mapping[str, Any] | None) -> list[bytes]:
+    """The content of one of a Texture's materials: names and values in turn."""
+    parts = [part for pair in sorted((material or {}).items()) for part in pair]
+    return [part if isinstance(part, bytes) else getattr(part, "tobytes", repr(part).encode)() for part in parts]
 
 
 def _own(values: Any, kind: type) -> np.ndarray:

@@ -25,7 +25,8 @@ def press_forces(
     """(k, rows, cols) f8: the normal force on each cell in newtons, of arrays pressed at centres (k, 3).
 
     axes (k, 3, 3) rows right, up, normal; pitch: units of the mesh; unit: metres a unit of the mesh is long; load,
-    depth: as in `forces`. Raises ValueError as `distances_at` and `forces` do.
+    depth: as in `forces`. `haptic_glance.press_forces` takes texts as well: unit="mm", pitch="1mm", depth="2mm".
+    Raises ValueError as `distances_at` and `forces` do.
     """
     if (load is None) == (depth is None):
         raise ValueError("give either load, in newtons, or depth, in metres")

@@ -120,11 +120,17 @@ class Touched:
     reach: float
 
 
+SMALL, LARGE = 1e-3, 2.0  # of the object: a smaller or larger array rather has another unit of length than the object
+
+
 def misfit(cells: Sequence[int], pitch: float) -> str:
-    """The fault of an array that is longer than the object, of diameter 1; else ""."""
-    length = max(cells) * pitch
-    wrong = f"the array is {length:g} units long, the object 1: most cells will miss it; take fewer or a smaller pitch"
-    return wrong if length > 1 else ""
+    """The fault of an array that is longer than the object, of diameter 1, or next to nothing beside it; else ""."""
+    length, doubt = max(cells) * pitch, "is the unit of length right?"
+    size = f"the array is {length:g} units long, the object 1"
+    if length < SMALL:
+        return f"{size}: it feels one point; {doubt}"
+    wrong = f"{size}: most cells will miss it; take fewer or a smaller pitch"
+    return "" if length <= 1 else f"{wrong}; {doubt}" if length > LARGE else wrong
 
 
 def touch(surface: Surface, vertices: ArrayLike, cells: tuple[int, int], pitch: float, sensor: str) -> Touched:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import KDTree
 
-from haptic_glance.base.extras import from_extra
 from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.nearest import closest
 
 from .surface import CANCELLED, Surface, as_surface, mean_vertex_normals
 
@@ -210,13 +210,9 @@ def snap_to_surface(
 
 def _closest(mesh, points):
     """(distances (k,), faces (k,), corner weights (k, 3)) of the nearest positions."""
-    with from_extra():
-        import point_cloud_utils
-
-    twice = np.concatenate([points, points[:1]])  # point_cloud_utils 0.34 misreads an array of a single point
-    distances_off, face, weights = point_cloud_utils.closest_points_on_mesh(twice, mesh.vertices, mesh.faces)
-    weights = np.where(weights[:-1] > EDGE_WEIGHT, weights[:-1], 0.0)
-    return distances_off[:-1], face[:-1].astype(np.int64), weights / weights.sum(axis=1, keepdims=True)
+    distances_off, face, weights = closest(mesh, points)
+    weights = np.where(weights > EDGE_WEIGHT, weights, 0.0)
+    return distances_off, face, weights / weights.sum(axis=1, keepdims=True)
 
 
 def _mean_normals(mesh, face, at_corner):

@@ -23,7 +23,7 @@ def test_points_are_those_of_the_saliency(pear, capsys):
         work([str(pear), "--count", "3"])
         shown.append(capsys.readouterr())
     assert shown[0].out == shown[1].out and len(shown[0].out.splitlines()) == 4
-    assert shown[0].err.startswith("points: 1,280 faces")
+    assert shown[0].err.startswith("points: reading pear.ply\npoints: looking at it\npoints: 1,280 faces")
 
 
 @pytest.mark.slow

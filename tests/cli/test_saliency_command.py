@@ -8,9 +8,9 @@ import trimesh
 from PIL import Image
 
 from haptic_glance.cli.saliency import COLUMNS, run
-from haptic_glance.lod.pictures import places, write_look
+from haptic_glance.lod.pictures import places, visible, write_look
 from haptic_glance.look.points import detect, find_points, saliency
-from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
@@ -66,6 +66,19 @@ def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_pat
     bright, dark = coloured.colors[values.argmax()], coloured.colors[values.argmin()]
     assert bright[0] > 200 > dark[0]  # viridis: yellow, violet
     assert np.asarray(Image.open(picture)).std() > 10
+    said = shown.err.splitlines()
+    assert said[:2] == ["saliency: reading egg.ply", "saliency: looking at it"]
+    out.unlink()
+    run([str(egg), "--count", "3", "--out", str(out), "--points", str(points)])
+    assert capsys.readouterr().err.endswith(f"saliency: written: {out}; replaced: {points}\n")
+
+
+def test_points_behind_the_picture_are_counted(egg, capsys):
+    run([str(egg), "--count", "12", "--picture", str(egg.with_suffix(".png")), "--json"])
+    shown = capsys.readouterr()
+    mesh = load(egg)
+    seen = visible(normalise(rotate_to_z_up(mesh)), [row["vertex"] for row in json.loads(shown.out)])
+    assert 0 < seen.sum() < 12 and f"{(~seen).sum()} of 12 points are behind" in shown.err
 
 
 @pytest.mark.parametrize(

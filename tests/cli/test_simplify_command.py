@@ -150,7 +150,8 @@ def textured():
 def test_pictures_go_along(simplified, tmp_path, out):
     mesh = textured()
     write_any(tmp_path / "wrapped.obj", mesh)
-    found, _, _ = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out=out)
+    found, said, told = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out=out)
+    assert float(rows(said)["colours, of 255"][1]) > 0 and told.count("--attributes uv=1") == 1
     assert len(found.faces) == 500 and found.watertight
     assert (found.texture.images[0] == mesh.texture.images[0]).all()
     standing = found.vertices * [1, -1, 1] if out == "out.obj" else found.vertices[:, [0, 2, 1]]  # a GLB is y up

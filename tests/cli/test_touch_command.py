@@ -59,7 +59,9 @@ def touched(file, tmp_path, capsys):
 
 @pytest.mark.slow
 def test_json_has_the_places_as_the_table_has_them(touched):
-    _, table, said, _ = touched("--at", 3, 50, "--json")
+    _, table, said, told = touched("--at", 3, 50, "--json")
+    assert "touch: pressing\ntouch: drawing\ntouch: written: " in told
+    assert "touch: replaced: " in touched("--at", 3, 50, "--json")[-1]
     rows = json.loads(said)
     assert [list(row) for row in rows] == [list(table.columns)] * 2
     assert [row["vertex"] for row in rows] == [3, 50] and rows[0]["relief"] == pytest.approx(
@@ -358,6 +360,21 @@ def test_array_larger_than_the_object_and_flat_imprints_are_said(touched):
     assert "every imprint is flat" in said
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--pitch", "1mm", "--unit", "m"], "is the unit of length right?"),
+        (["--pitch", "0.2"], "is the unit of length right?"),
+        (["--load", "1", "--unit", "mm", "--layer", "thickness=3,modulus=1e9"], "m across: is --unit mm right?"),
+    ],
+)
+def test_sizes_that_tell_of_a_wrong_unit_are_said(options, words, touched):
+    said = touched("--at", 0, *options)[-1]
+    assert said.count(words) == 1
+    assert "right?" not in touched("--at", 0, "--pitch", "0.01", "--unit", "cm", "--load", 1)[-1]
+
+
 def test_folder_is_named_after_the_mesh(file):
     assert parse_options("about", [str(file), "--at", "0"]).out == Path("ball_imprints")
 
@@ -376,4 +393,5 @@ def test_help_tells_of_units_and_has_examples(capsys):
     with pytest.raises(SystemExit) as done:
         run(["ball.ply", "--help"])
     said = capsys.readouterr().out
+    assert "thickness in metres, modulus in pascals" in " ".join(said.split())
     assert done.value.code == 0 and "--at salient" in said and "bounding sphere is 1 unit across" in said

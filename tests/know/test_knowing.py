@@ -1,5 +1,7 @@
 """Knowing by touch, on objects of which it is known what a hand would find."""
 
+import sys
+
 import numpy as np
 import pytest
 import trimesh
@@ -189,14 +191,18 @@ def test_a_touch_at_a_vertex_is_what_press_feels(library, shapes):
     assert isinstance(place, Places) and len(exploration.images) == exploration.belief.touches == 1
 
 
-def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes):
+def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes, monkeypatch):
     for name in ("cubelarge", "cubesmall", "small"):
         write_any(tmp_path / f"{name}.stl", shapes["box"])
     (tmp_path / "broken.stl").write_bytes(b"solid nothing")
     (tmp_path / "notes.txt").write_text("no mesh")
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    (tmp_path / "cloud.xyz").write_text("\n".join(f"{i % 9} {i % 7} {i % 5}" for i in range(200)))
     found, notes = known_objects(tmp_path)
-    assert list(found) == ["cubelarge", "small"] and len(notes) == 1 and notes[0].startswith("broken.stl: ")
+    assert list(found) == ["cubelarge", "small"] and [note.partition(":")[0] for note in notes] == [
+        "broken.stl", "cloud.xyz",
+    ]  # fmt: skip
     assert np.linalg.norm(found["small"].vertices, axis=1).max() == pytest.approx(0.5)
     few, left_out = known_objects(tmp_path, most=1)
-    assert not few and len(left_out) == 3  # the first by name is the broken one
+    assert not few and len(left_out) == 4  # the first by name is the broken one
     assert known_objects(tmp_path / "nowhere") == ({}, [])

@@ -12,6 +12,7 @@ import trimesh
 from pypcd4 import Encoding, PointCloud
 
 from haptic_glance.base.extras import MissingExtra
+from haptic_glance.cli import points, saliency, simplify, touch
 from haptic_glance.mesh import MeshError, clean, load
 from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, surface_of
 from haptic_glance.mesh.mesh import unit
@@ -143,6 +144,25 @@ def test_a_core_install_says_what_point_clouds_need(tmp_path, monkeypatch):
     (tmp_path / "a.xyz").write_bytes(text(BALL))
     with pytest.raises(MissingExtra, match=r"by pymeshlab, which is not installed: pip install '\.\[pipeline\]'$"):
         load(tmp_path / "a.xyz")
+
+
+def test_a_mesh_without_faces_says_that_it_is_read_as_a_cloud(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    words = "has no faces, so it is read as a point cloud: a point cloud"
+    for count, kind, said in ((3, MeshError, f"{words} of 3 points"), (len(BALL), MissingExtra, f"{words} is made")):
+        (tmp_path / "a.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in BALL[:count].tolist()))
+        with pytest.raises(kind, match=f"a.obj: {said}"):
+            load(tmp_path / "a.obj")
+
+
+@pytest.mark.parametrize("work", [saliency.run, points.run, touch.run, simplify.run])
+def test_every_command_names_the_cloud_and_the_extra(work, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.xyz").write_bytes(text(BALL))
+    options = ["--faces", "100", "--out", "a.glb"] if work is simplify.run else []
+    with pytest.raises(MissingExtra, match=r"^a.xyz: a point cloud is made a surface by pymeshlab, which is not"):
+        work(["a.xyz", *options])
 
 
 def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):

@@ -9,9 +9,9 @@ import numpy as np
 from haptic_glance.base.rng import rng
 from haptic_glance.look.views.shading import corner_groups
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.nearest import SurfaceIndex
 from haptic_glance.mesh.rays import RayScene
 
-from ..errors import SurfaceIndex
 from ..feasibility import InfeasibleTarget, SimplifyError
 from ..simplify import simplify
 from .camera import Box, bounds

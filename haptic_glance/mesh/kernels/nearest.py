@@ -9,8 +9,9 @@ import math
 
 import numpy as np
 
-from .jit import allocating_kernel, helper
-from .quadrics import NUMBERS, bound_to, set_planes, square_to
+from haptic_glance.base.jit import helper
+
+from .planes import NUMBERS, allocating_kernel, bound_to, set_planes, square_to
 
 # Grid: starts and entries of the cells (see fill_cells), lower corner, width and counts of the cells.
 Grid = tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]

@@ -1,0 +1,191 @@
+"""A glTF material on the way through `haptic-glance simplify`: factors, names and undecoded pictures."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+from PIL.ImageFile import ImageFile
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from haptic_glance import as_mesh, to_trimesh
+from haptic_glance.cli.simplify import run
+from haptic_glance.lod.export import write_any
+from haptic_glance.mesh import load
+from haptic_glance.mesh.materials import bake_texture, not_read
+
+
+def picture(colour, kind="PNG"):
+    """A picture of a file, not decoded yet."""
+    packed = io.BytesIO()
+    Image.new("RGB", (8, 8), colour).save(packed, kind)
+    return Image.open(packed)
+
+
+def ball(place, **material):
+    part = trimesh.creation.icosphere(subdivisions=3)
+    part.apply_translation([place, 0, 0])
+    part.visual = TextureVisuals(part.vertices[:, :2] / 4 + 0.5, material=PBRMaterial(**material))
+    return part
+
+
+def art():
+    """Two balls: one of varnish with three pictures, and one of metal with a plain colour."""
+    maps = {
+        "normalTexture": picture((128, 128, 255), "JPEG"),
+        "metallicRoughnessTexture": picture((0, 90, 200), "JPEG"),
+    }
+    varnish = ball(
+        0, name="varnish", baseColorTexture=picture((200, 40, 40)), roughnessFactor=0.4, metallicFactor=0.9,
+        emissiveFactor=[0.1, 0.2, 0.3], alphaMode="BLEND", doubleSided=False, **maps,
+    )  # fmt: skip
+    metal = ball(3, name="metal", baseColorFactor=[0, 0, 255, 255], roughnessFactor=0.2, alphaMode="MASK",
+                 alphaCutoff=0.7, doubleSided=True)  # fmt: skip
+    return trimesh.Scene({"varnish": varnish, "metal": metal})
+
+
+def tree_of(path):
+    content = path.read_bytes()
+    size = int.from_bytes(content[12:16], "little")
+    return json.loads(content[20 : 20 + size]), content[28 + size :]
+
+
+def pictures(path, material):
+    """{name: bytes} of the pictures that a material of a GLB uses."""
+    tree, binary = tree_of(path)
+    found = {}
+    for name, use in (material | material["pbrMetallicRoughness"]).items():
+        if isinstance(use, dict) and "index" in use:
+            view = tree["bufferViews"][tree["images"][tree["textures"][use["index"]]["source"]]["bufferView"]]
+            start = view.get("byteOffset", 0)
+            found[name] = binary[start : start + view["byteLength"]]
+    return found
+
+
+def rewritten(path, change):
+    """Changes the JSON part of a GLB."""
+    tree, binary = tree_of(path)
+    change(tree)
+    head = json.dumps(tree).encode()
+    head += b" " * (-len(head) % 4)
+    parts = len(head).to_bytes(4, "little") + b"JSON" + head + len(binary).to_bytes(4, "little") + b"BIN\0" + binary
+    path.write_bytes(b"glTF" + (2).to_bytes(4, "little") + (12 + len(parts)).to_bytes(4, "little") + parts)
+
+
+@pytest.fixture
+def simplified(tmp_path, capsys):
+    """Function: writes the scene, simplifies it and returns (the path written, what was reported)."""
+
+    def work(out, change=None):
+        (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
+        if change:
+            rewritten(tmp_path / "art.glb", change)
+        run([str(tmp_path / "art.glb"), "--faces", "30%", "--method", "height", "--out", str(tmp_path / out)])
+        return tmp_path / out, capsys.readouterr().err
+
+    return work
+
+
+def test_materials_and_their_pictures_go_from_glb_to_glb(simplified, tmp_path):
+    out, said = simplified("out.glb")
+    paths = tmp_path / "art.glb", out
+    before, after = ({one["name"]: one for one in tree_of(path)[0]["materials"]} for path in paths)
+    assert set(after) == {"varnish", "metal"} and "dropped" not in said
+    for name in after:
+        plain = {key for key, value in before[name].items() if not isinstance(value, dict)}
+        assert {key: after[name][key] for key in plain} == {key: before[name][key] for key in plain}
+    ours = after["varnish"]["pbrMetallicRoughness"]
+    assert (ours["roughnessFactor"], ours["metallicFactor"]) == (0.4, 0.9)
+    assert after["metal"]["pbrMetallicRoughness"]["baseColorFactor"] == [0, 0, 1, 1]
+    old, new = (pictures(path, one["varnish"]) for path, one in zip(paths, (before, after), strict=True))
+    assert set(new) == {"normalTexture", "metallicRoughnessTexture", "baseColorTexture"}
+    assert all(new[name] == old[name] for name in ("normalTexture", "metallicRoughnessTexture"))
+
+
+def test_what_cannot_be_carried_is_said(simplified):
+    def change(tree):
+        tree["materials"][0]["extensions"] = {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}
+        tree["materials"][0]["normalTexture"]["scale"] = 0.5
+        tree["animations"] = [{"channels": [], "samplers": []}]
+
+    _, said = simplified("out.glb", change)
+    assert "dropped from art.glb" in said
+    assert all(name in said for name in ("KHR_materials_clearcoat", "normalTexture.scale", "animations"))
+
+
+def test_a_picture_on_other_coordinates_is_left_out(simplified):
+    def change(tree):
+        (varnish,) = (one for one in tree["materials"] if one["name"] == "varnish")
+        varnish["occlusionTexture"] = {**varnish["normalTexture"], "texCoord": 1}
+
+    out, said = simplified("out.glb", change)
+    assert "occlusionTexture.texCoord" in said
+    (varnish,) = (one for one in tree_of(out)[0]["materials"] if one["name"] == "varnish")
+    assert "occlusionTexture" not in varnish and "normalTexture" in varnish
+
+
+@pytest.mark.parametrize("wrong", [3, {}, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
+def test_what_is_malformed_says_nothing(tmp_path, wrong):
+    (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
+    rewritten(tmp_path / "art.glb", lambda tree: tree.update(materials=wrong))
+    assert not_read((tmp_path / "art.glb").read_bytes()) == []
+
+
+@pytest.mark.parametrize("out", ["out.obj", "out.ply"])
+def test_a_format_with_less_says_what_it_drops(simplified, out):
+    path, said = simplified(out)
+    assert "dropped: " in said and "normalTexture" in said and "roughnessFactor" in said
+    assert load(path).texture is not None or load(path).colors is not None
+
+
+def test_no_picture_beside_that_of_colour_is_decoded_for_reading_and_writing(tmp_path, monkeypatch):
+    (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
+    decoded = []
+
+    def load_pixels(image, real=ImageFile.load):
+        decoded.append(image.format)
+        return real(image)
+
+    monkeypatch.setattr(ImageFile, "load", load_pixels)
+    mesh = load(tmp_path / "art.glb")
+    write_any(tmp_path / "again.glb", mesh)
+    assert set(decoded) == {"PNG"}
+    found = {each["name"]: each for each in load(tmp_path / "again.glb").texture.materials}
+    assert all(set(each) <= set(found[each["name"]]) for each in mesh.texture.materials)
+
+
+def test_materials_of_a_scene_of_trimesh_go_to_trimesh():
+    back = to_trimesh(as_mesh(art()))
+    found = {part.visual.material.name: part.visual.material for part in back.geometry.values()}
+    assert found["varnish"].roughnessFactor == 0.4 and found["varnish"].alphaMode == "BLEND"
+    assert np.asarray(found["varnish"].normalTexture)[0, 0] == pytest.approx([128, 128, 255], abs=2)
+
+
+def test_a_material_without_a_colour_keeps_the_rest_and_gives_no_colours(tmp_path):
+    part = ball(0, name="bare", roughnessFactor=0.4, normalTexture=picture((128, 128, 255)))
+    (tmp_path / "bare.glb").write_bytes(trimesh.Scene({"bare": part}).export(file_type="glb"))
+    mesh = load(tmp_path / "bare.glb")
+    assert bake_texture(mesh).colors is None
+    write_any(tmp_path / "again.glb", mesh)
+    ((material,),) = (tree_of(tmp_path / "again.glb")[0]["materials"],)
+    assert "normalTexture" in material and set(material["pbrMetallicRoughness"]) == {
+        "roughnessFactor",
+        "metallicFactor",
+    }
+
+
+def test_a_picture_of_one_pixel_stays_a_picture(tmp_path):
+    part = ball(0, baseColorTexture=Image.new("RGB", (1, 1), (200, 30, 30)))
+    (tmp_path / "red.glb").write_bytes(trimesh.Scene({"red": part}).export(file_type="glb"))
+    write_any(tmp_path / "again.glb", load(tmp_path / "red.glb"))
+    found = load(tmp_path / "again.glb").texture
+    assert found.images[0].ravel().tolist() == [200, 30, 30, 255] and "baseColorTexture" in found.materials[0]
+
+
+def test_meshes_with_other_materials_differ():
+    one, other = art(), art()
+    other.geometry["metal"].visual.material.roughnessFactor = 0.3
+    assert as_mesh(one) == as_mesh(art()) and as_mesh(one) != as_mesh(other)
