@@ -65,7 +65,12 @@ def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
     command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)
     command.set_defaults(name=name)
     command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
-    command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
+    command.add_argument(
+        "--count",
+        metavar="N",
+        type=int,
+        help="how many places to visit in turn (default: the peaks past the threshold, which may be other places)",
+    )
     help_purpose = "look: where people look (default); touch: where one touch tells most of the object"
     command.add_argument("--purpose", choices=list(PURPOSES), default="look", help=help_purpose)
     command.add_argument("--method", help=HELP)
