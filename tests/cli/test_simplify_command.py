@@ -240,14 +240,6 @@ def test_the_axis_taken_as_up_is_reported(simplified):
 
 
 @pytest.mark.slow
-def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
-    simplify(bumpy(), 300)
-    assert "compiles its kernels" not in simplified("--faces", 300)[2]
-    monkeypatch.setattr("haptic_glance.lod.compiled.FOLDER", tmp_path / "empty")
-    assert "compiles" in simplified("--faces", 300)[2].splitlines()[0]
-
-
-@pytest.mark.slow
 def test_closed_mesh_says_nothing_of_borders(simplified):
     assert "border" not in simplified("--faces", 300)[1]
 

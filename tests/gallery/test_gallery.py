@@ -135,12 +135,6 @@ def test_each_imprint_has_its_place_and_how_salient_that_is(shown, scans):
     assert captions == [(row[0], f"{float(row[5]):.2f}") for row in rows] and len(captions) == 6
 
 
-def test_what_must_be_ready_is_waited_for_after_the_look(scans):
-    out, seen = scans.parent / "out", []
-    exhibit(scans / "pear.ply", "pear", out, None, 3, ["300"], lambda: seen.append(sorted(map(str, out.iterdir()))))
-    assert seen == [[str(out / "points.csv"), str(out / "saliency.ply")]]
-
-
 def test_a_large_mesh_is_drawn_with_fewer_faces_and_says_so(shown, scans, monkeypatch):
     monkeypatch.setattr("haptic_glance.gallery.page.ALL", 600)
     monkeypatch.setattr("haptic_glance.gallery.page.LEAST", 100)
