@@ -218,13 +218,11 @@ def test_the_longest_horizontal_axis_comes_first_unless_none_is_longer():
     moments = np.cov(points[:, :2].T, aweights=areas)
     assert abs(axes[0, :2] @ moments @ axes[1, :2]) < 1e-9 and axes[2].tolist() == [0, 0, 1]
     assert axes[0, :2] @ moments @ axes[0, :2] == pytest.approx(np.linalg.eigvalsh(moments)[1])
-    cross = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
-    for ratio, first in ((0.994, [0.6, 0.8, 0]), (0.98, [1, 0, 0])):  # of squared lengths: 1.2 % and 4 % apart
-        axes, _ = object_axes(cross * [1, ratio, 1], np.ones(4), np.array([[0.5, 0, 0], [1.2, 1.6, 9]]))
-        wanted = first if ratio**2 > 0.99 else [1, 0, 0]
-        assert np.abs(axes[0]) == pytest.approx(wanted)
-    axes, _ = object_axes(cross * [1, 0.997, 1], np.ones(4), np.array([[1.2, 1.6, 9], [0.5, 0, 0]]))
-    assert axes == pytest.approx(np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]))
+    cross, shift = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]]), np.array([2.0, -1.0, 3.0])
+    ends = np.array([[0.5, 0, 0], [1.2, 1.6, 9], [0, -1.9, 0]]) + shift
+    for ratio, first in ((0.997, (0.6, 0.8)), (1.003, (0.6, 0.8)), (0.98, (1, 0)), (1.02, (0, 1))):
+        axes, _ = object_axes(cross * [1, ratio, 1] + shift, np.ones(4), ends)  # squared lengths 0.6 % or 4 % apart
+        assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12) and np.abs(axes[0, :2]) == pytest.approx(first)
 
 
 def test_a_value_between_points_is_the_mean_of_ten_by_distance_area_and_side(few):
