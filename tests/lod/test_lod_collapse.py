@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base import jit
 from haptic_glance.base.jit import interpreted
 from haptic_glance.lod import fast
 from haptic_glance.lod.kernels import collapse, quadrics, refit
@@ -248,3 +249,29 @@ def test_the_fit_moves_each_vertex_by_the_pull_of_the_targets_merged_into_it():
     assert not moved[[3, 30]].any() and moved.sum() > 50 and not moved[share < 1e-12].any()
     wanted = start + 1.4 * pull / np.maximum(share, 1e-300)[:, None]
     assert surface.position[moved] == pytest.approx(wanted[moved], abs=1e-9)
+
+
+def test_edges_collapse_in_the_order_of_their_cost_until_the_faces_are_few_enough(monkeypatch):
+    target, ball = 160, trimesh.creation.icosphere(2)
+    surface = surface_of(Mesh(ball.vertices * [1, 0.8, 0.6], ball.faces))
+    surface.locked[:3] = True
+    costs, plain, cost = [], interpreted(collapse.collapse_edge), interpreted(collapse._cost)
+    known = surface.corner, surface.opposite, surface.locked, surface.position, surface.quadric, None
+
+    def recorded(*arguments):
+        alive = [h for h in range(len(surface.corner)) if surface.corner[h] >= 0 and h < surface.opposite[h]]
+        ends = surface.corner[np.array([alive, surface.opposite[alive]])]
+        free = np.array(alive)[~surface.locked[ends].all(axis=0)]
+        costs.append([cost(*known, arguments[8])[0], min(cost(*known, h)[0] for h in free)])
+        return plain(*arguments)
+
+    monkeypatch.setattr(collapse, "collapse_edge", recorded)
+    work = jit._plain.__wrapped__(collapse._decimate)  # interpreted, with what was just set
+    mark, last = np.zeros(len(surface.position), dtype=np.int32), np.zeros(1, dtype=np.int64)
+    queue = collapse.empty_queue(len(surface.corner))
+    left = work(surface, None, *queue, mark, last, target, 0.2, 0.01, -0.9)
+    alive = surface.corner >= 0
+    assert left == target == alive.sum() / 3 and len(costs) == (320 - target) / 2
+    assert set(range(3)) <= set(surface.corner[alive].tolist())  # locked vertices stay
+    own, least_of_all = np.array(costs).T
+    assert (own <= 1.5 * least_of_all + 1e-12).mean() > 0.9  # one bucket: others were refused before
