@@ -228,6 +228,8 @@ def test_shear_sticks_slides_and_points_along_the_slip():
     turning = np.zeros((2, 3, 3, 2))
     turning[0, 1, 2] = 0.0, 1.0
     assert np.argwhere(shear(normal, turning, LAYER, 1e-6)).tolist() == [[0, 1, 2, 1]]
+    taxels = shear(normal.reshape(2, 9), turning.reshape(2, 9, 2), LAYER, 1e-6)  # of a layout
+    assert np.array_equal(taxels.reshape(turning.shape), shear(normal, turning, LAYER, 1e-6))
 
 
 @pytest.mark.parametrize(
