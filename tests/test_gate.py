@@ -6,6 +6,7 @@ import re
 import subprocess
 from itertools import combinations
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -48,7 +49,27 @@ def test_only_sets_that_are_switched_on_count(workspace):
 def test_what_the_baseline_lacks_is_named(workspace):
     write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.5, "new": 1})
     said = gate.hold(gate.measured(workspace), gate.baseline_of(workspace), Tolerances())
-    assert "not in the baseline yet: toys.lod.new" in said
+    assert said.endswith("not in the baseline yet: toys.lod.new")
+    many = {"a": 1.0} | {f"new{k}": 1.0 for k in range(10)}
+    write_json(workspace.reports / "a.json", {"a": 1.0})
+    said = gate.hold(many, workspace.reports / "a.json", Tolerances())
+    assert said.endswith(f"yet: {', '.join(f'new{k}' for k in range(8))} and 2 more")
+
+
+def test_a_published_run_has_the_baseline_of_its_profile_and_one_of_ones_own_that_of_its_folder(workspace):
+    assert gate.baseline_of(workspace) == workspace.published / "baselines/test.json"
+    own = SimpleNamespace(params={}, reports=Path("runs/mine"), published=workspace.published)
+    assert gate.baseline_of(own) == Path("runs/mine/baseline.json")
+    write_json(workspace.published / "baselines/mine.json", {})
+    assert gate.baseline_of(own) == workspace.published / "baselines/mine.json"
+    own = SimpleNamespace(params={}, reports=workspace.published, published=workspace.published)
+    assert gate.baseline_of(own) == workspace.published / "baselines/laptop.json"
+
+
+def test_a_baseline_of_nothing_is_refused(tmp_path):
+    with pytest.raises(SystemExit, match="no metrics to write"):
+        gate.update({}, tmp_path / "baseline.json")
+    assert not (tmp_path / "baseline.json").exists()
 
 
 def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
@@ -62,7 +83,7 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     assert read_json(baseline) == {"train.accuracy": 0.8, "train.epochs": 10}
     metrics.write_text(json.dumps({"accuracy": 0.9, "epochs": 10}))
     gate.run([*given, "--tolerances", str(rules)])
-    assert "2 metrics within their tolerances" in capsys.readouterr().out
+    assert "\ngate: 2 metrics within their tolerances" in capsys.readouterr().out
     with pytest.raises(SystemExit, match="train.accuracy moved by \\+0.1"):
         gate.run(given)  # exact without rules
     with pytest.raises(SystemExit):
@@ -146,8 +167,8 @@ def test_markdown_lists_what_moved(tmp_path, capsys):
 def repository(tmp_path):
     """A git repository with the rows of two sets, of which params.yaml would switch on one."""
     rows = [
-        "item,method,metric,value,seconds,note",
-        *(f"{k},{way},error,{k + len(way)},0.1,old" for k in (1, 2) for way in ("a", "bb")),
+        "item,method,metric,value,seconds,note,condition",
+        *(f"{k},{way},error,{k + len(way)},0.1,old," for k in (1, 2) for way in ("a", "bb")),
     ]
     for name in ("toys", "off"):
         write(tmp_path, name, rows)
@@ -191,8 +212,12 @@ def test_every_changed_row_of_every_set_is_found(repository, change, said, name)
 
 def test_times_and_the_order_of_rows_change_nothing(repository):
     root, rows = repository
-    write(root, "toys", [rows[0], *(row.replace("0.1,old", "9,new") for row in rows[:0:-1])])
+    times = ["1,a,plan_ms,5,,,", "1,a,seconds,5,,,", "1,a,error,5,,,cost"]
+    write(root, "toys", [rows[0], *(row.replace("0.1,old", "9,new") for row in rows[:0:-1]), *times])
     assert "equal" in gate.hold_rows("HEAD", root)
+    write(root, "toys", [*rows, "1,a,,5,,,"])  # no metric is no time
+    with pytest.raises(SystemExit, match="toys/lod.csv.gz: 0 rows changed, 1 more"):
+        gate.hold_rows("HEAD", root)
 
 
 def test_a_file_that_is_gone_and_a_revision_that_is_none_are_named(repository):

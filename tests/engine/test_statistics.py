@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from haptic_glance.know.split import Split, shared_by
-from stages.engine.statistics import discoveries, interval, interval_metrics, p_value
+from stages.engine.statistics import breaking_interval, discoveries, interval, interval_metrics, p_value
 
 
 @pytest.mark.slow
@@ -133,6 +133,10 @@ def test_a_p_value_is_uniform_where_there_is_no_effect():
     assert abs((found < 0.5).mean() - 0.5) < 0.1 and (found < 0.05).mean() < 0.1
 
 
+def test_a_p_value_is_no_smaller_than_the_draws_can_tell():
+    assert 0.001 <= p_value(np.random.default_rng(0).normal(9, 1, 30)) <= 0.002
+
+
 def test_no_interval_has_no_p_value():
     assert np.isnan(p_value([1.0])) and np.isnan(p_value([1.0, 1.0])) and np.isnan(p_value([]))
 
@@ -141,3 +145,33 @@ def test_discoveries_are_those_of_benjamini_and_hochberg():
     p_values = [0.001, np.nan, 0.008, 0.039, 0.041, 0.9]  # of 5 known, 0.01 x rank: 0.01, 0.02, 0.03, 0.04, 0.05
     assert discoveries(p_values).tolist() == [True, False, True, False, False, False]
     assert discoveries([]).tolist() == [] and discoveries([np.nan]).tolist() == [False]
+
+
+def first_fall(at, left):
+    """Where a curve that starts at 1 first falls below one half, inf where it never does."""
+    for k in range(1, len(at)):
+        if left[k] < 0.5:
+            return at[k - 1] + (left[k - 1] - 0.5) / (left[k - 1] - left[k]) * (at[k] - at[k - 1])
+    return np.inf
+
+
+@pytest.mark.parametrize("severities", [[1.0, 2.0, 4.0, 5.0], [-1.0, -2.0, -4.0, -5.0]])
+def test_an_interval_of_breaking_points_is_that_of_the_curves_of_resampled_units(severities):
+    left = np.clip(np.random.default_rng(0).uniform(0.2, 1, (9, 4)).cumprod(axis=1) + 0.12, 0, 1)
+    left[2, 3] = np.nan
+    at, sign = np.abs([0.0, *severities]), np.sign(severities[0])
+    found = []
+    for counts in np.random.default_rng(3).multinomial(9, np.full(9, 1 / 9), 2000):
+        units = np.repeat(left, counts, axis=0)
+        found.append(first_fall(at, [1.0, *np.nanmean(units, axis=0)]))
+    found.sort()
+    tail = stats.norm.cdf(np.sqrt(9 / 8) * stats.t.ppf(0.025, 8))
+    wanted = first_fall(at, [1.0, *np.nanmean(left, axis=0)]), *(found[k] for k in _ends(tail))
+    assert wanted[1] < wanted[0] < wanted[2] < np.inf
+    assert breaking_interval(severities, left, 0.0, 3) == pytest.approx(tuple(sign * np.array(wanted)))
+    one = breaking_interval(severities, left[:1], 0.0)
+    assert one == pytest.approx(3 * [sign * first_fall(at, [1.0, *left[0]])])
+
+
+def _ends(tail):
+    return int(np.floor(1999 * tail)), int(np.ceil(1999 * (1 - tail)))

@@ -73,6 +73,8 @@ def test_a_pair_that_feels_the_same_stays_undecided(shapes):
     belief = exploration.belief.probabilities
     assert belief["box"] < 0.01 and max(belief["one"], belief["two"]) < 0.95
     assert exploration.finish() == "" and len(exploration.images) <= 30
+    again = Exploration(pair, Surface(shapes["torus"]), rng(4, "torus"))
+    assert again.finish(1) == "" and len(again.images) == 1 and again.next_place() is not None
 
 
 def test_belief_is_as_right_as_it_says(library, shapes):

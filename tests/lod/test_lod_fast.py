@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.base.jit import interpreted
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, fast, frozen_faces, metro, simplify
 from haptic_glance.lod.fast import collapse
 from haptic_glance.lod.kernels.collapse import decimate
 from haptic_glance.lod.kernels.mesh import before
-from haptic_glance.lod.kernels.quadrics import best_place
 from haptic_glance.lod.kernels.refit import refit
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
@@ -121,22 +119,6 @@ def test_a_tetrahedron_never_becomes_two_faces_back_to_back():
     )
     surface = fast.half_edge_mesh(tetrahedron, nothing(tetrahedron), None)[0]
     assert decimate(surface, None, 2, *fast.LAST, fast.NO_FOLD) == 4  # where folds count, they hold it up as well
-
-
-def plane(*normal, d):
-    """The quadric of a plane, as a row of `vertex_quadrics`."""
-    x, y, z = normal
-    return np.array([x * x, x * y, x * z, y * y, y * z, z * z, x * d, y * d, z * d, d * d])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("meet", "taken"), [(1.2, True), (12.0, False), (1e6, False)])
-def test_a_vertex_never_goes_further_than_the_reach_of_its_edge(meet, taken):
-    # The planes meet `meet` lengths from the middle of the edge; almost parallel ones do so anywhere.
-    ends = np.array([[-0.5, 0, 0], [0.5, 0, 0]])
-    quadrics = np.stack([plane(1, 0, 0, d=-meet) + plane(0, 1, 0, d=0), plane(0, 0, 1, d=0)])
-    place = interpreted(best_place)(quadrics, ends, 0, 1)[1:]
-    assert place == pytest.approx((meet if taken else 0, 0, 0), abs=1e-9)
 
 
 def attempts(monkeypatch, *results):

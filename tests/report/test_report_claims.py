@@ -439,6 +439,13 @@ def test_an_open_claim_says_why_and_how_many_units_would_decide_it(root, small, 
     assert (row["needed"] == row["needed"]) == ("unit" in cause) and open_text(row).startswith(cause)
 
 
+@pytest.mark.parametrize(("counts", "few"), [((4, 4), True), ((4, 12), False), ((12, 4), False)])
+def test_sets_are_few_units_where_the_largest_has_five_or_fewer(root, small, counts, few):
+    one, two = (spread_about(0.2, seed, count) for seed, count in enumerate(counts))
+    row = pooled(sets_of_rows(root, small, one=one, two=two), "one", "two")
+    assert row["verdict"] == "open" and (row["cause"] == "5 units or fewer a set") == few
+
+
 def test_splits_of_the_same_data_may_never_decide(root, small):
     frame = pd.DataFrame({"dataset": "test", "metric": "error", "repetition": range(12), "value": spread_about(0.3)})
     small.write(root, "test", frame)

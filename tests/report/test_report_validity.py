@@ -55,6 +55,11 @@ def test_more_than_a_fifth_cannot_be_tested_and_says_why(root, small):
     assert row["validity"] == f"test: 5 of 24 pairs invalid: {NO_POINT} (5)"
 
 
+def test_a_claim_about_all_rows_leaves_none_out(root, small):
+    row = judge([replace(OVER, checked=False)], simplified(root, small, without_points=5)).iloc[0]
+    assert row["verdict"] != "not testable" and row["validity"] == "" and row["pairs"] == COUNT
+
+
 def test_a_mean_over_methods_needs_each_of_them(root, small):
     results = simplified(root, small, without_points=2)
     rows = results.rows("lod")

@@ -59,7 +59,7 @@ def test_forces_are_those_of_the_first_version(name, pressed, cells, known):
     np.testing.assert_allclose([felt.sum(), felt.max(), felt[2, 3], felt[4, 1]], known, rtol=1e-14)
 
 
-@pytest.mark.parametrize("pressed", [{"depth": np.linspace(0, 0.01, 60)}, {"load": np.linspace(0.01, 3, 60)}])
+@pytest.mark.parametrize("pressed", [{"depth": np.linspace(0.01, 0, 60)}, {"load": np.linspace(0.01, 3, 60)}])
 @pytest.mark.parametrize("cells, pitch", [((16, 16), 0.0006), ((7, 12), 0.001), ((1, 1), 0.002)])
 def test_a_press_is_its_gaps_made_forces_bit_for_bit(pressed, cells, pitch):
     knot = trimesh.creation.torus(0.03, 0.012, major_sections=60, minor_sections=30)
@@ -228,6 +228,8 @@ def test_shear_sticks_slides_and_points_along_the_slip():
     turning = np.zeros((2, 3, 3, 2))
     turning[0, 1, 2] = 0.0, 1.0
     assert np.argwhere(shear(normal, turning, LAYER, 1e-6)).tolist() == [[0, 1, 2, 1]]
+    taxels = shear(normal.reshape(2, 9), turning.reshape(2, 9, 2), LAYER, 1e-6)  # of a layout
+    assert np.array_equal(taxels.reshape(turning.shape), shear(normal, turning, LAYER, 1e-6))
 
 
 @pytest.mark.parametrize(
