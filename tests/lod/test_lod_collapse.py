@@ -221,6 +221,24 @@ def nearest_of(places, point):
     return ((near - point) ** 2).sum(), trimesh.triangles.points_to_barycentric(places[None], near[None])[0]
 
 
+@pytest.mark.xfail(strict=True, reason="takes a far corner of some obtuse faces; mended, all rows of levels run again")
+def test_the_nearest_point_of_a_face_lies_in_it_on_its_rim_or_at_a_corner():
+    random = np.random.default_rng(7)
+    share = np.linspace(0, 1, 200)[:, None]
+    for k in range(400):
+        corners, point = random.normal(size=(3, 3)), random.normal(size=3) * 3
+        if k < 40:  # a second or third corner where the first one is
+            corners[1 + k % 2] = corners[0]
+        square, second, third = interpreted(refit._nearest)(corners, 0, 1, 2, *point)
+        assert min(second, third, 1 - second - third) > -1e-12
+        own = (1 - second - third) * corners[0] + second * corners[1] + third * corners[2]
+        rim = np.concatenate([corners[i] + share * (corners[i - 1] - corners[i]) for i in range(3)])
+        least = ((rim - point) ** 2).sum(axis=1).min()
+        off = np.abs((corners[1:] - corners[0]) @ (point - own)).max()
+        assert square == pytest.approx(((own - point) ** 2).sum()) and square <= least + 1e-9
+        assert square > least - 0.01 or off < 1e-9  # else it lies inside, right below the point
+
+
 def test_the_fit_moves_each_vertex_by_the_pull_of_the_targets_merged_into_it():
     mesh, random = rough_ball(5, subdivisions=2, noise=0.01), np.random.default_rng(6)
     surface = surface_of(mesh)
