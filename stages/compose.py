@@ -24,7 +24,16 @@ from omegaconf.errors import OmegaConfBaseException
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
 from stages.code import stage_names
-from stages.engine.settings import FILE, PUBLISHED, ParamsError, check_common, check_section, conf_folder, schema_of
+from stages.engine.settings import (
+    FILE,
+    PUBLISHED,
+    ParamsError,
+    check_clone,
+    check_common,
+    check_section,
+    conf_folder,
+    schema_of,
+)
 
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()
@@ -195,6 +204,7 @@ def main() -> None:
     parser.add_argument("overrides", nargs="*", help="group=option or section.key=value")
     overrides = parser.parse_args().overrides
     errors_in_one_line("compose")
+    check_clone()
     values = compose(overrides)
     missing = absent(values)
     if len(missing) == len(values["sets"]) and not any(path.startswith("conf/") for path in missing.values()):

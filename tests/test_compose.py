@@ -1,5 +1,7 @@
 """Configuration: what conf/ composes is what params.yaml holds, and a slip of the pen is named."""
 
+import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -35,6 +37,22 @@ def test_every_option_composes_and_fits_the_schemas(composed, group, option):
         chosen.append(f"{option}.{KIND.get(option, 'meshes')}.folder=somewhere")
     defaults = {next(iter(entry.items())) for entry in DEFAULTS if isinstance(entry, dict)}
     assert (compose(chosen) == composed) == ((group, option) in defaults and group != "data")
+
+
+COMMANDS = ("claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "front.__main__",
+            "lod.__main__ household", "report.__main__")  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monkeypatch, command):
+    name, *arguments = command.split()
+    module = import_module(f"stages.{name}")
+    monkeypatch.setattr("sys.argv", [name, *arguments])
+    monkeypatch.setattr("sys.excepthook", sys.excepthook)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match="run it in a clone of the project"):
+        module.run(arguments) if name == "claim" else module.main()
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.slow

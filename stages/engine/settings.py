@@ -139,6 +139,12 @@ def conf_folder() -> Path:
     return Path(__file__).parents[2] / "conf"
 
 
+def check_clone(root: Path = Path(".")) -> None:
+    """Raises ValueError where the folder is not a clone of the project; commands ask before they write anything."""
+    if not (root / "dvc.yaml").exists():
+        raise ValueError(f"no {root / 'dvc.yaml'}: run it in a clone of the project")
+
+
 PUBLISHED = "reports"
 
 
@@ -244,6 +250,7 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
     parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
     given = parser.parse_args()
     errors_in_one_line(stage)
+    check_clone(given.root)
     workspace = Workspace(given.root)
     if stage not in workspace.params["graph"]:
         return workspace  # a stage about all sets
