@@ -65,6 +65,8 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         own = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *own])
         values[dataset] = _sections(config, dataset)
+        if any("methods" in override for override in overrides):  # what conf/ names exists
+            check_methods(values[dataset])
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
     values["graph"] = {
@@ -139,6 +141,19 @@ def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
     for section, own in found.items():
         check_section(schema_of(section), own)
     return found
+
+
+def check_methods(sections: dict[str, Any]) -> None:
+    """Raises ParamsError with the nearest name for an unknown method of salient points in one of the sections."""
+    from haptic_glance.lod.task import variant  # seconds, which most compositions need not
+    from haptic_glance.look.points.methods import method_named
+
+    for section in ("salient_points", "stability", "imprints", "exploration", "lod"):
+        for name in sections.get(section, {}).get("methods", []):
+            try:
+                variant(name) if section == "lod" else method_named(name)
+            except ValueError as error:
+                raise ParamsError(f"{section}.methods: {error}") from None
 
 
 def _set_of(override: str) -> str:

@@ -43,6 +43,7 @@ RANGES = {  # the last part of a setting's name: the least and the greatest of i
     "folds": (2, np.inf), "angle": (ABOVE_0, 180),
 }  # fmt: skip
 
+REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false"}
 Settings = TypeVar("Settings")
 
 
@@ -87,7 +88,9 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
         return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
-        raise ParamsError(f"{key}: {str(error).splitlines()[0]}") from None
+        said = str(error).splitlines()[0]
+        remedy = next((f": {words}" for kind, words in REMEDIES.items() if f" {kind}" in said), "")
+        raise ParamsError(f"{key}: {said}{remedy}") from None
     except ValueError as error:  # a schema's own check
         raise ParamsError(f"{section}: {error}") from None
 
@@ -99,7 +102,10 @@ def check_common(values: dict[str, Any]) -> None:
     _check_keys("", values, [*COMMON, *values["sets"]])
     for key, kind in COMMON.items():
         if key in values and not isinstance(values[key], kind):
-            raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}")
+            remedy = {list: f"write {key}=[{values[key]}]", int: REMEDIES["Integer"]}.get(
+                kind, f"give a {kind.__name__}"
+            )
+            raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}: {remedy}")
     if values.get("seed", 0) < 0:
         raise ParamsError(f"seed: {values['seed']} is negative")
 
