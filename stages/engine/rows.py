@@ -41,7 +41,7 @@ COMMON = {
     "note": "why there is no value, or what a reader must know of it",
 }
 FIRST, LAST = ("dataset", "item", "group", "method", "split"), ("metric", "value", "seconds", "clock", "seed", "note")
-NEEDED = ("dataset", "metric", "value")  # without one of the others, what compares by it is not run, and says so
+NEEDED = ("dataset", "value")  # without one of the others, what compares by it is not run, and says so
 SUFFIX = ".csv.gz"
 
 
