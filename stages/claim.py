@@ -2,14 +2,14 @@
 
 KEY is a claim's key in reports/claims.csv, or a pattern such as 'glance_*'. Prints each claim with its effect, its
 interval, the difference of each pair, the rows it was read from, and the command that measures these rows anew. Works
-in a fresh clone, from the rows in reports/measurements. Exits with 1 where a verdict is not that of reports/claims.csv.
-
+XX
 Examples: `python -m stages.claim glance_soft_gaze`, `python -m stages.claim 'glance_*' --json`,
 `python -m stages.claim contrast_household --measure`.
 """
 
 import argparse
 import json
+import math
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -22,11 +22,13 @@ from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import read_table
 from stages.engine.rows import SUFFIX
-from stages.engine.settings import Workspace
+from stages.engine.settings import PUBLISHED, Workspace
+
+COMPARED = ("verdict", "effect", "units")  # columns of claims.csv that rows at rest leave as they are
 
 
 def run(argv: Sequence[str]) -> int:
-    """Judges the claims that the command line names; 1 where a verdict is not the committed one."""
+    """Judges the claims that the command line names; 1 where what comes out is not what is committed."""
     parser = argparse.ArgumentParser(
         prog="python -m stages.claim", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -40,7 +42,7 @@ def run(argv: Sequence[str]) -> int:
     verdicts = workspace.published / "claims.csv"
     if not verdicts.exists():
         raise ValueError(f"no {verdicts}: run it in a clone of the project")
-    committed = read_table(verdicts).set_index("key")["verdict"]
+    committed = read_table(verdicts).set_index("key")
     moved = []
     for claim in chosen(CLAIMS, given.keys):
         found = judged_again(workspace, claim)
@@ -48,10 +50,42 @@ def run(argv: Sequence[str]) -> int:
             measure(workspace, found["rows"])
             found = judged_again(workspace, claim, anew=True)
         print(json.dumps(found) if given.json else as_text(found))
-        if found["verdict"] != committed.get(claim.key):
-            moved.append(f"{claim.key}: {found['verdict']}, in reports/claims.csv {committed.get(claim.key, 'absent')}")
+        said = committed.loc[claim.key].to_dict() if claim.key in committed.index else {"verdict": "absent"}
+        if not agree(found, said, COMPARED[:1] if given.measure else COMPARED):
+            remedy = "" if given.measure else f": {restore(workspace.root, claim.stage, found['rows'])}"
+            moved.append(f"{claim.key}: {in_short(found)}, in reports/claims.csv {in_short(said)}{remedy}")
     print("\n".join(f"claim: {line}" for line in moved), file=sys.stderr, end="\n" if moved else "")
     return 1 if moved else 0
+
+
+def agree(found: dict[str, Any], said: dict[str, Any], columns: Sequence[str]) -> bool:
+    """Whether two rows of claims.csv are the same in some columns; numbers to the digits that the file has."""
+    cells = ((found.get(column, math.nan), said.get(column, math.nan)) for column in columns)
+    return all(
+        math.isclose(one, other, rel_tol=1e-4) or (one != one and other != other)
+        if isinstance(one, int | float) and isinstance(other, int | float)
+        else one == other
+        for one, other in cells
+    )
+
+
+def in_short(row: dict[str, Any]) -> str:
+    """`contradicted (-110, 17 units)`: a row of claims.csv in a few words."""
+    effect, tested = row.get("effect", math.nan), str(row.get("tested_on"))
+    numbers = f" ({effect:.3g}, {row['units']:.0f} units)" if effect == effect else ""
+    return row["verdict"] + (f" ({tested})" if tested.startswith("not run") else numbers)
+
+
+def restore(root: Path, stage: str, rows: Sequence[str]) -> str:
+    """How to bring back the rows of a stage: of the files that git finds missing or changed, else of those read."""
+    listed = ["git", "ls-files", "--modified", "--", f"{PUBLISHED}/measurements/*/{stage}{SUFFIX}"]
+    try:
+        found = subprocess.run(listed, cwd=root, capture_output=True, text=True).stdout.split()
+    except OSError:  # no git
+        found = []
+    files = found or list(rows)
+    words = [f"{file} is {'changed' if (root / file).exists() else 'missing'}" for file in found]
+    return f"{', '.join(words) or 'the rows are not those judged'}; `git checkout {' '.join(files)}` brings them back"
 
 
 def chosen(claims: Sequence[Any], keys: Sequence[str]) -> list[Any]:

@@ -6,8 +6,10 @@ A changed comment, docstring or type annotation changes none of them; see stages
 import argparse
 from pathlib import Path
 
+from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
 from stages.engine.code import PACKAGE, ROOT, stage_digests
+from stages.engine.settings import check_clone
 
 
 def stage_names() -> list[str]:
@@ -30,6 +32,8 @@ def main() -> None:
     """Writes the digests below the current folder."""
     parser = argparse.ArgumentParser(prog="python -m stages.code", description=__doc__)
     parser.parse_args()
+    errors_in_one_line("code")
+    check_clone()
     write_digests(Path("build/code"))
 
 

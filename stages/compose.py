@@ -24,7 +24,16 @@ from omegaconf.errors import OmegaConfBaseException
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
 from stages.code import stage_names
-from stages.engine.settings import FILE, PUBLISHED, ParamsError, check_common, check_section, conf_folder, schema_of
+from stages.engine.settings import (
+    FILE,
+    PUBLISHED,
+    ParamsError,
+    check_clone,
+    check_common,
+    check_section,
+    conf_folder,
+    schema_of,
+)
 
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()
@@ -56,6 +65,8 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         own = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *own])
         values[dataset] = _sections(config, dataset)
+        if any("methods" in override for override in overrides):  # what conf/ names exists
+            check_methods(values[dataset])
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
     values["graph"] = {
@@ -132,6 +143,19 @@ def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
     return found
 
 
+def check_methods(sections: dict[str, Any]) -> None:
+    """Raises ParamsError with the nearest name for an unknown method of salient points in one of the sections."""
+    from haptic_glance.lod.task import variant  # seconds, which most compositions need not
+    from haptic_glance.look.points.methods import method_named
+
+    for section in ("salient_points", "stability", "imprints", "exploration", "lod"):
+        for name in sections.get(section, {}).get("methods", []):
+            try:
+                variant(name) if section == "lod" else method_named(name)
+            except ValueError as error:
+                raise ParamsError(f"{section}.methods: {error}") from None
+
+
 def _set_of(override: str) -> str:
     """The set that an override is for, empty where it is for all."""
     first = override.partition("=")[0].partition(".")[0]
@@ -195,6 +219,7 @@ def main() -> None:
     parser.add_argument("overrides", nargs="*", help="group=option or section.key=value")
     overrides = parser.parse_args().overrides
     errors_in_one_line("compose")
+    check_clone()
     values = compose(overrides)
     missing = absent(values)
     if len(missing) == len(values["sets"]) and not any(path.startswith("conf/") for path in missing.values()):

@@ -36,7 +36,7 @@ from typing import Any
 
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import read_json, write_json
-from stages.engine.settings import Workspace
+from stages.engine.settings import Workspace, check_clone
 from stages.engine.tolerances import Tolerances, compare, read_tolerances, widest_moves
 
 TOLERANCES = Path("reports/tolerances.yaml")
@@ -179,6 +179,7 @@ def run(argv: Sequence[str]) -> None:
         metrics = flatten({file.stem: read_json(file) for file in given.metrics})
         path, rules, others = given.baseline, given.tolerances, []
     else:
+        check_clone()
         workspace = Workspace(Path("."))
         metrics, path = measured(workspace), given.baseline or baseline_of(workspace)
         rules = given.tolerances or (TOLERANCES if TOLERANCES.exists() else None)

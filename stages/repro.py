@@ -25,6 +25,7 @@ from haptic_glance.base.errors import errors_in_one_line
 from stages.engine import parallel
 from stages.engine.dvc_files import keep_lock, mend_dvc_files
 from stages.engine.run import alone
+from stages.engine.settings import check_clone
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
 LOGS = Path("build/logs")
@@ -171,6 +172,7 @@ def main() -> None:
     )
     parser.parse_args()
     errors_in_one_line("repro")
+    check_clone()
     failed = run_alone(Path("."))
     if failed:
         sys.exit(f"repro: {', '.join(failed)} failed, see {LOGS}")

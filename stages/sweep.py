@@ -36,7 +36,7 @@ from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.touch import press_many, touchable
 from stages.compose import composed
 from stages.conspicuity.measure import read_view_maps
-from stages.engine.settings import FILE, ParamsError, check_section, conf_folder, load_params, schema_of
+from stages.engine.settings import FILE, ParamsError, check_clone, check_section, conf_folder, load_params, schema_of
 from stages.engine.statistics import interval
 
 OUT = Path("runs/sweeps/recognition.csv")
@@ -212,6 +212,7 @@ def main() -> None:
     """Checks and prepares, then runs the jobs."""
     errors_in_one_line("sweep")
     if not {"-h", "--help"} & set(sys.argv):
+        check_clone()
         prepare(sys.argv[1:])
     job()
 

@@ -1,11 +1,15 @@
 """A claim judged again from the committed rows, as a reader of a fresh clone does it."""
 
 import json
+import re
+import shutil
+import subprocess
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
+from haptic_glance.base.files import read_table, write_table
 from stages.claim import run
 from stages.engine.settings import Workspace
 from stages.report.records import command
@@ -35,8 +39,49 @@ def test_a_verdict_that_is_not_the_committed_one_is_named(monkeypatch, capsys):
     monkeypatch.setattr(judging, "verdict", lambda low, high, unit: "contradicted")
     assert run(["fit_gaze"]) == 1
     said = capsys.readouterr()
-    assert "fit_gaze: contradicted, in reports/claims.csv supported" in said.err
+    assert "fit_gaze: contradicted (10.7, 31 units), in reports/claims.csv supported" in said.err
     assert "31 objects" in said.out and "measure anew" in said.out
+
+
+@pytest.fixture
+def clone(tmp_path, monkeypatch):
+    """A folder with the committed claims, and rows of lod that may be changed; the current folder."""
+    for name in ("params.yaml", "conf", "data"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    for path in (ROOT / "reports/measurements").glob("*/lod.csv.gz"):
+        copy = tmp_path / path.relative_to(ROOT)
+        copy.parent.mkdir(parents=True)
+        shutil.copyfile(path, copy)
+    shutil.copyfile(ROOT / "reports/claims.csv", tmp_path / "reports/claims.csv")
+    subprocess.run("git init -q && git add reports", shell=True, cwd=tmp_path, check=True)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_rows_that_are_missing_are_named(clone, capsys):
+    file = Path("reports/measurements/gaze_3_2/lod.csv.gz")
+    file.unlink()
+    assert run(["keep_metro"]) == 1
+    said = capsys.readouterr().err
+    assert "contradicted (-31.4, 14 units), in reports/claims.csv contradicted (-70.9, 17 units)" in said
+    assert f"{file} is missing; `git checkout {file}`" in said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("column", "words"),
+    [("value", r"has no column value: `git checkout \S+lod.csv.gz`"), ("target", "no column target")],
+)
+def test_a_column_that_is_misnamed_is_named(clone, capsys, column, words):
+    for path in clone.glob("reports/measurements/*/lod.csv.gz"):
+        write_table(path, read_table(path).rename(columns={column: "misnamed"}))
+    try:
+        assert run(["keep_metro"]) == 1
+        said = capsys.readouterr().err
+    except ValueError as error:
+        said = str(error)
+    assert re.search(words, said) and "git checkout reports/measurements/" in said
 
 
 def test_a_key_without_a_claim_is_answered_by_its_neighbour():

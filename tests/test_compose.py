@@ -1,5 +1,7 @@
 """Configuration: what conf/ composes is what params.yaml holds, and a slip of the pen is named."""
 
+import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -37,6 +39,22 @@ def test_every_option_composes_and_fits_the_schemas(composed, group, option):
     assert (compose(chosen) == composed) == ((group, option) in defaults and group != "data")
 
 
+COMMANDS = ("claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "front.__main__",
+            "lod.__main__ household", "report.__main__")  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monkeypatch, command):
+    name, *arguments = command.split()
+    module = import_module(f"stages.{name}")
+    monkeypatch.setattr("sys.argv", [name, *arguments])
+    monkeypatch.setattr("sys.excepthook", sys.excepthook)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match="run it in a clone of the project"):
+        module.run(arguments) if name == "claim" else module.main()
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.slow
 def test_a_set_runs_only_its_stages():
     values = compose(["sets=[folder]", "meshes.folder=scans"])
@@ -68,7 +86,15 @@ def test_a_set_whose_files_are_absent_is_named_and_left_out(tmp_path, monkeypatc
         ("lod.target=[10%]", "lod.targets"),
         ("profile=smok", "did you mean smoke"),
         ("profiel=smoke", "did you mean profile"),
-        ("seed=many", "seed"),
+        ("seed=many", "'many' is not of type int: give a whole number"),
+        ("sets=folder", "sets: 'folder' is not of type list: write sets=[folder]"),
+        ("salient_points.count=many", "give a whole number"),
+        ("lod.samples=1.5", "give a whole number"),
+        ("salient_points.radius=wide", "give a number"),
+        ("lod.shrink=perhaps", "write true or false"),
+        ("salient_points.methods=[glanse]", "salient_points.methods: unknown method 'glanse' (did you mean glance?)"),
+        ("lod.methods=[qem,bendng]", "lod.methods: 'bendng': unknown method 'bendng'; methods are qem"),
+        ("lod.methods=[qem,glanse-soft]", "(did you mean glance?)"),
         ("seed=-1", "negative"),
         ("experiment=table_4_8", "did you mean table_4_9"),
         ("classifier=knn,svm", "stages.sweep -m"),

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from haptic_glance.look.points import METHODS
+from haptic_glance.look.points.methods import meant
 from haptic_glance.mesh import clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.materials import bake_texture, merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh
@@ -207,9 +208,10 @@ def variant(name: str) -> Variant:
     suffixes = [each for each in (*NEIGHBOURHOODS, SOFT) if each != "fixed"]
     known = (PLAIN, QSLIM, *METHODS)
     if method not in METHODS:
-        raise ValueError(f"lod.methods: {name!r}: unknown method {method!r}; methods are {', '.join(known)}")
+        near = meant(method.lower(), known) or f"; methods are {', '.join(known)}"
+        raise ValueError(f"{name!r}: unknown method {method!r}{near}")
     if dash and rule not in suffixes:
-        raise ValueError(f"lod.methods: {name!r} ends in {rule!r}; endings are -{', -'.join(suffixes)}, or none")
+        raise ValueError(f"{name!r} ends in {rule!r}; endings are -{', -'.join(suffixes)}, or none")
     return Variant(name, method, rule or "fixed")
 
 

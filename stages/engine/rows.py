@@ -41,6 +41,7 @@ COMMON = {
     "note": "why there is no value, or what a reader must know of it",
 }
 FIRST, LAST = ("dataset", "item", "group", "method", "split"), ("metric", "value", "seconds", "clock", "seed", "note")
+NEEDED = ("dataset", "value")  # without one of the others, what compares by it is not run, and says so
 SUFFIX = ".csv.gz"
 
 
@@ -91,9 +92,16 @@ def _empty(value):
 
 
 def read_rows(path: Path) -> pd.DataFrame:
-    """Reads what write_rows wrote; names stay texts even where they look like numbers."""
+    """Reads what write_rows wrote; names stay texts even where they look like numbers.
+
+    Raises ValueError that names a column of NEEDED which the file lacks.
+    """
     names = ("dataset", "item", "group", "method", "split", "target", "note")
-    return read_table(path, dtype=dict.fromkeys(names, str))
+    rows = read_table(path, dtype=dict.fromkeys(names, str))
+    for column in NEEDED:
+        if column not in rows:
+            raise ValueError(f"{path} has no column {column}: `git checkout {path}` brings it back, or measure it anew")
+    return rows
 
 
 def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> pd.DataFrame:

@@ -43,6 +43,7 @@ RANGES = {  # the last part of a setting's name: the least and the greatest of i
     "folds": (2, np.inf), "angle": (ABOVE_0, 180),
 }  # fmt: skip
 
+REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false"}
 Settings = TypeVar("Settings")
 
 
@@ -87,7 +88,9 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
         return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
-        raise ParamsError(f"{key}: {str(error).splitlines()[0]}") from None
+        said = str(error).splitlines()[0]
+        remedy = next((f": {words}" for kind, words in REMEDIES.items() if f" {kind}" in said), "")
+        raise ParamsError(f"{key}: {said}{remedy}") from None
     except ValueError as error:  # a schema's own check
         raise ParamsError(f"{section}: {error}") from None
 
@@ -99,7 +102,10 @@ def check_common(values: dict[str, Any]) -> None:
     _check_keys("", values, [*COMMON, *values["sets"]])
     for key, kind in COMMON.items():
         if key in values and not isinstance(values[key], kind):
-            raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}")
+            remedy = {list: f"write {key}=[{values[key]}]", int: REMEDIES["Integer"]}.get(
+                kind, f"give a {kind.__name__}"
+            )
+            raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}: {remedy}")
     if values.get("seed", 0) < 0:
         raise ParamsError(f"seed: {values['seed']} is negative")
 
@@ -137,6 +143,12 @@ def _check_keys(where: str, values: dict[str, Any], known: list[Any]) -> None:
 def conf_folder() -> Path:
     """The folder conf/ of the clone."""
     return Path(__file__).parents[2] / "conf"
+
+
+def check_clone(root: Path = Path(".")) -> None:
+    """Raises ValueError where the folder is not a clone of the project; commands ask before they write anything."""
+    if not (root / "dvc.yaml").exists():
+        raise ValueError(f"no {root / 'dvc.yaml'}: run it in a clone of the project")
 
 
 PUBLISHED = "reports"
@@ -244,6 +256,7 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
     parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
     given = parser.parse_args()
     errors_in_one_line(stage)
+    check_clone(given.root)
     workspace = Workspace(given.root)
     if stage not in workspace.params["graph"]:
         return workspace  # a stage about all sets

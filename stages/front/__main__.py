@@ -26,6 +26,7 @@ from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import sha256
 from stages.engine.code import stage_digest
+from stages.engine.settings import check_clone
 
 SHAPES = "household"
 TRIALS = 96  # choices that are proposed: four generations
@@ -66,6 +67,8 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
 def main() -> None:
     """Runs the command line."""
     errors_in_one_line("front")
+    if not {"-h", "--help"} & set(sys.argv):
+        check_clone()
     sys.exit(run(sys.argv[1:]))
 
 

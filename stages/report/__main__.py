@@ -64,9 +64,9 @@ have the interval of Hartung and Knapp, which carries to other sets. *In each se
 excludes zero on the same side while the pooled interval does not.
 
 The column *holds* says whether a decided verdict holds among all claims of its chapter, at a false discovery rate of
-5 % (Benjamini and Hochberg 1995), by p, which follows from the interval. The last column says why an open claim is
+5 % (Benjamini and Hochberg 1995), by p, which follows from the interval. The column *open* says why an open claim is
 open, and how many units would decide it at its present effect and spread, by Student's interval; where sets differ,
-the units are sets."""
+the units are sets. `python -m stages.claim KEY`, with a key of the last column, judges a claim again."""
 
 
 def main() -> None:

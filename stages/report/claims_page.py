@@ -46,7 +46,7 @@ CHAPTERS = {  # start of a claim's section -> what it is about
 
 
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
-    """The frame of claims as a person reads it, what decides those that are open last."""
+    """The frame of claims as a person reads it; the last column is what `python -m stages.claim` takes."""
     shown = claims[["section", "verdict", "claim"]].copy()
     shown["effect"] = [effect(row) for row in claims.itertuples()]
     shown["holds"] = claims["holds"]
@@ -57,6 +57,7 @@ def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     shown["carries over"] = [carries_text(row) for row in claims.itertuples()]
     shown["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
     shown["open"] = [open_text(row) for row in claims.itertuples()]
+    shown["key"] = claims["key"]
     return shown
 
 

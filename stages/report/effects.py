@@ -133,6 +133,9 @@ def _side_rows(
     for column, wanted in picks.items():
         rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
     keys = (*claim.over, *claim.within)
+    for column in keys:
+        if column not in rows:
+            raise NotRun(f"no column {column} in the rows of {claim.stage}", claim.stage)
     return rows, [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
 
 

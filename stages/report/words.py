@@ -53,12 +53,13 @@ def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
     claim, several = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
     shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
     parts = [several, *shared, _sides(claim, results), claim.note]
-    return ", ".join(part for part in parts if part)
+    return ", ".join(part.rstrip(",") for part in parts if part)
 
 
 def _sides(claim: Claim, results: Results) -> str:
     said = _side(claim, results, claim.first)
     if isinstance(claim.second, int | float):
+        said = said or str(claim.where.get("metric", "value")).replace("_", " ")
         said += f" minus {number(claim.scale * claim.second)}" if claim.second else ""
     elif claim.second is not None:
         said += f" minus {_side(claim, results, claim.second)}"

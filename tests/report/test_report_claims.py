@@ -1,6 +1,7 @@
 """Claims: pairing, intervals, words, and the one word."""
 
 import pickle
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -18,6 +19,7 @@ from stages.report.effects import differences
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import CLAIMS, build_all
 from stages.report.verdict import counted, holding, judge, judged, over_readings, sentences, verdict
+from stages.report.words import tested_on
 
 
 def of(results, key):
@@ -204,6 +206,12 @@ def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, smal
     table = judge(CLAIMS, small.results(bare))
     assert table["key"].is_unique
     assert set(table["verdict"]) == {"open"}
+
+
+@pytest.mark.parametrize("one", CLAIMS, ids=lambda one: one.key)
+def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(bare, small, one):
+    said = tested_on(one, small.results(bare), [name for name in one.sets if name] or ["household"])
+    assert not re.search(r", ?,|  |,$|minus$", said), said
 
 
 def test_equal_differences_are_open_and_say_why(root, small):

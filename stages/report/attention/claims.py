@@ -91,7 +91,7 @@ ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household 
 PHRASES = {
     ("method", OURS): "our glance", ("method", ANY_POSE): "our glance in any pose",
     ("method", "VisAttAll"): "VisAttAll", ("method", "equal"): "equal weights",
-    ("metric", "weight"): "weights", ("method", "guided_ssim"): "",
+    ("metric", "weight"): "weights",
     ("views", "best"): "four to eight best viewpoints", ("views", "four"): "four around the object",
     ("views", "twelve"): "twelve",
     ("metric", "repeatability"): "points found again", ("perturbation", "clay"): "with the colours taken away",
@@ -149,6 +149,7 @@ CLAIMS = [
     on_gaze(key="colour_least_ssim", section="T3.2.9", stage="weights", scale=1, unit="SSIM", dataset=SECTION_3_2,
             sentence="Colour gets the least weight by similarity where each object has one colour.",
             where={"metric": "weight", "method": "guided_ssim"}, first={"channel": "color"}, statistic="least_weight",
+            phrases=PHRASES | {("method", "guided_ssim"): ""},
             note="the lowest weight of the other channels minus that of colour",
             readings=(reading("formulas mended", dataset=MENDED_3_2),)),
     svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
