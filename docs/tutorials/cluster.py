@@ -11,10 +11,10 @@ settings exist.
 """
 
 import os
+import shutil
 
 import pandas as pd
 from dask.distributed import Client
-from dask_jobqueue import SLURMCluster
 
 from haptic_glance.gallery.demo import sample
 
@@ -35,7 +35,8 @@ from haptic_glance.gallery.demo import sample
 #
 # Without ``DASK_SCHEDULER`` the run starts workers on its own machine, which is a way to try it.
 
-client = Client(os.environ["DASK_SCHEDULER"])
+address = os.environ.get("DASK_SCHEDULER")
+client = Client(address) if address else Client(processes=False)
 print(client.dashboard_link, sum(client.nthreads().values()), "cores")
 
 # %%
@@ -45,9 +46,12 @@ print(client.dashboard_link, sum(client.nthreads().values()), "cores")
 # dask-jobqueue submits the workers. This keeps the cluster until it is stopped; run the pipeline in another shell, with
 # the address that it prints as ``DASK_SCHEDULER``.
 
-cluster = SLURMCluster(cores=16, processes=16, memory="64GB", walltime="04:00:00", queue="NAME")
-cluster.scale(jobs=10)
-input(f"{cluster.scheduler_address}, dashboard {cluster.dashboard_link}; Enter ends it ")
+if shutil.which("sbatch"):
+    from dask_jobqueue import SLURMCluster
+
+    cluster = SLURMCluster(cores=16, processes=16, memory="64GB", walltime="04:00:00", queue="NAME")
+    cluster.scale(jobs=10)
+    input(f"{cluster.scheduler_address}, dashboard {cluster.dashboard_link}; Enter ends it ")
 
 # %%
 # Sweeps

@@ -34,9 +34,9 @@ def thin_parts(mesh: Mesh) -> np.ndarray:
 # Give it a name
 # --------------
 #
-# In a checkout the function is a file in ``stages/salient_points/rivals``, and its name stands in ``PUBLISHED`` of
-# ``haptic_glance/look/points/methods.py``. Here we add it to the registry of this process. Every function that takes a
-# method knows it from now on.
+# In a checkout the function is a file in ``haptic_glance/look/rivals``, and its name stands in ``PUBLISHED`` of
+# ``haptic_glance/look/points/methods.py``; CONTRIBUTING.md lists the other places. Here we add it to the registry of
+# this process. Every function that takes a method knows it from now on.
 
 METHODS["thin_parts"] = SurfaceDetector(thin_parts)
 mesh = normalise(rotate_to_z_up(simplify(load(sample()), 4000)))
@@ -90,8 +90,7 @@ for method in ["thin_parts", "glance"]:
 #    python -m stages.bench my_method.py:thin_parts --gaze gaze.zip
 #
 # With the name in the registry, and in ``salient_points.methods`` of the settings, the experiment ``attention``
-# measures
-# it in the pipeline, and the gate and the report take it up:
+# measures it in the pipeline, and the gate and the report take it up:
 #
 # .. code-block:: sh
 #

@@ -59,8 +59,9 @@ def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
 def _sides(claim: Claim, results: Results) -> str:
     said = _side(claim, results, claim.first)
     if isinstance(claim.second, int | float):
-        said = said or str(claim.where.get("metric", "value")).replace("_", " ")
-        said += f" minus {number(claim.scale * claim.second)}" if claim.second else ""
+        if claim.second:
+            said = said or str(claim.where.get("metric", "value")).replace("_", " ")
+            said += f" minus {number(claim.scale * claim.second)}"
     elif claim.second is not None:
         said += f" minus {_side(claim, results, claim.second)}"
     if claim.contrast:

@@ -59,6 +59,16 @@ def test_every_link_and_picture_leads_to_a_file(path):
     assert not absent
 
 
+@pytest.mark.parametrize("path", [ROOT / "CONTRIBUTING.md", *SOURCES], ids=lambda path: path.name)
+def test_every_path_that_a_text_names_exists(path):
+    folders = "|".join(each.name for each in ROOT.iterdir() if each.is_dir() and each.name[0] != ".")
+    named = set(re.findall(rf"`((?:{folders})/[\w./-]+)`", text_of(path)))
+    made = {
+        each for each in named if re.search(r"[A-Z]{3}|^build/|^runs/|^reports/index.html$", each)
+    }  # or for example
+    assert not [each for each in named - made if not (ROOT / each).exists()]
+
+
 def test_every_picture_has_an_alternative_text():
     for path in PAGES:
         figures = re.findall(r"```\{figure\} \S+\n(.*?)```", text_of(path), re.S)
