@@ -183,13 +183,14 @@ def views_seen():
 def write_attention(root):
     """Adds to a root what the pieces on attention read: measured on gaze, and of this run's own objects."""
     table, _ = learned_weights()
-    seconds = [{"item": "a", "method": name, "metric": "silhouette_share", "seconds": 1.0} for name in CHANNELS]
+    seconds = [{"item": "a", "method": name, "metric": "silhouette_share", "value": 1.0, "seconds": 1.0}
+               for name in CHANNELS]  # fmt: skip
     weights = table.rename(columns={"weight": "value", "left_out": "item"}).assign(metric="weight")
     frames = {
         "salient_points": judged(), "weights": pd.concat([svm_accuracies(), weights]),
         "annotations": agreed_marks(),
         "conspicuity": pd.DataFrame(seconds),
-        "views": pd.DataFrame([{"item": "a", "method": "raster", "metric": "coverage", "seconds": 2.0}]),
+        "views": pd.DataFrame([{"item": "a", "method": "raster", "metric": "coverage", "value": 0.5, "seconds": 2.0}]),
     }  # fmt: skip
     for stage, frame in frames.items():
         write_measurements(root, stage, frame, "gaze")
