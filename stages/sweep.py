@@ -1,7 +1,8 @@
 """Sweeps recognition by touch over channels, classifiers, sensors or any setting, by Hydra multirun.
 
-`python -m stages.sweep -m channels=itti,all classifier=knn,svm`
-`python -m stages.sweep -m sensor=fsr_16,fsr_32 classifier=knn hydra/launcher=joblib`
+examples:
+  python -m stages.sweep -m channels=itti,all classifier=knn,svm
+  python -m stages.sweep -m sensor=fsr_16,fsr_32 classifier=knn hydra/launcher=joblib
 
 Every job finds the points, presses the array and recognises the objects of classification.sets, on the meshes and
 conspicuity maps of data/SET; SET is household, or `data=SET`. Where these are not there, `dvc repro` makes them first.
@@ -211,7 +212,9 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
 def main() -> None:
     """Checks and prepares, then runs the jobs."""
     errors_in_one_line("sweep")
-    if not {"-h", "--help"} & set(sys.argv):
+    if {"-h", "--help"} & set(sys.argv):
+        print(__doc__)  # before Hydra's own help, which lists every group and setting
+    else:
         check_clone()
         prepare(sys.argv[1:])
     job()

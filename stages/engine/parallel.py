@@ -11,18 +11,21 @@ when its process is killed.
 import functools
 import os
 import random
+import signal
 import sys
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any, TypeVar
 
 from filelock import FileLock, Timeout
 from joblib import Parallel, cpu_count, delayed, parallel_config
 from joblib.externals.loky import process_executor
+from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
@@ -96,11 +99,26 @@ def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[
     else:
         # Caches make a worker grow; joblib then renews it between two items, loses none, and warns.
         warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
-        with parallel_config(backend, n_jobs=workers):
+        with parallel_config(backend, n_jobs=workers), interrupts_wait():
             done: Any = Parallel(return_as="generator_unordered")(
                 delayed(_named)(function, task, root) for task in tasks
             )
-            yield from done
+        yield from done
+
+
+@contextmanager
+def interrupts_wait() -> Iterator[None]:
+    """Inside the block Ctrl-C waits until its end; processes that start there never see it.
+
+    Ctrl-C goes to all processes of a terminal: this one ends its workers, which would each print a traceback.
+    """
+    for tracker in (resource_tracker, loky_tracker):  # their start, inside the block, would let Ctrl-C through
+        tracker.ensure_running()
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
 
 
 def _on_a_core(function, task, root):

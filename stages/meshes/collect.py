@@ -49,6 +49,8 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
             raw, notes = _without_table(raw, notes)
         mesh = normalise(rotate_to_z_up(raw))
         mesh = coloured(mesh, item.name, colours, item.suffix) if painted else mesh
+        if len(mesh.faces) < FEW:
+            notes.append(f"only {len(mesh.faces)} faces: too few for what is measured on surfaces to say much")
     except (FetchError, ValueError, OSError) as error:
         raise MeshError(str(error)) from error
     used = np.unique(mesh.faces)
@@ -73,6 +75,7 @@ def _without_table(mesh, notes):
     ]
 
 
+FEW = 20  # faces
 CLASSES = "classes.csv"  # in data/SET/meshes: the class of each object, in the order of meshes.classes
 
 

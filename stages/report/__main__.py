@@ -116,7 +116,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     if own:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
-    write_headlines(out, counts(claims))
+    write_headlines(out, None if own else counts(claims))
     parts = {**built, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
     parts |= {"not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
     parts |= {"first": ["pipeline"], "dataset": dataset_line(results)}

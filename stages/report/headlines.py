@@ -26,10 +26,11 @@ HEADLINES: dict[str, tuple[str, dict[str, str], str]] = {
 }  # fmt: skip
 
 
-def write_headlines(out: Path, verdicts: Mapping[str, int]) -> None:
+def write_headlines(out: Path, verdicts: Mapping[str, int] | None) -> None:
     """Writes headlines.json from the charts below `out` and the counts of verdicts, without charts that are not there.
 
-    A chart may hold several rows that fit: the first counts.
+    verdicts: None for a folder of a person's own meshes, which the claims of the thesis are not about. A chart may hold
+    several rows that fit: the first counts.
     """
     found: dict[str, float] = {}
     for name, (chart, values, column) in HEADLINES.items():
@@ -42,6 +43,6 @@ def write_headlines(out: Path, verdicts: Mapping[str, int]) -> None:
         fitting = rows[(rows[list(values)].astype(str) == pd.Series(values)).all(axis=1)]
         if len(fitting):
             found[name] = float(fitting[column].iloc[0])
-    for word in ("supported", "contradicted", "open"):
-        found[f"claims_{word}"] = verdicts.get(word, 0)
+    if verdicts is not None:
+        found |= {f"claims_{word}": verdicts.get(word, 0) for word in ("supported", "contradicted", "open")}
     write_json(out / FILE, found)

@@ -57,3 +57,12 @@ def test_a_budget_ends_with_its_block(tmp_path):
     with parallel.budget(tmp_path):
         assert os.environ[parallel.FOLDER] == str(tmp_path)
     assert parallel.FOLDER not in os.environ
+
+
+def interrupts_are_blocked(_item):
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
+def test_ctrl_c_reaches_this_process_and_none_of_its_workers():
+    assert parallel.parallel_map(interrupts_are_blocked, range(4), "", "loky", 2) == [True] * 4
+    assert not interrupts_are_blocked(0)

@@ -37,6 +37,7 @@ def test_good_meshes_pass_and_bad_ones_are_named(start, capsys):
     folder = workspace.data / "meshes"
     manifest = read_table(folder / "manifest.csv")
     assert sorted(manifest.object) == ["Kiste à thé", "sub folder__ball", "sub folder__ball_ply"]
+    assert manifest.repairs.fillna("").str.contains("too few").tolist() == (manifest.faces < 20).tolist()
     assert manifest.watertight.all() and (manifest.unit == "mm").all() and manifest["size"].max() == 4
     assert read_table(folder / "refused.csv").reason.tolist() == ["the file holds no geometry"]
     mesh = read_mesh(folder / "Kiste à thé.npz")

@@ -7,9 +7,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import write_table
+from haptic_glance.base.files import read_json, write_table
 from stages.report import topics
 from stages.report.claims_page import add_words
+from stages.report.headlines import write_headlines
 from stages.report.items import Table
 from stages.report.tables import PAIR, PLACE, filled
 
@@ -74,3 +75,12 @@ def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path):
         assert table.summary == said and ("# T\n\nIt is 1.\n\n| method" in text) == bool(said)
         assert "<details><summary>How to read it</summary>\n\n- a note\n\n</details>" in text
     shutil.rmtree(tmp_path / "tables")
+
+
+def test_headlines_on_a_folder_of_meshes_count_no_claims(tmp_path):
+    for verdicts, names in (
+        ({"supported": 2}, {"claims_supported", "claims_contradicted", "claims_open"}),
+        (None, set()),
+    ):
+        write_headlines(tmp_path, verdicts)
+        assert read_json(tmp_path / "headlines.json").keys() == names
