@@ -93,6 +93,7 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
 
 def test_what_moved_with_the_seed_may_move_as_far(workspace, tmp_path, monkeypatch):
     monkeypatch.chdir(workspace.root)
+    (workspace.root / "dvc.yaml").touch()
     monkeypatch.setattr(gate, "Workspace", lambda _: workspace)
     for folder, error in (("one", 0.6), ("two", 0.45)):
         write_json(tmp_path / folder / "toys/lod.json", {"meshes": 100, "error": error})
