@@ -2,7 +2,9 @@
 
 KEY is a claim's key in reports/claims.csv, or a pattern such as 'glance_*'. Prints each claim with its effect, its
 interval, the difference of each pair, the rows it was read from, and the command that measures these rows anew. Works
-XX
+in a fresh clone, from the rows in reports/measurements. Exits with 1 where a verdict, an effect or a number of units is
+not that of reports/claims.csv; of rows measured anew, only where the verdict is not.
+
 Examples: `python -m stages.claim glance_soft_gaze`, `python -m stages.claim 'glance_*' --json`,
 `python -m stages.claim contrast_household --measure`.
 """
