@@ -2,8 +2,8 @@
 
 Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB.
 
-A material is seen by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture. What
-else a glTF material says is carried along, its further pictures undecoded.
+A material shows its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture. The other
+properties of a glTF material are carried along, and their pictures stay undecoded.
 
 The colours of an object: those of its file, or one of a palette by its name.
 """
@@ -37,7 +37,7 @@ BESIDE = "beside_colour"  # in the metadata of a part
 
 
 def beside_colour(material: Any) -> dict[str, Any] | None:
-    """What a glTF material says beside its picture of colour, as arguments of trimesh's PBRMaterial; None of others.
+    """The other properties of a glTF material, as arguments of trimesh's PBRMaterial; None of other materials.
 
     A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image. That of
     colour is True where there is one: it is an image of the Texture.

@@ -235,9 +235,9 @@ def search(
 ) -> float:
     """Raises best to the height of the highest face not above `lift`; back: if it is seen from its back.
 
-    best (rows, cols), or (1, n) of n `taxels`. Returns the highest of all, of taxels with their rise. What lies deeper
-    below it than `window` is not searched, nor, without a window, a cell that begins at inf. The nearer child, by the
-    height of its centre, comes first. A perfect order would hardly save a box.
+    best (rows, cols), or (1, n) of n `taxels`. Returns the highest of all, of taxels with their rise. Faces deeper than
+    `window` below the highest are not searched, nor, without a window, a cell that begins at inf. The nearer child, by
+    the height of its centre, comes first. A perfect order would hardly save a box.
     """
     rows, columns = cells
     reach = frame.margin + frame.around
