@@ -106,7 +106,7 @@ NAMES = {
 }
 COLOURS = {
     "full": "#222222", "uniform": "#E69F00", "uniform_size": "#D55E00", "network": "#CC79A7", "ours_plain": "#56B4E9",
-    "ours": "#0072B2", "online": "#009E73", "beforehand": "#D55E00", "every_level": "#222222",
+    "ours": "#0072B2", "online": "#009E73", "beforehand": "#7A6A00", "every_level": "#882255",
 }  # fmt: skip
 UNITS = {"pixels": "pixels", "ssim": "1 − SSIM"}
 OURS = "ours"
