@@ -127,10 +127,10 @@ def _nearest(p, a, b, c, x, y, z):
     s, t = vv * uw - uv * vw, uu * vw - uv * uw
     if det > 0.0 and s >= 0.0 and t >= 0.0 and s + t <= det:
         s, t = s / det, t / det
-    elif s < 0.0 and vw >= 0.0 and (t >= 0.0 or uw <= 0.0):
-        s, t = 0.0, min(vw / vv, 1.0) if vv > 0.0 else 0.0
-    elif t < 0.0 and uw >= 0.0:
-        s, t = min(uw / uu, 1.0) if uu > 0.0 else 0.0, 0.0
+    elif s < 0.0 and 0.0 <= vw <= vv and (t >= 0.0 or uw <= 0.0):
+        s, t = 0.0, vw / vv if vv > 0.0 else 0.0
+    elif t < 0.0 and 0.0 <= uw <= uu:
+        s, t = uw / uu if uu > 0.0 else 0.0, 0.0
     elif uw <= 0.0 and vw <= 0.0:
         s, t = 0.0, 0.0
     else:
