@@ -1,8 +1,7 @@
-"""Files: complete or not at all, and pictures that a file may hold.
+"""Reads and writes files.
 
-Files that are whole or absent: every writer goes through a temporary name and moves it into place.
-
-Pictures of others: decoded whole, or refused with the name of the file.
+Each writer fills a temporary file and moves it into place, so that a file is complete or absent. A picture is decoded
+whole, or refused with the name of its file.
 """
 
 import csv

@@ -1,9 +1,4 @@
-"""Structural similarity of two pictures.
-
-The structural similarity of two pictures, pixel by pixel (Wang, Bovik, Sheikh and Simoncelli 2004, T [63]).
-
-Structural similarity from local moments (Wang et al. 2004, T [63], eq. 13), compiled by numba.
-"""
+"""Structural similarity of two pictures, pixel by pixel, from local moments (Wang et al. 2004, T [63], eq. 13)."""
 
 import numpy as np
 

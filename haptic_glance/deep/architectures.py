@@ -1,34 +1,10 @@
-"""The architectures: each its convolutions up to the last feature maps, and its ImageNet classifier.
+"""Architectures of networks: the convolutions up to the last feature maps, and the ImageNet classifier.
 
-torchvision, made to import beside a CPU build of torch.
-
-torchvision's compiled operators are linked against one build of torch. With another build (usual for the PyPI wheel of
-torchvision and a CPU wheel of torch) they do not load, and `import torchvision` fails with `operator torchvision::nms
-does not exist`, since it describes the shapes of operators that are not registered. Models, transforms and weights need
-none of those operators. After that failure, and no other, their schemas are declared here and the import is repeated.
-With a matching build nothing is declared. Calling the operators remains an error.
-
-Every import of torchvision in the project goes through here: `from .torchvision_import import torchvision`.
-
-Stored weights loaded into a module, or refused with the reason.
-
-The parts of an architecture.
-
-AlexNet's convolutions (Krizhevsky et al. 2012, T [268], in torchvision's form of 2014).
-
-VGG16 (Simonyan & Zisserman 2015, T [235]): its convolutions, and its fully connected layers.
-
-GoogLeNet (Szegedy et al. 2015, T [60]).
-
-MobileNetV2 (Sandler et al. 2018, T [269]).
-
-ResNet50 and ResNet101 (He et al. 2016, T [59]).
-
-EfficientNet-Lite0: EfficientNet-B0 (Tan & Le 2019) without squeeze and excitation, with ReLU6, for small machines.
-
-Implemented here, since torchvision has none and the package with its weights has had one release, in 2020. Layers,
-paddings and normalisation are those of the published TensorFlow model; its stochastic depth, a regulariser for long
-trainings, is left out.
+This module also imports torchvision for the whole project. torchvision's compiled operators are linked against one
+build of torch. With another build (usual for the PyPI wheel of torchvision and a CPU wheel of torch) the operators do
+not load, and `import torchvision` fails with `operator torchvision::nms does not exist`. Models, transforms and weights
+need none of the operators. After that failure, and no other, their schemas are declared here and the import is
+repeated. Calling the operators remains an error.
 """
 
 import importlib

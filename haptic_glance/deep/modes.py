@@ -1,13 +1,10 @@
-"""Ways to train a network, and the layers that learn.
+"""Ways to train a network: the head alone on cached features, all layers, or all but a range of layers (T5.3, T5.5).
 
-Which layers are trained: the head alone on cached features, all, or all but a range of layers (T5.3, T5.5).
-
-Matlab's numbers for the layers of MobileNetV2, as in T table 5.6, and the torch modules they correspond to.
-
-Matlab's `mobilenetv2` has 154 layers: 1 is the input, 2 to 150 are the convolutions with their normalisations and
-activations, 151 to 154 are pooling, the linear layer, softmax and output. torchvision's network is the same one,
-divided into modules: features[0] is Conv1 (2 to 4), features[1] expanded_conv (5 to 9), features[i] block_i-1,
-features[18] Conv_1 (148 to 150). The sum at the end of a block (`add`) is a layer in Matlab and not a module here.
+Ranges of MobileNetV2 use the numbers of Matlab's layers, as T table 5.6 does. Matlab's `mobilenetv2` has 154 layers: 1
+is the input, 2 to 150 are the convolutions with their normalisations and activations, 151 to 154 are pooling, the
+linear layer, softmax and output. torchvision divides the same network into modules: features[0] is Conv1 (2 to 4),
+features[1] expanded_conv (5 to 9), features[i] block_i-1, features[18] Conv_1 (148 to 150). The sum at the end of a
+block (`add`) is a layer in Matlab and not a module of torchvision.
 """
 
 import re

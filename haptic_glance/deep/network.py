@@ -1,9 +1,4 @@
-"""Networks, built and counted.
-
-Networks for photographs with a new classifier.
-
-A linear head on standardised features.
-"""
+"""Networks for photographs with a new classifier: a linear head on standardised features."""
 
 from collections.abc import Sequence
 

@@ -1,10 +1,7 @@
-"""Trains a network.
+"""Trains a network by stochastic gradient descent with momentum, until nothing improves (T5.3).
 
-The course of a training: its curve, when it ends, and the best weights so far (T5.3).
-
-Stochastic gradient descent with momentum, and the search of the learning rate.
-
-Checkpoints from which an interrupted training continues with the same result: one file, complete or absent.
+The learning rate is searched. A checkpoint is one file, complete or absent, and an interrupted training continues from
+its checkpoint with the same result.
 """
 
 import copy

@@ -1,25 +1,4 @@
-"""Disturbances of a mesh.
-
-Colours, which the thesis's grey objects do not have: one for the whole object, or a pattern of two; or none.
-
-The same surface with other triangles, all of about the same size.
-
-A surface reconstructed from the readings of a few depth cameras.
-
-The same object in another orientation: turned about the vertical axis, or tilted.
-
-Holes, as a scanner leaves them.
-
-Faces with inverted winding, as in files whose winding nobody checked.
-
-Noise of a scanner: every vertex moves a little.
-
-The same surface with its vertices in another order.
-
-Fewer faces, by quadric edge collapse.
-
-The same object in another unit of length.
-"""
+"""Disturbances of a mesh: colour, tessellation, scan by depth cameras, pose, holes, winding, noise, order and unit."""
 
 import colorsys
 

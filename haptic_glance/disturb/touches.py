@@ -1,22 +1,8 @@
-"""Touches that can be repeated under disturbances, and the registry of these.
+"""Disturbances of touch: the place, the object, the sensor and the model differ between training and test.
 
-The touches of one object, which can be repeated under changed conditions.
-
-The types of a perturbation of touch.
-
-Localisation error: the robot touches beside the place.
-
-The object is not as in training: rotated, tilted or of another size.
-
-The model has fewer faces than the object.
-
-The sensor is not upright: rotated about its normal, or tilted.
-
-The sensor is not ideal: each perturbation is one property of haptic_glance.touch.Skin.
-
-The registry of perturbations: differences between training and test touches.
-
-To add one, add a function and an entry. The order is that of the figure: placement, sensor, object, model.
+`Touches` holds the touches of one object, and can repeat the touches under changed conditions. The registry of
+disturbances has the order of the figure: placement, sensor, object, model. To add a disturbance, write a function and
+an entry.
 """
 
 from collections.abc import Callable

@@ -1,10 +1,7 @@
-"""Disturbances of a rendered view.
+"""Disturbances of a rendered view: the background, the light and the size of the image.
 
-The background, black in the thesis after a trial of black, grey and white (T3.1.5).
-
-Light from the side instead of from the camera.
-
-Smaller images, which in an orthographic view is the same as an object farther away.
+T3.1.5 tried black, grey and white backgrounds and chose black. A smaller image of an orthographic view shows an object
+that is farther away.
 """
 
 import numpy as np

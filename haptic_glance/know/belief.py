@@ -1,10 +1,6 @@
-"""Belief over objects: likelihood, calibration, outcomes of touches.
+"""Belief over objects from touches: a kernel density as the likelihood, calibration, and predicted outcomes.
 
-Calibrated belief over the objects after some touches: of beliefs of 95 %, 95 in a hundred are correct.
-
-The likelihood of an imprint under each object: a kernel density over the training touches.
-
-Predicts a touch at a place: the known touches near the place, for each object.
+A calibrated belief of 95 % is correct 95 times in a hundred.
 """
 
 from dataclasses import dataclass

@@ -1,22 +1,4 @@
-"""The classifiers and the scalings before them.
-
-How samples are scaled before the classifiers: readings of one sentence of T4.2.4.
-
-The sentence is "The entire data is standardized beforehand using z-transform". Gamma 1 of the SVM is fixed, so the
-scale decides how many neighbours its kernel sees.
-
-| scaling | features | map and positions of joined touches |
-|---|---|---|
-| training | z-transform fitted to the training part, 12 components | z-transform fitted to the training part |
-| beforehand | z-transform of all data, 12 components of all data | z-transform of the positions of all data |
-| components | as beforehand, the z-transform once more on the components | as training, of all data |
-| min_max | all data to 0..1, 12 components of all data | all data to 0..1 |
-
-`beforehand` is printed. `training` is ours: nothing of the hold-out leaks into training. `components` is the input of
-RapidMiner's own SVM, which standardises the columns that it is given. (Its LibSVM takes them as they are: that is
-`beforehand`.) `min_max` is no reading of the word z-transform. It shows the same SVM on distances about 1, its width.
-
-The five classifiers of T tables 4.1 and 4.2 with the thesis's settings (T4.2.4).
+"""The five classifiers of T tables 4.1 and 4.2 with the thesis's settings, and the scalings before them (T4.2.4).
 
 | setting | T4.2.4 | here |
 |---|---|---|
@@ -28,6 +10,21 @@ The five classifiers of T tables 4.1 and 4.2 with the thesis's settings (T4.2.4)
 | deep learning | feed-forward, rectified, gradient descent, Adadelta, 10 epochs | the same, two layers of 50 units |
 | scale | "The entire data is standardized beforehand using z-transform" | the readings of `scaling` |
 | validation | a quarter held out, five folds of the rest | the same, many times |
+
+The sentence on the scale has several readings. Gamma 1 of the SVM is fixed, so the scale decides how many neighbours
+its kernel sees.
+
+| scaling | features | map and positions of joined touches |
+|---|---|---|
+| training | z-transform fitted to the training part, 12 components | z-transform fitted to the training part |
+| beforehand | z-transform of all data, 12 components of all data | z-transform of the positions of all data |
+| components | as beforehand, the z-transform once more on the components | as training, of all data |
+| min_max | all data to 0..1, 12 components of all data | all data to 0..1 |
+
+`beforehand` is printed. `training` is ours: nothing of the hold-out leaks into training. `components` is the input of
+RapidMiner's own SVM, which standardises the columns that it is given. (Its LibSVM takes the columns as they are: that
+is `beforehand`.) `min_max` is no reading of the word z-transform. It shows the same SVM on distances about 1, which is
+its width.
 """
 
 import difflib

@@ -1,8 +1,6 @@
-"""Touches one place after another.
+"""Explores an object by touch: touch, update the belief, choose the next place.
 
-Explorations side by side: touch, update the belief, choose the next place.
-
-The choice of the next place to touch: by saliency, at random, or by expected information gain.
+The next place is chosen by saliency, at random or by expected information gain.
 """
 
 from dataclasses import dataclass

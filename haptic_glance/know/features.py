@@ -1,8 +1,6 @@
-"""Features of an imprint, and the similarity of imprints.
+"""Features of an imprint (T4.2.3.4), and the similarity of imprints by normalised cross-correlation (T4.2.3.3).
 
-Forty-one features of an imprint: wavelet coefficients, brightness and centre of mass (T4.2.3.4).
-
-Similarity of imprints by normalised cross-correlation, and imprints confusable between objects (T4.2.3.3).
+The 41 features are wavelet coefficients, brightness and the centre of mass.
 """
 
 import numpy as np

@@ -1,12 +1,7 @@
-"""A library of known objects, their places, and the belief over them.
+"""A library of objects known by touch, and the belief over the objects after some touches.
 
-The belief over objects after some touches.
-
-Places of the array on a mesh: a vertex where one is near, else the point itself with the normal of its face.
-
-A library of objects known by touch: imprints of each, and how likely a new imprint is under each of them.
-
-Objects that can be known without a file of one's own, and those of a folder.
+The library stores imprints of each object at places of the array (a vertex, or a point of a face with its normal), and
+tells how likely a new imprint is under each object.
 """
 
 import hashlib

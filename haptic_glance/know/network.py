@@ -1,9 +1,4 @@
-"""The feed-forward network of T4.2.4.
-
-The thesis's "deep learning": a small feed-forward network trained sample by sample with Adadelta (T4.2.4).
-
-The training loop of the small feed-forward network, compiled by numba, ten times as fast as plain numpy.
-"""
+"""The "deep learning" of T4.2.4: a small feed-forward network trained sample by sample with Adadelta, compiled."""
 
 import numba
 import numpy as np

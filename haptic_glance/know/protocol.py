@@ -1,8 +1,6 @@
-"""The protocol of recognition by touch.
+"""The thesis's protocol of recognition by touch (T4.2.4): a quarter held out at random, five folds of the rest.
 
-One split, standardised and reduced once for all classifiers.
-
-The thesis's protocol: a random hold-out of a quarter, five-fold cross-validation on the rest (T4.2.4).
+A split is standardised and reduced once for all classifiers.
 """
 
 from dataclasses import dataclass

@@ -1,9 +1,4 @@
-"""A trial of exploration, and its parts of the touches.
-
-One hold-out of touches: fit to some touches of each object, then explore with the others.
-
-Splits of the touches of objects into training and test touches.
-"""
+"""A trial of exploration: learn from some touches of each object, then explore with the others."""
 
 import numpy as np
 

@@ -1,9 +1,4 @@
-"""Quadrics of attributes, and attributes where edges merge.
-
-The attributes of a mesh as the error of its simplification counts them: colours, texture coordinates, normals.
-
-Attributes of the merged vertices after the collapses, and the vertices where an attribute jumps.
-"""
+"""Attributes in the error of a simplification (colours, texture coordinates, normals), and their values after it."""
 
 from collections.abc import Mapping
 

@@ -1,16 +1,14 @@
-"""Open borders of a mesh while it is simplified.
+"""Open borders of a mesh, and borders between materials, while the mesh is simplified.
 
-Borders that may be simplified: each loop of the boundary is closed by hidden faces, so that its edges collapse too.
+A border that may be simplified is closed by hidden faces, so that its edges collapse too. The hidden faces of a loop
+meet in one corner that lies nowhere (NaN): all comparisons with it fail, so that no check of shape refuses a collapse
+on its account, and no edge to it is ever offered. The link condition then is that of a closed surface, and preserves
+the loops. The error holds a border in place: the squared distances to planes through its edges, upright on the faces
+there (Garland and Heckbert 1997, section 6).
 
-The hidden faces of a loop meet in one corner that lies nowhere (NaN): all comparisons with it fail, so that no check of
-shape refuses a collapse on its account, and no edge to it is ever offered. The link condition then is that of a closed
-surface, and preserves the loops. The error holds a border in place: the squared distances to planes through its
-edges, upright on the faces there (Garland and Heckbert 1997, section 6).
-
-Borders between materials, preserved while a mesh is simplified: cut open before, closed again after.
-
-A geometric error does not depend on where one material ends and the next begins. On a flat side, which needs few faces,
-the border would end up on any edge. Cut open it is a boundary, which simplification preserves.
+A border between materials is cut open before the simplification, which preserves boundaries, and closed again after
+it. A geometric error does not depend on where one material ends: on a flat side, which needs few faces, the border
+would end up on any edge.
 """
 
 import numpy as np

@@ -1,11 +1,4 @@
-"""Errors of a simplified mesh.
-
-The distance of two surfaces (T3.1.4, T3.2.9.1), also weighted by saliency.
-
-The distance of two surfaces weighted by saliency; Metro gives every place the same weight.
-
-How far off the colours of a simplified mesh are from those of the original, where both are painted.
-"""
+"""Errors of a simplified mesh: distances of two surfaces (T3.1.4, T3.2.9.1), weighted by saliency, and of colours."""
 
 from collections.abc import Mapping
 

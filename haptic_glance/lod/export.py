@@ -1,12 +1,7 @@
-"""Files of levels.
+"""Files of levels: face counts as people write them, names of files, and meshes written for other programs.
 
-Meshes written for other programs, with their colours and textures, in their own coordinates.
-
-Face counts as people write them: absolute or as a share of the object's own.
-
-Several levels of detail of one mesh: how they are written on a command line, and the names of their files.
-
-A smaller copy of a mesh for a page.
+A face count is absolute or a share of the object's own. Written meshes have their own coordinates, colours and
+textures.
 """
 
 import argparse

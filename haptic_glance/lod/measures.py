@@ -1,9 +1,4 @@
-"""A table of all errors, and the fewest faces within an error.
-
-The errors of a simplified mesh beside those of plain quadric edge collapse, as a table of text.
-
-The fewest faces that stay within a tolerance, found by measuring.
-"""
+"""The errors of a simplified mesh beside plain quadric edge collapse, and the fewest faces within an error."""
 
 from collections.abc import Callable, Sequence
 

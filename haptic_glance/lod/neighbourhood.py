@@ -1,8 +1,6 @@
-"""Neighbourhoods of salient points, and how they shrink where faces are few.
+"""Neighbourhoods of salient points: fixed, by the mesh's density or by the region's area, and how they shrink.
 
-The size of the kept neighbourhood of a salient point: fixed, by the mesh's density, or by the region's area.
-
-Smaller neighbourhoods where the target is too low for all of them, the least salient first.
+Where the target is too low for all neighbourhoods, those of the least salient points shrink first.
 """
 
 from bisect import bisect_left

@@ -1,30 +1,21 @@
-"""Perceptual errors of pictures.
+"""Errors of the pictures of a simplified mesh (T3.1.4, T3.2.9.2): the normalised Laplacian pyramid and SSIM.
 
-Errors of the pictures of a simplified mesh (T3.1.4, T3.2.9.2).
+`laplacian` is the difference of two pictures without their local means: the root of the mean squared difference of
+each of six bands, averaged over the bands, on a scale where white is 1. Coarse bands have the same weight as fine
+ones, which have more pixels. The thesis's "predicted distance in Laplacian domain" is the second number that the
+authors' own program gives, beside the normalised one (NLPD).
 
-The difference of two pictures without their local means, at six scales (T3.1.4, T [225]).
-
-The root of the mean squared difference of each of six bands, averaged over the bands, on a scale where white is 1:
-coarse bands have the same weight as fine ones, which have more pixels. The thesis's "predicted distance in Laplacian
-domain" is the second number that the authors' own program gives, beside the normalised one.
+NLPD divides each value of the pyramid by a constant and a weighted sum of its neighbours' sizes before. This gain
+control gives a difference on a dark or even background a higher weight than one among strong contrasts. Pixels beyond
+the frame count as zero in the gain.
 
 Source: Laparra, Balle, Berardino and Simoncelli, Perceptual image quality assessment using a normalized Laplacian
-pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt and Adelson 1983, as in plenoptic (Duong
-et al. 2023); the authors' program takes 0.05, 0.25, 0.4, 0.25, 0.05, within 0.025 of it per tap.
+pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt and Adelson 1983, as in plenoptic 1.2.0
+(Duong et al. 2023), whose scores the tests check; the authors' program takes 0.05, 0.25, 0.4, 0.25, 0.05, within 0.025
+of it per tap. plenoptic's 1e-10 under the root is left out, so that equal pictures are at 0. The authors' program turns
+the small asymmetric filters by 180 degrees where plenoptic does not.
 
-The difference of two pictures after local mean subtraction and contrast gain control (T3.1.4).
-
-Each value of the Laplacian pyramid is divided by a constant and a weighted sum of its neighbours' sizes, before
-`laplacian.band_distance` (NLPD). Gain control gives a difference on a dark or even background a higher weight than one
-among strong contrasts. Pixels beyond the frame count as zero in the gain.
-
-Source: Laparra, Balle, Berardino and Simoncelli 2016 (T [225]), as in plenoptic 1.2.0 (Duong et al. 2023), whose scores
-the tests check, without its 1e-10 under the root, so that equal pictures are at 0. The authors' program turns the small
-asymmetric filters by 180 degrees where plenoptic does not.
-
-The structural dissimilarity of two pictures (T3.1.4, T3.2.9.2).
-
-Meshes scaled down together where one of them exceeds the picture.
+Both meshes are scaled down together where one of them exceeds the picture.
 """
 
 from collections.abc import Sequence

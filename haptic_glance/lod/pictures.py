@@ -1,9 +1,4 @@
-"""Pictures of a mesh and its levels.
-
-A mesh as a picture, coloured by saliency, with its salient points: by what a core install has.
-
-A picture of one simplification: the saliency, and the faces before and after.
-"""
+"""Pictures of a mesh coloured by saliency with its salient points, and of its faces before and after simplification."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,10 +1,7 @@
-"""One simplification as a person asks for it, and remedies where it cannot be done.
+"""One simplification as a person asks for it: the mesh of a file prepared, and the result in the file's coordinates.
 
-A mesh from a file prepared for simplification, and the result brought back to its coordinates.
-
-The meaning of a name in lod.methods: which method's points, and how they are preserved.
-
-The message and the remedies where a face count is too low for the kept vertices.
+A name in lod.methods says which points are kept and how. Where a face count is too low for the kept vertices, the
+message names the remedies.
 """
 
 from collections.abc import Mapping

@@ -1,9 +1,4 @@
-"""Topology of a mesh: half edges, faults, parts.
-
-Topology of a surface (boundary loops, components, genus), and the faults that simplification must not add.
-
-The named nodes of a GLB: which faces of a mesh belong to which, before and after simplification.
-"""
+"""Topology of a surface (loops, components, genus), faults that no simplification may add, and named nodes of a GLB."""
 
 from dataclasses import astuple, dataclass
 from pathlib import Path

@@ -1,21 +1,4 @@
-"""Compiled kernels of detectors and rivals.
-
-Fast point feature histograms: how the normals around a point lie to each other.
-
-Gaussian-weighted sums over the points around each place, on a grid of cells.
-
-Maxima of values over space and scale.
-
-The heights of a surface under small arrays, from samples of it: one disc for each sample.
-
-Positions that keep a distance from all before them.
-
-Spin images: where the surface around a point lies, in cylindrical coordinates about its normal.
-
-Values at places, distributed over a grid.
-
-Maxima of an image, one after another, with the neighbourhood of each suppressed.
-"""
+"""Compiled kernels of detectors and rivals: descriptors of points, sums over neighbours, maxima, spacing."""
 
 import math
 

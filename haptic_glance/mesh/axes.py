@@ -1,9 +1,4 @@
-"""Axes and directions.
-
-Names of the axis that points up, and the rotations that turn it to +z.
-
-Directions spread evenly over the sphere.
-"""
+"""Names of the axis that points up, rotations that turn it to +z, and directions spread evenly over the sphere."""
 
 from collections.abc import Sequence
 

@@ -1,14 +1,7 @@
 """Point clouds and depth images, and the surface through their points.
 
-A point cloud as arrays, and what of it can be used.
-
-Normals of a point cloud: their lines from the neighbours, their sides from where the points can be seen.
-
-Depth images: what a camera that measures distances saw of an object, as a point cloud.
-
-The surface of a point cloud, with the holes that it leaves where nothing was seen.
-
-Readers of point clouds: text by numpy, PCD by pypcd4, LAS by laspy, PLY from what trimesh found.
+Normals are lines from the neighbours, with the sides from which the points can be seen. The surface has holes where
+nothing was seen. Clouds are read from text by numpy, from PCD by pypcd4, from LAS by laspy, from PLY by trimesh.
 """
 
 import io

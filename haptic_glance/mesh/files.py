@@ -1,9 +1,4 @@
-"""Reads any file of a mesh.
-
-Reads one file into a mesh: STL, OBJ, PLY and GLB by trimesh, OFF by a reader of our own, scans by `clouds`.
-
-The mesh files that a person names on a command line: one file, or all of a folder.
-"""
+"""Reads files of meshes, one or a folder: STL, OBJ, PLY, GLB by trimesh, OFF by our own reader, scans by `clouds`."""
 
 import io
 from dataclasses import replace

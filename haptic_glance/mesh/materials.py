@@ -1,11 +1,7 @@
-"""Materials and colours of a mesh.
-
-Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB.
+"""Materials and colours of a mesh, and the join of parts that a file splits by material or at texture seams.
 
 A material shows its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture. The other
 properties of a glTF material are carried along, and their pictures stay undecoded.
-
-The colours of an object: those of its file, or one of a palette by its name.
 """
 
 import json

@@ -1,8 +1,6 @@
-"""The Mesh of the whole project, and its texture.
+"""The mesh of the whole project as arrays, and its texture.
 
-Pictures on a surface: texture coordinates per face corner, so that a seam splits the picture and not the surface.
-
-The triangle mesh as arrays, and the few facts of it that several modules ask for.
+A texture has coordinates per face corner, so that a seam splits the picture and not the surface.
 """
 
 from collections.abc import Mapping

@@ -1,10 +1,7 @@
 """Repairs, orients and normalises a mesh.
 
-Repairs what can be repaired without moving a vertex, and refuses the rest.
-
-Makes the winding of faces consistent, and turns closed surfaces outwards.
-
-The coordinate frame of all other modules: +z up, centred, a bounding sphere of radius 0.5.
+Repairs move no vertex; what cannot be repaired is refused. Orientation makes the winding consistent and turns closed
+surfaces outwards. The frame of all other modules: +z up, centred, a bounding sphere of radius 0.5.
 """
 
 from dataclasses import replace

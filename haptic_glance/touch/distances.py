@@ -1,14 +1,10 @@
-"""Distances from the cells of the array to the surface.
+"""Distances from the cells of the virtual pressure array to the surface (T4.3.1).
 
-The raw measurement of the virtual pressure array: the distance from each cell to the surface (T4.3.1).
-
-How the array touches the object: standing at the place, or resting on its first contact (T4.3.1).
-
-"Obviously when working with a real sensor such cases will prevent a direct contact of the sensor with object at
-interest point and the point with maximum negative distance will directly touch the object" (T4.3.1). `tangent` is the
-thesis's array, which intersects the object there. `rigid` is the plate that the sentence describes.
-
-The array's size adapted to saddles: the pitch shrinks until no cell is inside the object (T4.4.3).
+The array stands at the place (`tangent`) or rests on its first contact (`rigid`): "Obviously when working with a real
+sensor such cases will prevent a direct contact of the sensor with object at interest point and the point with maximum
+negative distance will directly touch the object" (T4.3.1). `tangent` is the thesis's array, which intersects the object
+there. `rigid` is the plate that the sentence describes. On saddles the pitch shrinks until no cell is inside the object
+(T4.4.3).
 """
 
 from collections.abc import Sequence

@@ -1,10 +1,6 @@
-"""Follows a contour of an object.
+"""Follows a contour: the path of the finger, how it holds the array, and what the sensor measures (T4.4.5, T4.4.6).
 
-Where a finger goes that follows a contour, and how it holds the array (T4.4.5, T4.4.6).
-
-The measurements of the sensor along one contour (T4.4.5).
-
-Contour following: what the sensor measures along a plane section through the object's centre (T4.4.5, T4.4.6).
+The contour is a plane section through the object's centre.
 """
 
 from dataclasses import dataclass

@@ -1,9 +1,4 @@
-"""Imprints of quasi-tangent contours, and the sensor of contours.
-
-The earlier sensor of the thesis: contours where quasi-tangent planes intersect the object (T4.2.3.1).
-
-The sensors of the stage: the array of distances in its two contacts, and the older one of contours (T4.2.3.1).
-"""
+"""The thesis's earlier sensor: imprints are contours where quasi-tangent planes intersect the object (T4.2.3.1)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,9 +1,4 @@
-"""Plane sections of a mesh, and the closest places on it.
-
-The section of a mesh by a plane, as ordered curves (T4.4.6).
-
-Positions on the surface that need not be vertices.
-"""
+"""Sections of a mesh by a plane, as ordered curves (T4.4.6), and positions on the surface that need not be vertices."""
 
 from dataclasses import dataclass
 from functools import cached_property

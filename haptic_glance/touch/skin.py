@@ -1,10 +1,7 @@
-"""The skin of the array: its faults, its foam, lengths that people write.
+"""The skin of the array: faults of a real sensor, the elastic layer, and lengths as people write them (T4.2.3).
 
-A real sensor's faults on top of the ideal array: elastic skin, lag, gain, noise, saturation, dead cells (T4.2.3).
-
-The elastic layer over the array, in physical units: what turns an indentation into a pressure.
-
-Lengths that people write: units of the mesh, or metres.
+The faults are lag, gain, noise, saturation and dead cells. The elastic layer turns an indentation into a pressure, in
+physical units.
 """
 
 import functools

@@ -1,11 +1,4 @@
-"""The surface that is touched, and the frame of the array on it.
-
-A mesh prepared for touching.
-
-The normal of the array's plane at a vertex.
-
-The directions of the rows and columns of an array on an object.
-"""
+"""A mesh prepared for touching, the normal of the array's plane, and the directions of the array's rows and columns."""
 
 import math
 from functools import lru_cache

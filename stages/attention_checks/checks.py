@@ -1,13 +1,9 @@
-"""Checks of the model of attention: nested fits and viewpoints.
-
-The glance with all its choices made without the object that it is judged on: features and ridge.
+"""Checks of the model of attention: nested fits, and the agreement of equal weights with gaze by viewpoints (T3.2.4).
 
 A model that leaves an object out of its fit may still have features and a ridge that were chosen by looking at it.
-Here they are chosen anew for each object from all the others. That takes thousands of fits, so each of them is a step
-of Newton's method from the fit with all features: there the likelihood of an object is a quadratic form, and a choice
-that leaves an object out is one small linear system. The last fit, with what was chosen, is exact.
-
-How well the thesis's equal weights predict gaze from a set of viewpoints (T3.2.4).
+A nested fit chooses both anew for each object from all the others. That takes thousands of fits, so each of them is a
+step of Newton's method from the fit with all features: there the likelihood of an object is a quadratic form, and a
+choice that leaves an object out is one small linear system. The last fit, with the chosen features, is exact.
 """
 
 import functools

@@ -1,9 +1,4 @@
-"""Recognition by several touches, and the variants of a trial.
-
-Several touches as one sample: the trials of T table 4.6, and variants that may explain it (T4.2.3.5).
-
-Runs the trials with the classifiers: one row per trial and classifier.
-"""
+"""Recognition by several touches as one sample (T table 4.6), and variants that may explain it (T4.2.3.5)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,9 +1,4 @@
-"""Recorded touches as a data set of recognition.
-
-Readers of recorded touches: images of a real pressure array, and grasps of a hand with BioTac SP fingertips.
-
-The imprints of one sampling of one set, with their similarities and the cost of their features.
-"""
+"""Readers of recorded touches (a pressure array, a hand with BioTac SP fingertips), and imprints of one sampling."""
 
 import io
 import re

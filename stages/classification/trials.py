@@ -1,12 +1,10 @@
-"""The trials of recognition by single touches, and their variants.
-
-The further experiments of T4.2.4 as trials of one split: fewer imprints, locations, selection, several touches.
+"""The trials of recognition by single touches of T4.2.4, and their variants.
 
 | variant | samples | thesis |
 |---|---|---|
 | pixels | the imprints themselves instead of their features | none |
 | wavelet_features, image_features | one part of the features alone | none |
-| plain | further readings of the scaling, see scaling.py | tables 4.1 and 4.2 |
+| plain | further readings of the scaling, see haptic_glance.know.classifiers | tables 4.1 and 4.2 |
 | plain_side | split `regions` with one side of all objects held out, to compare `locations` with | none |
 | first_15 | the first 15 imprints of each object, as in the thesis | shares of T4.2.4 |
 | locations | with the positions of the touches | table 4.5 |
@@ -24,7 +22,7 @@ The further experiments of T4.2.4 as trials of one split: fewer imprints, locati
 T4.2.4 removes 33.33, 40, 6.67, 26.67, 13.33 and 20 % of the six objects' imprints: fifteenths. A quarter of fifteen
 cannot give five different touches, so the thesis's combinations seem to be drawn before the split.
 
-Random sets of objects in the place of named ones, so that a conclusion is about sets and not about one of them.
+Sets of objects can be drawn at random, so that a conclusion is about sets and not about one of them.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence

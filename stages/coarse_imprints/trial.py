@@ -1,10 +1,6 @@
-"""One trial with imprints that a coarse network sees.
+"""One trial of a frozen MobileNetV2 on variants of its imprints, each of which changes one thing.
 
-Variants of the input of the frozen network: each differs from the plain one in one thing.
-
-Trains the head of a frozen MobileNetV2 on one variant of the imprints.
-
-The touches of one object, by arrays of several resolutions that are equally wide.
+The touches of an object are pressed by arrays of several resolutions that are equally wide.
 """
 
 from dataclasses import dataclass, replace

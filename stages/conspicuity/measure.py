@@ -1,10 +1,6 @@
-"""The conspicuity maps of an object, and their files.
+"""The conspicuity maps of an object with their cost, their files, and the share of a map along the silhouette.
 
-The maps of a view with their cost, and the check that they do not respond to the silhouette.
-
-How much of a map lies along the silhouette: the check that the background does not affect the maps.
-
-Reads the file with the maps of one object.
+The share shows that maps do not respond to the silhouette, and hence not to the background.
 """
 
 import math

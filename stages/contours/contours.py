@@ -1,10 +1,6 @@
-"""Contours of an object: planes, samples, files.
+"""Contours of an object and their files, data/SET/contours/NAME.npz.
 
-The files of the stage: data/SET/contours/NAME.npz.
-
-Many contours of one object: draws planes until enough of them have a contour.
-
-The planes of the sections: pairs of points, drawn without replacement (T4.4.6).
+Planes through pairs of points are drawn without replacement (T4.4.6) until enough of them have a contour.
 """
 
 from dataclasses import dataclass, fields, replace

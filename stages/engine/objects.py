@@ -1,11 +1,7 @@
-"""Archives of items in the cache, and rows that a run keeps.
+"""Caches the result of a stage for one item under a hash of all its inputs, and keeps the rows of a run on the disk.
 
-Caches the result of a stage for one object under a hash of all its inputs.
-
-A killed run goes on where it stopped, and one object more costs one object. Kept by diskcache below build/objects; the
-oldest go first when it is full, and deleting the folder loses nothing but time.
-
-Rows of many items on the disk, not in memory, read again one item at a time.
+A killed run goes on where it stopped, and one object more costs one object. diskcache keeps the results below
+build/objects; the oldest go first when it is full, and deleting the folder loses nothing but time.
 """
 
 import errno

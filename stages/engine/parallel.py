@@ -1,11 +1,7 @@
-"""The parallel map, and the cores of this machine.
+"""The parallel map with a progress bar, whose result never depends on the workers, and one budget of cores for a run.
 
-One function over many items, side by side, with a progress bar; the result never depends on the workers.
-
-One budget of cores for all processes of a run: an item is worked on while its process holds one of them.
-
-Workers of several stages then take no more processors than there are. A core is a locked file, which the system frees
-when its process is killed.
+An item is worked on while its process holds a core of the budget, so that the workers of several stages take no more
+processors than there are. A core is a locked file, which the system frees when its process is killed.
 """
 
 import functools

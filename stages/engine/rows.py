@@ -1,10 +1,7 @@
-"""The table of rows, and the units that a statistic counts.
+"""The one schema of all measurements: a table of rows per stage and data set, checked when it is written.
 
-The one schema of all measurements: a table of rows per stage and data set, checked when it is written.
-
-Every row has the columns of COMMON; a stage declares the others, with a word on each, as COLUMNS in its __init__.py.
-
-The unit that counts once in an interval: an object with its copies, a class with its objects, an object with its draws.
+Every row has the columns of COMMON; a stage declares the others, with a word on each, as COLUMNS in its __init__.py. A
+unit counts once in an interval: an object with its copies, a class with its objects, an object with its draws.
 """
 
 import contextlib

@@ -1,13 +1,7 @@
 """Runs a stage over the items of a data set, and caches the archive of each item.
 
-The run of one stage on one data set: its inputs, its rows, its objects, and the move into place at the end.
-
-Computes the result of a stage for one item, wherever that runs: in this process, in one beside it, or on another
-machine.
-
-Holds a function to the data files that it declares, so that nothing it depends on is missing from its hash.
-
-One run at a time in one place; a killed run leaves the place free.
+An item is computed in this process, in another process or on another machine. Its function may read only the files that
+it declares, so that its hash misses none. One run at a time works in one place; a killed run leaves the place free.
 """
 
 import fcntl

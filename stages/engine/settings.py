@@ -1,10 +1,6 @@
-"""Settings of the stages, and the workspace that holds them.
+"""Settings of the stages (params.yaml, checked against the typed schema of each section), and the workspace of a run.
 
-params.yaml, checked against the typed schema of each section.
-
-The folder of the settings.
-
-Where a run works: the repository root, its settings, and the data set that a stage runs on.
+The workspace has the repository root, its settings, and the data set that a stage runs on.
 """
 
 import argparse

@@ -1,14 +1,6 @@
-"""Statistics: intervals, power, pooled differences, breaking points.
+"""Statistics: intervals, power, pooled differences of several data sets, breaking points, and splits of items.
 
-The interval of a mean, for numbers that get compared.
-
-How many units would decide what is open.
-
-Random-effects pooling: one effect from those of several data sets, and how much the sets differ.
-
-Breaking point: the severity of a perturbation at which half of a score's lead is lost.
-
-Which items train, which validate and which test.
+A breaking point is the severity of a disturbance at which half of a score's lead is lost. Pooling is by random effects.
 """
 
 from collections.abc import Callable, Sequence

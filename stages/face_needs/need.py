@@ -1,10 +1,7 @@
-"""The fewest faces that an object needs to be recognised.
+"""The fewest faces with which an object is still seen, felt and recognised.
 
-Pictures of one object's levels from all round, and touches on them.
-
-How coarse the models may be from which touches are learned, so that those of real objects are still recognised.
-
-The fewest faces that are enough.
+Pictures of the levels from all round show the seen difference, touches on the levels the felt one. Recognition learns
+from coarse models and is tested on real objects.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,12 +1,7 @@
-"""Agreement of maps with people, and its summaries and controls.
+"""The agreement of maps with people (T3.3.6), its summary for the gate, and control saliencies.
 
-The agreement of a saliency on the vertices with human fixations (T3.3.6).
-
-The numbers that the gate checks, and the comparison of the models with the controls.
-
-How concentrated a saliency is: the thesis's deep maps are one or two regions, its classical ones broad (T3.4).
-
-Control saliencies that any model must beat: the centre of the image, and random values.
+Any model must beat the controls: the centre of the image, and random values. Also measured is how concentrated a
+saliency is: the thesis's deep maps are one or two regions, its classical ones broad (T3.4).
 """
 
 import itertools

@@ -1,12 +1,7 @@
-"""Feature maps of pretrained networks.
+"""Pictures of objects as inputs of networks for photographs (T3.3.2), and the feature maps of the networks.
 
-Grey pictures of an object from all sides, as inputs of a network for photographs (T3.3.2).
-
-The methods of the stage, and the check of its settings.
-
-The last feature maps of the networks, computed once per object and cached.
-
-Mode `last_block`: all before the last block stays as it was, so that its maps are computed once (T3.3.2).
+The last feature maps are computed once per object and cached. In mode `last_block` all before the last block stays as
+it was, so that its maps are computed once, too.
 """
 
 import sys

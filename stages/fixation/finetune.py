@@ -1,8 +1,6 @@
-"""Heads on feature maps, and training of the layers below.
+"""Trains networks for the tasks: linear heads on pooled maps, or the layers below as well (T3.3.3).
 
-Modes `last_block` and `finetuned`: one network per task, of which more than a new head is trained (T3.3.3).
-
-Linear heads on the pooled maps of a frozen network, one per task, and their accuracy.
+A frozen network has one head per task. Modes `last_block` and `finetuned` train one network per task.
 """
 
 import warnings

@@ -1,8 +1,6 @@
-"""Fusion of maps over tasks, and subtractive clustering.
+"""Fuses the maps of several tasks: EWIGC and EWIGC_L4 (T eq. 3.24, 3.25), and subtractive clustering.
 
-The fusion of the maps of several tasks: EWIGC and EWIGC_L4 (T eq. 3.24, 3.25).
-
-Subtractive clustering (Chiu 1994, T [243]).
+Clustering: Chiu 1994, T [243].
 """
 
 import numpy as np

@@ -1,15 +1,8 @@
-"""Places of attention on the surface.
+"""Places of attention on the surface: projection of maps to vertices, and distances between the most salient places.
 
-Whether the most salient place of an object is the same from all sides (T figure 3.29), beside other places.
-
-The projection of image maps to the vertices of the mesh (T3.3.5).
-
-Measures of an object's shape: Gaussian curvature and eccentricity (T eq. 3.21 to 3.23).
-
-The third measure, convexity (T eq. 3.20), is in haptic_glance.look.weights.convexity, which closes the holes of open
-meshes.
-
-The distance between the most salient regions of a model and of human fixations (T3.3.6).
+T3.3.5 prints the projection. T figure 3.29 asks whether the most salient place is the same from all sides. Also here
+are Gaussian curvature and eccentricity, measures of an object's shape (T eq. 3.21 to 3.23). The third measure,
+convexity (T eq. 3.20), is in haptic_glance.look.weights.convexity, which closes the holes of open meshes.
 """
 
 from collections.abc import Sequence

@@ -1,10 +1,6 @@
-"""The tasks of the networks, their split and viewpoints.
+"""The six tasks of the networks with each object's class, the division of pictures and objects, and the viewpoints.
 
-The six tasks and the class of each object in each of them (T3.3.2.1, T3.3.2.2).
-
-The division of pictures and objects into training, validation and test sets (T3.3.2).
-
-The viewpoints around an object from which its pictures are rendered (T3.3.2).
+Tasks are in T3.3.2.1 and T3.3.2.2, the division and the viewpoints in T3.3.2.
 """
 
 import sys

@@ -1,10 +1,7 @@
-"""The objects of the front, known values, rows.
+"""How well a choice knows objects by touch, the objects of search and confirmation, and the rows of the front.
 
-Which objects the search may see, and which it may not: those that confirm what it found.
-
-How well a choice knows objects by touch: which of six shapes by an unseen region, and unseen objects' classes.
-
-The rows of the front: what each holds, and where they are kept for the report.
+A choice is tested on which of six shapes has an unseen region, and on the classes of unseen objects. The objects that
+confirm the front are hidden from the search.
 """
 
 import zlib

@@ -1,11 +1,8 @@
-"""The search for the cheapest settings that are as good.
+"""The search for the cheapest settings that are as good: Optuna's study on the disk, and successive halving.
 
-The study on the disk: choices that Optuna proposes, what was found of each, and what is asked about again.
-
-Successive halving with several aims: which choices of a round are asked about again, with more objects and splits.
-
-Optuna prunes no study of several objectives, so what goes on is chosen here: the choices that no other dominates come
-first, and of those alike the ones that stand farthest from the others (Deb and others, NSGA-II, 2002).
+Optuna prunes no study of several objectives. Here the choices that no other dominates are asked about again first, with
+more objects and splits, and among equal choices those that stand farthest from the others (Deb and others, NSGA-II,
+2002).
 """
 
 import sys

@@ -1,13 +1,8 @@
-"""Measurements of the front: looking and touching.
+"""Looks at an object and presses the array on it, with the seconds of each part; both are cached.
 
-Looks at an object and presses the array on it, with the seconds of each part; what was felt once is kept.
-
-Where an object is looked at and how it feels is learned from a mesh of as many faces as were chosen. The touches that
-ask are pressed on the object itself, with all its faces: a coarse model must know the real thing.
-
-The points of all methods that need pictures, with the seconds that each method would take by itself.
-
-The array pressed on a mesh, and at the same places of the whole object, with its seconds.
+An object is looked at and learned from a mesh of as many faces as were chosen. The touches that ask are pressed on the
+object itself, with all its faces: a coarse model must know the real thing. The cost of a method is that of the method
+by itself.
 """
 
 from collections.abc import Iterator, Sequence

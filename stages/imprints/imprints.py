@@ -1,8 +1,6 @@
-"""Files of imprints, and imprints at the centres of faces.
+"""Files of imprints, data/SET/imprints/NAME.npz, and the distance to the centre of the face that a ray meets.
 
-The files of the stage: data/SET/imprints/NAME.npz.
-
-The distance to the centre of the face that a ray meets, as T4.3.1 prints it, in place of the exact hit.
+T4.3.1 prints the centre in place of the exact hit.
 """
 
 from dataclasses import dataclass

@@ -1,12 +1,7 @@
-"""One level of one object: its inputs, its mesh and its errors.
+"""One cell of the comparison of levels: an object, a method and a target, simplified and measured.
 
-The inputs of the comparison for one object.
-
-One cell of the comparison: an object, a method and a target, simplified and measured.
-
-All errors of one simplified mesh, each with its cost.
-
-A first call before seconds are measured, since it loads compiled code.
+The cells of an object share its inputs. Each error has its cost. A first call loads compiled code before seconds are
+measured.
 """
 
 import functools

@@ -1,9 +1,4 @@
-"""Levels of a data set, and their summary.
-
-All objects of a data set, simplified by every method to every target.
-
-The few numbers of a run that the gate checks.
-"""
+"""Simplifies all objects of a data set by every method to every target, and summarises the errors for the gate."""
 
 import functools
 from collections.abc import Sequence

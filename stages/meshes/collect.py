@@ -1,9 +1,4 @@
-"""Collects the objects of a data set, with their classes.
-
-Turns one mesh file of a source into a mesh that the later stages can use, and a row of its metadata.
-
-Classes of several objects that are to be recognised by touch (T4.3.2, T4.4.10).
-"""
+"""Turns the mesh files of a source into meshes for the later stages, with metadata and classes (T4.3.2, T4.4.10)."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,11 +1,7 @@
-"""Furniture, and files beside a mesh.
-
-Objects in classes, three per class, from the Debian package sweethome3d-furniture.
+"""Objects in classes, three per class, from the Debian package sweethome3d-furniture, with the files beside a mesh.
 
 Each object was inspected from both sides, since names mislead ("Clothes horse" is not an animal). It stands upright,
 is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces.
-
-The files that a mesh file names: its materials, their pictures, a depth image.
 """
 
 import hashlib

@@ -1,11 +1,7 @@
-"""The sources of meshes.
+"""The collections of meshes: one function per collection, each with its up axis, unit and licence.
 
-The collections of meshes: one function per collection, each with its up axis, unit and licence.
-
-Reads the arrays and cells of MATLAB files of versions 5 to 7.
-
-By our own code, since scipy 1.17 crashes on some damaged files (its pull request 25349). The format is that of
-MathWorks, MAT-File Format, chapter 1.
+MATLAB files of versions 5 to 7 are read by our own code (MathWorks, MAT-File Format, chapter 1), since scipy 1.17
+crashes on some damaged files (its pull request 25349).
 """
 
 import math

@@ -1,8 +1,7 @@
-"""Series of recorded touches.
+"""Series of recorded touches: readers, and recognition of grasps by a hand with pressure arrays.
 
-Touches over time, and readers: events of a NeuTouch fingertip, and grasps of a hand with pressure arrays.
-
-Recognition of grasps by a hand with pressure arrays: no grasp is in training and test, and few are all there are.
+The readers are for events of a NeuTouch fingertip and for grasps of a hand. No grasp is in training and test, and few
+are all there are.
 """
 
 import functools

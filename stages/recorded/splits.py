@@ -1,12 +1,8 @@
-"""Splits of recorded touches.
+"""Splits of recorded touches, at random or in blocks of time, and the classifiers of touches over time.
 
-Recognition of touches over time: the logarithm of what each cell says in each part of the touch, and a classifier.
-
-Counts in bins are what a neuron with a long time constant holds. Linear discriminant analysis with a shrunk covariance
-(Ledoit and Wolf 2004; Friedman 1989) is the one linear classifier here that knows which differences two touches of the
-same object have.
-
-Random splits of recorded touches, and splits that keep neighbours in time together.
+Features are the logarithm of the counts of each cell in bins of time: a neuron with a long time constant holds such
+counts. Linear discriminant analysis with a shrunk covariance (Ledoit and Wolf 2004; Friedman 1989) is the one linear
+classifier here that knows which differences two touches of the same object have.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -1,12 +1,7 @@
-"""Recorded touches as data for networks.
+"""Recorded touches as data for networks: readers by name, tasks, parts, and the classifier of T4 on the same splits.
 
-The recorded touches that networks are tested on, and how each is read.
-
-The trained part of a network on recorded touches: its head alone on cached features, or all its layers.
-
-Which recorded touches train, which choose the learning rate, and which test.
-
-The classifier of T4 on the recorded touches that networks are trained on, on the same splits.
+The trained part of a network is its head alone on cached features, or all its layers. Parts say which touches train,
+which choose the learning rate, and which test.
 """
 
 import zlib

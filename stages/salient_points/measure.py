@@ -1,10 +1,6 @@
-"""The salient points of an object, their agreement and their files.
+"""Measures of the salient points of an object, their agreement with people, and their files.
 
-Measures of a set of points.
-
-How well methods agree with people, on an object that has ground truth (T3.2.3; Dutagaci 2012; Bylinskii 2019).
-
-The file of one object's points.
+Agreement is measured where an object has ground truth (T3.2.3; Dutagaci 2012; Bylinskii 2019).
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,8 +1,7 @@
-"""Compares scenes, and stores them.
+"""Compares ways to choose the levels of one scene at one tolerance, and stores levels and plans.
 
-One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames.
-
-The files of an LOD chain, data/SET/scene/levels/NAME/KIND_FACES.npz and KIND.csv with the errors; those of plans.
+Other ways are compared at the same error of the rendered frames. A chain of levels is in
+data/SET/scene/levels/NAME/KIND_FACES.npz, its errors in KIND.csv.
 """
 
 from collections.abc import Callable, Mapping, Sequence

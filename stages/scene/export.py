@@ -1,13 +1,9 @@
-"""Exports a scene, and reads it back.
-
-The levels that a plan shows as GLB files for viewers and engines, with a manifest.
+"""Exports the levels of a plan as GLB files with a manifest for viewers and engines, and checks the written files.
 
 glTF has +y up and metres, so meshes are turned and scaled; colours become vertex colours. MSFT_lod is a vendor
 extension of the Khronos registry: one node per level, the finest first, and as a hint the least share of the screen,
 here of its height, at which to show each. manifest.json has the same, and the errors, without an extension. Every file
 is loaded again after it is written, and checked.
-
-GLB files read again after they were written, and compared with what was written.
 """
 
 import json

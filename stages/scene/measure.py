@@ -1,12 +1,7 @@
-"""Measures a scene: its objects, its levels and the network that predicts them.
+"""The jobs of a scene: read objects and levels, compare the ways to choose levels, return the rows.
 
-The jobs of one scene and tolerance: read the levels, compare the methods to choose them, return the rows.
-
-The network is a job of its own: it alone depends on objects that are not in the scene.
-
-From settings and data/ to a Scene, its meshes, and the options that spare their salient regions.
-
-The thesis's network for scenes: the faces of each object at each distance, learned from other objects (T3.1.3).
+The thesis's network for scenes, the faces of each object at each distance learned from other objects (T3.1.3), is a job
+of its own, since it alone depends on objects that are not in the scene.
 """
 
 import sys

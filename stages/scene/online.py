@@ -1,10 +1,7 @@
-"""Plans of levels while a camera moves, and their rivals.
+"""Plans of levels frame by frame while a camera moves, their rivals, and random scenes.
 
-Levels chosen frame by frame: a planner that knows the frame at hand and those before it, and none ahead.
-
-Scenes drawn at random: what stands where on a ground, and the path of a camera that comes near.
-
-Other methods to choose the levels of a scene: all faces, the usual share by distance, a model's count.
+An online planner knows the frame at hand and those before it, and none ahead. Rivals are all faces, the usual share by
+distance, and a model's count. A random scene has objects on a ground, and a camera that comes near.
 """
 
 from collections.abc import Callable, Mapping, Sequence

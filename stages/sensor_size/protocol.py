@@ -1,12 +1,7 @@
-"""The protocol of sensor sizes, and the smallest sensor.
+"""The protocol of T figure 4.10: train on some objects of every class, test on an object that was not touched.
 
-The protocol of T figure 4.10: train on some objects of every class, test on an object that was not touched.
-
-Where the touches of one sample lie: at separate points, in the salient region around one, or in a disc (T6.3).
-
-The four classifiers of T figure 4.11 (T4.3.1).
-
-The smallest sensor that is sufficient, and the repeatability of that choice.
+The touches of a sample lie at separate points, in the salient region around one, or in a disc (T6.3). The four
+classifiers are those of T figure 4.11 (T4.3.1). The smallest sufficient sensor has a repeatability.
 """
 
 from collections.abc import Mapping

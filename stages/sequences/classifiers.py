@@ -1,8 +1,6 @@
-"""Classifiers of contours, and reductions of their features.
+"""The conventional classifiers of T table 4.9, with and without a self-organising map, and selection of features.
 
-The two conventional classifiers of T table 4.9, with and without a self-organising map.
-
-Selection of features by information gain, before the self-organising map (T4.4.9, T4.4.10).
+Features are selected by information gain before the map (T4.4.9, T4.4.10).
 """
 
 from typing import NamedTuple

@@ -1,14 +1,11 @@
-"""Networks for contours, and their training.
-
-The two networks of T tables 4.7 and 4.8: one for the sequence of imprints, one for the series of normals.
+"""The two networks of T tables 4.7 and 4.8, for the sequence of imprints and the series of normals, and their training.
 
 Where the tables say nothing or cannot be followed, these choices were made. The fully connected layers have 64 and 32
 units. The softmax layer has weights of its own: scores bounded by the second layer's tanh would limit a probability
 among eight classes to 0.51, and the sum of both networks would follow the weaker one. Batch normalisation works per
 channel, not per cell. In table 4.8 kernels of 3 x 3 on one remaining row are 3 frames wide, and pooling by 0.2 is read
-as 2. Dropout in the tables is the share that is kept, as in mdCNN.
-
-Training of the two networks: gradient descent whose rate halves when the loss stops falling (T4.4.8).
+as 2. Dropout in the tables is the share that is kept, as in mdCNN. Training is gradient descent whose rate halves when
+the loss stops falling (T4.4.8).
 """
 
 import numpy as np

@@ -1,12 +1,8 @@
-"""Trials of recognition by contours: plan, split, data.
+"""Trials of recognition by contours: their plan, splits, data and results.
 
-Training, validation and test sequences: drawn at random, as in the thesis, or with whole objects held out.
-
-All sequences of one strategy with their classes and objects, at full size or with fewer frames and cells.
-
-One trial: the classifiers of one kind on one strategy, split, repetition and size of the sequences.
-
-The trials of a run, and what is left out with the reason.
+A split draws sequences at random, as in the thesis, or holds out whole objects. Sequences have the full size, or fewer
+frames and cells. A trial has the classifiers of one kind on one strategy, split, repetition and size. The plan names
+the trials that are left out, with the reason.
 """
 
 import re

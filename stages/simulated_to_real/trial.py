@@ -1,8 +1,6 @@
-"""Trials that train on simulated and test on recorded touches.
+"""Trains classifiers on simulated imprints, on real touches and on both, and tests them on real touches.
 
-Trains classifiers on simulated imprints, on real touches and on both, and tests them on real touches.
-
-Imprints of meshes as a real pressure array would feel them: five ways to lay an object on it.
+A mesh is pressed as a real pressure array would feel it, in five ways to lay an object on the array.
 """
 
 from collections.abc import Iterator

@@ -1,15 +1,8 @@
-"""Broken meshes and the outcome of each method.
+"""The registry of damages: changes of a mesh by scanners, modellers and file formats, each applied to a sound mesh.
 
-Damage to faces (missing, duplicated, degenerate, inverted, added): functions (mesh, generator) -> Mesh.
-
-Damage to vertices (displaced, duplicated, unreferenced): functions (mesh, generator) -> Mesh.
-
-Unusual surfaces (a sheet, a Moebius strip, one triangle) that replace the given mesh.
-
-The registry of damages: what scanners, modellers and file formats do to a mesh, each applied to a sound one.
-
-To add one, add a function (mesh, generator) -> Mesh and an entry in DAMAGES. Random numbers come from the generator
-alone.
+Damages of faces are missing, duplicated, degenerate, inverted or added ones; those of vertices displaced, duplicated or
+unreferenced ones; unusual surfaces (a sheet, a Moebius strip, one triangle) replace the mesh. To add a damage, write a
+function (mesh, generator) -> Mesh and an entry in DAMAGES. Random numbers come from the generator alone.
 """
 
 from collections.abc import Callable

@@ -1,8 +1,6 @@
-"""Measures of stability, and of maps.
+"""How much a result changes under a disturbance (repeatability, drift), and maps under other conditions.
 
-How much a result changes under a perturbation: repeatability and drift.
-
-Conspicuity maps of a mesh under other conditions: light, background, image size.
+Conditions are the light, the background and the image size.
 """
 
 from collections.abc import Sequence

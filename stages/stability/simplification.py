@@ -1,11 +1,8 @@
-"""Stability of simplification, and its summary.
-
-Broken meshes, tight budgets and unusual kept sets, through every simplifier: valid, refused, ruined or crash.
+"""Broken meshes, tight budgets and unusual kept sets through every simplifier: valid, refused, ruined or crash.
 
 `valid`: the simplifier returned a sound mesh (stages.stability.surface); `refused`: it raised an error that gives the
-reason; `ruined`: it returned a mesh that is not sound, or another mesh on the second run; `crash`: any other error.
-
-The numbers of a run that the gate checks: repeatability, breaking points, outcomes on broken meshes.
+reason; `ruined`: it returned a mesh that is not sound, or another mesh on the second run; `crash`: any other error. The
+summary for the gate has repeatability, breaking points and these outcomes.
 """
 
 import traceback

@@ -1,8 +1,6 @@
-"""The objects of a test of stability, and their random draws.
+"""One object of a test of stability: the points of every method, undisturbed and under each disturbance.
 
-One object: what every method finds on it unperturbed and under each perturbation.
-
-Several draws of one disturbance as one: the mean of what was measured.
+Several draws of one disturbance count as one: the mean of the measured values.
 """
 
 from collections.abc import Sequence

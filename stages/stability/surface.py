@@ -1,14 +1,8 @@
-"""A disturbed surface, and checks of what simplification makes of it.
+"""Whether a simplified mesh is sound, and the error beyond which a result is ruined.
 
-Counts on a surface: boundary edges, connected components, degenerate and duplicate faces, folds, non-manifold parts.
-
-Computed by trimesh and numpy and not by stages.lod, so that an error in its own functions shows here.
-
-Whether a simplified mesh is sound, checked by trimesh and numpy and not by the simplifiers' own functions.
-
-The error of plain quadric edge collapse (QEM) by face count, with which simplified meshes are compared.
-
-A mesh broken in one way, the cases of its simplification, and the error beyond which a result is ruined.
+The checks (boundary edges, components, degenerate and duplicate faces, folds, non-manifold parts) use trimesh and numpy
+and not the simplifiers' own functions, so that an error in those shows here. The limit follows from the error of plain
+quadric edge collapse (QEM) by face count.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
-"""Uses under disturbances: recognition and others.
+"""The worth of the points of a disturbed object: the whole object is simplified around them, and recognised there.
 
-The worth of the points of a disturbed object: the whole object is simplified around them, and touched there.
-
-Recognition by touch where a disturbed object says it should be touched, with what was learned on whole ones.
+Recognition by touch is asked where a disturbed object says it should be touched, with touches learned on whole objects.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

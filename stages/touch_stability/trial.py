@@ -1,10 +1,6 @@
-"""Trials of recognition by disturbed touches.
+"""Trials of recognition by disturbed touches: train on clean touches, test on disturbed ones, and vice versa.
 
-One repetition: recognition of disturbed touches, at random places and on unseen regions.
-
-All disturbed touches of one object.
-
-One hold-out: train on clean touches, test on disturbed ones at other places, and vice versa.
+Test touches are at other places: at random, or on unseen regions.
 """
 
 import itertools

@@ -1,8 +1,6 @@
-"""Exports to ONNX, and how far training moved the weights.
+"""The hybrid network as ONNX and its scores in onnxruntime, and the change of each convolution by training (T5.4).
 
-The hybrid network as ONNX, and its scores in onnxruntime.
-
-The change of each convolution by training (T5.4, figure 5.4).
+The change is shown in T figure 5.4.
 """
 
 import contextlib

@@ -1,8 +1,6 @@
-"""Trials of the hybrid network, and comparisons with it.
+"""Trials of the hybrid network (T5.5): two trainings, the stitching, and tests with one sense, both, and damaged ones.
 
-One hybrid network: two trainings, the stitching, and the tests with one sense, both, and damaged ones (T5.5).
-
-The hybrid network compared with its two parent networks: accuracy, size, calibration, and as ONNX (T5.5).
+The hybrid network is compared with its two parent networks: accuracy, size, calibration, and as ONNX.
 """
 
 import itertools

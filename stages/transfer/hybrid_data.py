@@ -1,10 +1,6 @@
-"""Data, training and scores of the hybrid network.
+"""Pictures paired with touches for the hybrid network, and its scores with one sense or both, by way of fusion.
 
-Pictures of the touched objects: their files, and the pairing of touches with pictures.
-
-Accuracy with both senses at the same time, undamaged, damaged or missing, by way of fusion (beyond T5.5).
-
-The scores of a hybrid network, computed in batches, and its rows.
+Senses are undamaged, damaged or missing (beyond T5.5).
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,12 +1,7 @@
-"""The plan of trainings: networks, modes, splits, tables.
+"""The plan of trainings (networks, modes, splits and tables), and the metrics of a run.
 
-The trainings of a run, and what is left out, with the reason.
-
-The division into training and test touches: at random, as in the thesis, or by objects that are left out.
-
-The shared middle of two networks, in the layer numbers of Matlab and torchvision (T5.5).
-
-Rows and metrics of a run, from the rows of its trials.
+The plan names the trainings that are left out, with the reasons. A division is at random, as in the thesis, or by
+objects that are left out. The shared middle of two networks has the layer numbers of Matlab and torchvision (T5.5).
 """
 
 import itertools

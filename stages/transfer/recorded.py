@@ -1,35 +1,28 @@
-"""Readers of recorded touches for networks, with Recorded as their common result.
+"""Readers of recorded touches for networks, each with a `Recorded` as its result.
 
-The common result of the readers, and the reading of picture files.
+`read_bigs`, BiGS (T5.1.4): a Barrett hand with three BioTac fingertips grasps a box, a ball and a cylinder. Paper:
+Chebotar, Hausman, Su, Molchanov, Kroemer, Sukhatme, Schaal, BiGS: BioTac grasp stability dataset, ICRA 2016 workshop on
+grasping and manipulation datasets (T [104]); each finger has 19 electrodes, sampled at 100 Hz. The layout of the
+published files is not known here, so a plain layout is read: `OBJECT/success/GRASP/FINGER.csv`, OBJECT one of box,
+ball, cylinder, GRASP any name, three fingers, each a table without a header, one sample per line, with the readings of
+electrodes 1 to 19 in columns separated by commas. Other folders than `success`, such as `failure`, are ignored, as in
+the thesis. To get it: download the data set from the authors' page named in the paper, and write the electrode readings
+of each finger of each grasp into such a table.
 
-BiGS (T5.1.4): a Barrett hand with three BioTac fingertips grasps a box, a ball and a cylinder.
+`read_schunk`: grasps by a Schunk hand with two pressure arrays on each of three fingers, over time: as BiGS, with more
+cells. Data: Drimus, Kootstra, Bilberg, Kragic, Design of a flexible tactile sensor for classification of rigid and
+deformable objects, Robotics and Autonomous Systems 62(1), 2014; in the form that Madry, Bo, Kragic, Fox, ST-HMP:
+unsupervised spatio-temporal feature learning for tactile data, ICRA 2014, publish with their code (GitHub:
+mmadry/st-hmp). Layout: `OBJECT/grasp-NUMBER.mat` with TS, six arrays (rows, 6, samples): the proximal (14 rows) and the
+distal one (13 rows) of each finger in turn.
 
-Paper: Chebotar, Hausman, Su, Molchanov, Kroemer, Sukhatme, Schaal, BiGS: BioTac grasp stability dataset, ICRA 2016
-workshop on grasping and manipulation datasets (T [104]); each finger has 19 electrodes, sampled at 100 Hz.
-Layout: the layout of the published files is not known here. So a plain layout is read:
-`OBJECT/success/GRASP/FINGER.csv`, OBJECT one of box, ball, cylinder, GRASP any name, three fingers, each a table
-without a header, one sample per line, with the readings of electrodes 1 to 19 in columns separated by commas. Other
-folders than `success`, such as `failure`, are ignored, as in the thesis.
-To get it: download the data set from the authors' page named in the paper, and write the electrode readings of each
-finger of each grasp into such a table.
+`grasp_images`: grasps by BioTac SP fingertips as colour images, one finger per channel, similar to BiGS. BiGS has a
+series of 700 samples per finger, BTS3 one instant of 24 electrodes. So the electrodes are arranged as on the finger and
+the gaps are filled. As there, three parts make the three colours.
 
-Grasps by a Schunk hand with two pressure arrays on each of three fingers, over time: as BiGS, with more cells.
-
-Data: Drimus, Kootstra, Bilberg, Kragic, Design of a flexible tactile sensor for classification of rigid and deformable
-objects, Robotics and Autonomous Systems 62(1), 2014; in the form that Madry, Bo, Kragic, Fox, ST-HMP: unsupervised
-spatio-temporal feature learning for tactile data, ICRA 2014, publish with their code (GitHub: mmadry/st-hmp).
-Layout: `OBJECT/grasp-NUMBER.mat` with TS, six arrays (rows, 6, samples): the proximal (14 rows) and the distal one (13
-rows) of each finger in turn.
-
-Grasps by BioTac SP fingertips as colour images, one finger per channel, similar to BiGS in T5.1.4.
-
-BiGS has a series of 700 samples per finger, BTS3 one instant of 24 electrodes. So the electrodes are arranged as on the
-finger and the gaps are filled. As there, three parts make the three colours.
-
-ViTac (T5.1.1): pieces of cloth, pressed by a GelSight sensor and photographed from above.
-
-Paper: Luo, Yuan, Adelson, Cohn, Fuentes, ViTac: feature sharing between vision and tactile sensing for cloth texture
-recognition, ICRA 2018 (T [106]), 100 pieces of cloth. Two layouts:
+`read_vitac`, ViTac (T5.1.1): pieces of cloth, pressed by a GelSight sensor and photographed from above. Paper: Luo,
+Yuan, Adelson, Cohn, Fuentes, ViTac: feature sharing between vision and tactile sensing for cloth texture recognition,
+ICRA 2018 (T [106]), 100 pieces of cloth. Two layouts:
 - `NUMBERt/*.jpg` by touch and `NUMBERv/*.jpg` by the camera, NUMBER that of the cloth: from the code published with
   Lee, Bollegala, Luo, "Touching to see" and "Seeing to feel", ICRA 2019 (vis_tac_cross_modal: alexnet/txt_gen.py,
   images/rename.py and the sample folders in cgan/dataset, where the suffix `_test` marks a test part, which is read as
@@ -41,21 +34,18 @@ recognition, ICRA 2018 (T [106]), 100 pieces of cloth. Two layouts:
 To get it: download the data from the link in either paper, unpack it, and give the folder that holds those of the
 cloths.
 
-VT-60 (T5.1.2): 60 objects of ten classes, touched with the BathTip sensor and photographed.
-
-Paper: Corradi, Hall, Iravani, Object recognition combining vision and touch, Robotics and Biomimetics 4(2), 2017, with
-the data set's address; the sensor is that of their Bayesian tactile object recognition, ICRA 2015 (T [107]).
-Layout, from the first author's own code for this data set (deep_visuotactile_classification: tools/vt60_tools.py and
-the paths printed in its notebooks): `touch/NN_CLASS/0I/*.jpg` and `vision/NN_CLASS/0I/*.jpg`, ten classes NN = 01 to 10
-and six objects I = 1 to 6 of each; a touch is called `touch_I_img_J_name_OBJECT_at_X_Y_Z.jpg`, a photograph
+`read_vt60`, VT-60 (T5.1.2): 60 objects of ten classes, touched with the BathTip sensor and photographed. Paper:
+Corradi, Hall, Iravani, Object recognition combining vision and touch, Robotics and Biomimetics 4(2), 2017, with the
+data set's address; the sensor is that of their Bayesian tactile object recognition, ICRA 2015 (T [107]). Layout, from
+the first author's own code for this data set (deep_visuotactile_classification: tools/vt60_tools.py and the paths
+printed in its notebooks): `touch/NN_CLASS/0I/*.jpg` and `vision/NN_CLASS/0I/*.jpg`, ten classes NN = 01 to 10 and six
+objects I = 1 to 6 of each; a touch is called `touch_I_img_J_name_OBJECT_at_X_Y_Z.jpg`, a photograph
 `IMG_inst_I_img_J_validframeID_F.jpg`. The folders and counts are certain. The names of classes 02 to 10 are not known
-here, so a class is named by the text after its number.
-To get it: download the data from the link in the paper, unpack it, and give the folder that holds
-`touch` and `vision`.
+here, so a class is named by the text after its number. To get it: download the data from the link in the paper, unpack
+it, and give the folder that holds `touch` and `vision`.
 
-From a series of readings of a finger's cells to one picture: all of it, or one instant (T5.1.4).
-
-Real pressure images (28 x 50 cells) as images for networks.
+`pressure_images`: real pressure images (28 x 50 cells). A series of readings of a finger's cells becomes one picture of
+all readings or of one instant (T5.1.4).
 """
 
 import math

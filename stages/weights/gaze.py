@@ -1,15 +1,13 @@
-"""Readers of gaze, annotations and fixations.
+"""Readers of human gaze, of marks and of fixations, as amounts at the vertices of a mesh.
 
-Human gaze on meshes, as published in the repository FandosA/3D_Mesh_Saliency_Prediction_PyTorch.
+Gaze is published in the repository FandosA/3D_Mesh_Saliency_Prediction_PyTorch. A file dataset_SPLIT/NAME.txt has one
+row per vertex, shuffled: x y z nx ny nz, the total seconds that 32 people in virtual reality looked there, and a binary
+label that is not used. Most files have exactly the vertices of Models_3D/NAME.obj. Larger meshes are sub-sampled to
+20,000 rows, smaller ones padded with points between vertices.
 
-A file dataset_SPLIT/NAME.txt has one row per vertex, shuffled: x y z nx ny nz, the total seconds that 32 people in
-virtual reality looked there, and a binary label that is not used. Most files have exactly the vertices of
-Models_3D/NAME.obj. Larger meshes are sub-sampled to 20,000 rows, smaller ones padded with points between vertices.
+Marks are the files in data/annotations that fit a mesh.
 
-The files of marks in data/annotations as amounts at the vertices of the meshes that they fit.
-
-Fixation density maps of Lavoue et al. 2018, Visual Attention for Rendered 3D Shapes (T3.3.2, T [236]).
-
+Fixation density maps are those of Lavoue et al. 2018, Visual Attention for Rendered 3D Shapes (T3.3.2, T [236]).
 Nineteen people looked at images of 32 meshes from three viewpoints, 300, 413 and 599. The published archives
 FixationMaps.zip and CentricityAndVisibilityMaps.zip hold FixationMaps/NAME_VIEWnorm.txt (a density, spread by one
 degree of visual angle) and CentricityAndVisibilityMaps/NAME_VIEW_visibility.txt (0 or 1), with one line per vertex. The

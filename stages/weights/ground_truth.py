@@ -1,16 +1,12 @@
-"""Ground truth on vertices and as maps (T3.2.1.3).
+"""Ground truth of an object of any collection, at vertices and as maps (T3.2.1.3).
 
-The ground truth of an object of any collection.
+The map of a view has a Gaussian at each visible point. Amounts at vertices are spread over the surface by heat flow,
+which is a Gaussian in the plane.
 
-The ground truth saliency map of one view: a Gaussian at each visible point (T3.2.1.3).
-
-Spreads amounts at vertices over the surface by heat flow, which is a Gaussian in the plane.
-
-Interest points that people marked: the NIST benchmark (Dutagaci, Cheung and Godil 2012, T [7]).
-
-Its folder IP_BENCHMARK holds MODEL_DATASET/NAME.mat (V, F, counted from 1) and OUTPUT_DATA/GROUND_TRUTH_A/NAME.mat (24
-models, 23 users) and GROUND_TRUTH_B/NAME.mat (43 models, 16 users). Each file holds GT_MODEL, a cell array of ten radii
-by the minimum number of users 2..N by two: the vertices of the points, and for each point the marks of its cluster.
+Interest points are those of the NIST benchmark (Dutagaci, Cheung and Godil 2012, T [7]). Its folder IP_BENCHMARK holds
+MODEL_DATASET/NAME.mat (V, F, counted from 1) and OUTPUT_DATA/GROUND_TRUTH_A/NAME.mat (24 models, 23 users) and
+GROUND_TRUTH_B/NAME.mat (43 models, 16 users). Each file holds GT_MODEL, a cell array of ten radii by the minimum number
+of users 2..N by two: the vertices of the points, and for each point the marks of its cluster.
 """
 
 import hashlib

@@ -1,20 +1,13 @@
-"""Trains weights of the channels.
+"""Trains weights of the channels and the SVMs of T3.2.3: for all objects, all but one, one object or one viewpoint.
 
-The training data of one object with ground truth: the arrays that all methods of learning need.
-
-Trains the SVMs of T3.2.3: one for all objects, one per object, one per viewpoint; and one for all but each object.
-
-They are trained on at most 1,000 pixels of the object. Pixels of the whole picture, as in the thesis, give a higher
+SVMs are trained on at most 1,000 pixels of the object. Pixels of the whole picture, as in the thesis, give a higher
 accuracy, but almost all of it is due to separating the object from the background, and a worse ranking within the
 object. Both are measured. With `picture` the SVMs of an object and of its views are trained as T3.2.3 prints it, on all
 that `pixel_samples` draws from pictures of 200 x 200 pixels.
 
-The accuracy of the SVM on pixels, by random folds (T3.2.3), and on views or objects that are left out.
-
-Neighbouring pixels are similar, so with random folds of pixels a model is tested on neighbours of its training pixels.
-The difference between the two accuracies measures this leakage.
-
-The table of weights: one row per method, channel (or feature) and object left out of the training.
+The accuracy on pixels is measured by random folds (T3.2.3), and on views or objects that are left out. Neighbouring
+pixels are similar, so with random folds of pixels a model is tested on neighbours of its training pixels. The
+difference between the two accuracies measures this leakage.
 """
 
 from pathlib import Path

@@ -1,13 +1,9 @@
-"""The collapse of edges in the order of their cost.
+"""Collapses edges in the order of their quadric error, until the faces are few enough.
 
-Which collapses are allowed: none may turn a face over, make a sliver, or change the topology.
-
-A priority queue of half-edges by cost: buckets, each a linked list, so that every operation takes constant time.
-
-head (buckets,): the first half-edge of each, -1 where empty; following (3 m,): the next one of the same bucket, -1 at
-the end, NOT_QUEUED where the half-edge is in none; lowest (1,): all buckets below it are empty.
-
-Edge collapses in the order of their quadric error, until the faces are few enough.
+A collapse is refused if it turns a face over, makes a sliver or changes the topology. The queue holds half-edges in
+buckets by cost, each a linked list, so that every operation takes constant time. head (buckets,): the first half-edge
+of each, -1 where empty; following (3 m,): the next one of the same bucket, -1 at the end, NOT_QUEUED where the
+half-edge is in none; lowest (1,): all buckets below it are empty.
 """
 
 import numpy as np

@@ -1,8 +1,6 @@
-"""The decorators and vectors of these kernels.
+"""The decorators of this folder's kernels, and vectors of three numbers.
 
-How this folder's kernels are compiled.
-
-Points and vectors of three numbers: a call is compiled in less time than the operators that it stands for.
+A call of a vector function is compiled in less time than the operators that it stands for.
 """
 
 from collections.abc import Callable

@@ -1,14 +1,7 @@
-"""The mesh while it is simplified: corners, half edges, parts, faults.
+"""The half-edge mesh while it is simplified: one edge collapse, fans, components, and counts of faults.
 
-The corner table: the opposite of each half-edge, and one vertex per fan of faces.
-
-Half-edge 3 f + k runs from corner k of face f to the next; it is also the name of that corner.
-
-The half-edge mesh while it is simplified, and one edge collapse on it.
-
-The parts of a surface: fans of faces around a vertex, components joined by edges.
-
-Counts of a surface's faults.
+The corner table has the opposite of each half-edge, and one vertex per fan of faces. Half-edge 3 f + k runs from corner
+k of face f to the next corner; the number is also the name of that corner.
 """
 
 from typing import NamedTuple

@@ -1,15 +1,11 @@
 """Quadrics of position and attributes.
 
-Quadric error: the sum of squared distances to planes, area-weighted (Garland and Heckbert 1997, T [222]).
-
-Attributes within the quadric error: the disagreement of the faces around a vertex on what it shows (Hoppe 1999).
-
-Each face predicts an attribute anywhere in space, as a gradient and a constant: g.x + d. At a merged vertex the best
-single value is the mean of the predictions, and their squared distances to it are the error. It is quadratic in x, and
-zero where the attribute is linear over the surface.
-
-A seam splits the faces around a vertex into wedges, each with a value of its own; edges of a seam collapse wedge by
-wedge (section 4.2 there).
+The error of a position is the sum of squared distances to planes, weighted by area (Garland and Heckbert 1997,
+T [222]). The error of attributes is the disagreement of the faces around a vertex (Hoppe 1999). Each face predicts an
+attribute anywhere in space, as a gradient and a constant: g.x + d. At a merged vertex the best single value is the mean
+of the predictions, and their squared distances to it are the error. It is quadratic in x, and zero where the attribute
+is linear over the surface. A seam splits the faces around a vertex into wedges, each with a value of its own; edges of
+a seam collapse wedge by wedge (section 4.2 there).
 """
 
 from typing import NamedTuple

@@ -1,8 +1,6 @@
-"""The fewest faces of each object of a scene.
+"""The smallest face counts of a scene that meet a tolerance, planned by the levels' errors and checked by rendering.
 
-The smallest face counts of a scene that meet a tolerance, planned by the levels' errors and checked by rendering.
-
-The cheapest sequence of levels of one object over the frames: within the tolerance, without popping or flicker.
+The plan of one object is the cheapest sequence of levels over the frames, without popping or flicker.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,9 +1,4 @@
-"""Places of objects, and the path of the camera.
-
-A perspective camera on a path, as for a screen (haptic_glance.look.camera is the thesis's orthographic one).
-
-Meshes placed in the world, and the scene of all of them along a camera path.
-"""
+"""Objects placed in the world, and a perspective camera on a path (haptic_glance.look.camera is orthographic)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

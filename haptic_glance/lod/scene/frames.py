@@ -1,12 +1,8 @@
-"""Rendered frames of a scene, and plans of levels.
-
-Renderings of a scene at any levels, and their error on the screen against the full scene.
+"""Rendered frames of a scene at any levels, their error against the full scene, and the plan of a level per frame.
 
 The displacement of a pixel is the distance from the surface point visible in it to the other mesh of the same object,
 in pixels at that point's depth. It is measured both ways, over the pixels of the object in the one frame and in the
 other: a part that has shrunk shows in the first, one that sticks out in the second.
-
-A level for each object in each frame: the faces, the errors of the rendered frames, and the switches.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,9 +1,4 @@
-"""Rendered levels, and the differences of their pictures.
-
-Shaded frames, their structural errors, and their displacements.
-
-One object at one level, ray cast through the pixels of one frame.
-"""
+"""Renders an object at one level by ray casting, and compares frames: structural errors and displacements."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

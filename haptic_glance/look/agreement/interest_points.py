@@ -1,11 +1,8 @@
-"""Interest points of people: peaks of gaze, and errors of detected points.
+"""Interest points of people: peaks of a density of gaze, and errors of detected points.
 
-Ground truth points from a density of gaze, to evaluate detectors of points where nobody marked any.
-
-Agreement of detected interest points with those of people: false negatives, false positives, weighted misses.
-
-Source: Dutagaci, Cheung and Godil, Evaluation of 3D interest point detection techniques via human-generated ground
-truth, The Visual Computer 2012, section on evaluation measures (T's reference 7).
+The errors are false negatives, false positives and weighted misses (Dutagaci, Cheung and Godil, Evaluation of 3D
+interest point detection techniques via human-generated ground truth, The Visual Computer 2012; T's reference 7). Peaks
+of gaze serve where nobody marked points.
 """
 
 import numpy as np

@@ -1,19 +1,4 @@
-"""Metrics of the agreement of a saliency with people.
-
-Where people looked on a surface, and the two scalings of a map that the agreement metrics share.
-
-Area under the ROC curve of the saliency as a detector of fixations.
-
-Linear correlation of the predicted saliency with the human density.
-
-Kullback-Leibler divergence of the human distribution from the predicted one.
-
-Normalised scanpath saliency: the standardised prediction at the fixations.
-
-Similarity, the histogram intersection of the predicted and the human distribution over the surface.
-
-All metrics of the agreement of a saliency with people, by name.
-"""
+"""Metrics of the agreement of a saliency with people: AUC, CC, KL, NSS and SIM over the surface."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,10 +1,7 @@
-"""Channels of brightness and colour: intensity, opponent colours, DKL.
+"""Channels of brightness and colour: intensity, opponent colours, and DKL.
 
-Intensity: centre-surround differences of brightness, light on dark and dark on light.
-
-Color: red against green and blue against yellow.
-
-DKL: the three post-receptoral mechanisms, luminance, L - M and S - (L + M).
+Intensity and colour are centre-surround differences. DKL has three post-receptoral mechanisms: luminance, L - M and
+S - (L + M).
 """
 
 import numpy as np

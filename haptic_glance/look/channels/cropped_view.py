@@ -1,10 +1,7 @@
-"""A view cropped to its object, with its background filled.
+"""A view cropped to its object and prepared for all channels: background filled, and in pyramids.
 
-The part of a view that shows the object, prepared for all channels: cropped, filled, and in pyramids.
-
-Keeps the background out of filters: extends the object's values into it, without a step at the silhouette.
-
-The vertices that a view sees, and the angle at which it sees them.
+The object's values continue into the background without a step at the silhouette, so that no filter sees the
+background.
 """
 
 from collections.abc import Sequence

@@ -1,11 +1,4 @@
-"""Compiled kernels of the channels.
-
-The entropy of the grey levels in the window around each pixel.
-
-The local maxima of a map.
-
-The surface points under the pixels of a view.
-"""
+"""Compiled kernels of the channels: entropy in a window, local maxima of a map, surface points under pixels."""
 
 import numpy as np
 

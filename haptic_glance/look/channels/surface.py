@@ -1,10 +1,6 @@
-"""Conspicuity on the visible surface, and its projection to the mesh.
+"""Conspicuity of values on the visible surface, smoothed over the surface and projected to the mesh (T3.2.6).
 
-The surface points under the pixels of a view, and conspicuity maps of values at these points.
-
-Smooths values over the surface, and fills them in where no view sees it.
-
-The vertex that a place on the surface belongs to (T3.2.6).
+Smoothing fills the surface that no view sees.
 """
 
 from collections.abc import Callable

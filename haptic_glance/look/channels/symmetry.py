@@ -1,8 +1,6 @@
-"""The channels of symmetry, and the search for planes and axes of symmetry.
+"""The channels of symmetry, bilateral and radial: planes and axes of the 3D shape, projected to the view.
 
-The planes and axes of symmetry of a shape, exact or approximate.
-
-Symmetry of the shape, found in 3D and projected to the view: bilateral and radial, together and each alone.
+The search finds exact and approximate symmetries.
 """
 
 from collections.abc import Sequence

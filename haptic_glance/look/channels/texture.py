@@ -1,17 +1,4 @@
-"""Channels of texture: contrast, entropy, edges, orientation, and two of OpenCV.
-
-Contrast: the variance of the luminance around a point.
-
-Entropy of the grey levels around a point.
-
-Edge: the Laplacian of a Gaussian.
-
-Orientation: bars and edges whose direction differs from that of their surround.
-
-Spectral residual: the deviation of the image's spectrum from the average one; a method for comparison.
-
-Fine-grained saliency: centre-surround at full resolution, from integral images; a method for comparison.
-"""
+"""Channels of texture: contrast, entropy, edges and orientation, and two methods of OpenCV for comparison."""
 
 from functools import cache
 

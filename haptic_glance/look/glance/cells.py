@@ -1,8 +1,6 @@
-"""Compiled kernels of the glance: cells of the surface, and their visibility.
+"""Compiled kernels of the glance: faces cut into the cells of a grid, and the visibility of points.
 
-Faces cut along the walls of a grid, so that each piece lies in one cell; compiled by numba.
-
-From how many directions each point is seen, and how much it faces them; compiled by numba.
+Visibility counts the directions from which a point is seen, and how much the surface faces these directions.
 """
 
 import math

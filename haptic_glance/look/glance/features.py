@@ -1,8 +1,6 @@
-"""The features of the glance.
+"""The features of the glance: height, visibility, relief, thickness, and the place of a point on the object.
 
-The properties of a point that attract gaze: its height, its visibility, its relief, and its place on the object.
-
-Bumps, dents and thickness of a surface at several scales, from a graph of neighbouring points.
+Relief and thickness are measured at several scales on a graph of neighbouring points.
 """
 
 import numpy as np

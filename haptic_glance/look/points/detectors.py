@@ -1,14 +1,8 @@
 """The detectors that are not published rivals.
 
-Methods that fuse conspicuity maps and select points in each view.
-
-Points spread as far apart as possible: how much of a detector's merit is its even spread (T3.2.3).
-
-Random points (the thesis's blind touch), the baseline of every method (T4.2.4).
-
-Methods that work on the surface: a value per vertex, and its peaks as points.
-
-The position of a vertex as its saliency: the simplest rivals, and strong ones on human gaze.
+Detectors of views fuse conspicuity maps and select points in each view. Detectors of the surface have a value per
+vertex, whose peaks are the points; height and the distance to the middle are simple and strong ones. Farthest points
+show how much of a detector's merit is its even spread (T3.2.3). Random points are the thesis's blind touch (T4.2.4).
 """
 
 from collections.abc import Callable, Iterable

@@ -1,9 +1,4 @@
-"""Saliency and salient points of a mesh.
-
-From a mesh to its saliency and its salient points, in one call each.
-
-Names of methods on a command line, and the names here.
-"""
+"""Saliency and salient points of a mesh, in one call each, by the names of the command line."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace

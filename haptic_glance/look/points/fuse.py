@@ -1,10 +1,6 @@
-"""Fuses the channels and picks points in the fused maps.
+"""Fuses conspicuity maps (T eq. 3.8, 3.9), selects pixels in the fused maps, and merges the points of all views.
 
-One saliency map out of many conspicuity maps (T eq. 3.8 and 3.9), and the thesis's combinations by name.
-
-Salient pixels of one saliency map: by threshold and centroid (T3.1.2), or by suppression (T3.2.5).
-
-The points of all views as one list of vertices, most salient first.
+Pixels are selected by threshold and centroid (T3.1.2) or by suppression (T3.2.5).
 """
 
 from collections.abc import Mapping

@@ -1,8 +1,6 @@
-"""Options and results of every detector of salient points.
+"""Options and results of every detector, and the order in which attention visits places.
 
-The argument and the result of every method.
-
-Points of a surface in the order in which attention visits them: the highest value, inhibited, then the next.
+Attention visits the highest value, inhibits its neighbourhood, and visits the next.
 """
 
 from collections.abc import Callable

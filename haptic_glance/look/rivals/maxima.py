@@ -1,8 +1,6 @@
-"""Local maxima of a saliency on a mesh.
+"""Local maxima of a function on the vertices of a mesh, within a radius or within rings of edges.
 
-The local maxima of a function on the vertices of a mesh within a radius, as most detectors select them.
-
-The local maxima of a function on the vertices of a mesh within rings of edges, which coarse meshes have too.
+Most detectors select maxima within a radius. Rings exist on coarse meshes, too.
 """
 
 from itertools import chain

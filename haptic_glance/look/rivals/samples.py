@@ -1,8 +1,6 @@
-"""Samples of a mesh that several rivals share.
+"""Samples of a mesh that several rivals share: few vertices that stand for the rest, and averages over the surface.
 
-A mesh in a frame of its own, and a few of its vertices that stand for the rest: for detectors of quadratic cost.
-
-Gaussian-weighted averages over the surface, the basis of centre-surround detectors.
+Detectors of quadratic cost use the few vertices. Centre-surround detectors use the Gaussian-weighted averages.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,4 @@
-"""The best viewpoints of a mesh, and what a set of viewpoints sees.
-
-The set of four perpendicular viewpoints with the highest saliency, and views of what it cannot see (T3.2.4).
-
-The 62 candidate viewpoints in 18 sets of four perpendicular ones (T3.2.4).
+"""The best viewpoints of a mesh, and the surface that a set of viewpoints sees (T3.2.4).
 
 The thesis gives 18 sets of four perpendicular viewpoints. Ten of the 72 are shared, so that 62 are distinct. It shows
 them around an object (T figure 3.14a), but does not state the arrangement, which is derived here. There are six great
@@ -11,8 +7,6 @@ three squares, which start at 0, 30 and 60 degrees above the horizon: 6 x 3 = 18
 both poles, so each pole is in six sets and 2 x 5 = 10 of the 72 are repeated. The 62 that remain are five parallels of
 twelve viewpoints, and the two poles. T3.3.2 arranges its 218 viewpoints in the same way: nine parallels with a
 viewpoint every 15 degrees, and the poles. The four principal views of T3.1.2 (+-z and +-y) are one of the sets.
-
-How much of a surface a set of viewpoints sees, and the fewest viewpoints that see nearly all of it.
 
 Visibility is tested by exact rays at points spread over the surface. For the 62 candidates this takes 0.15 s at 10,000
 faces and 0.3 s at 40,000. Reading face ids off rendered images of 225 x 300 pixels takes three times as long and is

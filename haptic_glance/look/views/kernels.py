@@ -1,11 +1,4 @@
-"""Compiled kernels of the renderer.
-
-The nearest face at each pixel of an orthographic view, and its shade.
-
-The colour around the object.
-
-Depths as bytes that compress well, and back.
-"""
+"""Compiled kernels of the renderer: the nearest face and its shade at each pixel, and depths packed as bytes."""
 
 import numpy as np
 

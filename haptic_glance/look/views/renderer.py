@@ -1,8 +1,6 @@
-"""Renders a view.
+"""Renders a view by the renderer of a given name.
 
-The renderer that runs on every machine: each face drawn into a depth buffer, in double precision.
-
-Renders a view by the renderer of a given name.
+`raster` runs on every machine: it draws each face into a depth buffer, in double precision.
 """
 
 import sys

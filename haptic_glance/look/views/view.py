@@ -1,8 +1,6 @@
-"""A rendered view and its material.
+"""A rendered view, the material of its surface, and the rounding that both renderers share.
 
-The View that a renderer returns, and the checks and rounding that both renderers share.
-
-How a surface reflects the light: matte by default, with a highlight where a setting asks for one.
+A material is matte by default, with a highlight where a setting asks for one.
 """
 
 from dataclasses import astuple, dataclass

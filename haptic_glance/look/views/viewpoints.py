@@ -1,9 +1,4 @@
-"""Sets of viewpoints, and lines of sight.
-
-The named sets of viewpoints.
-
-Parallel rays from outside a mesh along the axis of a viewpoint, for tests of visibility without an image.
-"""
+"""Named sets of viewpoints, and parallel rays along a viewpoint's axis for tests of visibility without an image."""
 
 import numpy as np
 

@@ -1,10 +1,8 @@
-"""Learns weights of the channels from human attention.
+"""Learns weights of the channels from human attention (T3.2.1).
 
-Channel weights from the similarity of conspicuity maps to the ground truth saliency map (T3.2.1.2 to T3.2.1.4).
-
-Channel weights from the distance of a map's brightest pixels to the ground truth points (T3.2.1.1).
-
-This follows the thesis, with these consequences:
+Weights come from the similarity of conspicuity maps to the ground truth map (T3.2.1.2 to T3.2.1.4), from the distance
+of a map's brightest pixels to the ground truth points (T3.2.1.1), or from a log-linear density of fixations over the
+surface, fitted by maximum likelihood. The distance follows the thesis, with these consequences:
 
 - "Average pairwise" is the mean over all pairs of the n brightest pixels and the n points, not over nearest pairs. It
   is smallest between the points, not on them: one blob in the middle of four points scores better than four peaks
@@ -12,10 +10,6 @@ This follows the thesis, with these consequences:
 - The n brightest pixels are neighbours on one peak, so only the position of the highest peak of a map matters.
 - The distances are normalised over the channels of each view, so that the farthest channel of a view gets 0 and the
   nearest 1, however little they differ.
-
-The fixation model: a log-linear density of fixations over the surface, fitted by maximum likelihood.
-
-Standardises a value per vertex by area.
 """
 
 import functools

@@ -1,14 +1,10 @@
-"""The support vector machine of T3.2.3 and its pixels.
-
-A support vector machine that classifies pixels as salient or not by their nine conspicuities (T3.2.3).
+"""The support vector machine of T3.2.3: classifies pixels as salient or not by their nine conspicuities.
 
 As in the thesis, classes are balanced by dropping rows of the larger one, features are weighted by their information
 gain, and the kernel is Gaussian. Additions: the number of rows is limited, and models are stored as plain arrays.
 
 Information gain considers one feature at a time. If the label depends only on a combination of features (an exact
 XOR), the gains are due to chance.
-
-Conspicuity maps as rows for the SVM, its predictions as a map, and the selection of distant points (T3.2.3).
 """
 
 from collections.abc import Mapping

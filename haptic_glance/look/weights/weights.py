@@ -1,10 +1,7 @@
 """Published and learned weights of the channels.
 
-Published weights: equal ones, those of T table 3.1, and those learned from human gaze.
-
-Reads the learned weights and SVMs that may be applied to an object: those not learned from the same object.
-
-Learns weights from the training data of several objects, leaving one object out at a time.
+Published weights are equal ones, those of T table 3.1, and those learned from human gaze. Weights and SVMs that were
+learned from an object are never applied to the same object: learning leaves one object out at a time.
 """
 
 import functools

@@ -1,15 +1,8 @@
-"""Frames, the tree of faces, and faces above an array.
+"""Faces of a mesh as a tree of boxes, and their projection onto the plane of an array, compiled.
 
-How this folder's kernels are compiled.
-
-The frame of an array for kernels, which converts a point to column, row and height.
-
-The faces of a mesh in blocks of a balanced tree of boxes: numpy, but for their order, which numba compiles.
-
-The faces of one block projected onto the plane of an array, compiled by numba.
-
-All 32 faces go through the same arithmetic at once, without a branch, up to the four cells that a face of a cell's size
-can cover, and its heights there. Only faces with hits are processed one by one.
+The frame of an array converts a point to column, row and height. The leaves of the tree are blocks of 32 faces. All 32
+go through the same arithmetic at once, without a branch, up to the four cells that a face of a cell's size can cover,
+and its heights there. Only faces with hits are processed one by one.
 """
 
 from collections import namedtuple

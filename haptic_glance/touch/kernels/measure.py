@@ -1,12 +1,8 @@
-"""Measures the cells of an array.
-
-Distances of the cells of flat arrays to a surface, compiled by numba.
+"""Distances of the cells of flat arrays to a surface, and the depth to which a load presses the array, compiled.
 
 No ray is cast: faces are projected onto the array's plane, and each writes its height to the cells under it. The tree
 of faces is traversed from the plane outwards, so that boxes hidden behind faces already found are skipped. All numbers
-are in double precision. A column through an edge hits at least one of its faces.
-
-How deep a bed of springs is pressed by a load, compiled by numba.
+are in double precision. A column through an edge hits at least one of its faces. A load presses a bed of springs.
 """
 
 import numpy as np

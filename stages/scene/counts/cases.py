@@ -1,10 +1,7 @@
-"""Cases of the fewest faces of an object.
+"""Test cases for models of the fewest faces, the count from one simplified mesh, and tests of predicted counts.
 
-Test cases for the models: measured points of curves, whose right count is therefore known.
-
-The face count from one simplified mesh of the object: its error, extrapolated by a common power law.
-
-Tests of predicted counts: the mesh is simplified to as many faces, and its error measured.
+A case is a measured point of a curve, whose right count is therefore known. One mesh is extrapolated by a common power
+law. A predicted count is tested by a mesh of as many faces.
 """
 
 from collections.abc import Sequence

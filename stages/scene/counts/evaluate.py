@@ -1,12 +1,7 @@
-"""Evaluates predictions of the fewest faces.
+"""Evaluates models of the fewest faces on objects left out of the training (T3.1.3).
 
-One fold: models trained on some objects and tested on others, in and beyond the measured range.
-
-The models of the face count compared on objects left out of the training (T3.1.3).
-
-The predictions of each kind of model for the same cases, and the factor with which they meet the tolerance.
-
-Scores of predicted counts: the error of the count and of the mesh, with intervals over the objects.
+A fold trains on some objects and tests on others, in and beyond the measured range. Scores are the error of the count
+and of the mesh, with intervals over the objects; a factor on the counts makes a model meet the tolerance.
 """
 
 import functools

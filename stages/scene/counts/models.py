@@ -1,13 +1,9 @@
-"""Models that predict the fewest faces of an object.
+"""Models that predict the fewest faces of an object for an error (T3.1.3, T3.1.5).
 
-An object's own measured error curve, and the lookup of face counts for an error in it (T3.1.3, T3.1.5).
-
-The face count learned from other objects: the thesis's networks, and a linear model as alternative (T3.1.3).
-
-From pixels on a screen at a distance to an error on the surface, by perspective.
-
-The thesis determined its distances by moving each object away in VRML until features seemed to disappear (T3.1.3). Here
-the distance follows from the screen: an error on the surface is tolerated up to a number of pixels.
+An object's own measured curve answers by lookup. The thesis's networks, and a linear model as the alternative, learn
+from other objects. The thesis determined its distances by moving each object away in VRML until features seemed to
+disappear (T3.1.3). Here the distance follows from the screen by perspective: an error on the surface is tolerated up to
+a number of pixels.
 """
 
 import warnings
