@@ -23,7 +23,7 @@ from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.sampling import sample_surface
 from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
-from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals
+from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals, turned
 
 from .belief import FLOOR, Calibration, calibrate, feature_kernel, log_likelihood, nearest_outcomes, place_kernel
 from .components import Components
@@ -105,19 +105,20 @@ BLOCK = 256  # touches compared at once, in the processor's cache
 AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three widths of `place_kernel` away
 
 
-def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0) -> "Library":
+def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned: bool = False) -> "Library":
     """The Library of meshes {name: mesh}, each scaled by `normalise`; a mesh that was learned before costs nothing.
 
+    turned: each array is turned at random about its normal, as it lies on an object whose pose is unknown.
     Raises ValueError for fewer than two, and for a mesh that cannot be touched, with its name.
     """
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
-    return _library(tuple(_Named(name, mesh, seed) for name, mesh in sorted(meshes.items())), placed)
+    return _library(tuple(_Named(name, mesh, seed, turned) for name, mesh in sorted(meshes.items())), placed)
 
 
 def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:
     """(TOUCHES, 41) features of the touches by which `learn` knows a mesh; ValueError where it cannot be touched."""
-    return _learned(_Named(name, mesh, seed))[0]
+    return _learned(_Named(name, mesh, seed, False))[0]
 
 
 @dataclass(frozen=True)
@@ -218,12 +219,12 @@ class Library:
 
 
 class _Named:
-    """A mesh under a name; equal where name, seed and content are."""
+    """A mesh under a name; equal where name, seed, content and `turned` are."""
 
-    def __init__(self, name: str, mesh: Mesh, seed: int) -> None:
+    def __init__(self, name: str, mesh: Mesh, seed: int, turned: bool) -> None:
         content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
-        self.name, self.mesh, self.key = name, mesh, (name, seed, content)
-        self.seed = seed
+        self.name, self.mesh, self.key = name, mesh, (name, seed, content, turned)
+        self.seed, self.turned = seed, turned
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Named) and self.key == other.key
@@ -245,7 +246,10 @@ def _learned(one: _Named) -> tuple[np.ndarray, np.ndarray]:
     try:
         surface = Surface(one.mesh)
         places = sample_places(surface, TOUCHES, rng(one.seed, one.name))
-        images = press_at(surface, places.positions, sensor_axes(places.normals), CELLS, PITCH)
+        axes = sensor_axes(places.normals)
+        if one.turned:
+            axes = turned(axes, 360 * rng(one.seed, f"{one.name} turned").random(TOUCHES))
+        images = press_at(surface, places.positions, axes, CELLS, PITCH)
     except ValueError as error:
         raise ValueError(f"{one.name}: {error}") from None
     return features(images), places.positions

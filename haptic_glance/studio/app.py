@@ -1,5 +1,6 @@
 """The studio's server: a window for each browser window that opens its page."""
 
+import time
 import uuid
 
 import viser
@@ -12,6 +13,7 @@ from .window import Window
 ITEM = "haptic-glance-sessions"  # in the browser's local storage: the sessions that its windows have had
 LEFT = 4  # sessions without a window that are kept for a page that comes back
 SECONDS = 5  # that a browser may take to say which they are
+GOING = 20  # tenths of a second until a second window of a browser is taken for one beside the first
 
 
 class Studio:
@@ -44,12 +46,16 @@ class Studio:
             known = (client.local_storage.get_item(ITEM, SECONDS) or "").split()
         except (RuntimeError, TimeoutError):  # a browser that stores nothing
             known = []
-        name = next((name for name in reversed(self.left) if name in known), None)
-        if name is not None:
-            return name, self.left.pop(name)
+        for _ in range(GOING):  # a page may be back before the server knows that it was gone
+            name = next((name for name in reversed(self.left) if name in known), None)
+            if name is not None:
+                return name, self.left.pop(name)
+            if not {name for name, _ in list(self.windows.values())} & {*known}:
+                break
+            time.sleep(0.1)
         name = uuid.uuid4().hex
         client.local_storage.set_item(ITEM, " ".join([*known, name][-4 * LEFT :]))
-        return name, Session()
+        return name, Session(tour=None if known or self.settings.panel == "Mark" else 0)
 
     def gone(self, client: viser.ClientHandle) -> None:
         """A window was closed or reloaded, or has lost the connection: its session waits for it."""

@@ -9,6 +9,7 @@ from haptic_glance.touch.force import gaps_at, press_forces
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.press import normalise
 from haptic_glance.touch.quasi_tangent import contour_imprints, quasi_tangent
+from haptic_glance.touch.surface import turned
 
 RAYS, RIGID, CONTOURS, NEWTONS = "rays", "rays, rigid plate", "contours", "newtons"
 SENSORS = (RAYS, RIGID, CONTOURS, NEWTONS)
@@ -127,9 +128,3 @@ def _pose(surface, place, sensor):
     if place.vertices[0] < 0:
         raise ValueError("contours are felt at vertices alone: click nearer to a corner of a face, or take rays")
     return quasi_tangent(surface.mesh, place.vertices[:1])
-
-
-def turned(axes: np.ndarray, degrees: float) -> np.ndarray:
-    """Axes (k, 3, 3) turned about their normals."""
-    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ axes

@@ -2,10 +2,11 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.rng import rng
@@ -25,7 +26,7 @@ class Guess:
 
     name: what it is. hidden: whether its mesh and name are not shown before the end. helped: touches that the planner
     made. said: what the person takes it for, who need not wait until the belief is sure. over: whether a hidden object
-    is found out, or given up.
+    is found out, or given up. told: the verdict, once it is known.
     """
 
     specimen: Specimen
@@ -35,6 +36,7 @@ class Guess:
     helped: int = 0
     said: str = ""
     over: bool = False
+    told: str = ""
 
     @property
     def touches(self) -> int:
@@ -73,18 +75,22 @@ def gather(
 def study(meshes: Mapping[str, Mesh], placed: bool) -> tuple[Library, float]:
     """(the Library, seconds that it took)."""
     start = time.perf_counter()
-    library = learn(meshes, placed)
+    library = learn(meshes, placed, turned=not placed)
     return library, time.perf_counter() - start
 
 
 def guess(library: Library, meshes: Mapping[str, Mesh], table: Specimen | None, seed: int | None = None) -> Guess:
     """A Guess at the mesh on the table, or, with None, at one of the known objects, drawn by lot and hidden.
 
+    A hidden object lies in a random pose, unless the library's objects stand as they were learned.
     seed: of the lot, None for another one each time.
     """
     random = np.random.default_rng(seed)
     name = str(random.choice(library.names)) if table is None else table.name
-    specimen = Specimen(meshes[name], name) if table is None else table
+    specimen = table or Specimen(meshes[name], name)
+    if table is None and not library.placed:
+        turn = Rotation.random(random_state=random)
+        specimen = Specimen(replace(meshes[name], vertices=turn.apply(meshes[name].vertices)), name)
     places = random if table is None else rng(0, name)
     exploration = Exploration(library, as_surface(specimen.mesh), places)
     return Guess(specimen, exploration, name, hidden=table is None)

@@ -28,20 +28,26 @@ class Opening:
         self.files = dict(zip(names_of(list(settings.files)), settings.files, strict=True))
         gui = window.gui
         with gui.add_folder("Mesh"):
-            self.about = gui.add_markdown("Upload a mesh, a point cloud or a scan.")
+            self.about = gui.add_markdown("Drop a mesh, a point cloud or a scan on the page, or upload it.")
             self.choice = gui.add_dropdown("Open", [*self.files] or [NOTHING], visible=len(self.files) > 1)
-            self.upload = gui.add_upload_button("Upload a file", hint=f"at most {MAX_UPLOAD >> 20} MB")
+            self.upload = gui.add_upload_button(
+                "Upload a file", hint=f"or drop it on the page; at most {MAX_UPLOAD >> 20} MB"
+            )
             self.dark = gui.add_checkbox("Dark", False)
             self.axis = gui.add_dropdown("Up axis", AXES, initial_value="z")
         window.on(self.choice.on_update, lambda: self.open(self.files[self.choice.value]))
         window.on(self.upload.on_upload, self.uploaded)
         window.on(self.axis.on_update, self.turn)
-        window.on(self.dark.on_update, lambda: gui.configure_theme(**THEME, dark_mode=self.dark.value))
+        window.on(self.dark.on_update, self.colour)
 
     def first(self) -> None:
         """Opens the first of the files, if there is one."""
         if self.files:
             self.open(next(iter(self.files.values())))
+
+    def colour(self) -> None:
+        """Makes the page dark or light."""
+        self.window.gui.configure_theme(**THEME, dark_mode=self.dark.value)
 
     def open(self, path: Path) -> None:
         """Opens a file."""

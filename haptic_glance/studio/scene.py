@@ -44,10 +44,14 @@ class Scene:
         if self.client.camera.aspect < 1:  # a telephone, whose lower half the panel covers
             away *= 0.8 / self.client.camera.aspect
             middle = middle - (0, 0, 0.33 * away)
+        self.turn(middle + EYE * away, middle)
+
+    def turn(self, position: np.ndarray, middle: np.ndarray) -> None:
+        """Puts the camera at a position (3,), from which it looks at the middle (3,)."""
         with self.client.atomic():
             self.client.camera.up_direction = (0.0, 0.0, 1.0)
             self.client.camera.fov = FIELD
-            self.client.camera.position = middle + EYE * away
+            self.client.camera.position = position
             self.client.camera.look_at = middle
 
     def face(self, place: np.ndarray, normal: np.ndarray) -> None:
@@ -58,7 +62,7 @@ class Scene:
             return
         distance = np.linalg.norm(away)
         towards = normal + 0.5 * away / distance  # not quite along the normal, which may be the up axis
-        camera.position = camera.look_at + towards / np.linalg.norm(towards) * distance
+        self.turn(camera.look_at + towards / np.linalg.norm(towards) * distance, camera.look_at)
 
     def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:
         """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""

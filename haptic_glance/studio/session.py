@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .specimen import Look, Specimen
 
 
@@ -28,7 +30,8 @@ class Session:
     """specimen: the mesh on the table. method, other: of the saliency shown, and of the one beside it, if any.
 
     count: of points, None for the method's own. kept: what a panel keeps of this mesh, by its title; it is emptied when
-    another mesh comes.
+    another mesh comes. For a page that is loaded again: panel, the title of the one shown; controls, their values;
+    view, the camera's position (3,) and the place (3,) that it looks at. tour: its step, None where it has ended.
     """
 
     specimen: Specimen | None = None
@@ -36,6 +39,10 @@ class Session:
     other: str | None = None
     count: int | None = None
     kept: dict[str, Any] = field(default_factory=dict)
+    panel: str = ""
+    controls: dict[str, dict[str, Any]] = field(default_factory=dict)
+    view: tuple[np.ndarray, np.ndarray] | None = None
+    tour: int | None = None
 
     def put(self, specimen: Specimen) -> None:
         """Another mesh on the table, or the same one turned."""

@@ -20,6 +20,7 @@ from .progress import Progress
 from .scene import BESIDE, GREY, MESH, Scene
 from .session import Session, Settings
 from .specimen import Specimen
+from .tour import Tour
 
 
 class Window:
@@ -28,6 +29,7 @@ class Window:
     def __init__(self, client: viser.ClientHandle, settings: Settings, session: Session) -> None:
         self.client, self.gui, self.settings, self.session = client, client.gui, settings, session
         self.lock = RLock()  # one callback at a time
+        self.ready = False  # whether events are answered
         self.jobs: dict[str, Job] = {}
         self.scene = Scene(client)
         if client.camera.aspect > 1:
@@ -35,6 +37,7 @@ class Window:
         bound_uploads(self.gui, self.refuse)
         self.scene.on_click(self.clicked)
         self.progress = Progress(self.gui, self.on)
+        self.tour = Tour(self)
         self.opening = Opening(self, settings)
         self.panels = [make(self) for make in PANELS]
         self.tabs = self.gui.add_button_group("Panel", [panel.title for panel in self.panels])
@@ -45,7 +48,9 @@ class Window:
             with folder:
                 panel.build(self.gui)
         self.panel = self.panels[0]
-        self.choose(settings.panel)
+        self.restore()
+        self.ready = True
+        self.choose(session.panel or settings.panel)
         self.on(self.tabs.on_click, lambda: self.choose(self.tabs.value))
 
     def start(self) -> None:
@@ -53,6 +58,8 @@ class Window:
         self.scene.aim()
         if self.session.specimen is not None:
             self.put(self.session.specimen, keep=True)
+            if self.session.view is not None:
+                self.scene.turn(*self.session.view)
         else:
             self.opening.first()
 
@@ -60,7 +67,7 @@ class Window:
 
     def on(self, attach: Callable[[Callable[[Any], None]], Any], work: Callable[[], Any]) -> None:
         """on(button.on_click, self.undo): calls work() at each event, one at a time; errors become messages."""
-        attach(lambda _: self.run("", work))
+        attach(lambda _: self.run("", work) if self.ready else None)
 
     def run(self, title: str, work: Callable[[], Any]) -> None:
         """work(), alone; an error becomes a message in the page."""
@@ -157,15 +164,34 @@ class Window:
         self.panel = chosen
         for panel, folder in zip(self.panels, self.folders, strict=True):
             folder.visible = panel is chosen
-        if self.session.specimen is not None:
+        self.session.panel = title
+        if chosen.target() is not None:
             self.run(chosen.title, chosen.on_show)
 
     def close(self) -> None:
-        """The window is gone: its work ends."""
+        """The window is gone: its work ends, and the session keeps its controls and its view."""
         for job in list(self.jobs.values()):
             job.stop()
+        for part in (self.opening, *self.panels):
+            self.session.controls[type(part).__name__] = {name: input.value for name, input in inputs(part).items()}
+        self.session.view = self.client.camera.position, self.client.camera.look_at
+
+    def restore(self) -> None:
+        """Sets the controls as the session has kept them, but a choice that is no longer offered."""
+        for part in (self.opening, *self.panels):
+            kept = self.session.controls.get(type(part).__name__, {})
+            for name, control in inputs(part).items():
+                value = kept.get(name, control.value)
+                if not isinstance(control, viser.GuiDropdownHandle) or value in control.options:
+                    control.value = value
+        self.opening.colour()
 
     def _ended(self, job):
         with self.lock:
             self.jobs = {slot: other for slot, other in self.jobs.items() if other is not job}
             self.progress.end(job)
+
+
+def inputs(part: object) -> dict[str, viser.GuiInputHandle]:
+    """The controls with a value among the attributes of a part of the page, by name."""
+    return {name: control for name, control in vars(part).items() if isinstance(control, viser.GuiInputHandle)}

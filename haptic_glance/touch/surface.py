@@ -162,3 +162,10 @@ def sensor_axes(normals: ArrayLike, up: Axis = "z") -> np.ndarray:
     towards = np.where(polar, [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
     upwards = unit(towards - np.sum(towards * normals, axis=1, keepdims=True) * normals)
     return np.stack([np.cross(upwards, normals), upwards, normals], axis=1)
+
+
+def turned(axes: np.ndarray, degrees: float | np.ndarray) -> np.ndarray:
+    """Axes (k, 3, 3) turned about their normals by degrees, one number or (k,), counter-clockwise from outside."""
+    angles = np.broadcast_to(np.radians(degrees), len(axes))[:, None]
+    cos, sin, (right, up, normal) = np.cos(angles), np.sin(angles), axes.swapaxes(0, 1)
+    return np.stack([cos * right + sin * up, cos * up - sin * right, normal], axis=1)

@@ -6,7 +6,7 @@ import pytest
 from haptic_glance.know import learn, primitives
 from haptic_glance.lod import write_any
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.studio.mystery import by_planner, gather, guess, verdict
+from haptic_glance.studio.mystery import by_planner, gather, guess, study, verdict
 from haptic_glance.studio.specimen import Specimen
 
 
@@ -42,6 +42,17 @@ def test_a_hidden_object_is_one_of_the_known_by_lot(library, shapes):
     one = guess(library, shapes, None, 0)
     assert one.hidden and one.name == guess(library, shapes, None, 0).name and one.touches == 0
     assert one.specimen.mesh.vertices.shape == shapes[one.name].vertices.shape
+
+
+def test_an_object_that_may_lie_anywhere_hides_in_another_pose(shapes):
+    anywhere, _ = study(shapes, placed=False)
+    drawn = [guess(anywhere, shapes, None, seed) for seed in range(10)]
+    for one in drawn:
+        given, found = shapes[one.name].vertices, one.specimen.mesh.vertices
+        assert not np.allclose(found, given, atol=0.1)
+        shape = [np.linalg.norm(points - points.mean(axis=0), axis=1) for points in (given, found)]
+        assert np.corrcoef(*shape)[0, 1] > 0.999 or one.name == "ball"
+    assert np.mean([one.exploration.finish() in (one.name, "") for one in drawn]) >= 0.7
 
 
 def test_the_mesh_on_the_table_does_not_hide(library, shapes):

@@ -22,6 +22,12 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 WIDE, NARROW = {"width": 800, "height": 560}, {"width": 390, "height": 844}
 PATIENCE = 20_000  # milliseconds, on a machine with other work
+DROP = """(hex) => {
+  const dataTransfer = new DataTransfer(), bytes = Uint8Array.from(hex.match(/../g), (byte) => parseInt(byte, 16));
+  dataTransfer.items.add(new File([bytes], "dropped.ply"));
+  const drop = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
+  document.querySelector("canvas").dispatchEvent(drop);
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -235,3 +241,22 @@ def test_without_webgl_the_page_says_so(driver, binary, studio):
     page.goto(studio.address)
     playwright.expect(page.get_by_text("WebGL").first).to_be_visible(timeout=PATIENCE)
     blind.close()
+
+
+def test_the_tour_the_panel_and_a_dropped_file_outlive_a_reload(window, studio):
+    hand = window()
+    hand.reads("1 of 4")
+    hand.reads("bulges out")
+    hand.page.get_by_text("Save", exact=True).click()
+    assert b"float saliency" in Path(hand.saved("PLY").path()).read_bytes()[:400]
+    hand.page.get_by_role("button", name="Next", exact=True).click()
+    hand.page.evaluate(DROP, (studio.folder / "dent.ply").read_bytes().hex())
+    hand.reads("dropped")
+    hand.reads("Metro error")
+    hand.control("Faces, %").fill("40")
+    hand.reads("512 faces")
+    hand.page.reload()
+    hand.reads("512 faces")
+    hand.reads("2 of 4")
+    hand.page.get_by_role("button", name="End the tour").press("Enter")
+    playwright.expect(hand.page.get_by_text("2 of 4")).to_be_hidden(timeout=PATIENCE)

@@ -5,7 +5,6 @@ import viser
 
 from haptic_glance.know import Library, place_at
 from haptic_glance.know.library import CELLS, PITCH
-from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import sensor_axes
 from haptic_glance.touch.places import Places
 
@@ -32,9 +31,6 @@ class KnowPanel(Panel):
 
     def build(self, gui: viser.GuiApi) -> None:
         """Adds the controls."""
-        self.guess: Guess | None = None
-        self.library: Library | None = None
-        self.meshes: dict[str, Mesh] = {}
         self.about = gui.add_markdown(ASK)
         self.bars = gui.add_html("", visible=False)
         self.next = gui.add_button("Touch next", hint="where the belief is expected to gain most")
@@ -59,13 +55,20 @@ class KnowPanel(Panel):
         for control in (self.basic, self.household, self.placed):
             on(control.on_update, self.learn)
 
+    @property
+    def guess(self) -> Guess | None:
+        """The object that is touched."""
+        return self.window.session.kept.get(self.title)
+
     def target(self) -> Specimen | None:
         """The object that is touched: a hidden one, or the mesh on the table."""
         return self.guess.specimen if self.guess is not None else super().target()
 
     def on_mesh(self) -> None:
-        """Another mesh: what was touched before is gone."""
-        self.forget()
+        """What was touched is not drawn yet."""
+        self.bars.visible = self.grid.visible = False
+        self.about.content = ASK
+        self.window.scene.clear(DRAWN)
 
     def on_show(self) -> None:
         """Learns the objects, unless that was done, and shows what was touched."""
@@ -79,9 +82,8 @@ class KnowPanel(Panel):
 
     def forget(self) -> None:
         """Nothing is touched."""
-        self.guess, self.bars.visible, self.grid.visible = None, False, False
-        self.about.content = ASK
-        self.window.scene.clear(DRAWN)
+        self.window.session.kept.pop(self.title, None)
+        self.on_mesh()
 
     def start_again(self) -> None:
         """Forgets the touches; of a hidden object as well, which is then not told."""
@@ -93,22 +95,20 @@ class KnowPanel(Panel):
         household = HOUSEHOLD if self.household.value else None
         basic, placed = self.basic.value, self.placed.value
 
-        def work(report: Report) -> tuple[dict[str, Mesh], list[str], Library, float, Guess | None]:
+        def work(report: Report) -> tuple[list[str], Library, float, Guess | None]:
             report(0.1, "reading the known objects")
             meshes, notes = gather(settings.files, settings.up, table, basic, household)
             report(0.5, f"{len(meshes)} objects")
             library, seconds = study(meshes, placed)
             begun = guess(library, meshes, None if hidden else table) if hidden or table is not None else None
-            return meshes, notes, library, seconds, begun
+            return notes, library, seconds, begun
 
         self.window.work("Learning the known objects", work, lambda found: self.begin(*found))
 
-    def begin(
-        self, meshes: dict[str, Mesh], notes: list[str], library: Library, seconds: float, begun: Guess | None
-    ) -> None:
+    def begin(self, notes: list[str], library: Library, seconds: float, begun: Guess | None) -> None:
         """The library is there: an object can be touched."""
         self.forget()
-        self.meshes, self.library, self.guess = meshes, library, begun
+        self.window.session.kept[self.title] = begun
         left_out = "".join(f"\n- left out: {escaped(note)}" for note in notes)
         self.known.content = f"{len(library.names)} objects, learned in {seconds:.1f} s.{left_out}"
         if self.window.panel is self:
@@ -194,7 +194,9 @@ class KnowPanel(Panel):
         self.about.content = (
             f"**{escaped(belief.known)}**, {touches}." if belief.known else f"Not sure {touches}. {begin}"
         )
-        if not one.touches:
+        if one.over:
+            self.about.content = one.told or f"**It is {escaped(one.name)}.**"
+        elif not one.touches:
             self.about.content = begin
         if one.hidden and belief.known:
             self.show_it()
@@ -212,12 +214,12 @@ class KnowPanel(Panel):
             return
         one.over = True
         self.draw()
-        self.about.content = f"**It is {escaped(one.name)}.**"
-        self.window.work(
-            "Letting the planner try",
-            lambda _: by_planner(one),
-            lambda planner: setattr(self.about, "content", verdict(one, planner, escaped)),
-        )
+        self.window.work("Letting the planner try", lambda _: by_planner(one), lambda planner: self.tell(one, planner))
+
+    def tell(self, one: Guess, planner: tuple[int, str]) -> None:
+        """Says who knew the hidden object."""
+        one.told = verdict(one, planner, escaped)
+        self.report()
 
     def draw(self) -> None:
         """Everything anew: the mesh unless it hides, the touches, the controls that fit."""
@@ -239,8 +241,7 @@ class KnowPanel(Panel):
             scene.mesh(SHOWN, one.specimen.mesh, np.full((len(one.specimen.mesh.vertices), 3), GREY, np.uint8))
         for number in range(one.touches):
             self.show_touch(number)
-        if not one.over:
-            self.report()
+        self.report()
 
     def show_touch(self, number: int) -> None:
         """Draws one touch on the object, and what was felt there."""

@@ -1,6 +1,6 @@
 """Shows where people look: the mesh coloured by a method, its points with their reasons, another method beside it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import viser
@@ -48,17 +48,22 @@ class LookPanel(Panel):
             self.views = gui.add_image(np.full((*TILE, 3), 255, np.uint8), visible=False)
         with gui.add_folder("Save", expand_by_default=False):
             saves = gui.add_button("Places (CSV)"), gui.add_button("Coloured mesh (GLB)")
+            hint = "the saliency of each vertex, for Blender (PLY), glTF, USD and meshoptimizer (NPZ)"
+            self.weights = gui.add_button_group("Weights", ("PLY", "GLB", "USDA", "NPZ"), hint=hint)
         for control in (self.method, self.other, self.count):
             window.on(control.on_update, self.choose)
         window.on(self.draw_views.on_click, self.start_views)
         window.on(saves[0].on_click, self.save_points)
         window.on(saves[1].on_click, self.save_mesh)
+        window.on(self.weights.on_click, self.save_weights)
 
     def choose(self) -> None:
         """Another method or count was chosen."""
         session = self.window.session
         count = None if session.count is None and self.count.value == self.found else self.count.value or None
         other = None if self.other.value == NONE else self.other.value
+        if (other is None) != (session.other is None):
+            self.window.scene.aim(wide=other is not None)
         if (self.method.value, count, other) != (session.method, session.count, session.other):
             session.method, session.count, session.other = self.method.value, count, other
             self.on_show()
@@ -94,8 +99,6 @@ class LookPanel(Panel):
             return
         scene, specimen = self.window.scene, self.window.session.on_table
         mesh, first = specimen.mesh, looks[0]
-        if (scene.has(OTHER)) != (len(looks) > 1):
-            scene.aim(wide=len(looks) > 1)
         self.on_hide()
         scene.mesh(MESH, first.drawn[0], colours(*first.drawn))
         self.number(POINTS, mesh, first)
@@ -156,11 +159,18 @@ class LookPanel(Panel):
         """Hands out the coloured mesh in the file's coordinates, turned upright as glTF has it."""
         session = self.window.session
         specimen, look = session.on_table, session.look()
-        name = f"{specimen.name}_{look.method}.glb"
-        self.window.work(
-            f"Writing {name}", lambda _: as_bytes(coloured(specimen.given, look.saliency), ".glb"),
-            lambda content: self.window.download(name, content),
-        )  # fmt: skip
+        self.save(f"{look.method}.glb", lambda: as_bytes(coloured(specimen.given, look.saliency), ".glb"))
+
+    def save_weights(self) -> None:
+        """Hands out the mesh as it was opened, with the saliency of each vertex."""
+        session, suffix = self.window.session, f".{self.weights.value.lower()}"
+        specimen, look = session.on_table, session.look()
+        self.save(f"{look.method}_weights{suffix}", lambda: as_bytes(specimen.given, suffix, look.saliency))
+
+    def save(self, ending: str, make: Callable[[], bytes]) -> None:
+        """Makes a file in the background, then hands it out under the mesh's name and the ending."""
+        name, window = f"{self.window.session.on_table.name}_{ending}", self.window
+        window.work(f"Writing {name}", lambda _: make(), lambda content: window.download(name, content))
 
 
 def methods() -> list[str]:

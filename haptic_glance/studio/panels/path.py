@@ -32,7 +32,6 @@ class PathPanel(Panel):
 
     def build(self, gui: viser.GuiApi) -> None:
         """Adds the controls."""
-        self.places: list[Hit] = []
         self.path: Path | None = None
         self.how = gui.add_dropdown("Path", (THROUGH, AROUND))
         self.about = gui.add_markdown(ASK[THROUGH])
@@ -51,14 +50,21 @@ class PathPanel(Panel):
         for control in (self.cells, self.pitch):
             on(control.on_update, self.follow)
 
+    @property
+    def places(self) -> list[Hit]:
+        """The places that were clicked."""
+        return self.window.session.kept.setdefault(self.title, [])
+
     def on_mesh(self) -> None:
-        """No path on this mesh yet."""
-        self.begin()
+        """The path through the places, if there are any of this mesh."""
+        self.hide()
 
     def on_show(self) -> None:
         """Shows the mesh in grey, and the path."""
         self.window.show()
         self.draw()
+        if self.path is None and len(self.places) > 1:  # of a page that was loaded again
+            self.follow()
 
     def on_hide(self) -> None:
         """Takes the path away and stops playing."""
@@ -66,9 +72,14 @@ class PathPanel(Panel):
         self.window.scene.clear("/path")
 
     def begin(self) -> None:
+        """Forgets the places."""
+        self.places.clear()
+        self.hide()
+
+    def hide(self) -> None:
         """Forgets the path."""
         self.pause()
-        self.places, self.path = [], None
+        self.path = None
         self.about.content, self.grid.visible = ASK[self.how.value], False
         self.play.disabled = self.frame.disabled = True
         self.window.scene.clear("/path")

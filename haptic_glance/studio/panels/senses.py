@@ -29,7 +29,6 @@ class SensesPanel(Panel):
     def build(self, gui: viser.GuiApi) -> None:
         """Adds the controls."""
         self.network: Trained | None = None
-        self.place: Places | None = None
         self.about = gui.add_markdown(ASK)
         self.images = gui.add_html("", visible=False)
         self.seen = gui.add_html("", visible=False)
@@ -39,9 +38,13 @@ class SensesPanel(Panel):
         for control in (self.dark, self.dead):
             self.window.on(control.on_update, self.again)
 
+    @property
+    def place(self) -> Places | None:
+        """The place that was touched."""
+        return self.window.session.kept.get(self.title)
+
     def on_mesh(self) -> None:
-        """Nothing was sensed yet."""
-        self.place = None
+        """Nothing of this mesh is shown yet."""
         self.images.visible = self.seen.visible = self.felt.visible = False
 
     def on_show(self) -> None:
@@ -56,6 +59,7 @@ class SensesPanel(Panel):
     def loaded(self, network: Trained) -> None:
         """The network is there."""
         self.network, self.about.content = network, ASK
+        self.again()
 
     def on_hide(self) -> None:
         """Takes the array away."""
@@ -63,7 +67,8 @@ class SensesPanel(Panel):
 
     def on_click(self, hit: Hit) -> None:
         """Touches there."""
-        self.place = place_at(as_surface(self.window.session.on_table.mesh), hit.position[None], np.array([hit.face]))
+        surface = as_surface(self.window.session.on_table.mesh)
+        self.window.session.kept[self.title] = place_at(surface, hit.position[None], np.array([hit.face]))
         self.again()
 
     def again(self) -> None:
