@@ -41,6 +41,8 @@ html_math_renderer = "mathml"
 html_title = "Haptic Glance"
 html_static_path = ["_static"]
 html_css_files = ["style.css"]
+html_js_files = ["names.js"]
+html_show_search_summary = False  # it would fetch each page, which a browser refuses to pages of file://
 html_show_sourcelink = html_copy_source = False
 html_sidebars = {
     name: [] for name in ("index", "first_steps", "glossary", "judging", "design", "comparison", "artifact")

@@ -1,0 +1,8 @@
+// Names and roles for a screen reader, which the theme, the gallery and long signatures lack.
+addEventListener("DOMContentLoaded", () => {
+  for (const toggle of document.querySelectorAll("summary:has(.toctree-toggle)"))
+    toggle.setAttribute("aria-label", `Pages of ${toggle.closest("li").querySelector("a").textContent.trim()}`);
+  for (const link of document.querySelectorAll(".sphx-glr-thumbcontainer a.reference"))
+    link.setAttribute("aria-label", link.textContent);
+  for (const part of document.querySelectorAll("dt.sig > dl, dt.sig > dl > dd")) part.setAttribute("role", "presentation");
+});
