@@ -4,5 +4,8 @@ addEventListener("DOMContentLoaded", () => {
     toggle.setAttribute("aria-label", `Pages of ${toggle.closest("li").querySelector("a").textContent.trim()}`);
   for (const link of document.querySelectorAll(".sphx-glr-thumbcontainer a.reference"))
     link.setAttribute("aria-label", link.textContent);
-  for (const part of document.querySelectorAll("dt.sig > dl, dt.sig > dl > dd")) part.setAttribute("role", "presentation");
+  for (const list of document.querySelectorAll("dt.sig > dl"))
+    list.insertAdjacentHTML("afterbegin", '<dt class="visually-hidden">Parameters</dt>');
+  for (const formula of document.querySelectorAll("div.math"))
+    if (formula.scrollWidth > formula.clientWidth) formula.tabIndex = 0; // so that the keyboard scrolls it
 });

@@ -89,7 +89,7 @@ def guess(library: Library, meshes: Mapping[str, Mesh], table: Specimen | None, 
     name = str(random.choice(library.names)) if table is None else table.name
     specimen = table or Specimen(meshes[name], name)
     if table is None and not library.placed:
-        turn = Rotation.random(random_state=random)
+        turn = Rotation.random(None, random)
         specimen = Specimen(replace(meshes[name], vertices=turn.apply(meshes[name].vertices)), name)
     places = random if table is None else rng(0, name)
     exploration = Exploration(library, as_surface(specimen.mesh), places)
