@@ -91,7 +91,8 @@ def compile_all() -> None:
     """Compiles the kernels from the last one to the first, except those that another process compiles or has kept."""
     import numba
 
-    sys.modules["scipy.linalg"] = None  # type: ignore[assignment]  # numba would look for BLAS there, for half a second
+    # numba would look for BLAS there, which no kernel needs, and the import takes as long as a kernel.
+    sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
     for package in {str(Path(file).parent) for file, _, _ in KERNELS}:
         _without_imports(package)
     for file, name, types in reversed(KERNELS):
