@@ -20,10 +20,13 @@ PACKAGE = Path(__file__).parent
 SURFACE = "HalfEdgeMesh"
 # The kernels in the order in which the demo comes to them: file, name, types of the arguments as numba spells them.
 KERNELS = [
-    ("look/glance/cells", "cut", "f8[:,:,::1],"),
-    ("look/glance/cells", "_seen", "f8[:,::1], f8[:,::1], f8[:,:,::1], i8[::1]"),
+    ("look/glance/cells", "_cut", "f8[:,:,::1], i8, f8[:,::1], i8, f8[:,:,::1], i8[::1], i8[::1]"),
+    (
+        "look/glance/cells", "_seen",
+        "f8[:,::1], f8[:,::1], f8[:,:,::1], i8[::1], f8[:,::1], f8[:,::1], i8[:,::1], f8[::1]",
+    ),
     ("look/views/kernels", "rasterise", "f8[::1,:], i8[:,::1], i8, i8, i4[:,:], f8[:,::1]"),
-    ("mesh/components", "graph_components", "i8[::1], i8[::1], i8"),
+    ("mesh/components", "_join", "i8[::1], i8[::1], i8[::1], i4[::1]"),
     (
         "look/views/kernels", "shade_pixels",
         "f8[::1,:], i8[:,::1], f8[:,::1], i8[:,::1], f8[:,::1], u1[:,::1], f8, f8[::1], f8[::1], i8, i8, i4[:,:],"
@@ -41,15 +44,14 @@ KERNELS = [
     ("lod/kernels/mesh", "_name_corners", "i4[::1], b1[::1], i4[::1], i8, i8[::1], i8[::1], i8[::1]"),
     ("lod/kernels/mesh", "_count", "f8[:,::1], i4[::1], i4[::1], f8, f8, f8[:,::1]"),
     ("lod/kernels/mesh", "_add_volumes", "f8[:,::1], i4[::1], i4[::1], i4[::1], i4[::1], f8[::1], b1[::1]"),
-    ("mesh/kernels/nearest", "bounding_box", "f8[:,::1], i8[:,::1]"),
-    ("mesh/kernels/nearest", "planes_of", "f8[:,::1], i8[:,::1], f8[::1]"),
-    ("mesh/kernels/nearest", "cell_boxes", "f8[:,::1], i8[:,::1], f8[::1], f8, i8[::1]"),
-    ("mesh/kernels/nearest", "fill_cells", "i4[:,::1], i8, i8[::1]"),
+    ("mesh/kernels/nearest", "_fill_planes", "f8[:,::1], i8[:,::1], f8[::1], f8[:,::1], f8[::1]"),
+    ("mesh/kernels/nearest", "_fill_boxes", "f8[:,::1], i8[:,::1], f8[::1], f8, i8[::1], i4[:,::1]"),
+    ("mesh/kernels/nearest", "_sort_into_cells", "i4[:,::1], i8[::1], i4[::1], i4[::1]"),
     (
-        "mesh/kernels/nearest", "search",
-        "f8[:,::1], f8[:,::1], i8[:,::1], Tuple((i4[::1], i4[::1], f8[::1], f8, i8[::1])), f8[:,::1], f8",
+        "mesh/kernels/nearest", "_search",
+        "f8[:,::1], f8[:,::1], i8[:,::1], i4[::1], i4[::1], f8[::1], f8, i8[::1], f8[:,::1], f8, f8[::1], i8[::1]",
     ),
-    ("mesh/kernels/planes", "corner_weights", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1]"),
+    ("mesh/kernels/planes", "_weigh", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1], f8[:,::1]"),
     ("lod/kernels/refit", "_refit", f"{SURFACE}, f8[:,::1], i4[::1], f8[::1], i8, f8, f8[:,::1], i4[::1]"),
 ]  # fmt: skip
 
@@ -89,6 +91,8 @@ def compile_all() -> None:
     """Compiles the kernels from the last one to the first, except those that another process compiles or has kept."""
     import numba
 
+    # numba would look for BLAS there, which no kernel needs, and the import takes as long as a kernel.
+    sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
     for package in {str(Path(file).parent) for file, _, _ in KERNELS}:
         _without_imports(package)
     for file, name, types in reversed(KERNELS):

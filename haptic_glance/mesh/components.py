@@ -4,31 +4,33 @@ import numpy as np
 
 from haptic_glance.base.jit import helper, kernel_of
 
-kernel = kernel_of(__file__)
+kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as all else here
+
+
+def graph_components(tails: np.ndarray, heads: np.ndarray, count: int) -> tuple[np.ndarray, int]:
+    """(labels (count,) i4, number of components) of a graph with edges tails (e,) to heads (e,)."""
+    label = np.empty(count, dtype=np.int32)
+    return label, _join(tails, heads, np.arange(count), label)
 
 
 @kernel
-def graph_components(tails: np.ndarray, heads: np.ndarray, count: int) -> tuple[np.ndarray, int]:
-    """(labels (count,) i4, number of components) of a graph with edges tails (e,) to heads (e,)."""
-    parent = np.empty(count, dtype=np.int64)
-    for v in range(count):  # numba compiles np.arange for half as long as all else here
-        parent[v] = v
+def _join(tails, heads, parent, label):
+    """Fills the labels and returns the number of components. parent: 0, 1, 2, ..."""
     for edge in range(len(tails)):
         a, b = _root(parent, tails[edge]), _root(parent, heads[edge])
         if a < b:
             parent[b] = a
         else:
             parent[a] = b
-    label = np.empty(count, dtype=np.int32)
     found = 0
-    for v in range(count):
+    for v in range(len(label)):
         root = _root(parent, v)
         if root == v:
             label[v] = found
             found += 1
         else:
             label[v] = label[root]
-    return label, found
+    return found
 
 
 @helper

@@ -4,29 +4,42 @@ Visibility counts the directions from which a point is seen, and how much the su
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from haptic_glance.base.jit import helper, kernel_of
 
-from .samples import Samples
+if TYPE_CHECKING:
+    from .samples import Samples
 
-kernel = kernel_of(__file__)
+kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as a loop
 CORNERS, DEPTH = 24, 96  # a triangle that six walls have cut has nine corners; halving 2^30 cells along three axes
 ROUNDING = 1e-9  # in units of a cell: what lies this near to a wall lies on it
 
 
-@kernel
 def cut(corners: np.ndarray) -> np.ndarray:
     """(p, 8) face, cell (3), area and centroid (3) of the pieces of triangles (m, 3, 3).
 
     The walls are the planes on which a coordinate is a whole number.
     """
     rows = np.empty((4 * len(corners) + 64, 8))
-    stack, counts, cell = np.empty((DEPTH, CORNERS, 3)), np.empty(DEPTH, dtype=np.int64), np.empty(3, dtype=np.int64)
-    found = np.int64(0)  # as `top`: numba compiles what they are passed to anew for a plain 0
-    for f in range(len(corners)):
-        counts[0], top = 3, np.int64(0)
+    scratch = np.empty((DEPTH, CORNERS, 3)), np.empty(DEPTH, dtype=np.int64), np.empty(3, dtype=np.int64)
+    face, found = _cut(corners, 0, rows, 0, *scratch)
+    while face < len(corners):
+        rows = np.concatenate([rows, np.empty_like(rows)])
+        face, found = _cut(corners, face, rows, found, *scratch)
+    return rows[:found]
+
+
+@kernel
+def _cut(corners, face, rows, found, stack, counts, cell):
+    """Fills the rows from row `found` on with the pieces of the triangles from `face` on.
+
+    Returns (the first triangle whose pieces no longer fit, the number of rows). stack, counts, cell: scratch.
+    """
+    for f in range(face, len(corners)):
+        begun, counts[0], top = found, 3, np.int64(0)  # numba compiles what `top` is passed to anew for a plain 0
         for i in range(3):
             for k in range(3):
                 stack[0, i, k] = corners[f, i, k]
@@ -46,17 +59,13 @@ def cut(corners: np.ndarray) -> np.ndarray:
                 top += 1
                 continue
             if found == len(rows):
-                more = np.empty((2 * found, 8))
-                for i in range(found):  # numba compiles the assignment of a slice, with its error messages, for 2 s
-                    for k in range(8):
-                        more[i, k] = rows[i, k]
-                rows = more
+                return f, begun
             rows[found, 0] = f
             for k in range(3):
                 rows[found, 1 + k] = cell[k]
             _moments(stack, top, count, rows, found)
             found, top = found + 1, top - 1
-    return rows[:found]
+    return len(corners), found
 
 
 @helper
@@ -108,7 +117,7 @@ NEAR, FAR = 1.8, 2.6  # of the spacing, more on slopes: what is less far behind 
 STEEP = 0.05  # cosine at which a slope counts as no steeper
 
 
-def visibility(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def visibility(samples: "Samples") -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """(share of directions that see a point, how much it faces those from the side, from above, from below), each (s,).
 
     A depth picture of the points is drawn from each direction, without a mesh. The directions belong to the object's
@@ -120,7 +129,9 @@ def visibility(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray, np
     pictures = np.stack([right, np.cross(eyes, right), eyes], axis=1) @ samples.axes
     group = np.digitize(eyes[:, 2], [-SIDE, SIDE])
     places = (samples.points - samples.middle) / samples.spacing
-    found = _seen(places, samples.normals, pictures, group)
+    count, width = len(places), 2 * int(np.sqrt((places**2).sum(axis=1).max(initial=0)) / PIXEL) + 5
+    found, scratch = np.zeros((4, count)), (np.empty((count, 2), dtype=np.int64), np.empty(count))
+    _seen(places, samples.normals, pictures, group, found, np.empty((width, width)), *scratch)
     found[:3] /= np.bincount(group)[:, None]
     below, side, above, seen = found
     return seen / len(eyes), side, above, below
@@ -135,17 +146,13 @@ def _directions():
 
 
 @kernel
-def _seen(places, normals, pictures, group):
-    """(4, s) sums of the cosine between normal and direction where it sees the point, and the number that see it.
+def _seen(places, normals, pictures, group, found, depth, pixels, near):
+    """Adds to found (4, s) the cosine between normal and direction where it sees the point, and 1 for each that does.
 
-    The sums are over the directions of each of three groups; pictures (d, 3, 3) look along their third row.
+    The sums are over the directions of each of three groups; pictures (d, 3, 3) look along their third row. depth: a
+    picture, as wide as it is high; pixels (s, 2), near (s,): scratch.
     """
-    count, farthest = len(places), 0.0
-    for i in range(count):
-        farthest = max(farthest, places[i, 0] ** 2 + places[i, 1] ** 2 + places[i, 2] ** 2)
-    half = int(math.sqrt(farthest) / PIXEL) + 2
-    depth = np.empty((2 * half + 1, 2 * half + 1))
-    pixels, near, found = np.empty((count, 2), dtype=np.int64), np.empty(count), np.zeros((4, count))
+    count, half = len(places), len(depth) // 2
     for d in range(len(pictures)):
         for row in range(len(depth)):
             for column in range(len(depth)):
@@ -170,4 +177,3 @@ def _seen(places, normals, pictures, group):
                 shown = min(max(shown, 0.0), 1.0)
                 found[group[d], i] += shown * cosine
                 found[3, i] += shown
-    return found

@@ -4,7 +4,8 @@ import numpy as np
 
 from haptic_glance.base.jit import helper, kernel_of
 
-kernel = kernel_of(__file__)
+kernel = kernel_of(__file__, _nrt=False)
+allocating_kernel = kernel_of(__file__)  # counts references to the arrays that it makes
 
 FLAT = 1e-12  # square pixels: a face seen from its edge has no single crossing point and counts as missed
 SLACK = 1e-9  # of a face: a pixel on the edge of two faces belongs to both, whichever way rounding goes
@@ -107,7 +108,7 @@ def shade_pixels(
                 rgb[i, j, channel] = shade
 
 
-@kernel
+@allocating_kernel
 def background_colour(rgb: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, bool]:
     """((3,) u1 the first colour of rgb (h, w, 3) u1 off the mask (h, w), whether all pixels there have it).
 
@@ -127,7 +128,7 @@ def background_colour(rgb: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, bo
     return colour, True
 
 
-@kernel
+@allocating_kernel
 def fold_depth(depth: np.ndarray, inside: np.ndarray, behind: float, step: float) -> np.ndarray:
     """(4, h * w) u1: the mixed second differences of a depth map in steps, near zero on a smooth surface.
 
@@ -149,7 +150,7 @@ def fold_depth(depth: np.ndarray, inside: np.ndarray, behind: float, step: float
     return planes
 
 
-@kernel
+@allocating_kernel
 def unfold_depth(planes: np.ndarray, inside: np.ndarray, behind: float, step: float, depth: np.ndarray) -> None:
     """Writes the depths that fold_depth folded to the pixels inside of depth (h, w) f4."""
     height, width = depth.shape

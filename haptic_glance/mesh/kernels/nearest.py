@@ -11,7 +11,7 @@ import numpy as np
 
 from haptic_glance.base.jit import helper
 
-from .planes import NUMBERS, allocating_kernel, bound_to, set_planes, square_to
+from .planes import NUMBERS, bound_to, kernel, set_planes, square_to
 
 # Grid: starts and entries of the cells (see fill_cells), lower corner, width and counts of the cells.
 Grid = tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
@@ -99,20 +99,23 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
     return best, face, sure
 
 
-@allocating_kernel
 def search(
     points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, grid: Grid, planes: np.ndarray, far: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """(squared distances (k,), faces (k,)) of the nearest faces; face -1 where all are more than `far` cells away."""
-    starts, entries, low, cell, shape = grid
     squares, found = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
-    for i in range(len(points)):
-        best, face, sure = _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, -1.0, far)
-        squares[i], found[i] = best, face if sure else -1
+    _search(points, vertices, faces, *grid, planes, far, squares, found)
     return squares, found
 
 
-@allocating_kernel
+@kernel
+def _search(points, vertices, faces, starts, entries, low, cell, shape, planes, far, squares, found):
+    """Fills what `search` returns."""
+    for i in range(len(points)):
+        best, face, sure = _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, -1.0, far)
+        squares[i], found[i] = best, face if sure else -1
+
+
 def farthest(
     points: np.ndarray,
     corners: np.ndarray,
@@ -127,9 +130,14 @@ def farthest(
 
     Not searched are points more than `far` cells away.
     """
-    starts, entries, low, cell, shape = grid
-    done = np.zeros(len(points), dtype=np.bool_)
-    away = np.empty(len(points), dtype=np.int64)
+    done, away = np.zeros(len(points), dtype=np.bool_), np.empty(len(points), dtype=np.int64)
+    square, count = _farthest(points, corners, vertices, faces, *grid, planes, square, far, done, away)
+    return square, away[:count]
+
+
+@kernel
+def _farthest(points, corners, vertices, faces, starts, entries, low, cell, shape, planes, square, far, done, away):
+    """`farthest`, but for the number of `away` in the place of those ids. done: no point yet."""
     count = 0
     for f in range(len(corners)):
         for corner in range(3):
@@ -145,38 +153,43 @@ def farthest(
                 count += 1
             elif best > square:
                 square = best
-    return square, away[:count]
+    return square, count
 
 
-@allocating_kernel
 def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of the box around all faces."""
-    low, high = np.empty(3), np.empty(3)
-    for axis in range(3):
-        low[axis], high[axis] = np.inf, -np.inf
-    for f in range(len(faces)):
-        for corner in range(3):
-            for axis in range(3):
-                value = vertices[faces[f, corner], axis]
-                low[axis], high[axis] = min(low[axis], value), max(high[axis], value)
-    return low, high
+    used = np.zeros(len(vertices), dtype=np.bool_)
+    used[faces] = True
+    corners = vertices[used]
+    return corners.min(axis=0), corners.max(axis=0)
 
 
-@allocating_kernel
 def planes_of(vertices: np.ndarray, faces: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The planes (m, 16) of all faces, relative to the corner `low`, and twice their areas (m,)."""
     planes, areas = np.empty((len(faces), NUMBERS)), np.empty(len(faces))
-    for f in range(len(faces)):
-        areas[f] = set_planes(vertices, faces[f, 0], faces[f, 1], faces[f, 2], low, planes, f)
+    _fill_planes(vertices, faces, low, planes, areas)
     return planes, areas
 
 
-@allocating_kernel
+@kernel
+def _fill_planes(vertices, faces, low, planes, areas):
+    """Fills what `planes_of` returns."""
+    for f in range(len(faces)):
+        areas[f] = set_planes(vertices, faces[f, 0], faces[f, 1], faces[f, 2], low, planes, f)
+
+
 def cell_boxes(
     vertices: np.ndarray, faces: np.ndarray, low: np.ndarray, cell: float, shape: np.ndarray
 ) -> tuple[np.ndarray, int]:
     """(m, 6) i4 first and last cell of each face along the axes, and the number of cells in all these boxes."""
-    boxes, per_unit, total = np.empty((len(faces), 6), dtype=np.int32), 1 / cell, 0
+    boxes = np.empty((len(faces), 6), dtype=np.int32)
+    return boxes, _fill_boxes(vertices, faces, low, 1 / cell, shape, boxes)
+
+
+@kernel
+def _fill_boxes(vertices, faces, low, per_unit, shape, boxes):
+    """Fills the boxes of `cell_boxes`, and returns the number of cells."""
+    total = 0
     for f in range(len(faces)):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         cells = 1
@@ -187,14 +200,20 @@ def cell_boxes(
             boxes[f, axis], boxes[f, axis + 3] = first, last
             cells *= last - first + 1
         total += cells
-    return boxes, total
+    return total
 
 
-@allocating_kernel
 def fill_cells(boxes: np.ndarray, total: int, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(start of each cell's faces, and one more at the end; the faces, cell by cell)."""
+    starts, entries = np.zeros(shape.prod() + 2, dtype=np.int32), np.empty(total, dtype=np.int32)
+    _sort_into_cells(boxes, shape, starts, entries)
+    return starts[:-1], entries
+
+
+@kernel
+def _sort_into_cells(boxes, shape, starts, entries):
+    """Fills what `fill_cells` returns. starts: zeros, one more than are needed."""
     sx, sy = shape[0], shape[1]
-    starts = np.zeros(sx * sy * shape[2] + 2, dtype=np.int32)
     for f in range(len(boxes)):
         for z in range(boxes[f, 2], boxes[f, 5] + 1):
             for y in range(boxes[f, 1], boxes[f, 4] + 1):
@@ -203,7 +222,6 @@ def fill_cells(boxes: np.ndarray, total: int, shape: np.ndarray) -> tuple[np.nda
                     starts[x] += 1
     for k in range(1, len(starts)):
         starts[k] += starts[k - 1]
-    entries = np.empty(total, dtype=np.int32)
     for f in range(len(boxes)):
         for z in range(boxes[f, 2], boxes[f, 5] + 1):
             for y in range(boxes[f, 1], boxes[f, 4] + 1):
@@ -211,4 +229,3 @@ def fill_cells(boxes: np.ndarray, total: int, shape: np.ndarray) -> tuple[np.nda
                 for x in range(row + boxes[f, 0], row + boxes[f, 3] + 1):
                     entries[starts[x]] = f
                     starts[x] += 1
-    return starts[:-1], entries

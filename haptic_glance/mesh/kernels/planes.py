@@ -12,7 +12,7 @@ import numpy as np
 from haptic_glance.base.jit import helper, kernel_of
 
 Id = int | np.integer
-allocating_kernel = kernel_of(__file__, forceinline=True)
+kernel = kernel_of(__file__, forceinline=True, _nrt=False)  # makes no array
 NUMBERS = 16  # of the planes
 SLIM = 1e-3  # height of a face over the position of its foot: below, the axes are orthogonalised again
 SLIVER = 1e-12  # height of a face over its length: a flatter face has no interior
@@ -115,10 +115,16 @@ def square_to(
     return min(best, _square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
 
 
-@allocating_kernel
 def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """(k, 3) barycentric weights, 0 to 1, of the points of faces[owners] (k,) nearest to points (k, 3)."""
     weights = np.empty((len(points), 3))
+    _weigh(points, owners, vertices, faces, weights)
+    return weights
+
+
+@kernel
+def _weigh(points, owners, vertices, faces, weights):
+    """Fills the weights of `corner_weights`."""
     for i in range(len(points)):
         a, b, c = faces[owners[i], 0], faces[owners[i], 1], faces[owners[i], 2]
         (ux, uy, uz), (wx, wy, wz), length, cx, cy = _frame_of(vertices, a, b, c)
@@ -142,4 +148,3 @@ def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray,
             if square_distance < best:
                 best = square_distance
                 weights[i, k], weights[i, after], weights[i, (k + 2) % 3] = 1 - t, t, 0.0
-    return weights
