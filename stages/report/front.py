@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
+from .cells import CLAIMS, PREFIXES, filled
 from .drawing import CYCLE, INK, SETTINGS, plt
 from .marks import vector
 from .page import box, part, prose
-from .tables import CLAIMS, PREFIXES, filled, with_interval
+from .tables import with_interval
 from .verdict import DEPENDS, UNTESTABLE, counts, sentences
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other

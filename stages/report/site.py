@@ -9,11 +9,11 @@ from typing import Any
 
 from haptic_glance.base.files import write_text
 
+from .cells import CLAIMS
 from .claims_page import claims_main, findings
 from .front import findings_html, questions, questions_html
 from .items import Figure, Table
 from .page import box, folded, image, lacks_cells, part, prose, script_json
-from .tables import CLAIMS
 from .verdict import counts
 from .words import dataset_text
 
