@@ -35,10 +35,9 @@ from .effects import sets_of
 from .items import Figure, Table
 from .page import WORDS, folded, part, prose, script_json
 from .records import command
-from .results import NotRun, Results, there
+from .results import NotRun, Results, dataset_text, there
 from .tables import with_interval
 from .verdict import counted, open_by_cause
-from .words import dataset_text
 
 CHAPTERS = {  # start of a claim's section -> what it is about
     "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",
