@@ -1,4 +1,4 @@
-"""The pages: a front page with five findings and what people ask, and a page a topic below reports/site; all work offline."""
+"""The pages: a front page with findings and questions, and a page a topic below reports/site. All work offline."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -205,7 +205,7 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
     axes.legend(**where, title="power of the growth p [95 %]", title_fontsize=8, alignment="left")
 
 
-OURS, OTHER = "fast", "meshoptimizer"
+OTHER = "meshoptimizer"
 Interval = tuple[float, float, float]
 
 

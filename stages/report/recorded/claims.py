@@ -26,7 +26,7 @@ SCALED = (
 NO_SVM = reading("without the SVM", where={"classifier": ("knn", "decision_tree", "naive_bayes", "deep_learning")})
 ALL = {"metric": "accuracy", "split": Split.RANDOM} | SCALE  # the mean of all classifiers
 KNN = {"group": "all", "classifier": "knn", "metric": "accuracy"}
-TOUCH_PHRASES = {
+OF_SETS = {
     **{("group", name): words for name, words in CLASSES.items()},
     **{("method", name): words for name, words in SELECTIONS.items()},
     ("method", "selected"): "selection before the split, as in the thesis,",
@@ -49,7 +49,7 @@ touches = partial(Claim, section="T4.2.4", stage="recorded", dataset="pressure_i
 def on_set(group: str, **fields: Any) -> Claim:
     """A claim on one set of classes; of those that are drawn each repetition has its own."""
     drawn = group.endswith("drawn")
-    phrases = TOUCH_PHRASES | ({("over", "repetition"): "sets of classes"} if drawn else {})
+    phrases = OF_SETS | ({("over", "repetition"): "sets of classes"} if drawn else {})
     where = {"group": group} | ALL | fields.pop("where", {})
     return touches(where=where, shared=0.0 if drawn else None, phrases=phrases, **fields)
 
@@ -76,7 +76,7 @@ TOUCHES = [
                first={"classifier": "knn"}, second={"classifier": highest_of()}, readings=SCALED)
         for key, group in (("real_knn_best_six", "six_drawn"), ("real_knn_best_all", "all"))
     ),
-    touches(key="real_blocked", section="ours", sentence="A random hold-out of real touches flatters.", phrases=TOUCH_PHRASES,
+    touches(key="real_blocked", section="ours", sentence="A random hold-out of real touches flatters.", phrases=OF_SETS,
             where=KNN | SCALE | {"method": "all"}, first={"split": Split.RANDOM}, second={"split": Split.BLOCKS}),
     *(
         touches(key=f"simulation_helps_{count}", section="ours", stage="simulated_to_real", phrases=OF_TEN,
@@ -104,7 +104,7 @@ ANY = {"mode": "frozen"}  # of the networks
 OTHER_NETWORKS = highest_of(*(network for network in PRINTED if network != "resnet50"))
 SEEN, UNSEEN = {"weights": "imagenet"}, {"weights": "random"}
 ACCURACY, GUESSING = {"metric": "accuracy"}, {"metric": highest_of("chance", "majority")}
-NETWORK_PHRASES = {
+OF_SIGHT = {
     **{("data", data): words.partition(", ")[2] for data, words in DATA.items()},
     **{("split", split): words for split, words in SPLITS.items()},
     ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
@@ -121,7 +121,7 @@ def over_commonest(results: Results, claim: Claim) -> pd.Series:
     return side(results, claim, claim.first, None) - commonest(results)
 
 
-def on_settings(
+def claims(
     key: str, sentence: str, first: Side, second: Side, names: Iterable[str] = SETTINGS, where: Side = FROZEN,
     **fields: Any,
 ) -> Iterator[Claim]:  # fmt: skip
@@ -131,7 +131,7 @@ def on_settings(
         common = {"data": data, "split": split, **ACCURACY, **where}
         said = {"section": "T5.4", "over": ("item",) if split in OVER else ("repetition",)} | fields
         yield Claim(
-            key=f"recorded_{key}_{name}", sentence=sentence, stage=STAGE, first=first, second=second, phrases=NETWORK_PHRASES,
+            key=f"recorded_{key}_{name}", sentence=sentence, stage=STAGE, first=first, second=second, phrases=OF_SIGHT,
             dataset=SETS_OF.get(data, "biotac_grasps"),
             where={column: value for column, value in common.items() if column not in first}, **said,
         )  # fmt: skip
@@ -140,33 +140,33 @@ def on_settings(
 SHARED = "Vision and touch share features:"
 BETTER = "Frozen visual filters tell recorded touches apart better than guessing."
 NETWORKS = [
-    *on_settings("frozen_over_guessing", BETTER, ACCURACY, GUESSING, [name for name in SETTINGS if name != SLIP]),
-    *on_settings("frozen_over_guessing", BETTER, ACCURACY, {"metric": "majority"}, [SLIP], statistic="over_commonest"),
-    *on_settings("frozen_by_guessing", "On a pressure array frozen visual filters are hardly better than guessing.",
+    *claims("frozen_over_guessing", BETTER, ACCURACY, GUESSING, [name for name in SETTINGS if name != SLIP]),
+    *claims("frozen_over_guessing", BETTER, ACCURACY, {"metric": "majority"}, [SLIP], statistic="over_commonest"),
+    *claims("frozen_by_guessing", "On a pressure array frozen visual filters are hardly better than guessing.",
             GUESSING, ACCURACY, ARRAY, margin=GUESS,
             note="the thesis's own largest lead; 28 x 50 cells, the thesis has 16 x 16"),
-    *on_settings("instant_by_guessing", "One reading of 7 x 3 cells is hardly better than guessing what is grasped.",
+    *claims("instant_by_guessing", "One reading of 7 x 3 cells is hardly better than guessing what is grasped.",
             GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM), note="another hand than BiGS's"),
-    *on_settings("series_over_instant", "A series of readings tells grasped objects apart better than one of 7 x 3 cells.",
+    *claims("series_over_instant", "A series of readings tells grasped objects apart better than one of 7 x 3 cells.",
             {"data": "schunk"}, {"data": "schunk_coarse"}, HAND, shared=shared_by(Split.RANDOM),
             note="another hand than BiGS's"),
-    *on_settings("seen_over_random_frozen", f"{SHARED} frozen filters learned by sight help with recorded touches.",
+    *claims("seen_over_random_frozen", f"{SHARED} frozen filters learned by sight help with recorded touches.",
             SEEN, UNSEEN),
-    *on_settings("seen_over_random_networks", f"{SHARED} frozen filters learned by sight help, whichever network.",
+    *claims("seen_over_random_networks", f"{SHARED} frozen filters learned by sight help, whichever network.",
             SEEN, UNSEEN, ARRAY, ANY, over=("method",), within=("repetition",), note="each network that was run"),
-    *on_settings("seen_over_random_tuned", f"{SHARED} sight is a better start for recorded touches.",
+    *claims("seen_over_random_tuned", f"{SHARED} sight is a better start for recorded touches.",
             SEEN, UNSEEN, where=TUNED),
-    *on_settings("tuned_over_frozen", "Fine-tuning on recorded touches beats frozen filters.",
+    *claims("tuned_over_frozen", "Fine-tuning on recorded touches beats frozen filters.",
             {"mode": "finetuned"}, {"mode": "frozen"}, note="tuned in 600 steps at most, of fingertips two passes"),
-    *on_settings("resnet_best", "ResNet50 is the best of the networks on recorded touches.",
+    *claims("resnet_best", "ResNet50 is the best of the networks on recorded touches.",
             {"method": "resnet50"}, {"method": OTHER_NETWORKS}, ARRAY,
             note="of those that were run; the highest in these tests, which is hard on ResNet50"),
-    *on_settings("frozen_over_features", "Frozen visual filters beat hand-made features on recorded touches.",
+    *claims("frozen_over_features", "Frozen visual filters beat hand-made features on recorded touches.",
             {"method": NETWORK}, {"method": CLASSICAL[0], "mode": None, "weights": None}, section="ours"),
 ]  # fmt: skip
 
 
-SERIES_PHRASES = {
+OF_SERIES = {
     **{("group", group): words for group, words in GROUPS.items()},
     ("method", OURS): "linear discriminant of bins", ("method", "linear_svm"): "linear SVM of bins",
     ("method", "knn"): "kNN", ("heard", 0.25): "the first quarter of a touch", ("heard", 1.0): "all of it",
@@ -180,7 +180,7 @@ def on_events(key: str, sentence: str, **fields: Any) -> Claim:
     """A claim on touch events, its pairs the objects."""
     return Claim(
         key=f"events_{key}", section="ours", sentence=sentence, stage="recorded", dataset=SET, over=("item",),
-        phrases=SERIES_PHRASES, **fields,
+        phrases=OF_SERIES, **fields,
     )  # fmt: skip
 
 
@@ -214,6 +214,6 @@ SERIES = [
         key="grasp_series_over_components", section="ours", stage="recorded", dataset="schunk", over=("item",),
         sentence="A linear discriminant of binned pressure recognises more grasps than kNN on twelve components.",
         where={"part": "training", "metric": "accuracy", "split": Split.OBJECTS}, first={"method": OURS},
-        second={"method": "knn"}, phrases={**SERIES_PHRASES, ("over", "item"): "grasps"},
+        second={"method": "knn"}, phrases={**OF_SERIES, ("over", "item"): "grasps"},
     ),
 ]  # fmt: skip

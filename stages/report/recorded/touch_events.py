@@ -131,7 +131,7 @@ def _varied(results: Results) -> Iterator[tuple[str, pd.DataFrame]]:
         yield str(kind[0]), own.assign(level=own["severity"])
 
 
-GRASPS, OURS = "schunk", "discriminant"
+GRASPS = "schunk"
 BEST_GRASPS = Ranking("grasps left out in turn, %")
 
 
