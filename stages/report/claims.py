@@ -71,6 +71,15 @@ def reading(name: str, **changes: Any) -> Reading:
     return Reading(name, changes)
 
 
+SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings of T4.2.4:
+SCALED = (  # "The entire data is standardized beforehand using z-transform", and gamma 1 at its own scale
+    reading("z-transform of all data beforehand", where={"scaling": "beforehand"}),
+    reading("all data from 0 to 1", where={"scaling": "min_max"}),
+)
+ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
+NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """One testable sentence: the paired differences of two sides of the rows of a stage, positive as it is claimed.

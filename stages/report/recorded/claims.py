@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
-from stages.report.claims import Claim, Side, highest_of, reading
+from stages.report.claims import NO_SVM, SCALE, SCALED, Claim, Side, highest_of, reading
 from stages.report.effects import side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED
 from stages.report.results import Results
@@ -18,12 +18,6 @@ from .rows import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
 from .touch_events import GROUPS, OURS, SET, SPIKING
 
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
-SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings
-SCALED = (
-    reading("z-transform of all data beforehand", where={"scaling": "beforehand"}),
-    reading("all data from 0 to 1", where={"scaling": "min_max"}),
-)
-NO_SVM = reading("without the SVM", where={"classifier": ("knn", "decision_tree", "naive_bayes", "deep_learning")})
 ALL = {"metric": "accuracy", "split": Split.RANDOM} | SCALE  # the mean of all classifiers
 KNN = {"group": "all", "classifier": "knn", "metric": "accuracy"}
 OF_SETS = {
