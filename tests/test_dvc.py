@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from stages.report.headlines import HEADLINES, write_headlines
+from stages.report.records import HEADLINES, write_headlines
 
 pytest.importorskip("dvc")
 ROOT = Path(__file__).parents[1]

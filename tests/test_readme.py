@@ -1,6 +1,5 @@
 """README.md: short, and right about files, commands, code and figures."""
 
-import csv
 import os
 import re
 import subprocess
@@ -13,6 +12,7 @@ import pytest
 import stages
 from haptic_glance.__main__ import OWN
 from stages.compose import groups
+from stages.report.cells import number_of, rows_of
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -20,30 +20,8 @@ CODE = re.compile(r"^```(\w+)\n(.*?)^```$", re.M | re.S)
 LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)\s]+)(?: \"([^\"]*)\")?\)")
 # 45 [31, 60]: a figure with its interval
 FIGURE = re.compile(r"([+-]?[\d,.]+) \[([+-]?[\d,.]+), ([+-]?[\d,.]+)\]")
-# The title of a link to a CSV names the cells behind the figure: "scene=shelf: 100*saved 100*saved_low 100*saved_high"
-CELLS = re.compile(r"^((?:\w+=\S+ ?)+): (\S+) (\S+) (\S+)$")
-PREFIXES = {  # before a column's name -> what is shown of its number
-    "": lambda number: number, "-": lambda number: -number, "100*": lambda number: 100 * number,
-    # of a difference in % of the mean of both sides: how many times the second the first has, and % less of it
-    "times:": lambda number: (200 - number) / (200 + number), "less:": lambda number: 200 * number / (200 + number),
-}  # fmt: skip
 WITH_FIGURES = [line for line in TEXT.splitlines() if FIGURE.search(line)]
 RESULTS, FAILURES = 5, 6
-
-
-def cell(row, wanted):
-    """The number that a column of a row holds, as the prefix of PREFIXES before the column's name says."""
-    ((prefix, column),) = re.findall(r"^(-|100\*|times:|less:)?(\w+)$", wanted)
-    return PREFIXES[prefix](float(row[column]))
-
-
-def named_row(path, where):
-    """The only row of a CSV that agrees with `column=value column=value`, empty cells included."""
-    pairs = [pair.split("=", 1) for pair in where.split()]
-    with (ROOT / path).open(encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if all(row[column] == value for column, value in pairs)]
-    assert len(rows) == 1, f"{path} has {len(rows)} rows with {where}"
-    return rows[0]
 
 
 def shown(number, like):
@@ -60,11 +38,12 @@ def paragraphs():
 
 @pytest.mark.parametrize("line", WITH_FIGURES, ids=lambda line: line.strip("| ")[:40])
 def test_every_figure_is_that_of_its_table(line):
+    """The title of a link to a CSV names the cells behind the figure, as stages.report.cells has them."""
     (texts,) = FIGURE.findall(line)
     ((path, title),) = [link for link in LINK.findall(line) if link[1]]
-    ((where, *columns),) = CELLS.findall(title)
-    row = named_row(path, where)
-    assert list(texts) == [shown(cell(row, column), text) for column, text in zip(columns, texts, strict=True)]
+    where, _, columns = title.partition(": ")
+    numbers = [number_of(rows_of(ROOT / path, where), column) for column in columns.split()]
+    assert list(texts) == [shown(number, text) for number, text in zip(numbers, texts, strict=True)]
 
 
 def test_results_and_failures_have_intervals():

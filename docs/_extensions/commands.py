@@ -9,12 +9,13 @@ import pandas as pd
 import yaml
 
 from stages.engine.rows import SUFFIX
+from stages.report.cells import number_of, rows_of
 from stages.report.claims import Claim
 from stages.report.records import COMPOSE, switch
 from stages.report.stability.score import SEEN, TIME_KEYS
 from stages.report.topics import CLAIMS
 
-from .measured import number, rows_of, table
+from .measured import REPORTS
 
 ROOT = Path(__file__).resolve().parents[2]
 DEFAULT = "make repro"
@@ -38,13 +39,14 @@ class Command:
     def minutes(self) -> float:
         """Of one core, summed over the rows of all stages of its sets; of the default run as timed on two cores."""
         if self.text == DEFAULT:
-            return number(rows_of("bench/pipeline", "what=all stages, metric=wall time"), "value") / 60
+            timed = rows_of(REPORTS / "bench/pipeline.csv", "what=all stages metric=wall time")
+            return number_of(timed, "minutes:value")
         return sum(seconds(*each) for each in self.work) / 60
 
 
 def commands() -> list[Command]:
     """The commands that test claims, the default run first, then those with most claims."""
-    written = {row["key"]: row for row in table("claims")}
+    written = {row["key"]: row for row in rows_of(REPORTS / "claims.csv").to_dict("records")}
     found: dict[str, Command] = {}
     for claim in CLAIMS:
         if claim.key not in written or not (sets := sets_of(claim)):

@@ -5,7 +5,7 @@
 
 ```{rows} tables/scenes               rows of a table
 :where: scene=shelf
-:columns: method; faces | ,.0f; 100*saved 100*saved_low 100*saved_high | .0f
+:columns: method; faces .0f; 100*saved 100*saved_low 100*saved_high .0f
 :titles: way; faces per frame; saved, %
 ```
 
@@ -19,15 +19,17 @@ meshoptimizer
 
 from collections.abc import Iterable
 
+import pandas as pd
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from stages.report.cells import parts_of, rows_of, text_of
 from stages.report.verdict import WORDS
 
 from .commands import Command, commands
-from .measured import REPORTS, interval_text, measured, number, rows_of
+from .measured import REPORTS
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -46,8 +48,9 @@ class Claims(SphinxDirective):
         """A table."""
         lines = []
         for key in self.arguments[0].replace(",", " ").split():
-            (row,) = one_row("claims", f"key={key}")
-            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(key, row), row["tested_on"]))
+            found = rows_of(REPORTS / "claims.csv", f"key={key}")
+            (row,) = found.to_dict("records")
+            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(found), row["tested_on"]))
         return [made_table(("", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
 
 
@@ -63,11 +66,11 @@ class Rows(SphinxDirective):
         names = dict(pair.strip().split("=") for pair in self.options.get("names", "").split(";") if pair)
         columns = [column.strip() for column in self.options["columns"].split(";")]
         lines = []
-        for row in rows_of(file, where):
-            if names and row[columns[0]] not in names:
-                continue
-            first = names.get(row[columns[0]], row[columns[0]].replace("_", " "))
-            lines.append([first, *(shown(row, one) for one in columns[1:])])
+        found = rows_of(REPORTS / f"{file}.csv", where)
+        for place, name in enumerate(found[columns[0]]):
+            if not names or name in names:
+                row = found.iloc[place : place + 1]
+                lines.append([names.get(name, name.replace("_", " ")), *(shown(row, one) for one in columns[1:])])
         if not lines:
             raise self.error(f"{file} has no row with {where or 'these names'}")
         return [made_table([one.strip() for one in self.options["titles"].split(";")], lines)]
@@ -108,32 +111,26 @@ class Artifact(SphinxDirective):
         return nodes.section("", title, body, ids=[nodes.make_id(f"claims of {command.name}")])
 
 
-def one_row(file: str, where: str) -> list[dict[str, str]]:
-    """The row, in a list; ValueError where there are none or several."""
-    rows = rows_of(file, where)
-    if len(rows) != 1:
-        raise ValueError(f"reports/{file}.csv has {len(rows)} rows with {where}")
-    return rows
-
-
-def effect(key: str, row: dict[str, str]) -> str:
-    """The effect with its interval and unit, with as many decimals as its ends need."""
+def effect(found: pd.DataFrame) -> str:
+    """The effect of a claim with its interval and unit, with as many decimals as its ends need."""
+    row = found.iloc[0]
     if not row["low"]:
         return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
     ends = [abs(float(row[name])) for name in ("low", "high")]
     places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
     while places < 6 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
         places += 1
-    return f"{measured(f'claims key={key}: effect low high | +.{places}f')} {row['unit']}"
+    return f"{text_of(found, f'effect low high +.{places}f')} {row['unit']}"
 
 
-def shown(row: dict[str, str], column: str) -> str:
-    """One cell: text, or a number with its interval where the column has a format; empty where there is no number."""
-    names, _, style = (part.strip() for part in column.partition("|"))
-    if not style:
-        return row[names]
-    numbers = [name for name in names.split() if row[name.partition("*")[2] or name.rpartition(":")[2]]]
-    return interval_text([number([row], name) for name in numbers], style) if numbers else "–"
+def shown(row: pd.DataFrame, column: str) -> str:
+    """One cell: as it is, or a number with its interval where the column has a format; a dash without a number."""
+    if not parts_of(column)[2]:
+        return row[column].iloc[0]
+    try:
+        return text_of(row, column)
+    except LookupError:
+        return "–"
 
 
 def verdict(word: str) -> nodes.Node:

@@ -1,10 +1,14 @@
-"""A claim of the thesis as data: which rows are compared, in which pairs, and in which words."""
+"""A claim of the thesis as data: which rows are compared, in which pairs, and the words for them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from haptic_glance.know.split import shared_by
+from haptic_glance.know.split import Split, shared_by
+
+from .drawing import label
+from .results import Results, dataset_text
+from .tables import number
 
 Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean
@@ -65,6 +69,15 @@ class Reading:
 def reading(name: str, **changes: Any) -> Reading:
     """The Reading with these changes: `reading("15 imprints", where={"variant": "first_15"})`."""
     return Reading(name, changes)
+
+
+SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings of T4.2.4:
+SCALED = (  # "The entire data is standardized beforehand using z-transform", and gamma 1 at its own scale
+    reading("z-transform of all data beforehand", where={"scaling": "beforehand"}),
+    reading("all data from 0 to 1", where={"scaling": "min_max"}),
+)
+ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
+NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,3 +189,58 @@ def _renamed(value: Any, names: Mapping[str, str]) -> Any:
     if isinstance(value, Pick):
         return replace(value, names=_renamed(value.names, names))
     return tuple(_renamed(one, names) for one in value) if isinstance(value, tuple) else names.get(value, value)
+
+
+METRICS = {  # "" where the claim's unit says it
+    "accuracy": "", "recall": "mean of the objects' rates", "nss": "NSS", "auc": "AUC", "pcc": "PCC",
+}  # fmt: skip
+NAMED = ("method", "classifier", "network")  # columns whose values have a label
+
+
+def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
+    """`household: kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
+    claim, several = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
+    shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
+    parts = [several, *shared, _sides(claim, results), claim.note]
+    return ", ".join(part.rstrip(",") for part in parts if part)
+
+
+def _sides(claim: Claim, results: Results) -> str:
+    said = _side(claim, results, claim.first)
+    if isinstance(claim.second, int | float):
+        if claim.second:
+            said = said or str(claim.where.get("metric", "value")).replace("_", " ")
+            said += f" minus {number(claim.scale * claim.second)}"
+    elif claim.second is not None:
+        said += f" minus {_side(claim, results, claim.second)}"
+    if claim.contrast:
+        one, other = (_side(claim, results, where) for where in claim.contrast)
+        said = f"{said}: {one} minus {other}"
+    return said + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
+
+
+def _side(claim: Claim, results: Results, side: Side) -> str:
+    return " ".join(filter(None, (_phrase(claim, results, column, value) for column, value in side.items())))
+
+
+def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
+    """One column and its value in words; the topic's own words first."""
+    if isinstance(value, Pick):
+        rank = "lowest" if value.lowest else "highest"
+        names = ", ".join(_phrase(claim, results, column, name) for name in value.names)
+        return f"the {rank} of {names}" if names else f"the {rank} of the others"
+    if (column, value) in claim.phrases:
+        return claim.phrases[column, value]
+    if isinstance(value, tuple):
+        return f"mean of {', '.join(_phrase(claim, results, column, one) for one in value)}"
+    if value is None:
+        return ""
+    if column == "group":
+        return results.group_text(str(value), claim.sets[0])
+    if column == "dataset":
+        return dataset_text(str(value))
+    if column == "split":
+        return Split(str(value)).words
+    if column == "metric":
+        return METRICS.get(str(value), str(value).replace("_", " "))
+    return label(value) if column in NAMED else f"{column} {value}"

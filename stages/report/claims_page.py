@@ -29,15 +29,15 @@ from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import read_json, write_json
 
+from .cells import filled
 from .claims import Claim
 from .effects import sets_of
 from .items import Figure, Table
 from .page import WORDS, folded, part, prose, script_json
 from .records import command
-from .results import NotRun, Results, there
-from .tables import filled, with_interval
+from .results import NotRun, Results, dataset_text, there
+from .tables import with_interval
 from .verdict import counted, open_by_cause
-from .words import dataset_text
 
 CHAPTERS = {  # start of a claim's section -> what it is about
     "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",

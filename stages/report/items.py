@@ -11,8 +11,9 @@ from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import write_table, write_text
 
+from .cells import filled
 from .drawing import save
-from .tables import Ranking, as_text, filled, markdown_table
+from .tables import Ranking, as_text, markdown_table
 
 
 @dataclass(eq=False, kw_only=True)

@@ -6,6 +6,8 @@ An item's record has its data sets, the files of rows that it read, the methods,
 and how many rows it shows. `files` has of each file of rows its hash, its commit where git knows it unchanged, and the
 clock of its seconds.
 
+The few numbers that `dvc metrics show` and `dvc exp show` list: headlines.json.
+
 The command that measures the rows of a claim again.
 
 The front page of a run on a folder of one's own: the page of `haptic-glance gallery`, from the pipeline's data.
@@ -14,7 +16,7 @@ The front page of a run on a folder of one's own: the page of `haptic-glance gal
 import json
 import shutil
 import subprocess
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -24,7 +26,7 @@ import numpy as np
 import pandas as pd
 import yaml
 
-from haptic_glance.base.files import read_json, sha256, write_text
+from haptic_glance.base.files import read_json, sha256, write_json, write_text
 from haptic_glance.cli.saliency import as_csv, points_of
 from haptic_glance.gallery.exhibit import Exhibit, Level
 from haptic_glance.gallery.page import build_page
@@ -37,6 +39,7 @@ from haptic_glance.touch.places import UserMesh
 from stages.engine.rows import SUFFIX
 from stages.imprints.imprints import read_imprints
 
+from .cells import rows_of
 from .items import Built, Figure, Table
 from .results import BENCH, NotRun, Results
 
@@ -120,6 +123,36 @@ def commit(path: Path) -> str:
         return "" if git("status", "--porcelain") else git("log", "-1", "--format=%h")
     except (OSError, subprocess.CalledProcessError):
         return ""
+
+
+HEADLINES_FILE = "headlines.json"
+HEADLINES = {  # name: (file and rows, as stages.report.cells has them, of which the first counts; its column)
+    "nss_glance": ("tradeoff/attention", "method=glance metric=nss", "mean"),
+    "touch_accuracy_knn_glance": ("tradeoff/saliency", "method=glance", "mean"),
+    "touch_accuracy_knn_blind": ("tradeoff/saliency", "method=random", "mean"),
+    "salient_error_qem_25": ("tradeoff/simplification", "metric=salient_error method=qem target=25%", "mean"),
+    "salient_error_soft_25": ("tradeoff/simplification", "metric=salient_error method=glance-soft target=25%", "mean"),
+    "metro_mean_qem_25": ("tradeoff/simplification", "metric=metro_mean method=qem target=25%", "mean"),
+    "places_found_again": ("tradeoff/stability", "method=glance", "found"),
+    "corruption_error": ("tradeoff/stability", "method=glance", "mce"),
+    "scene_faces": ("tradeoff/scene", "method=ours tolerance=1 pixel", "faces"),
+    "contour_accuracy_cnn": ("tradeoff/sequences", "classifier=cnn", "mean"),
+    "seconds_glance": ("tradeoff/attention", "method=glance metric=nss", "seconds"),
+}
+
+
+def write_headlines(out: Path, verdicts: Mapping[str, int] | None) -> None:
+    """Writes headlines.json from the charts below `out` and the counts of verdicts, without charts that are not there.
+
+    verdicts: None for a folder of a person's own meshes, which the claims of the thesis are not about.
+    """
+    found: dict[str, float] = {}
+    for name, (file, where, column) in HEADLINES.items():
+        with suppress(LookupError):
+            found[name] = float(rows_of(out / f"{file}.csv", where)[column].iloc[0])
+    if verdicts is not None:
+        found |= {f"claims_{word}": verdicts.get(word, 0) for word in ("supported", "contradicted", "open")}
+    write_json(out / HEADLINES_FILE, found)
 
 
 COMPOSE = "python -m stages.compose"

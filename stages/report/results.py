@@ -34,6 +34,28 @@ ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the
 BENCH = "bench"
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
+DATASETS = {
+    SECTION_3_1: "household as in T3.1", SETS_3_1[1]: "psb as in T3.1",
+    SECTION_3_2: "meshes with human gaze as in T3.2", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
+    SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
+    SETS_4_2[1]: "random sets of psb as in T4.2", COLOURED: "furniture in colour",
+    ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
+    "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
+    "princeton_touched": "psb, 8 classes of 6 objects", "princeton_hands": "psb, several arrays or touches",
+    "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
+    "furniture_splits": "furniture, 20 splits",
+    "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
+    "touch_events": "recorded events of a fingertip",
+    "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
+    "furniture_hands": "furniture, several arrays or touches",
+    "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
+}  # fmt: skip
+
+
+def dataset_text(name: str) -> str:
+    """A data set in words."""
+    return DATASETS.get(name, name)
+
 
 class NotRun(Exception):
     """A measurement that is absent; the message says what is missing and, where a run would help, of which stage."""

@@ -13,11 +13,10 @@ import pandas as pd
 
 from stages.engine.statistics import discoveries
 
-from .claims import POINTS, Claim
+from .claims import POINTS, Claim, tested_on
 from .effects import Effect, PooledEffect, deciding, effect_of, effects
-from .results import NotRun, Results, listed
+from .results import NotRun, Results, dataset_text, listed
 from .tables import number
-from .words import dataset_text, tested_on
 
 DECIDED = ("supported", "contradicted", "no difference")
 DEPENDS, UNTESTABLE = "depends on the reading", "not testable"

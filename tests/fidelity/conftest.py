@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.report.fidelity.table import matches
+from stages.report.fidelity import matches
 
 ROOT = Path(__file__).parents[2]
 TABLE = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")

@@ -14,7 +14,7 @@ from haptic_glance.studio.feeling import Sensor
 from haptic_glance.touch import press
 from stages.compose import compose
 from stages.front.space import DEFAULT, WHOLE, WIDTH
-from stages.report.chain.front import smallest_kept
+from stages.report.chain import smallest_kept
 
 FRONT = smallest_kept(pd.read_csv(Path(__file__).parents[2] / "reports/tables/front.csv", dtype={"level": str}))
 RUN = compose()["household"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.mesh.mesh import Mesh
-from stages.report.meshes.apart import against_the_mean, density, faces_an_area
+from stages.report.meshes.pictures import against_the_mean, density, faces_an_area
 
 
 @pytest.fixture

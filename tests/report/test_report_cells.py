@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_table
-from stages.report.tables import filled
+from stages.report.cells import filled
 
 
 @pytest.fixture

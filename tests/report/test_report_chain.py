@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from stages.report import chain
-from stages.report.chain.front import smallest_kept, words
+from stages.report.chain import smallest_kept, words
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 

@@ -12,9 +12,8 @@ import pandas as pd
 import pytest
 
 from stages.engine.statistics import interval
-from stages.report import words
 from stages.report.__main__ import write_claims
-from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
+from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading, tested_on
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.effects import differences
 from stages.report.results import SECTION_3_1, NotRun
@@ -210,7 +209,7 @@ def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, smal
 
 @pytest.mark.parametrize("one", CLAIMS, ids=lambda one: one.key)
 def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(bare, small, one):
-    said = words.tested_on(one, small.results(bare), [name for name in one.sets if name] or ["household"])
+    said = tested_on(one, small.results(bare), [name for name in one.sets if name] or ["household"])
     assert not re.search(r", ?,|  |,$|minus$", said), said
 
 

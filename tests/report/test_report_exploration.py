@@ -6,8 +6,7 @@ import pytest
 
 from haptic_glance.base.files import write_arrays
 from stages.report import exploration, stability
-from stages.report.exploration import exploration as claims
-from stages.report.exploration.exploration import needed
+from stages.report.exploration import needed
 from stages.report.results import NotRun
 from stages.report.stability.touch import DENOISED, breaking, curve, harmless, severities
 from stages.report.topics import build_one
@@ -73,7 +72,7 @@ def test_charts_are_drawn(explorer, kind, name):
 
 
 def test_claims_know_the_truth_of_the_rows(explorer):
-    judged = judge(claims.CLAIMS, explorer).set_index("key")
+    judged = judge(exploration.CLAIMS, explorer).set_index("key")
     words = judged["verdict"]
     assert words["five_touches_over_one"] == words["adaptive_over_fixed"] == "supported"
     assert words["gain_over_random"] == words["gain_over_saliency"] == "supported"
@@ -84,12 +83,12 @@ def test_claims_know_the_truth_of_the_rows(explorer):
 
 
 def test_claims_have_names_of_their_own():
-    keys = [claim.key for claim in claims.CLAIMS]
+    keys = [claim.key for claim in exploration.CLAIMS]
     assert len(set(keys)) == len(keys)
 
 
 def test_nothing_explored_is_said_and_not_crashed_on(results):
-    assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
+    assert set(judge(exploration.CLAIMS, results)["verdict"]) == {"open"}
     for kind, name in (("tables", "exploration"), *CHARTS):
         with pytest.raises(NotRun):
             build_one(exploration, kind, name, results)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.report.fidelity.table import PRINTED, RUNS, is_printed, matches
+from stages.report.fidelity import PRINTED, RUNS, is_printed, matches
 from stages.report.topics import KINDS, TOPICS
 
 ROOT = Path(__file__).parents[2]

@@ -9,10 +9,10 @@ import pytest
 
 from haptic_glance.base.files import write_table
 from stages.report import topics
+from stages.report.cells import CLAIMS, COLUMN, ENDS, PAIR, PLACE, ROWS, filled, parts_of
 from stages.report.claims_page import findings
 from stages.report.items import Table
 from stages.report.site import topic_main
-from stages.report.tables import CLAIMS, ENDS, PAIR, PLACE, PREFIXES, ROWS, filled, parts_of
 
 REPORTS = Path(__file__).parents[2] / "reports"
 SETTINGS = (  # the numbers that a finding may have of its own
@@ -38,9 +38,7 @@ def typed(text):
 
 def columns_of(where, what):
     """The columns that a place reads."""
-    prefixes = sorted(PREFIXES, key=len, reverse=True)
-    wanted, _, _ = parts_of(what)
-    plain = [next(column.removeprefix(start) for start in prefixes if column.startswith(start)) for column in wanted]
+    plain = [COLUMN.fullmatch(wanted)[3] for wanted in parts_of(what)[0]]
     rows = [value if column in ENDS else column for column, _, value in PAIR.findall(where)]
     return {*plain, *rows} - {ROWS}
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.report.front import FINDINGS, findings_html, questions, questions_html
-from stages.report.tables import CLAIMS as OF_CLAIMS
+from stages.report.cells import CLAIMS as OF_CLAIMS
+from stages.report.site import FINDINGS, findings_html, questions, questions_html
 from stages.report.topics import CLAIMS, KINDS, TOPICS
 
 REPORTS = Path(__file__).parents[2] / "reports"

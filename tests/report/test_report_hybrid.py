@@ -9,9 +9,8 @@ import pytest
 from stages.engine.rows import write_rows
 from stages.report import hybrid, stability
 from stages.report.effects import differences
-from stages.report.hybrid import claims as chapter_5_hybrid
-from stages.report.hybrid import new_objects
-from stages.report.hybrid.hybrid_senses import METHODS as BOTH
+from stages.report.hybrid import section_5_5 as chapter_5_hybrid
+from stages.report.hybrid.section_5_5 import JOINED, NEW_OBJECTS
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge
@@ -49,7 +48,7 @@ def rows(repetitions=3, both=0.05, small=-0.003):
                 ("picture_darkness", 0.7, 0.2),
                 ("picture_darkness", 0.95, 0.8),
             ):
-                for way in BOTH:
+                for way in JOINED:
                     value = 0.6 if way in ("touch", "sum_mean") else 0.9 - loss
                     value = max(value, 0.6) + both if way == "fusion_entropy" else value
                     value += 0.003 * random.normal()
@@ -304,10 +303,10 @@ def test_new_objects_stand_below_the_table_and_in_the_claims(root, results):
     for name, worse in (("hybrid_head", 0.0), ("imagenet_head", 0.1), ("hybrid_nearest", 0.1)):
         for count, share in ((1, 0.3), (2, 0.4), (5, 0.5), (10, 0.5)):
             about = {"data": "hybrid", "method": name, "split": "objects", "repetition": 0, "severity": count}
-            about |= {"perturbation": "new_object", "metric": new_objects.METRIC, "seconds": 0.1 * count}
+            about |= {"perturbation": "new_object", "metric": NEW_OBJECTS, "seconds": 0.1 * count}
             values = share - worse + 0.02 * random.normal(size=8)
             found += [about | {"item": f"o{k}", "value": value} for k, value in enumerate(values)]
-    chance = {"data": "hybrid", "method": "chance", "metric": new_objects.METRIC, "value": 1 / 8}
+    chance = {"data": "hybrid", "method": "chance", "metric": NEW_OBJECTS, "value": 1 / 8}
     write(root, pd.concat([rows(), pd.DataFrame([*found, chance])]))
     notes = " ".join(build_one(hybrid, "tables", "section_5_5", results).notes)
     assert "a new head on the hybrid's features: " in notes and "0.10 to 1 s an object on one core" in notes

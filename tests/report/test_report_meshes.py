@@ -16,10 +16,9 @@ from stages.report.meshes import levels, pictures
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.errors import BOXES
 from stages.report.meshes.tables import UNSEEN, data_sets, face_counts, ordered, paired_cells, short
-from stages.report.results import SECTION_3_2, SETS_3_1, NotRun
+from stages.report.results import SECTION_3_2, SETS_3_1, NotRun, dataset_text
 from stages.report.topics import KINDS, build_all, build_one
 from stages.report.verdict import judge
-from stages.report.words import dataset_text
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,

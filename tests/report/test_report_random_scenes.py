@@ -8,8 +8,7 @@ from haptic_glance.base.files import write_table
 from stages.report import scene as topic
 from stages.report.effects import differences
 from stages.report.results import NotRun
-from stages.report.scene.claims import CLAIMS
-from stages.report.scene.random import planning, plans, saving
+from stages.report.scene.random import CLAIMS, planning, plans, saving
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from stages.report import recorded as topic
-from stages.report.recorded.claims_touches import CLAIMS
-from stages.report.recorded.grasps import SETS, TASKS
+from stages.report.recorded.claims import TOUCHES as CLAIMS
+from stages.report.recorded.grasps import CLASSES, TASKS
 from stages.report.recorded.networks import PANELS
 from stages.report.results import NotRun
 from stages.report.topics import build_one
@@ -22,7 +22,7 @@ LOSS = {"random": 0.0, "blocks": 0.1, "folds": 0.02}
 def recorded():
     """Rows in which the selection gains 5 points, in training alone loses 5; blocks lose 10."""
     random, rows = np.random.default_rng(0), []
-    for name in SETS:
+    for name in CLASSES:
         share = {"group": name, "method": "all", "metric": "share_similar", "value": 0.2, "repetition": 0}
         rows.append(share | {"chosen": "can pen"})
         for repetition in range(6):
@@ -115,7 +115,7 @@ def test_table_4_4_stands_beside_the_thesis(measured):
     assert rows.loc[("six", "selected", "knn"), "accuracy"] == pytest.approx(0.75, abs=0.01)
     assert rows.loc[("six", "selected", "knn"), "thesis"] == 0.59 and rows.loc[("four", "all", "svm"), "thesis"] == 0.48
     assert rows.loc[("six", "selected_training", "knn"), "thesis"] != rows.loc[("six", "selected", "knn"), "thesis"]
-    assert len(made.shown) == len(SETS) * 4 + 4 and made.shown.iloc[0, 0] == "first four classes"
+    assert len(made.shown) == len(CLASSES) * 4 + 4 and made.shown.iloc[0, 0] == "first four classes"
     printed = made.shown.set_index(["set", "selection"])["kNN, %"]
     assert printed["the thesis, four toys", "no selection"] == "62"
     means = made.shown.set_index(["set", "selection"]).loc[("all 22 classes", "no selection")]

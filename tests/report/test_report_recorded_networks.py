@@ -9,7 +9,8 @@ import pytest
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
 from stages.report import recorded as topic
-from stages.report.recorded.claims_networks import CLAIMS, SETTINGS
+from stages.report.recorded.claims import NETWORKS as CLAIMS
+from stages.report.recorded.claims import SETTINGS
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge

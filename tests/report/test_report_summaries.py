@@ -9,10 +9,10 @@ import pytest
 
 from haptic_glance.base.files import read_json, write_table
 from stages.report import topics
+from stages.report.cells import PAIR, PLACE, filled
 from stages.report.claims_page import add_words
-from stages.report.headlines import write_headlines
 from stages.report.items import Table
-from stages.report.tables import PAIR, PLACE, filled
+from stages.report.records import write_headlines
 
 REPORTS = Path(__file__).parents[2] / "reports"
 LONGEST = 200

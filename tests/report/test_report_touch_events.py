@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from stages.report import attention, recorded
-from stages.report.recorded.claims_series import CLAIMS
+from stages.report.recorded.claims import SERIES as CLAIMS
 from stages.report.recorded.touch_events import PUBLISHED
 from stages.report.results import NotRun
 from stages.report.topics import build_one

@@ -9,8 +9,8 @@ import pytest
 from stages.engine.statistics import breaking_interval, expanded_levels, resampled_means
 from stages.report import stability
 from stages.report.results import NotRun
-from stages.report.stability.pairs import compared, verdict
 from stages.report.stability.panels import cell
+from stages.report.stability.people import compared, verdict
 from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores
 from stages.report.topics import build_one
 from stages.report.verdict import judge

@@ -20,7 +20,7 @@ from stages.report.claims import Claim
 from stages.report.drawing import label
 from stages.report.effects import statistic
 from stages.report.items import Table
-from stages.report.results import COLOURED, MENDED_3_2, SECTION_3_2, NotRun, Results, some
+from stages.report.results import COLOURED, MENDED_3_2, SECTION_3_2, NotRun, Results, dataset_text, some
 from stages.report.tables import (
     Ranking,
     everywhere,
@@ -32,7 +32,6 @@ from stages.report.tables import (
     signed,
     with_interval,
 )
-from stages.report.words import dataset_text
 
 from .claims import ALONE, GAIN, MEAN, OURS, gain
 

@@ -1,8 +1,266 @@
 """Several touches: how many it takes, where to touch next, and whether a stated belief is right."""
 
-from . import exploration
+from functools import partial
+from typing import Any
 
-TABLES = {"exploration": exploration.build}
-FIGURES = {"exploration_calibration": exploration.calibration}
-CHARTS = {"exploration": exploration.exploration}
-CLAIMS = exploration.CLAIMS
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from haptic_glance.know.split import Split, shared_by
+from stages.report.claims import Claim, Side
+from stages.report.drawing import CYCLE, GREY, label, plt
+from stages.report.effects import side, statistic
+from stages.report.items import Figure, Table
+from stages.report.results import Results
+from stages.report.tables import grouped, number, percent, records, with_interval, within
+
+STAGE, GROUP = "exploration", "six"
+WAYS = {"gain": "where the belief gains most", "saliency": "most salient first", "random": "in random order"}
+LIKELIHOODS = {
+    "imprint": "by imprints",
+    "imprint_place": "by imprints and places",
+    "imprint_product": "by imprints, as if independent",
+}
+HELD_OUT = {Split.RANDOM: "at random", Split.REGIONS: "unseen regions"}
+HEADLINE = 0.95  # belief at which the table and the claims stop
+COLUMNS = {"accuracy": "value", "touches": "touches", "stated": "belief", "decided": "decided"}
+HIDDEN = ("stated, %", "decided, %")  # columns that do not answer the question
+KEYS = ["group", "split", "likelihood", "method", "way"]
+
+
+def build(results: Results) -> Table:
+    """Touches until sure, and how often that is right, by the way to choose the next place."""
+    rows, lines = results.measured(STAGE, metric=["accuracy", "accuracy_decided"]), []
+    for key, group in grouped(rows, KEYS):
+        line: dict[str, Any] = dict(zip(KEYS, key, strict=True))
+        most = int(group.loc[group["stop"] == "fixed", "level"].max())
+        sure = (group["stop"] == "confidence") & np.isclose(group["level"], HEADLINE)
+        stopped = group[sure & (group["metric"] == "accuracy")]
+        for name, column in COLUMNS.items():
+            ends = (1.0, most) if name == "touches" else (0.0, 1.0)
+            found = within(stopped[column], shared_by(line["split"]), *ends)
+            line |= zip((name, f"{name}_low", f"{name}_high"), found, strict=True)
+        lines.append(line | {"fixed": needed(group, line["accuracy"]), "most": most, "repetitions": len(stopped)})
+    frame = pd.DataFrame(lines)
+    most = ", ".join(map(str, sorted(set(frame["most"]))))
+    words = {"headline": f"{100 * HEADLINE:.0f} %", "most": most, "not_run": results.left_out(STAGE)}
+    shown = _wide(frame, results)
+    # no ranking: fewer touches stand against more right answers, as the chart shows
+    return Table(frame, shown, words, answer=[name for name in map(str, shown) if name not in HIDDEN])
+
+
+def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
+    """A row a setting and way, the ways of a setting in the order of WAYS."""
+    order = dict(zip(WAYS, range(len(WAYS)), strict=True))
+    settings = frame.groupby(KEYS[:-1], sort=False).ngroup()
+    ordered = frame.assign(setting=settings, order=frame["way"].map(order)).sort_values(["setting", "order"])
+    return pd.DataFrame([
+        {
+            "objects": results.group_text(row.group), "held out": HELD_OUT[row.split],
+            "belief": LIKELIHOODS[row.likelihood], "touched": label(row.method), "next place": WAYS[row.way],
+            "touches": with_interval(row.touches, row.touches_low, row.touches_high, places=1),
+            "right, %": with_interval(row.accuracy, row.accuracy_low, row.accuracy_high, 100, 0),
+            "fixed number": "never" if np.isnan(row.fixed) else number(row.fixed, 2),
+            "stated, %": percent(row.stated), "decided, %": percent(row.decided),
+        }
+        for row in records(ordered)
+    ])  # fmt: skip
+
+
+def curves(rows: pd.DataFrame) -> pd.DataFrame:
+    """Frame indexed by (repetition, touches): accuracy after a fixed number of touches."""
+    fixed = rows[(rows["stop"] == "fixed") & (rows["metric"] == "accuracy")]
+    return fixed.pivot(index="repetition", columns="level", values="value")
+
+
+def needed(rows: pd.DataFrame, accuracy: float) -> float:
+    """Touches after which the mean accuracy of a fixed number reaches `accuracy`, interpolated; NaN if never."""
+    curve = curves(rows).mean()
+    reached = np.flatnonzero(curve >= accuracy)
+    if len(reached) == 0:
+        return np.nan
+    last = curve.iloc[max(reached[0] - 1, 0) : reached[0] + 1]  # the step that reaches it, or the first touch
+    return float(np.interp(accuracy, last, last.index))
+
+
+METHODS = ("thesis_ssim", "glance", "random")
+PANELS = ((Split.RANDOM, "imprint"), (Split.RANDOM, "imprint_place"), (Split.REGIONS, "imprint"))
+TINTS = {"gain": "#0072B2", "saliency": "#009E73", "random": "#E69F00"}
+TICKS = (1, 2, 3, 5, 8, 12)
+LINES = {"imprint": ("-", "o"), "imprint_product": (":", "^")}
+
+
+def exploration(results: Results) -> Figure:
+    """Accuracy against the mean number of touches, by split, belief and who chose the points."""
+    rows = results.measured(STAGE, group=GROUP, metric="accuracy")
+    methods = [method for method in METHODS if method in set(rows["method"])] or list(dict.fromkeys(rows["method"]))
+    frame = _points(rows, ["split", "likelihood", "method", "way", "stop", "level"])
+    figure, grid = plt.subplots(
+        len(PANELS), len(methods), figsize=(3.15 * len(methods) + 0.6, 2.6 * len(PANELS) + 0.8), squeeze=False,
+        sharex=True, sharey=True,
+    )  # fmt: skip
+    for row, (split, likelihood) in zip(grid, PANELS, strict=True):
+        panel = frame[(frame["split"] == split) & (frame["likelihood"] == likelihood)]
+        for axes, method in zip(row, methods, strict=True):
+            _draw_touches(axes, panel[panel["method"] == method])
+        row[0].set_ylabel("accuracy, %")
+        row[0].annotate(
+            f"{LIKELIHOODS[likelihood].capitalize()}, {HELD_OUT[split]}",
+            (0, 1.06),
+            xycoords="axes fraction",
+            fontsize=9.5,
+        )
+    for above, below, method in zip(grid[0], grid[-1], methods, strict=True):
+        above.set_title(label(method), fontsize=10, pad=22)
+        below.set_xlabel("mean number of touches")
+    handles, names = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="lower center", ncol=3, bbox_to_anchor=(0.5, -0.06), fontsize=9)
+    figure.tight_layout()
+    levels = sorted(frame.loc[frame["stop"] == "confidence", "level"].unique())
+    words = {"group": results.group_text(GROUP), "levels": ", ".join(f"{100 * level:.0f} %" for level in levels)}
+    return Figure(figure, words, frame)
+
+
+def _points(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Accuracy with its interval, mean touches and stated belief, one row for each combination of columns `by`."""
+    found = []
+    for key, group in grouped(rows, by):
+        accuracy = within(group["value"], shared_by(group["split"].iloc[0]))
+        found.append((*key, group["touches"].mean(), group["belief"].mean(), *accuracy))
+    return pd.DataFrame(found, columns=[*by, "touches", "stated", "accuracy", "low", "high"])
+
+
+def _draw_touches(axes: Axes, panel: pd.DataFrame) -> None:
+    for way, words in WAYS.items():
+        own, tint = panel[panel["way"] == way].sort_values("level"), TINTS[way]
+        sure, fixed = own[own["stop"] == "confidence"], own[own["stop"] == "fixed"]
+        axes.fill_between(fixed["touches"], 100 * fixed["low"], 100 * fixed["high"], color=tint, alpha=0.1, lw=0)
+        dots, dashes = {"marker": "o", "ms": 4, "lw": 1.5, "zorder": 3}, {"ls": "--", "lw": 1.0}
+        axes.plot(sure["touches"], 100 * sure["accuracy"], color=tint, label=f"{words}, stops when sure", **dots)
+        axes.plot(fixed["touches"], 100 * fixed["accuracy"], color=tint, label=f"{words}, a fixed number", **dashes)
+    axes.grid()
+    axes.set(xscale="log", ylim=(20, 102))
+    axes.set_xticks(TICKS, map(str, TICKS))
+    axes.minorticks_off()
+
+
+def calibration(results: Results) -> Figure:
+    """Accuracy against stated belief, for a fixed number of touches in random order: a panel a split and a method."""
+    rows = results.measured(STAGE, group=GROUP, way="random", stop="fixed", metric="accuracy")
+    frame = _points(rows, ["split", "likelihood", "method", "level"]).sort_values("level")
+    methods = list(dict.fromkeys(rows["method"]))
+    figure, grid = plt.subplots(
+        len(HELD_OUT), len(methods), figsize=(2.9 * len(methods) + 0.4, 3.1 * len(HELD_OUT) + 0.5), squeeze=False,
+        sharex=True, sharey=True, layout="constrained",
+    )  # fmt: skip
+    for line, split in zip(grid, HELD_OUT, strict=True):
+        for axes, method in zip(line, methods, strict=True):
+            axes.plot([0, 1], [0, 1], color=GREY, lw=0.8)
+            for (likelihood, (dash, mark)), tint in zip(LINES.items(), CYCLE, strict=False):
+                own = frame[(frame[["split", "likelihood", "method"]] == (split, likelihood, method)).all(axis=1)]
+                axes.vlines(own["stated"], own["low"], own["high"], color=tint, lw=0.8, alpha=0.25)
+                axes.plot(own["stated"], own["accuracy"], dash, marker=mark, ms=4, lw=1.3, color=tint,
+                          label=LIKELIHOODS[likelihood])  # fmt: skip
+            axes.set(xlim=(0.3, 1.0), ylim=(0.3, 1.0), aspect="equal")
+            axes.grid()
+        line[0].set_ylabel(f"rate of right answers\n{HELD_OUT[split]}")
+    for above, below, method in zip(grid[0], grid[-1], methods, strict=True):
+        above.set_title(label(method), fontsize=10)
+        below.set_xlabel("stated belief")
+    handles, names = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncol=len(LINES), title="belief")
+    figure.suptitle("\n".join(_honesty(frame)), x=0.01, ha="left", fontsize=11, fontweight="bold")
+    return Figure(figure, {"most": int(rows["level"].max()), "group": results.group_text(GROUP)})
+
+
+def _honesty(frame: pd.DataFrame) -> list[str]:
+    """For each split, by how many points the belief by imprints lies beside the rate of right answers, on average."""
+    said = []
+    for split, words in HELD_OUT.items():
+        own = frame[(frame["split"] == split) & (frame["likelihood"] == "imprint")]
+        points = 100 * (own["stated"] - own["accuracy"]).mean()
+        way = "too careful" if points < 0 else "too sure"
+        said.append(f"{str(words).capitalize()}: {abs(points):.0f} points {way} on average")
+    return said
+
+
+PERFECT = 0.99  # what "up to 100 %" of T table 4.6 is taken to mean
+AT_RANDOM = {
+    "group": "six", "method": "thesis_ssim", "split": Split.RANDOM, "likelihood": "imprint", "metric": "accuracy",
+}  # fmt: skip
+PLACES = AT_RANDOM | {"likelihood": "imprint_place"}
+FIXED = {"way": "random", "stop": "fixed"}
+SURE = {"stop": "confidence", "level": HEADLINE}
+FIVE, ONE = {"level": 5.0}, {"level": 1.0}
+PHRASES = {
+    ("metric", "accuracy_decided"): "accuracy of those that stopped",
+    **{("likelihood", name): f"belief {words}" for name, words in LIKELIHOODS.items()},
+    **{("way", name): words for name, words in WAYS.items()},
+    ("level", HEADLINE): f"at a belief of {100 * HEADLINE:.0f} %",
+    **{("level", float(count)): f"after {count} touch{'es' if count > 1 else ''}" for count in (1, 5)},
+    ("stop", "confidence"): "stopping", ("stop", "fixed"): "a fixed number of touches",
+}  # fmt: skip
+claim = partial(Claim, section="ours", stage=STAGE, phrases=PHRASES)
+five = partial(claim, where=AT_RANDOM | FIXED, first=FIVE)
+touches = partial(claim, where=AT_RANDOM | SURE, scale=1.0, unit="touches", statistic="touches_saved")
+
+
+@statistic("touches_saved")
+def touches_saved(results: Results, claim: Claim) -> pd.Series:
+    """Touches that the second side takes minus those of the first."""
+    return _touches(results, claim, claim.other) - _touches(results, claim, claim.first)
+
+
+@statistic("over_as_many_touches")
+def over_as_many_touches(results: Results, claim: Claim) -> pd.Series:
+    """Accuracy of the first side minus that of a fixed number of touches, interpolated at as many."""
+    curve = curves(results.measured(STAGE, claim.sets[0], **claim.where, stop="fixed"))
+    touches = _touches(results, claim, claim.first)
+    fixed = {one: np.interp(touches[one], curve.columns, curve.loc[one]) for one in touches.index}
+    return side(results, claim, claim.first, None) - pd.Series(fixed)
+
+
+@statistic("overconfidence")
+def overconfidence(results: Results, claim: Claim) -> pd.Series:
+    """Stated belief minus accuracy, after the largest number of touches."""
+    rows = results.measured(STAGE, claim.sets[0], **claim.where)
+    last = rows[rows["level"] == rows["level"].max()].set_index("repetition")
+    return last["belief"] - last["value"]
+
+
+def _touches(results: Results, claim: Claim, own: Side) -> pd.Series:
+    return results.measured(STAGE, claim.sets[0], **claim.where, **own).set_index("repetition")["touches"]
+
+
+CLAIMS = [
+    five(key="five_touches_over_one", second=ONE, sentence="Adding up beliefs over touches is better than one touch."),
+    five(key="five_touches_perfect", where=PLACES | FIXED, second=PERFECT,
+         sentence="Beliefs added up over five touches and their places come up to 99 %."),
+    five(key="five_touches_perfect_by_imprints", second=PERFECT,
+         sentence="Beliefs added up over five touches come up to 99 % by imprints alone."),
+    *(
+        claim(key=f"adaptive_over_fixed{key}", sentence=f"Stopping when sure beats a fixed number{words}.",
+              where=where | {"way": "random"}, first=SURE, statistic="over_as_many_touches",
+              note="minus as many touches for every object")
+        for key, words, where in (("", " of touches", AT_RANDOM), ("_places", " where places count too", PLACES))
+    ),
+    touches(key="gain_over_random", first={"way": "gain"}, second={"way": "random"},
+            sentence="Touching where the belief gains most takes fewer touches than a random order."),
+    touches(key="gain_over_saliency", first={"way": "gain"}, second={"way": "saliency"},
+            sentence="Touching where the belief gains most takes fewer touches than by saliency."),
+    touches(key="saliency_over_random", first={"way": "saliency"}, second={"way": "random"},
+            sentence="Touching by saliency takes fewer touches than a random order."),
+    claim(key="first_touch_by_saliency", sentence="The most salient place is the best first touch.",
+          where=AT_RANDOM | {"stop": "fixed"} | ONE, first={"way": "saliency"}, second={"way": "random"}),
+    claim(key="sure_is_right", sentence="A belief of 95 % is right at least 95 times in 100.",
+          where=AT_RANDOM | {"metric": "accuracy_decided", "way": "random"}, first=SURE, second=HEADLINE),
+    claim(key="product_too_sure", sentence="Multiplying the likelihoods of touches makes a robot too sure.",
+          where=AT_RANDOM | FIXED | {"split": Split.REGIONS, "likelihood": "imprint_product"},
+          statistic="overconfidence", note="stated belief minus accuracy after the largest number of touches"),
+]  # fmt: skip
+
+
+TABLES = {"exploration": build}
+FIGURES = {"exploration_calibration": calibration}
+CHARTS = {"exploration": exploration}

@@ -19,9 +19,8 @@ from stages.fixation.tasks import SHAPE_MEASURES
 from stages.report.drawing import CYCLE, INK, MAP, label, plt
 from stages.report.items import Figure, Table
 from stages.report.pareto import pareto_chart
-from stages.report.results import Results
+from stages.report.results import Results, dataset_text
 from stages.report.tables import Ranking, everywhere, grouped, number, records, signed, with_interval, within
-from stages.report.words import dataset_text
 
 from .rows import (
     FUSED,

@@ -1,24 +1,18 @@
-"""Section 5.5 and figure 5.6.
+"""T5.5: one network for vision and touch beside the two that it is made of, both senses together, and new objects."""
 
-T5.5: the hybrid network beside the two that it is made of, and smaller kinds of it: table and chart.
-
-T figure 5.6: what the hybrid network takes for what, by sight and by touch.
-"""
-
+from functools import partial
 from itertools import product
 from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.report.claims import Claim, Side
 from stages.report.drawing import plt
 from stages.report.items import Figure, Table
-from stages.report.networks import SPLITS, draw_matrices, everywhere, mean, seen
-from stages.report.results import Results
-from stages.report.tables import number, with_interval
-from stages.report.words import dataset_text
-
-from . import new_objects
+from stages.report.networks import SEEN, SETS, SPLITS, accuracy, both, draw_matrices, everywhere, mean, measured, seen
+from stages.report.results import NotRun, Results, dataset_text
+from stages.report.tables import Ranking, grid, grouped, number, percent, with_interval, within
 
 SENSES = {"vision": "sight", "touch": "touch"}
 ITEMS = {split: words.replace("touches", "items") for split, words in SPLITS.items()}
@@ -49,7 +43,7 @@ def section_5_5_table(results: Results) -> Table:
             notes.append(_note(rows, thesis["compression_ratio"]))
     frame = pd.DataFrame(lines)
     words = {"visual": 100 * thesis["visual_accuracy"], "tactile": 100 * thesis["tactile_accuracy"]}
-    words |= {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes), "new": new_objects.sentences(results)}
+    words |= {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes), "new": new_object_sentences(results)}
     shown = _shown(frame)
     gains = [name for name in map(str, shown) if name.startswith("gain")]
     shown = shown.fillna(dict.fromkeys(gains, "–")).fillna("not run")
@@ -162,3 +156,150 @@ def figure_5_6(results: Results) -> Figure:
     senses = {sense: f"by {word}" for sense, word in SENSES.items()}
     figure, words = draw_matrices(frame, splits, senses, ["split"], "sense")
     return Figure(figure, words | {"splits": ", ".join(splits.values())})
+
+
+NEW_OBJECTS = "new_object_accuracy"
+HEADS = {
+    "hybrid_head": "a new head on the hybrid's features", "imagenet_head": "a new head on ImageNet's features",
+    "hybrid_nearest": "the nearest touch by the hybrid's features",
+    "imagenet_nearest": "the nearest touch by ImageNet's features",
+}  # fmt: skip
+
+
+def new_object_sentences(results: Results) -> str:
+    """A line for each data set and method: accuracy by touches, and seconds on one core."""
+    lines = []
+    for dataset in results.datasets("transfer"):
+        try:
+            rows = results.measured("transfer", dataset, metric=NEW_OBJECTS)
+        except NotRun:
+            continue
+        lines += [
+            f"{dataset_text(dataset)}, {HEADS[name]}: {_counts(own)}."
+            for (name,), own in grouped(rows[rows["method"] != "chance"], ["method"])
+        ]
+        guessing = rows.loc[rows["method"] == "chance", "value"].iloc[0]
+        lines[-1] += f" {rows['item'].nunique()} new objects, guessing {100 * guessing:.1f} %."
+    return "\n".join(lines)
+
+
+def _counts(rows: pd.DataFrame) -> str:
+    """`31 [25, 37] % after 1 touch, ... (0.1 to 0.9 s)` of one method, with the interval over the objects."""
+    said = [
+        f"{with_interval(*within(own['value']), 100, 0)} % after {count:g} touch{'es' if count > 1 else ''}"
+        for (count,), own in grouped(rows, ["severity"])
+    ]
+    seconds = rows.groupby("severity")["seconds"].median()
+    return f"{', '.join(said)}, in {number(seconds.min(), 2)} to {number(seconds.max(), 2)} s an object on one core"
+
+
+JOINED = {
+    "better_sense": "the better sense alone",
+    "vision": "sight alone",
+    "touch": "touch alone",
+    "sum_mean": "the streams summed, both heads",
+    "sum_vision": "the streams summed, sight's head",
+    "sum_touch": "the streams summed, touch's head",
+    "fusion_mean": "both heads, mean",
+    "fusion_product": "both heads, product",
+    "fusion_entropy": "both heads, by certainty",
+    "fusion_entropy_raw": "both heads, by certainty, no temperatures",
+    "fusion_surest": "the surer head",
+}
+MEAN = "mean of all columns, %"
+DETAILS = ("blur", "darkness", "occlusion", "dead cells")  # damages that stand behind noise and a missing sense
+WHOLE = "none"  # the perturbation of senses that are as they should be
+
+
+def hybrid_senses(results: Results) -> Table:
+    """Accuracy of each way to join the senses under the harshest of each damage, on items at random."""
+    found = measured(results, data="hybrid", mode=MIDDLE, split="random", sense="both")
+    found = found[found["severity"] == found.groupby("perturbation")["severity"].transform("max")]
+    frame = pd.DataFrame(
+        {"damage": damage, "severity": severity, "method": method} | accuracy(part[part["method"] == method], "random")
+        for (damage, severity), part in grouped(found, ["perturbation", "severity"])
+        for method in JOINED
+    ).drop(columns="values")
+    cells = frame.assign(head=[*map(spoken, frame["damage"], frame["severity"])])
+    wide = grid(cells, "method", "head", names={"method": JOINED.get}).rename(columns={"method": "answers"})
+    shares = frame.groupby("method", sort=False)["accuracy"].mean()
+    wide.insert(1, MEAN, [percent(shares[method]) for method in JOINED if method in shares])
+    words, answer = seen(found), [name for name in map(str, wide) if not any(part in name for part in DETAILS)]
+    return Table(frame, wide, {"seen": f"For touch: {words}." if words else ""}, Ranking(MEAN), answer)
+
+
+def spoken(perturbation: str, severity: float) -> str:
+    """A damage as a person says it, as the head of a column of per cents."""
+    sense, _, what = perturbation.partition("_")
+    said = "both whole" if perturbation == WHOLE else f"{sense}: {what.replace('_', ' ')}"
+    return said + (f" {severity:g}, %" if severity not in (0, 1) else ", %")
+
+
+UNHARMED = {"perturbation": WHOLE}
+DARK = {"perturbation": "picture_darkness", "severity": 0.95}  # the harshest that was measured
+PHRASES = {
+    ("data", "hybrid"): "", ("mode", MIDDLE): f"layers {MIDDLE} shared", ("sense", "both"): "",
+    ("sense", "vision"): "by sight", ("sense", "touch"): "by touch", ("perturbation", WHOLE): "",
+    ("perturbation", None): "", ("perturbation", "picture_darkness"): "hardly any light", ("severity", 0.95): "",
+    ("method", "vision"): "network for sight", ("method", "touch"): "network for touch",
+    ("method", "better_sense"): "better sense alone", ("method", "fusion_entropy"): "both heads by certainty",
+    ("method", "fusion_entropy_raw"): "both heads by certainty without temperatures",
+    ("metric", NEW_OBJECTS): "new objects", ("severity", (1, 2, 5, 10)): "mean of 1, 2, 5 and 10 touches of each",
+    ("method", "hybrid_head"): "head on the hybrid's features", ("severity", 1): "one touch of each",
+    ("method", "imagenet_head"): "head on ImageNet's features", ("method", "hybrid_nearest"): "nearest touch",
+    ("method", "sum_mean"): "streams summed", ("method", "hybrid_int8"): "hybrid of 8 bits",
+}  # fmt: skip
+
+
+def claim(key: str, section: str, sentence: str, first: Side, second: Side, where: Side, margin: float = 0.0) -> Claim:
+    """The claim of one way to recognise over another. where: what both have in common."""
+    return Claim(
+        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, margin=margin,
+        where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
+        dataset=SETS, checked=section != "ours",  # ours compare ways to use the same networks
+    )  # fmt: skip
+
+
+def joined(key: str, section: str, sentence: str, first: str, second: str, damage: Side = UNHARMED) -> Claim:
+    """A claim on both senses: one way of joining them, or one sense alone, over another."""
+    return claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage})
+
+
+on_both_splits = partial(both, items="items", done="met")
+THESIS = on_both_splits(
+    claim("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
+          {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, {"perturbation": None}),
+    joined("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.", "fusion_entropy", "vision", DARK),
+)  # fmt: skip
+OURS = on_both_splits(
+    *(  # not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread
+        claim(f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
+              "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense},
+              {"sense": sense, "perturbation": None}, POINT)
+        for sense, word in SENSES.items()
+    ),
+    joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",
+           "fusion_entropy", "better_sense"),
+    joined("apart_over_sum", "ours", "Fed both senses, two answers joined beat the summed streams of the thesis.",
+           "fusion_entropy", "sum_mean"),
+    joined("harmless_in_the_dark", "ours", "Where sight fails, having it does no harm to touch.",
+           "fusion_entropy", "touch", DARK),
+    joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
+           "fusion_entropy", "fusion_entropy_raw", DARK),
+)  # fmt: skip
+new_objects = partial(
+    Claim, section="T6.3", stage="transfer", dataset="furniture", over=("item",), phrases=PHRASES,
+    where={"metric": NEW_OBJECTS, "severity": (1, 2, 5, 10)},
+)  # fmt: skip
+DEVICE = [
+    new_objects(key="new_object_hybrid_over_imagenet", first={"method": "hybrid_head"},
+                second={"method": "imagenet_head"},
+                sentence="A new head learns new objects better on the hybrid network's features than on ImageNet's."),
+    new_objects(key="new_object_head_over_nearest", first={"method": "hybrid_head"},
+                second={"method": "hybrid_nearest"},
+                sentence="Of few touches a new head makes more than the nearest known touch does."),
+    new_objects(key="new_object_over_guessing", first={"method": "hybrid_head"}, second=1 / 8,
+                where={"metric": NEW_OBJECTS, "severity": 1},
+                sentence="One touch of each is enough to tell eight new objects apart better than by guessing."),
+]  # fmt: skip
+CLAIMS = [*THESIS, *OURS, *DEVICE]

@@ -1,9 +1,4 @@
-"""Backends of simplification, as table and chart.
-
-Who simplifies: time and error of each backend as ratios to pymeshlab's QEM, timed in one run of `make bench`.
-
-Who simplifies: error against time as ratios to pymeshlab's QEM, and how the time grows with the mesh.
-"""
+"""Backends of simplification, as table and chart: time and error as ratios to pymeshlab's QEM, of one `make bench`."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -21,7 +16,6 @@ from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
 from stages.report.tables import percent, with_interval
 
-from .against_meshoptimizer import sentences
 from .levels import FITTED, Growth, growth
 
 REFERENCE, OURS = "pymeshlab", "fast"
@@ -44,7 +38,7 @@ def backends_table(results: Results) -> Table:
     said = [_said(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
         "measured": shared_notes(__package__, f"timed_{'cold' if MAXIMUM in rows else 'warm'}"),
-        "said": "\n".join(said + sentences(rows, results)),
+        "said": "\n".join(said + against_meshoptimizer(rows, results)),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -209,3 +203,51 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
     axes.grid(True)
     where = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5), "fontsize": 8}
     axes.legend(**where, title="power of the growth p [95 %]", title_fontsize=8, alignment="left")
+
+
+OTHER = "meshoptimizer"
+Interval = tuple[float, float, float]
+
+
+def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> list[str]:
+    """A sentence a task, of the rows of bench/simplification.csv.gz, and one on gaze; none where not measured."""
+    tasks = [group for _, group in rows.groupby("with_points") if OTHER in set(group["backend"])]
+    return [_plain(group) for group in tasks] + [*_salient(results)]
+
+
+def _plain(rows: pd.DataFrame) -> str:
+    error, time = _ratio(rows, "metro_mean"), _ratio(rows, "seconds")
+    return (
+        f"{label(OURS)}, {'points' if rows['with_points'].all() else 'nothing'} kept: {with_interval(*error)} times "
+        f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
+    )
+
+
+def _ratio(rows: pd.DataFrame, value: str) -> Interval:
+    """(mean, low, high) of ours over the other's: geometric, over the meshes, in the cells that both reached."""
+    reached = rows[rows["outcome"] == "reached"]
+    pairs = reached.pivot(index=["mesh", "full", "target"], columns="backend", values=value)
+    return _over_meshes(pairs[OURS] / pairs[OTHER])
+
+
+def _over_meshes(ratios: pd.Series) -> Interval:
+    mean, low, high = np.exp(interval(ratios.dropna().apply(np.log).groupby("mesh").mean()))
+    return float(mean), float(low), float(high)
+
+
+def _salient(results: Results) -> Iterator[str]:
+    try:
+        rows = results.bench("salient_simplification")
+    except NotRun:
+        return
+    if "bar" not in rows or rows["bar"].isna().all():
+        return
+    own = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
+    found, meshes = _over_meshes(own["salient_ratio"]), own["salient_ratio"].dropna().index.nunique()
+    means = own["salient_ratio"].apply(np.log).groupby(own["share"]).mean().apply(np.exp)
+    shares = ", ".join(f"{mean:.2f} at {share:.0%}" for share, mean in means.items())
+    yield (
+        f"Error weighted by recorded gaze, {meshes} meshes: ours, with the gaze as weights, has "
+        f"{with_interval(*found)} times that of {label(OTHER)} with its priority bit, its lock bit or neither, the "
+        f"best in each cell ({shares} of the faces)."
+    )

@@ -16,9 +16,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from stages.engine.statistics import interval
 from stages.report.drawing import CYCLE, GREY, INK, METHOD_COLOURS, PALE, plt
 from stages.report.items import Figure
-from stages.report.results import SECTION_3_1, NotRun, Results, some
+from stages.report.results import SECTION_3_1, NotRun, Results, dataset_text, some
 from stages.report.tables import grouped
-from stages.report.words import dataset_text
 
 from .tables import (  # fmt: skip
     CLASSICAL,

@@ -21,10 +21,9 @@ from stages.report.drawing import INK, MARKERS, WAYS, colours, label, plain_loga
 from stages.report.effects import invalid_pairs, statistic
 from stages.report.items import Figure, Table
 from stages.report.pareto import ON, attention_seconds, noise_by, placed
-from stages.report.results import SECTION_3_2, NotRun, Results, listed, some
+from stages.report.results import SECTION_3_2, NotRun, Results, dataset_text, listed, some
 from stages.report.tables import means, with_interval
 from stages.report.verdict import judge
-from stages.report.words import dataset_text
 
 from .claims import CLAIMS
 from .tables import (

@@ -1,6 +1,6 @@
 """Pictures of one or two objects: the points of every detector, and meshes with points kept (T figures 3.6 to 3.22)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice
 
@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
+from scipy.spatial import KDTree
 
 from haptic_glance.lod.errors import vertex_errors
 from haptic_glance.look.views import render
@@ -25,10 +26,8 @@ from stages.report.drawing import (
     squared,
 )
 from stages.report.items import Figure
-from stages.report.results import SECTION_3_2, NotRun, Results, some
-from stages.report.words import dataset_text
+from stages.report.results import SECTION_3_2, NotRun, Results, dataset_text, some
 
-from .apart import TINTS, against_the_mean, faces_an_area
 from .tables import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, said, short, size
 
 COLUMNS = 7  # of figure 3.6
@@ -199,3 +198,35 @@ def _show_coloured(axes: Axes, mesh: Mesh, values: np.ndarray, rows: int) -> Non
     image = render(mesh, VIEWPOINT, (2 * rows, 2 * rows), "raster", background="white").rgb
     axes.imshow(squared(image.reshape(rows, 2, rows, 2, 3).mean(axis=(1, 3)) / 255)[0])
     axes.set_axis_off()
+
+
+TINTS = "PuOr_r"  # purple: fewer, orange: more
+SPREAD = 0.05  # of the diagonal: deviation of the Gaussian about a point
+DEEPEST = 0.98  # quantile of all differences that has the deepest colour
+OCTAVES = 3.0  # eight times as many faces an area as the mean, or an eighth, have the deepest colours
+
+
+def density(mesh: Mesh, points: np.ndarray) -> np.ndarray:
+    """(n,) share of the points (k,) vertex ids that lie about each vertex: 1 in the mean; 0 without points."""
+    width = SPREAD * mesh.diagonal
+    places = KDTree(mesh.vertices[points].reshape(-1, 3))
+    near = places.sparse_distance_matrix(KDTree(mesh.vertices), 4 * width, output_type="coo_matrix")
+    found = np.bincount(near.col, np.exp(-0.5 * (near.data / width) ** 2), len(mesh.vertices))
+    return found / (found.mean() or 1.0)
+
+
+def against_the_mean(mesh: Mesh, points: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """{method: (n,) in 0..1}: more points about a vertex than the methods have in the mean is over 0.5."""
+    found = {method: density(mesh, own) for method, own in points.items() if len(own)}
+    mean = np.mean(list(found.values()), axis=0)
+    top = float(np.quantile(np.abs(list(found.values()) - mean), DEEPEST)) or 1.0
+    return {method: np.clip(0.5 + 0.5 * (own - mean) / top, 0, 1) for method, own in found.items()}
+
+
+def faces_an_area(mesh: Mesh) -> np.ndarray:
+    """(n,) in 0..1: how dense the faces about a vertex lie, over 0.5 where denser than in the mean."""
+    smaller = np.log2(mesh.face_areas.mean() / np.maximum(mesh.face_areas, 1e-12))
+    corners = mesh.faces.ravel()
+    count = np.maximum(np.bincount(corners, minlength=len(mesh.vertices)), 1)
+    octaves = np.bincount(corners, np.repeat(smaller, 3), len(mesh.vertices)) / count
+    return np.clip(0.5 + 0.5 * octaves / OCTAVES, 0, 1)

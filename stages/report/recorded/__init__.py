@@ -2,14 +2,14 @@
 
 from functools import partial
 
-from . import claims_networks, claims_series, claims_touches, grasp_series, grasps, networks, touch_events
+from . import claims, grasps, networks, touch_events
 
 TABLES = {
     "table_4_4": grasps.table_4_4,
     "grasps": grasps.grasps_table,
     "touch_events": touch_events.build,
     "touch_events_conditions": touch_events.conditions,
-    "grasp_series": grasp_series.build,
+    "grasp_series": touch_events.grasp_series,
     "simulated_to_real": networks.build_table,
     "real_networks": networks.build,
     "table_5_1": partial(networks.printed, "vt60", "table_5_1_vt60_bathtip"),
@@ -18,4 +18,4 @@ TABLES = {
 }
 FIGURES = {"real_touches": networks.build_figure}
 CHARTS = {"network_sizes": networks.chart, "touch_events_heard": touch_events.chart}
-CLAIMS = [*claims_touches.CLAIMS, *claims_networks.CLAIMS, *claims_series.CLAIMS]
+CLAIMS = [*claims.TOUCHES, *claims.NETWORKS, *claims.SERIES]

@@ -64,7 +64,7 @@ def _better(frame: pd.DataFrame) -> str:
     return "; ".join(said)
 
 
-SETS = {
+CLASSES = {
     "four": "first four classes", "four_drawn": "four classes at random", "four_alike": "four most alike",
     "six": "first six classes", "six_drawn": "six classes at random", "six_alike": "six most alike",
     "all": "all 22 classes",
@@ -88,10 +88,10 @@ def table_4_4(results: Results) -> Table:
     rows = scaled(every).rename(columns=COLUMNS)
     scores = _scores(scaled(every))
     frame = pd.DataFrame(
-        [_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)] + _readings(every, thesis),
+        [_line(scores, thesis, *key) for key in product(CLASSES, SELECTIONS, thesis.index)] + _readings(every, thesis),
         columns=[*KEYS, *VALUES],
     )
-    names = {"set": lambda name: SETS.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
+    names = {"set": lambda name: CLASSES.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
     cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
     shown = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
     by_metric = dict(list(rows.groupby("metric")))
@@ -101,7 +101,7 @@ def table_4_4(results: Results) -> Table:
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
     lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
     words = {
-        "removed": ", ".join(f"{said} {100 * removed.get(name, np.nan):.1f} %" for name, said in SETS.items()),
+        "removed": ", ".join(f"{said} {100 * removed.get(name, np.nan):.1f} %" for name, said in CLASSES.items()),
         "four": chosen.get("four_alike", ""), "six": chosen.get("six_alike", ""),
         "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
         "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
@@ -120,7 +120,7 @@ def _readings(rows: pd.DataFrame, thesis: pd.DataFrame) -> list[tuple]:
     lines = []
     for scaling, said in READINGS.items():
         scores = _scores(scaled(rows, scaling))
-        sets = [name for name in SETS if any(key[:2] == (name, "all") for key in scores)]
+        sets = [name for name in CLASSES if any(key[:2] == (name, "all") for key in scores)]
         found = [_line(scores, thesis, name, "all", classifier) for name in sets for classifier in thesis.index]
         lines += [(line[0], f"no selection: {said}", *line[2:6], np.nan, *line[7:]) for line in found]
     return lines

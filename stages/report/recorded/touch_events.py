@@ -1,4 +1,4 @@
-"""Events of a fingertip: recognition beside the published networks, what it takes, and where it breaks."""
+"""Touches over time: events of a fingertip beside the published networks, and grasps by a hand with pressure arrays."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from stages.engine.statistics import interval
 from stages.report.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import Results
-from stages.report.tables import grouped, number, percent, records, signed, with_interval, within
+from stages.report.tables import Ranking, grouped, number, percent, records, signed, with_interval, within
 
 SET = "touch_events"
 GROUPS = {"objects": "36 objects", "containers": "20 containers"}
@@ -23,7 +23,7 @@ PUBLISHED = {
     "GGT-SNN (2024)": (92.36, 75.00),
     "barrel network, shared (Zhu and others 2025)": (94.44, 86.67),
 }
-NETWORK = {"objects": 0.8944, "containers": 0.6417}  # TactileSGNet, whose data these are
+SPIKING = {"objects": 0.8944, "containers": 0.6417}  # TactileSGNet, whose data these are
 CONDITIONS = {
     "heard": "share of the touch heard", "cells": "taxels", "dead_taxels": "share of the taxels dead",
     "dropped_events": "share of the events dropped", "jitter": "deviation of an event's time, steps",
@@ -88,7 +88,7 @@ def chart(results: Results) -> Figure:
             across, ends = 100 * own["heard"], 100 * own[["accuracy", "low", "high"]]
             axes.plot(across, ends["accuracy"], marker=marker, color=tint, lw=1.6, ms=5, label=label(method))
             axes.fill_between(across, ends["low"], ends["high"], color=tint, alpha=0.13, lw=0)
-        axes.axhline(100 * NETWORK[group], color=GREY, lw=1.1, ls="--", label="TactileSGNet, whole touch")
+        axes.axhline(100 * SPIKING[group], color=GREY, lw=1.1, ls="--", label="TactileSGNet, whole touch")
         axes.set(title=words, xlabel="share of the touch heard, %", ylim=(0, 100), xlim=(0, 103))
         axes.grid(True)
     panels[0].set_ylabel("accuracy, %")
@@ -129,3 +129,35 @@ def _varied(results: Results) -> Iterator[tuple[str, pd.DataFrame]]:
     yield "cells", plain[plain["heard"] == 1].assign(level=lambda own: own["cells"]).sort_values("level", kind="stable")
     for kind, own in grouped(rows.dropna(subset=["disturbance"]), ["disturbance"]):
         yield str(kind[0]), own.assign(level=own["severity"])
+
+
+GRASPS = "schunk"
+BEST_GRASPS = Ranking("grasps left out in turn, %")
+
+
+def grasp_series(results: Results) -> Table:
+    """Each method: all grasps left out in turn, with intervals over grasps, and the publisher's five test grasps."""
+    rows = results.rows("recorded", GRASPS, metric="accuracy")
+    scores = {key: own.set_index("item")["value"] for key, own in grouped(rows, ["method", "part"])}
+    lines = []
+    for method in rows["method"].unique():
+        own, listed = scores[method, "training"], scores[method, "test"]
+        line = {"method": method, **dict(zip(("accuracy", "low", "high"), within(own), strict=True))}
+        gain = dict(zip(("gain", "gain_low", "gain_high"), interval(scores[OURS, "training"] - own), strict=True))
+        lines.append(line | gain | {"grasps": len(own), "listed": int(listed.sum()), "listed_of": len(listed)})
+    frame = pd.DataFrame(lines)
+    shown = pd.DataFrame({
+        "method": frame["method"].map(label),
+        "grasps left out in turn, %": [
+            with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(frame)
+        ],
+        f"{label(OURS)} − it": [
+            "–" if row.method == OURS else signed(100 * row.gain, 100 * row.gain_low, 100 * row.gain_high, places=0)
+            for row in records(frame)
+        ],
+        "published test list": frame["listed"].astype(str) + " of " + frame["listed_of"].astype(str),
+    })  # fmt: skip
+    counts = rows[rows["part"] == "training"].drop_duplicates("item")["item"].str.split("/").str[0].value_counts()
+    return Table(
+        frame, shown, {"grasps": int(counts.sum()), "commonest": 100 * counts.max() / counts.sum()}, BEST_GRASPS
+    )

@@ -17,9 +17,8 @@ from stages.report.claims import Claim, highest_of
 from stages.report.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.report.items import Figure, Table
 from stages.report.pareto import NORMAL, noise_by
-from stages.report.results import Results
+from stages.report.results import Results, dataset_text
 from stages.report.tables import Ranking, blocks, everywhere, grid, grouped, means, over_items, records
-from stages.report.words import dataset_text
 
 EMPTY = {"fine": "", "extent": ""}  # of one array and one touch a sample
 EXTENTS = {

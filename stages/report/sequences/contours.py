@@ -22,8 +22,7 @@ from stages.report.drawing import CYCLE, INK, PALE, VIEWPOINT, label, name_panel
 from stages.report.items import Figure
 from stages.report.networks import draw_matrices
 from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results, some
-from stages.report.words import dataset_text
+from stages.report.results import NotRun, Results, dataset_text, some
 
 from .tables import BLIND, CLASSIFIERS, GUIDED, METRICS, PRINTED_METHODS, SIZE, SPLITS, STAGE, accuracy
 

@@ -20,9 +20,8 @@ from stages.report.claims import Claim, highest_of, reading
 from stages.report.drawing import label
 from stages.report.effects import difference, statistic
 from stages.report.items import Table
-from stages.report.results import Results
+from stages.report.results import Results, dataset_text
 from stages.report.tables import Ranking, blocks, everywhere, grid, percent, records, within
-from stages.report.words import dataset_text
 
 KEYS = ["objects", "split", "classifier"]
 SAID = {

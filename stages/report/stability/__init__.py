@@ -1,11 +1,11 @@
 """The stability of methods: the perturbation under which each breaks, and how much of it; and the use of time."""
 
-from . import claims, pairs, people, points, score, simplification, touch, transfer
+from . import claims, people, points, score, simplification, touch, transfer
 
 TABLES = {
     "stability_score": score.table,
     "stability_breaking": score.breaking,
-    "stability_pairs": pairs.table,
+    "stability_pairs": people.pairs_table,
     "stability_uses": people.uses,
     "stability": points.table,
     "stability_people": people.people_table,

@@ -1,9 +1,4 @@
-"""Stability of the agreement with people, and of uses.
-
-The cost of disturbances on the objects that people looked at: points found again, agreement with gaze.
-
-The cost of a disturbance where the points are used: simplification around them, recognition by touch there.
-"""
+"""What disturbances cost people's agreement (gaze) and uses of the points, and what two at once cost."""
 
 import numpy as np
 import pandas as pd
@@ -13,11 +8,13 @@ from stages.engine.statistics import interval
 from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.results import GAZED, Results, some
-from stages.report.tables import grouped, records, signed, with_interval, within
+from stages.report.tables import grouped, percent, records, signed, with_interval, within
+from stages.stability.disturbance import AND
+from stages.stability.simplification import middle_severity
 from stages.stability.subject import UNPERTURBED
 from stages.stability.uses import KEPT, PARTITIONS, PLAIN, SENSOR_NOISE, SET, TARGET
 
-from .score import BENCHMARK, STAGE, of_gaze, scores
+from .score import BENCHMARK, STAGE, of_gaze, points_lost, scores
 
 REFERENCE = "glance"  # Itti's attention was not disturbed on these sets
 
@@ -130,3 +127,66 @@ def _text(cells, *key):
         return "–"
     mean, low, high = cells.loc[key, ["mean", "low", "high"]]
     return with_interval(mean, low, high, 100, 0)
+
+
+OF_PAIRS = ("glance", "glance_any_pose", "itti", "mesh_saliency", "harris")  # the CSV has all
+
+
+def pairs_table(results: Results) -> Table:
+    """A row a pair and method: the share of points lost to each alone, to both, and to both less the sum."""
+    rows = results.rows(STAGE, results.printed(BENCHMARK, STAGE), metric=["repeatability", "chance"])
+    lost = points_lost(rows)
+    pairs = [name for name in dict.fromkeys(lost["perturbation"]) if AND in name]
+    pairs = some(pairs, "no pairs of disturbances: stability.pairs is empty", STAGE, runnable=False)
+    methods = [method for method in dict.fromkeys(lost["method"]) if method != "random"]
+    frame = pd.DataFrame([
+        {"pair": " and ".join(map(label, pair.split(AND))), "method": method}
+        | compared(lost[lost["method"] == method], pair, middle_of(rows))
+        for pair in pairs
+        for method in methods
+    ])  # fmt: skip
+    shown = pd.DataFrame([
+        {"disturbances": row.pair, "method": label(row.method),
+         "first alone, %": percent(row.first), "second alone, %": percent(row.second),
+         "both, %": percent(row.both), "both less the sum": signed(*_hundredfold(row, "beyond"), places=0),
+         "is": verdict(row.beyond_low, row.beyond_high)}
+        for row in records(frame[frame["method"].isin(OF_PAIRS)])
+    ])  # fmt: skip
+    words = [verdict(row.beyond_low, row.beyond_high) for row in records(frame)]
+    counted = ", ".join(f"{words.count(word)} {word}" for word in ("milder", "additive", "worse"))
+    return Table(frame, shown, {"objects": rows["item"].nunique(), "counted": counted, "cases": len(words)})
+
+
+def middle_of(rows: pd.DataFrame) -> dict[str, float]:
+    """{perturbation: its middle severity}."""
+    known = rows.dropna(subset=["severity"]).drop_duplicates(["perturbation", "severity"])
+    severities = known.groupby("perturbation", sort=False)["severity"]
+    return {str(name): middle_severity(list(own)) for name, own in severities}
+
+
+def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[str, float]:
+    """Means over the objects of one method: lost to `first`, `second` and `both`; `beyond` the sum, with its interval.
+
+    lost: as of `points_lost`. The sum is at most 1, where all is lost. `independent`: both less what would be lost if
+    what one leaves were lost to the other in the same share.
+    """
+    first, second = (
+        lost[(lost["perturbation"] == name) & (lost["severity"] == middle[name])].set_index("item")["value"]
+        for name in pair.split(AND)
+    )
+    both = lost[lost["perturbation"] == pair].set_index("item")["value"]
+    joined = pd.concat({"first": first, "second": second, "both": both}, axis=1, join="inner")
+    beyond = interval(joined["both"] - np.minimum(joined["first"] + joined["second"], 1))
+    independent = joined["both"] - 1 + (1 - joined["first"]) * (1 - joined["second"])
+    found = {name: float(joined[name].mean()) for name in ("first", "second", "both")}
+    found |= dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
+    return found | {"independent": float(independent.mean()), "objects": len(joined)}
+
+
+def verdict(low: float, high: float) -> str:
+    """milder or worse than the sum, or additive where the interval covers 0 or there is none."""
+    return "milder" if high < 0 else "worse" if low > 0 else "additive"
+
+
+def _hundredfold(row, name):
+    return [100 * getattr(row, key) for key in (name, f"{name}_low", f"{name}_high")]

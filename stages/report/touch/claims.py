@@ -12,7 +12,7 @@ import pandas as pd
 
 from haptic_glance.know.classifiers import TRAINING
 from haptic_glance.know.split import Split, shared_by
-from stages.report.claims import Claim, Side, highest_of, reading
+from stages.report.claims import ALIVE, NO_SVM, SCALE, SCALED, Claim, Side, highest_of, reading
 from stages.report.drawing import label
 from stages.report.items import Figure
 from stages.report.pareto import attention_seconds, pareto_chart
@@ -21,7 +21,6 @@ from stages.report.tables import means
 
 from .imprints import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE
 
-SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings
 EVERY: dict[str, Any] = {"group": "six", "metric": "accuracy", "split": Split.RANDOM} | SCALE  # mean of all classifiers
 SIX: dict[str, Any] = {"classifier": "knn"} | EVERY
 FOUR, APART, NETWORK = SIX | {"group": "four"}, SIX | {"split": Split.REGIONS}, SIX | {"classifier": "deep_learning"}
@@ -40,8 +39,6 @@ POINTS: dict[str, Any] = {
 }
 ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart": APART | PLAIN}
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
-ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
-NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
 MIXED = (
     ("combined before the split", "touches_5_mixed", "touches_1_mixed"),
     ("15 imprints, combined before the split", "first_15_touches_5_mixed", "first_15_touches_1_mixed"),
@@ -49,10 +46,6 @@ MIXED = (
 BEFORE_SPLIT = tuple(
     reading(name, first={"variant": five}, second={"variant": one}) for name, five, one in MIXED
 )  # fmt: skip
-SCALED = (  # of "The entire data is standardized beforehand using z-transform", and gamma 1 at its own scale
-    reading("z-transform of all data beforehand", where={"scaling": "beforehand"}),
-    reading("all data from 0 to 1", where={"scaling": "min_max"}),
-)
 JOINED = (  # of all classifiers
     *(reading(f"without the SVM, {name}", where={"classifier": ALIVE}, first={"variant": five}, second={"variant": one})
       for name, five, one in MIXED),

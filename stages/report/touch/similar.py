@@ -10,9 +10,8 @@ from haptic_glance.know.features import SIMILARITY_THRESHOLD, similarity
 from haptic_glance.know.split import Split
 from stages.report.drawing import GREY, INK, colours, label, plt
 from stages.report.items import Figure, Table
-from stages.report.results import Results, some
+from stages.report.results import Results, dataset_text, some
 from stages.report.tables import Ranking, blocks, grid
-from stages.report.words import dataset_text
 
 from .imprints import EQUAL, PRINTED, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 

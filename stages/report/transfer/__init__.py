@@ -4,7 +4,7 @@ from functools import partial
 
 from stages.report.networks import COARSE, FINE
 
-from . import figure_5_3, figure_5_4, networks_chart, tables, training_curves
+from . import figure_5_3, figures, tables
 
 TABLES = {
     "table_5_3": partial(tables.networks, data=COARSE),
@@ -14,8 +14,8 @@ TABLES = {
 }
 FIGURES = {
     "figure_5_3": figure_5_3.build,
-    "figure_5_4": figure_5_4.build,
-    "training_curves": training_curves.build,
+    "figure_5_4": figures.figure_5_4,
+    "training_curves": figures.training_curves,
 }
-CHARTS = {"networks": networks_chart.build}
+CHARTS = {"networks": figures.networks_chart}
 CLAIMS = tables.CLAIMS

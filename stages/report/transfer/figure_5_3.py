@@ -8,9 +8,8 @@ from stages.engine.statistics import interval
 from stages.report.drawing import GREY, INK, PALE, label, plt
 from stages.report.items import Figure
 from stages.report.networks import COARSE, FINE, MODES, PASSES, PRINTED, SPLITS, THESIS, everywhere, shared
-from stages.report.results import Results, some
+from stages.report.results import Results, dataset_text, some
 from stages.report.tables import grouped
-from stages.report.words import dataset_text
 
 TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",
          ("objects", COARSE): "#E69F00"}  # fmt: skip

@@ -44,9 +44,8 @@ from stages.report.networks import (
     origin,
     seen,
 )  # fmt: skip
-from stages.report.results import NotRun, Results
+from stages.report.results import NotRun, Results, dataset_text
 from stages.report.tables import Ranking, cell_texts, grid, grouped, percent, signed
-from stages.report.words import dataset_text
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6

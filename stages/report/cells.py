@@ -1,0 +1,139 @@
+"""Cells of tables, asked for in prose, in the README, in the documentation and for the headlines: one language.
+
+    {tables/scenes scene=shelf method=uniform: 100*saved 100*saved_low 100*saved_high .0f}      12 [8, 17]
+
+A file below reports/ without .csv, which row, and what of it.
+"""
+
+import re
+import statistics
+from collections.abc import Callable, Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import pandas as pd
+
+from .drawing import label
+from .tables import number
+
+PLACE = re.compile(r"\{(\S+) ((?:[^:{}]|:(?! ))*): ([^{}]+)\}")
+PAIR = re.compile(r"(\w+)(!?=)(.*?)(?=\s+\w+!?=|\s*$)")
+WHAT = re.compile(r"(.+?)(?: ([+,]*\.\d+[fg]))?")  # columns and words, format
+CLAIMS = "claims"  # reports/claims.csv; all others are KIND/NAME
+QUALIFIED = ("depends on the reading", "not testable")  # verdicts without which a figure of a claim would mislead
+ROWS = "rows"  # in place of columns: how many rows there are
+ENDS = {"highest": pd.Series.idxmax, "lowest": pd.Series.idxmin}  # in place of a column: picks a row by the one named
+PREFIXES: dict[str, Callable[[float], float]] = {  # before a column's name -> what is shown of its number
+    "": lambda number: number,
+    "-": lambda number: -number,
+    "1-": lambda number: 1 - number,
+    "1/": lambda number: 1 / number,
+    "100*": lambda number: 100 * number,
+    "1000*": lambda number: 1000 * number,
+    "-100*": lambda number: -100 * number,
+    "minutes:": lambda number: number / 60,
+    # of a difference in % of the mean of both sides: how many times the second the first has, and % less of it
+    "times:": lambda number: (200 - number) / (200 + number),
+    "less:": lambda number: 200 * number / (200 + number),
+}
+OVER_ROWS = {"median:": statistics.median, "most:": max, "count:": len}  # before a column: of all rows, not of one
+COLUMN = re.compile(
+    rf"({'|'.join(map(re.escape, sorted(PREFIXES, key=len, reverse=True)))})({'|'.join(OVER_ROWS)})?(\S+)"
+)
+
+
+def filled(text: str, reports: Path) -> tuple[str, list[tuple[str, str]]]:
+    """(the text with its figures, [(KIND/NAME or claims, which row)] of each); LookupError where one is missing.
+
+    Which row: `column=value column!=value`, with `*` for any part of a value; of those left, `highest=column` or
+    `lowest=column` picks one. What: `rows` for their number; one column, a number or a name; or three: a mean and the
+    ends of its interval. Then, where wanted, `higher|lower`: the words for a difference above and below zero; and the
+    format, `.0f`, or `+.0f` with the sign of the mean.
+    """
+    sources = [(name, where) for name, where, _ in PLACE.findall(text)]
+    return PLACE.sub(lambda found: _figure(reports, *found.groups()), text), sources
+
+
+def _figure(reports: Path, name: str, where: str, what: str) -> str:
+    """`1.64 [1.41, 1.88]`, `0.4 [0.2, 0.6] higher`, one number, or a name."""
+    found = rows_of(reports / f"{name}.csv", where)
+    if what == ROWS:
+        return f"{len(found):,}"
+    text = text_of(found, what)
+    word = found["verdict"].iloc[0] if name == CLAIMS and "verdict" in found else ""
+    return f"{text} ({word})" if word in QUALIFIED else text
+
+
+def text_of(rows: pd.DataFrame, what: str) -> str:
+    """The text of what is asked for of the only row, or of all of them; LookupError where it is missing."""
+    columns, words, style = parts_of(what)
+    try:
+        mean, *ends = (number_of(rows, column) for column in columns)
+    except ValueError:  # no number
+        return label(rows[columns[0]].iloc[0])
+    known = ends and all(end == end for end in ends)
+    low, high = sorted(ends) if known else (float("nan"),) * 2
+    if mean != mean or (words and not known):
+        raise LookupError(f"no {'interval' if mean == mean else 'value'} in {what}")
+    if words:
+        return _difference(mean, low, high, words, style)
+    return _shown(mean, style) if low != low else _spanned(mean, low, high, style)
+
+
+def parts_of(what: str) -> tuple[list[str], list[str], str]:
+    """(columns, the two words for a difference or none, format) of `mean low high NSS higher|NSS lower .2f`."""
+    text, style = WHAT.fullmatch(what.strip()).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    found = re.fullmatch(r"(\S+ \S+ \S+) ([^|]+)\|([^|]+)", text)
+    columns, *words = found.groups() if found else (text,)
+    return columns.split(), words, style or ""
+
+
+def rows_of(path: Path, where: str = "") -> pd.DataFrame:
+    """The rows of a CSV that agree with `where`, empty cells included; strings."""
+    if not path.exists():
+        raise LookupError(f"no {path.name}")
+    frame = pd.read_csv(path, dtype=str, keep_default_na=False)
+    for column, sign, value in PAIR.findall(where):
+        wanted = value if column in ENDS else column
+        if wanted not in frame:
+            raise LookupError(f"{path.name} has no column {wanted}")
+        if column in ENDS:
+            numbers = pd.to_numeric(frame[value]).dropna()
+            frame = frame.loc[[ENDS[column](numbers)]] if len(numbers) else frame[:0]
+        else:
+            frame = frame[[fnmatchcase(cell, value) == (sign == "=") for cell in frame[column]]]
+    return frame
+
+
+def number_of(rows: pd.DataFrame, wanted: str) -> float:
+    """A number of the only row, or of all rows, such as `median:seconds`; ValueError where a cell holds a word."""
+    prefix, over, column = COLUMN.fullmatch(wanted).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    if column not in rows:
+        raise LookupError(f"no column {column}")
+    if not over and len(rows) != 1:
+        raise LookupError(f"{len(rows)} rows, where one is wanted")
+    values = [float(cell) for cell in rows[column] if cell]
+    found = OVER_ROWS[over](values) if over and values else next(iter(values), float("nan"))
+    return PREFIXES[prefix](found)
+
+
+def _difference(mean: float, low: float, high: float, words: Sequence[str], style: str) -> str:
+    """`0.4 [0.2, 0.6] higher`; `neither higher nor lower beyond chance (0.1 [-0.2, 0.4])`."""
+    if low > 0:
+        return f"{_spanned(mean, low, high, style)} {words[0]}"
+    if high < 0:
+        return f"{_spanned(-mean, -high, -low, style)} {words[1]}"
+    return f"neither {words[0]} nor {words[1]} beyond chance ({_spanned(mean, low, high, style)})"
+
+
+def _spanned(mean: float, low: float, high: float, style: str) -> str:
+    ends = (_shown(end, style.removeprefix("+")) for end in (low, high))
+    return f"{_shown(mean, style)} [{', '.join(ends)}]"
+
+
+def _shown(value: float, style: str) -> str:
+    """A number in a format, with commas between thousands and no sign of a zero; else to three digits."""
+    if not style:
+        return f"{value:,.0f}" if abs(value) >= 1000 else number(value)
+    text = format(value, style.replace(",", "").replace(".", ",."))
+    return text if re.search("[1-9]", text) else text.lstrip("+-")

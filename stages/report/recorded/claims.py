@@ -1,0 +1,213 @@
+"""Claims on recorded touches: the real sensor of T4.2.4, networks of sight (T5.4), and ours on touches over time."""
+
+from collections.abc import Iterable, Iterator
+from functools import partial
+from typing import Any
+
+import pandas as pd
+
+from haptic_glance.know.split import Split, shared_by
+from stages.report.claims import NO_SVM, SCALE, SCALED, Claim, Side, highest_of, reading
+from stages.report.effects import side, statistic
+from stages.report.networks import GUESS, NETWORK, PRINTED
+from stages.report.results import Results
+
+from .grasps import CLASSES, SELECTIONS
+from .networks import SIMULATIONS as KINDS
+from .rows import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
+from .touch_events import GROUPS, OURS, SET, SPIKING
+
+SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
+ALL = {"metric": "accuracy", "split": Split.RANDOM} | SCALE  # the mean of all classifiers
+KNN = {"group": "all", "classifier": "knn", "metric": "accuracy"}
+OF_SETS = {
+    **{("group", name): words for name, words in CLASSES.items()},
+    **{("method", name): words for name, words in SELECTIONS.items()},
+    ("method", "selected"): "selection before the split, as in the thesis,",
+}  # fmt: skip
+OF_TEN = {
+    ("group", "all"): "ten classes",
+    ("training", "both"): "real touches and", ("training", "real"): "real touches alone",
+    ("simulation", SIMULATED): "resting imprints with skin", ("aligned", False): "",
+    **{("touches", count): f"{count} real of each class" for count in (1, 5, 20)},
+}  # fmt: skip
+SIMULATIONS = tuple(
+    reading(f"{words}{', aligned' if aligned else ''}", first={"simulation": name, "aligned": aligned})
+    for name, words in KINDS.items()
+    for aligned in (False, True)
+    if name != "none" and (name, aligned) != (SIMULATED, False)
+)
+touches = partial(Claim, section="T4.2.4", stage="recorded", dataset="pressure_images")
+
+
+def on_set(group: str, **fields: Any) -> Claim:
+    """A claim on one set of classes; of those that are drawn each repetition has its own."""
+    drawn = group.endswith("drawn")
+    phrases = OF_SETS | ({("over", "repetition"): "sets of classes"} if drawn else {})
+    where = {"group": group} | ALL | fields.pop("where", {})
+    return touches(where=where, shared=0.0 if drawn else None, phrases=phrases, **fields)
+
+
+TOUCHES = [
+    *(
+        on_set(group, key=f"real_selection_{group}", first={"method": "selected"}, second={"method": "all"},
+               sentence="The selection of dissimilar imprints helps with real touches too.",
+               note="mean of all classifiers", readings=(NO_SVM, *SCALED))
+        for group in ("four_drawn", "six_drawn", "four_alike", "six_alike", "all")
+    ),
+    on_set("six_alike", key="real_selection_training", first={"method": "selected_training"}, second={"method": "all"},
+           sentence="The selection helps with the test touches left as they are.", note="mean of all classifiers",
+           of="real_selection_four_drawn",
+           readings=(NO_SVM, *SCALED)),
+    *(
+        on_set(group, key=f"real_selection_control_{group}", first={"method": "selected"},
+               second={"method": "selected_control"}, note="mean of all classifiers", readings=(NO_SVM, *SCALED),
+               sentence="Selection of real touches is better than as many left out at random.")
+        for group in ("six_drawn", "six_alike", "all")
+    ),
+    *(
+        on_set(group, key=key, sentence="kNN is the best classifier with real touches.", where={"method": "all"},
+               first={"classifier": "knn"}, second={"classifier": highest_of()}, readings=SCALED)
+        for key, group in (("real_knn_best_six", "six_drawn"), ("real_knn_best_all", "all"))
+    ),
+    touches(key="real_blocked", section="ours", sentence="A random hold-out of real touches flatters.", phrases=OF_SETS,
+            where=KNN | SCALE | {"method": "all"}, first={"split": Split.RANDOM}, second={"split": Split.BLOCKS}),
+    *(
+        touches(key=f"simulation_helps_{count}", section="ours", stage="simulated_to_real", phrases=OF_TEN,
+                sentence="Simulated imprints help to recognise real touches.", shared=shared_by(Split.BLOCKS),
+                where=KNN | {"touches": count}, second={"training": "real"},
+                first={"training": "both", "simulation": SIMULATED, "aligned": False}, readings=SIMULATIONS)
+        for count in (5, 1, 20)
+    ),
+]  # fmt: skip
+
+
+SETTINGS = {
+    "pressure_random": ("pressure", Split.RANDOM),
+    "pressure_runs": ("pressure", Split.BLOCKS),
+    "fingers_random": ("grasps_object", Split.RANDOM),
+    "fingers_runs": ("grasps_object", Split.BLOCKS),
+    "fingers_slip": ("grasps_slip", Split.TEST_OBJECTS),
+}  # name in the key of a claim -> (data, split)
+HAND = {"hand_random": ("schunk_coarse", Split.RANDOM), "hand_grasps": ("schunk_coarse", Split.OBJECTS)}
+SETS_OF = {"pressure": "pressure_images", "schunk_coarse": "schunk"}  # data -> set; all others: the fingertips
+ARRAY, SLIP = ("pressure_random", "pressure_runs"), "fingers_slip"
+FROZEN = {"method": NETWORK, "mode": "frozen", "weights": "imagenet"}
+TUNED = FROZEN | {"mode": "finetuned"}
+ANY = {"mode": "frozen"}  # of the networks
+OTHER_NETWORKS = highest_of(*(network for network in PRINTED if network != "resnet50"))
+SEEN, UNSEEN = {"weights": "imagenet"}, {"weights": "random"}
+ACCURACY, GUESSING = {"metric": "accuracy"}, {"metric": highest_of("chance", "majority")}
+OF_SIGHT = {
+    **{("data", data): words.partition(", ")[2] for data, words in DATA.items()},
+    **{("split", split): words for split, words in SPLITS.items()},
+    ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
+    ("mode", "frozen"): "frozen", ("mode", "finetuned"): "fine-tuned",
+    ("method", CLASSICAL[0]): "features and kNN", ("over", "method"): "networks",
+    ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
+    ("metric", "majority"): "the commonest answer",
+}  # fmt: skip
+
+
+@statistic("over_commonest")
+def over_commonest(results: Results, claim: Claim) -> pd.Series:
+    """First side minus what the commonest answer gets right, which another stage has object by object."""
+    return side(results, claim, claim.first, None) - commonest(results)
+
+
+def claims(
+    key: str, sentence: str, first: Side, second: Side, names: Iterable[str] = SETTINGS, where: Side = FROZEN,
+    **fields: Any,
+) -> Iterator[Claim]:  # fmt: skip
+    """The claim on each of the settings `names`. where: what both sides have in common, unless they say otherwise."""
+    for name in names:
+        data, split = (SETTINGS | HAND)[name]
+        common = {"data": data, "split": split, **ACCURACY, **where}
+        said = {"section": "T5.4", "over": ("item",) if split in OVER else ("repetition",)} | fields
+        yield Claim(
+            key=f"recorded_{key}_{name}", sentence=sentence, stage=STAGE, first=first, second=second, phrases=OF_SIGHT,
+            dataset=SETS_OF.get(data, "biotac_grasps"),
+            where={column: value for column, value in common.items() if column not in first}, **said,
+        )  # fmt: skip
+
+
+SHARED = "Vision and touch share features:"
+BETTER = "Frozen visual filters tell recorded touches apart better than guessing."
+NETWORKS = [
+    *claims("frozen_over_guessing", BETTER, ACCURACY, GUESSING, [name for name in SETTINGS if name != SLIP]),
+    *claims("frozen_over_guessing", BETTER, ACCURACY, {"metric": "majority"}, [SLIP], statistic="over_commonest"),
+    *claims("frozen_by_guessing", "On a pressure array frozen visual filters are hardly better than guessing.",
+            GUESSING, ACCURACY, ARRAY, margin=GUESS,
+            note="the thesis's own largest lead; 28 x 50 cells, the thesis has 16 x 16"),
+    *claims("instant_by_guessing", "One reading of 7 x 3 cells is hardly better than guessing what is grasped.",
+            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM), note="another hand than BiGS's"),
+    *claims("series_over_instant", "A series of readings tells grasped objects apart better than one of 7 x 3 cells.",
+            {"data": "schunk"}, {"data": "schunk_coarse"}, HAND, shared=shared_by(Split.RANDOM),
+            note="another hand than BiGS's"),
+    *claims("seen_over_random_frozen", f"{SHARED} frozen filters learned by sight help with recorded touches.",
+            SEEN, UNSEEN),
+    *claims("seen_over_random_networks", f"{SHARED} frozen filters learned by sight help, whichever network.",
+            SEEN, UNSEEN, ARRAY, ANY, over=("method",), within=("repetition",), note="each network that was run"),
+    *claims("seen_over_random_tuned", f"{SHARED} sight is a better start for recorded touches.",
+            SEEN, UNSEEN, where=TUNED),
+    *claims("tuned_over_frozen", "Fine-tuning on recorded touches beats frozen filters.",
+            {"mode": "finetuned"}, {"mode": "frozen"}, note="tuned in 600 steps at most, of fingertips two passes"),
+    *claims("resnet_best", "ResNet50 is the best of the networks on recorded touches.",
+            {"method": "resnet50"}, {"method": OTHER_NETWORKS}, ARRAY,
+            note="of those that were run; the highest in these tests, which is hard on ResNet50"),
+    *claims("frozen_over_features", "Frozen visual filters beat hand-made features on recorded touches.",
+            {"method": NETWORK}, {"method": CLASSICAL[0], "mode": None, "weights": None}, section="ours"),
+]  # fmt: skip
+
+
+OF_SERIES = {
+    **{("group", group): words for group, words in GROUPS.items()},
+    ("method", OURS): "linear discriminant of bins", ("method", "linear_svm"): "linear SVM of bins",
+    ("method", "knn"): "kNN", ("heard", 0.25): "the first quarter of a touch", ("heard", 1.0): "all of it",
+    ("cells", 20): "20 taxels", ("cells", 39): "all 39",
+}  # fmt: skip
+TESTED = {"part": "test", "metric": "accuracy"}
+FOLDED = {"part": "training", "metric": "accuracy", "method": OURS, "disturbance": None}
+
+
+def on_events(key: str, sentence: str, **fields: Any) -> Claim:
+    """A claim on touch events, its pairs the objects."""
+    return Claim(
+        key=f"events_{key}", section="ours", sentence=sentence, stage="recorded", dataset=SET, over=("item",),
+        phrases=OF_SERIES, **fields,
+    )  # fmt: skip
+
+
+SERIES = [
+    *(
+        on_events(
+            f"{method}_over_network_{group}",
+            f"Time-binned event counts and a linear {said} recognise {group} better than the published spiking graph "
+            "network.",
+            where=TESTED | {"group": group}, first={"method": method}, second=SPIKING[group],
+            note="the network's figure is a constant here: it has no interval",
+        )
+        for method, said in ((OURS, "discriminant"), ("linear_svm", "SVM")) for group in GROUPS
+    ),
+    *(
+        on_events(f"bins_over_components_{group}", "A linear discriminant of all bins recognises more than kNN on "
+                  "twelve components of them.",
+                  where=TESTED | {"group": group}, first={"method": OURS}, second={"method": "knn"})
+        for group in GROUPS
+    ),
+    on_events("quarter_enough", "The first quarter of a touch is enough to know an object nearly as well.",
+              where=FOLDED | {"group": "objects", "cells": 39}, first={"heard": 0.25}, second={"heard": 1.0},
+              margin=5.0, note="within five points"),
+    *(
+        on_events(f"half_the_taxels_{group}", "Half of the taxels are enough to know nearly as well.",
+                  where=FOLDED | {"group": group, "heard": 1.0}, first={"cells": 20}, second={"cells": 39}, margin=5.0,
+                  note="within five points")
+        for group in GROUPS
+    ),
+    Claim(
+        key="grasp_series_over_components", section="ours", stage="recorded", dataset="schunk", over=("item",),
+        sentence="A linear discriminant of binned pressure recognises more grasps than kNN on twelve components.",
+        where={"part": "training", "metric": "accuracy", "split": Split.OBJECTS}, first={"method": OURS},
+        second={"method": "knn"}, phrases={**OF_SERIES, ("over", "item"): "grasps"},
+    ),
+]  # fmt: skip

@@ -1,0 +1,149 @@
+"""Changed weights (T figure 5.4), the costs of training, and its course until nothing improves."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from haptic_glance.know.split import shared_by
+from stages.report.drawing import CYCLE, GREY, INK, MARKERS, label, plt, start
+from stages.report.items import Figure
+from stages.report.networks import COARSE, FINE, MODES, NETWORK, SPLITS, STARTS, THEIRS, everywhere, measured, of_passes
+from stages.report.pareto import pareto_chart
+from stages.report.results import Results, dataset_text, some
+from stages.report.tables import grouped, means, records
+
+from .figure_5_3 import CELLS
+
+TINTS = {(FINE, "imagenet"): "#0072B2", (COARSE, "imagenet"): "#D55E00", (FINE, "random"): "#767676"}
+SHORT = {"Conv1": "c1", "expanded_conv": "b0", "Conv_1": "c2"}  # of the first and the last parts
+WHERE = {"split": "random", "mode": "finetuned"}
+SHARED = ("block_2", "block_15")  # the ends of the middle that the hybrid network shares
+
+
+def figure_5_4(results: Results) -> Figure:
+    """As printed, the mean change of each network on each data set; below, that of each layer of MobileNetV2."""
+    found = everywhere(results, metric="weight_change", **WHERE)
+    printed = pd.DataFrame([
+        {"on": f"{dataset_text(dataset)}, {CELLS[data]}, from {start(weights)}", "network": network,
+         "mean": own["value"].mean(), "low": own["value"].min(), "high": own["value"].max(), "trainings": len(own)}
+        for dataset, rows in found.items()
+        for (network, data, weights), own in grouped(rows, ["method", "data", "weights"])
+    ])  # fmt: skip
+    figure, (above, below) = plt.subplots(2, 1, figsize=(9.2, 7.4), height_ratios=[3, 3.8])
+    figure.subplots_adjust(hspace=0.4)
+    _draw_networks(above, printed)
+    _draw_layers(below, results)
+    for axes, columns in ((above, 2), (below, 3)):
+        axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncols=columns)
+    for axes in (above, below):
+        axes.set_yscale("log")
+        axes.set_ylabel("mean squared change of weights,\neach layer's scaled to 0..1")
+        axes.grid(axis="y")
+    means = [f"{label(row.network)} {row.mean:.2g} ({row.on}, {row.trainings} trainings)" for row in records(printed)]
+    return Figure(figure, {"means": "; ".join(means)}, printed)
+
+
+def _draw_networks(axes: Axes, frame: pd.DataFrame) -> None:
+    """A group of dots a network, a colour a data set; lines from the least to the greatest of the trainings."""
+    networks, sets = list(dict.fromkeys(frame["network"])), list(dict.fromkeys(frame["on"]))
+    for k, (name, tint) in enumerate(zip(sets, CYCLE, strict=False)):
+        own = frame[frame["on"] == name]
+        x = own["network"].map(networks.index) + 0.12 * (k - (len(sets) - 1) / 2)
+        axes.vlines(x, own["low"], own["high"], color=tint, lw=1.2, alpha=0.6)
+        axes.plot(x, own["mean"], MARKERS[k], color=tint, ms=6, mec="white", label=name)
+    axes.set_xticks(range(len(networks)), [label(name) for name in networks])
+
+
+def _draw_layers(axes: Axes, results: Results) -> None:
+    """Change of each convolution of MobileNetV2, by the array and the weights that it started from."""
+    mine = of_passes(results.measured("transfer", metric="layer_weight_change", method=NETWORK, **WHERE))
+    parts = mine.groupby("layer", sort=False)["part"].first()
+    for (data, weights), tint in TINTS.items():
+        one = mine[(mine["data"] == data) & (mine["weights"] == weights)]
+        if len(one):
+            spread = one.groupby("layer")["value"].agg(["mean", "min", "max"]).loc[parts.index]
+            axes.fill_between(range(len(parts)), spread["min"], spread["max"], color=tint, alpha=0.18, lw=0)
+            words = f"{CELLS[data]}, from {start(weights)}"
+            axes.plot(spread["mean"].to_numpy(), color=tint, marker="o", ms=3, lw=1.2, label=words)
+    starts, middle = np.flatnonzero(parts != parts.shift()), np.flatnonzero(parts.isin(SHARED))
+    names = [SHORT.get(part, part.replace("block_", "b")) for part in map(str, parts.iloc[starts])]
+    axes.set_xticks(starts, names, fontsize=7.5)
+    axes.tick_params(axis="x", colors=GREY)
+    for end in (middle[0] - 0.5, middle[-1] + 0.5):
+        axes.axvline(end, color=INK, lw=0.9, ls="--")
+    axes.set_xlabel(
+        f"convolutions of MobileNetV2 on {dataset_text(mine['dataset'].iloc[0])}, from the image to the classes"
+    )
+
+
+REFERENCE = "MobileNetV2, ImageNet, frozen"
+
+
+def networks_chart(results: Results) -> Figure:
+    """Accuracy on touches at random of each network, start and mode against its seconds, on the thesis's classes."""
+    dataset = results.printed(THEIRS, "transfer")
+    rows = measured(results, dataset, data=FINE, split="random")
+    size = rows["size"].max()
+    rows = rows[rows["size"] == size] if size == size else rows  # costs at other sizes are not comparable
+    frame = pd.DataFrame(means(rows, ["method", "weights", "mode"], shared_by("random"), top=1.0))
+    frame = frame.dropna(subset=["seconds"])
+    frame["network"] = frame["method"].map(label) + frame["weights"].map(_beside)
+    frame["way"] = frame["mode"].map(label).str.replace(r"^\d+:\d+$", "part of the layers frozen", regex=True)
+    mode = frame["mode"].map(label).str.replace(r"^(\d+):(\d+)$", r"layers \1 to \2 frozen", regex=True)
+    frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + mode
+    chart = pareto_chart(
+        frame, "mean", title="From sight to touch: what training costs", reference=REFERENCE,
+        quality_label="test accuracy, touches at random", colour="network", marker="way",
+        legends={"way": "trained"}, clock=results.clock("transfer", dataset),
+    )  # fmt: skip
+    chart.words |= {
+        "on": dataset_text(str(rows["dataset"].iloc[0])),
+        "size": f"{size:.0f}",
+        "splits": frame["values"].max(),
+    }
+    return chart
+
+
+def _beside(weights: str) -> str:
+    return "" if weights == "imagenet" else f", {start(weights)}"
+
+
+PRINTED_PASSES = 10  # of T tables 5.3 and 5.4
+SIDES = {"curve_train_accuracy": "touches that are learned", "curve_validation_accuracy": "validation touches"}
+SIDE_TINTS = dict(zip(SIDES, ("#0072B2", "#D55E00"), strict=True))
+
+
+def training_curves(results: Results) -> Figure:
+    """A panel for each network, start and mode with trainings until nothing improves; a line for each split."""
+    where = {"metric": list(SIDES), "data": FINE, "split": "random"}
+    rows = pd.concat(everywhere(results, "converged", **where).values())
+    order = {name: k for k, name in enumerate((*STARTS, *MODES))}
+    kinds = sorted(set(zip(rows["method"], rows["weights"], rows["mode"], strict=True)),
+                   key=lambda kind: (order[kind[1]], kind[0], order.get(kind[2], 9), kind[2]))  # fmt: skip
+    some(kinds, "no curve of a training until nothing improves", "transfer")
+    columns = min(4, len(kinds))
+    height = -(-len(kinds) // columns)
+    size = (2.7 * columns + 0.6, 2.3 * height + 0.7)
+    figure, panels = plt.subplots(height, columns, figsize=size, squeeze=False, sharey=True)
+    for axes, (network, weights, mode) in zip(panels.flat, kinds, strict=False):
+        mine = rows[(rows["method"] == network) & (rows["weights"] == weights) & (rows["mode"] == mode)]
+        _draw_curves(axes, mine)
+        axes.set_title(f"{label(network)}, {label(mode)},\n{start(weights)}", fontsize=9)
+    for axes in panels.flat[len(kinds) :]:
+        axes.set_axis_off()
+    panels[0, 0].legend(fontsize=7.5, loc="lower right")
+    figure.supxlabel("passes over the touches", fontsize=9)
+    figure.supylabel("accuracy, %", fontsize=9)
+    figure.tight_layout()
+    return Figure(figure, {"splits": SPLITS["random"], "passes": PRINTED_PASSES})
+
+
+def _draw_curves(axes: Axes, rows: pd.DataFrame) -> None:
+    for metric, side in rows.groupby("metric", sort=False):
+        for number, (_, one) in enumerate(side.groupby(["dataset", "repetition"])):
+            words = SIDES[str(metric)] if number == 0 else None
+            axes.plot(one["epoch"], 100 * one["value"], color=SIDE_TINTS[str(metric)], lw=1, alpha=0.75, label=words)
+    axes.axvline(PRINTED_PASSES, color=GREY, lw=0.9, ls="--")
+    axes.set_ylim(0, 102)
+    axes.tick_params(colors=INK, labelsize=8)
+    axes.grid(True)
