@@ -167,7 +167,10 @@ def test_the_lateral_map_shows_the_plane_and_the_radial_map_the_pole():
 
 
 def test_the_setting_replaces_the_maps_of_symmetry_alone():
-    channels, view = ["symmetry", "symmetry_radial", "intensity"], render(lopsided(), Viewpoint(-84, 33), SIZE, "raster")
+    channels, view = (
+        ["symmetry", "symmetry_radial", "intensity"],
+        render(lopsided(), Viewpoint(-84, 33), SIZE, "raster"),
+    )
     perceived, strongest = (conspicuity(lopsided(), view, channels, symmetry=setting) for setting in SYMMETRIES)
     assert [perceived[name].any() for name in channels] == [False, False, True]
     assert all(strongest[name].any() for name in channels)

@@ -123,7 +123,9 @@ def test_little_to_look_at_has_an_answer_without_a_warning():
     for mesh in (face, as_mesh(trimesh.creation.box((1, 1, 0)))):
         for method in GLANCES:
             detection = detect(mesh, method, 2)
-            assert len(detection.points) == 2 and np.isfinite(detection.saliency).all() and detection.saliency.max() == 1
+            assert (
+                len(detection.points) == 2 and np.isfinite(detection.saliency).all() and detection.saliency.max() == 1
+            )
     points = rng(0, "cloud").normal(0, 0.2, (10, 3))
     samples = samples_of_points(points, points / np.linalg.norm(points, axis=1, keepdims=True))
     assert all(np.isfinite(values).all() for values in standardised(samples).values())

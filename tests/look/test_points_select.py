@@ -125,7 +125,9 @@ def test_bad_maps_and_settings_are_errors(call, message):
         call()
 
 
-PLACES = np.stack([*np.meshgrid(np.arange(60.0), np.arange(40.0), indexing="ij"), np.zeros((60, 40))], -1).reshape(-1, 3)
+PLACES = np.stack([*np.meshgrid(np.arange(60.0), np.arange(40.0), indexing="ij"), np.zeros((60, 40))], -1).reshape(
+    -1, 3
+)
 
 
 def hills(*peaks):
