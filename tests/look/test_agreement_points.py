@@ -29,15 +29,6 @@ def nearest(mesh, place):
     return int(np.argmin(np.linalg.norm(mesh.vertices - place, axis=1)))
 
 
-def test_errors_fall_as_the_tolerance_grows_to_the_papers_twelve_percent_and_are_zero_for_the_truth():
-    draw = np.random.default_rng(0)
-    points, detected = draw.choice(642, 12, replace=False), draw.choice(642, 30, replace=False)
-    errors, exact = (interest_point_errors(BALL, ids, points, draw.random(12)) for ids in (detected, points[::-1]))
-    for name, error in errors.items():
-        assert len(error) == 13 and (np.diff(error) <= 0).all() and 1 >= error[0] > error[-1] >= 0
-        assert (exact[name] == 0).all()
-
-
 def test_errors_worked_out_by_hand():
     # On a line of a grid: people at x = 0 (3 of them) and x = 10 (1); detected at x = 2, 3 and 11. Diagonal 20 sqrt(2).
     mesh = square(21)
@@ -79,17 +70,6 @@ def test_of_two_points_as_near_the_heavier_is_found_and_weights_may_differ_by_to
 def test_odd_detections_and_meshes_have_defined_errors(mesh, detected, points, expected):
     errors = interest_point_errors(mesh, detected, points)
     assert {name: set(errors[name]) for name in expected} == {name: {value} for name, value in expected.items()}
-
-
-def test_errors_ignore_vertex_order_and_scale():
-    draw = np.random.default_rng(1)
-    points, detected, weights = draw.choice(642, 9, False), draw.choice(642, 20, False), draw.random(9)
-    order = draw.permutation(642)
-    back = np.argsort(order)  # vertex i becomes back[i]
-    moved = Mesh(250 * BALL.vertices[order], back[BALL.faces])
-    before = interest_point_errors(BALL, detected, points, weights)
-    after = interest_point_errors(moved, back[detected], back[points], weights)
-    assert all(after[name] == pytest.approx(before[name]) for name in before)
 
 
 @pytest.mark.parametrize(
@@ -184,19 +164,6 @@ def test_distances_on_a_plane_are_straight_along_edges_and_over_pairs_of_faces()
     assert limited[np.isfinite(limited)].max() <= 3 and limited[3] == 3 and np.isinf(limited[4])
     worse = Mesh(mesh.vertices, np.r_[mesh.faces, [[0, 0, 1], [3, 3, 3], [0, 1, 2], [0, 1, 2]]])  # faces without area
     assert Geodesics(worse).distances([0])[0].reshape(9, 9) == pytest.approx(rows)
-
-
-def test_distances_are_hardly_longer_than_straight_lines_on_a_plane_and_arcs_on_a_sphere():
-    draw = np.random.default_rng(0)
-    flat = square(30)
-    mesh = Mesh(flat.vertices + np.c_[draw.uniform(-0.3, 0.3, (900, 2)), np.zeros(900)], flat.faces)
-    true = np.linalg.norm(mesh.vertices[:10, None] - mesh.vertices, axis=2)
-    ratio = Geodesics(mesh).distances(np.arange(10))[true > 5] / true[true > 5]
-    assert ratio.min() >= 1 - 1e-12 and ratio.mean() < 1.03 and ratio.max() < 1.15
-    unit = BALL.vertices / 0.5
-    arcs = 0.5 * np.arccos(np.clip(unit[:20] @ unit.T, -1, 1))
-    ratio = Geodesics(BALL).distances(np.arange(20))[arcs > 0.2] / arcs[arcs > 0.2]
-    assert 1 < ratio.mean() < 1.025 and ratio.min() > 0.99 and ratio.max() < 1.08
 
 
 def test_a_seam_does_not_cut_the_surface_but_a_gap_does():

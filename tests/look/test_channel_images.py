@@ -55,14 +55,6 @@ def test_a_bright_dot_stands_out():
         assert values.max() > 0.3 or channel in ("edge", "entropy", "orientation")
 
 
-def test_red_among_greys_of_its_brightness_is_color_and_not_intensity_and_a_lighter_grey_has_no_color():
-    red = maps(painted(100, (240, 30, 30)), "color", "intensity", "dkl")
-    for channel in ("color", "dkl"):
-        assert distance_from(red[channel], 149.5, 269.5) < 24
-    assert red["color"].max() > 0.5 and red["intensity"].max() == 0
-    assert not maps(painted(90, 200), "color")["color"].any()
-
-
 @pytest.mark.parametrize(("around", "dot"), [((40, 160, 40), (160, 40, 40)), ((150, 150, 20), (20, 20, 220))])
 def test_a_dot_of_the_opponent_colour_is_the_only_peak_of_color_where_the_printed_sign_would_cancel_it(around, dot):
     values = maps(painted(around, dot), "color")["color"]
@@ -165,12 +157,3 @@ def test_log_of_a_step_crosses_zero_at_the_step_and_peaks_one_sigma_beside_it():
     # Extremes of the second derivative of a blurred step: height / sqrt(2 pi e) at one sigma.
     assert row.max() == pytest.approx(200 / 255 / np.sqrt(2 * np.pi * np.e), rel=0.12)
     assert np.abs(row[49]) < 1e-3 * row.max()
-
-
-def test_a_shaded_slope_has_no_edges():
-    slope = np.linspace(40, 200, 400)[None].repeat(300, axis=0)
-    step = slope.copy()
-    step[140:160, 240:260] += 40
-    edges = maps(grey(step), "edge")["edge"]
-    assert distance_from(edges, 149.5, 249.5) < 16 and edges.max() > 0.5
-    assert maps(grey(slope), "edge")["edge"].max() < 0.05

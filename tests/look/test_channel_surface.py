@@ -10,7 +10,7 @@ from haptic_glance.look.channels import conspicuity
 from haptic_glance.look.channels.channels import SYMMETRIES
 from haptic_glance.look.channels.curvature import capped_curvature, mean_curvature
 from haptic_glance.look.channels.surface import nearest_corners
-from haptic_glance.look.channels.symmetry import mirror, rotate, shape_symmetries, symmetric_points
+from haptic_glance.look.channels.symmetry import shape_symmetries, symmetric_points
 from haptic_glance.look.views import Viewpoint, render
 from haptic_glance.mesh.mesh import Mesh
 
@@ -68,12 +68,7 @@ def test_curvature_ignores_vertex_order_and_splitting_and_flips_with_the_winding
     np.testing.assert_allclose(mean_curvature(inward), -expected, rtol=1e-6)
 
 
-def test_the_curved_tip_and_the_smaller_of_two_balls_stand_out_in_curvature():
-    mesh = lopsided()
-    view = render(mesh, Viewpoint(90, 0), SIZE, "raster")
-    values = conspicuity(mesh, view, ["curvature"])["curvature"]
-    row, column = np.array(np.unravel_index(values.argmax(), values.shape)) * 4
-    assert capped_curvature(mesh)[mesh.faces[view.face[row, column]]].max() > 0.5
+def test_of_two_balls_the_smaller_stands_out_in_curvature():
     v, f = SPHERE.vertices, SPHERE.faces
     balls = Mesh(np.r_[v * 0.2 - [0, 0.22, 0], v * 0.1 + [0, 0.3, 0]], np.r_[f, f + len(v)])
     values = conspicuity(balls, render(balls, Viewpoint(0, 0), SIZE, "raster"), ["curvature"])["curvature"]
@@ -175,11 +170,3 @@ def test_the_setting_replaces_the_maps_of_symmetry_alone():
     assert [perceived[name].any() for name in channels] == [False, False, True]
     assert all(strongest[name].any() for name in channels)
     np.testing.assert_array_equal(perceived["intensity"], strongest["intensity"])
-
-
-def test_mirror_and_turn_undo_themselves():
-    points = np.random.default_rng(0).normal(size=(20, 3))
-    axis = np.array([0.6, 0, 0.8])
-    np.testing.assert_allclose(mirror(mirror(points, axis, 0.3), axis, 0.3), points, atol=1e-12)
-    np.testing.assert_allclose(rotate(rotate(points, axis, 50, points[0]), axis, -50, points[0]), points, atol=1e-12)
-    np.testing.assert_allclose(rotate(np.eye(3)[:1], np.array([0, 0, 1.0]), 90, np.zeros(3)), [[0, 1, 0]], atol=1e-12)

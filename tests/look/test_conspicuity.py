@@ -14,12 +14,10 @@ from haptic_glance.mesh.mesh import Mesh
 from .conftest import as_mesh, lopsided
 
 SIZE = (300, 400)
-FRONT, ASIDE = Viewpoint(0, 0), Viewpoint(20, 10)
 BALL = as_mesh(trimesh.creation.icosphere(subdivisions=3, radius=0.4))
 BOX = as_mesh(trimesh.creation.box((0.6, 0.4, 0.3)))
 FLAT = trimesh.creation.annulus(0.1, 0.4, height=0.1)
 TRIANGLE = Mesh([[0, -0.4, -0.3], [0, 0.4, -0.3], [0, 0, 0.4]], [[0, 1, 2]])
-INWARD = Mesh(BALL.vertices, BALL.faces[:, ::-1])
 ODD = {
     "one triangle": TRIANGLE,
     "flat": Mesh(FLAT.vertices[:, [2, 0, 1]] - [0.05, 0, 0], FLAT.faces[(FLAT.face_normals[:, 2] > 0.9)]),
@@ -35,7 +33,7 @@ ODD = {
 
 @pytest.fixture(scope="module")
 def bumpy_view():
-    return render(lopsided(), ASIDE, SIZE, "raster")
+    return render(lopsided(), Viewpoint(20, 10), SIZE, "raster")
 
 
 @pytest.fixture(scope="module")
@@ -61,11 +59,11 @@ def test_maps_are_of_one_size_in_0_to_1_and_zero_off_the_object(bumpy_view, bump
     assert list(small) == ["fine_grained", "edge"] and {values.shape for values in small.values()} == {(30, 41)}
 
 
-def test_maps_are_the_same_when_object_and_camera_turn_together_and_in_any_order_of_vertices_and_faces(bumpy_maps):
+def test_maps_are_the_same_when_object_and_camera_turn_together_in_any_order_and_winding(bumpy_maps):
     mesh, rng = lopsided(), np.random.default_rng(5)
     turn = trimesh.transformations.euler_matrix(0, 0, np.radians(77))[:3, :3]
     order = rng.permutation(len(mesh.vertices))
-    turned = Mesh((mesh.vertices @ turn.T)[order], rng.permutation(np.argsort(order)[mesh.faces]))
+    turned = Mesh((mesh.vertices @ turn.T)[order], rng.permutation(np.argsort(order)[mesh.faces])[:, ::-1])
     there = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE, "raster"))
     for channel, values in bumpy_maps.items():
         assert np.abs(values - there[channel]).max() < 0.03, channel
@@ -79,12 +77,6 @@ def test_odd_meshes_give_finite_maps(name):
         assert np.isfinite(values).all() and values.min() >= 0 and values.max() <= 1, channel
         if name in ("one triangle", "no face", "flat"):
             assert not values.any() or channel == "symmetry", channel
-
-
-def test_inward_normals_change_nothing():
-    here, there = (conspicuity(mesh, render(mesh, ASIDE, (180, 240), "raster")) for mesh in (BALL, INWARD))
-    for channel in here:
-        np.testing.assert_allclose(here[channel], there[channel], atol=0.03)
 
 
 @pytest.mark.parametrize("size", [(3, 5), (9, 12), (20, 31)])

@@ -7,12 +7,9 @@ import pytest
 import trimesh
 
 from haptic_glance.base.rng import rng
-from haptic_glance.look.glance import FEATURES, samples_of_mesh, samples_of_points, standardised
-from haptic_glance.look.glance.cells import visibility
-from haptic_glance.look.glance.features import features, relief
-from haptic_glance.look.glance.mirror import symmetry
+from haptic_glance.look.glance import samples_of_mesh, samples_of_points, standardised
 from haptic_glance.look.points import detect, saliency
-from haptic_glance.look.points.reasons import WORDS, contributions, reasons
+from haptic_glance.look.points.reasons import contributions, reasons
 from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
@@ -84,14 +81,6 @@ def test_only_the_glance_for_any_pose_ignores_the_pose():
     assert agreement["glance_any_pose"] > 0.85 and agreement["glance"] < 0.7, agreement  # samples are drawn anew
 
 
-def test_a_symmetric_object_has_a_symmetric_saliency():
-    body = as_mesh(trimesh.creation.icosphere(3).apply_scale([0.5, 0.35, 0.25]))
-    values = saliency(body)
-    for flip in ([-1, 1, 1], [1, -1, 1]):
-        same = np.linalg.norm(body.vertices[:, None] * flip - body.vertices, axis=2).argmin(axis=1)
-        assert values[same] == pytest.approx(values, abs=0.01)
-
-
 def test_samples_do_not_depend_on_the_order_of_a_cloud_nor_on_the_triangles():
     points, ids = trimesh.sample.sample_surface(SHAPES["animal"], 4000, seed=0)
     normals, order = SHAPES["animal"].face_normals[ids], rng(0, "order").permutation(len(points))
@@ -129,51 +118,6 @@ def test_little_to_look_at_has_an_answer_without_a_warning():
     points = rng(0, "cloud").normal(0, 0.2, (10, 3))
     samples = samples_of_points(points, points / np.linalg.norm(points, axis=1, keepdims=True))
     assert all(np.isfinite(values).all() for values in standardised(samples).values())
-
-
-@pytest.fixture(scope="module")
-def ball():
-    return samples_of_mesh(as_mesh(trimesh.creation.icosphere(4, radius=0.5)))
-
-
-def test_the_features_are_those_that_are_published(ball):
-    assert list(features(ball)) == list(FEATURES) == list(GLANCES["glance"]) == list(WORDS)
-    assert set(GLANCES["glance_any_pose"]) < set(FEATURES)
-
-
-def test_a_sphere_is_seen_from_half_of_all_directions(ball):
-    seen, side, above, below = visibility(ball)
-    assert seen == pytest.approx(0.5, abs=0.15) and seen.mean() == pytest.approx(0.5, abs=0.02)
-    top, middle = ball.points[:, 2] > 0.45, np.abs(ball.points[:, 2]) < 0.05
-    assert above[top].min() > below[top].max() and side[middle].mean() > 2 * side[top].mean()
-
-
-def test_the_inside_of_a_bowl_is_concave_and_seen_from_above_alone():
-    outer, inner = trimesh.creation.icosphere(4, radius=0.5), trimesh.creation.icosphere(4, radius=0.4)
-    inner.invert()
-    bowl = trimesh.util.concatenate([outer, inner])
-    bowl.update_faces((bowl.triangles[:, :, 2] < 0.01).all(axis=1))
-    samples = samples_of_mesh(as_mesh(bowl))
-    seen, _, above, below = visibility(samples)
-    radius, low = np.linalg.norm(samples.points, axis=1), samples.points[:, 2] < -0.1
-    bottom = (radius < 0.42) & (samples.points[:, 2] < -0.3)
-    assert bottom.sum() > 50 and below[bottom].max() < 0.02 and above[bottom].min() > 0.15
-    assert seen[bottom].mean() < seen[radius > 0.48].mean()
-    assert relief(samples)[0][(radius < 0.42) & low].mean() < 0 < relief(samples)[0][(radius > 0.49) & low].mean()
-
-
-def test_the_mirror_plane_of_a_body_halves_it_and_both_of_a_box_count_alike():
-    head = trimesh.creation.icosphere(4, radius=0.15).apply_translation([0.3, 0, 0.3])
-    body = samples_of_mesh(as_mesh(trimesh.util.concatenate([trimesh.creation.box((0.7, 0.3, 0.4)), head])))
-    away, near = symmetry(body)
-    assert np.corrcoef(away, np.abs(body.points[:, 1]))[0, 1] > 0.99 and away.max() > 0.05
-    assert near[np.abs(body.points[:, 1]) < 0.01].min() > 2 * near[np.abs(body.points[:, 1]) > 0.1].max()
-    box = samples_of_mesh(as_mesh(trimesh.creation.box((0.7, 0.4, 0.4))))
-    away, near = symmetry(box)
-    x, y = np.abs(box.points[:, :2]).T
-    assert near[(x < 0.01) & (y > 0.15)].mean() == pytest.approx(near[(y < 0.01) & (x > 0.3)].mean(), rel=0.1)
-    rank, top = features(box)["rank"], (box.points[:, 2] > 0.199) & (box.normals[:, 2] > 0.9)
-    assert np.ptp(rank[top]) < 0.01 and rank[top].mean() > rank[~top].max() - 0.01  # a flat top has one rank
 
 
 @pytest.fixture(scope="module")

@@ -76,15 +76,6 @@ def test_harris_on_a_sphere_is_the_closed_form(sphere):
     assert values.std() < 0.02 * values.mean()
 
 
-def test_a_plane_and_a_cylinder_have_no_harris_corner(grid):
-    plane, faces = grid(40, 40)
-    plane = plane / 39
-    assert harris.saliency(Mesh(plane, faces)).max() < 1e-3
-    rolled = np.stack([np.cos(3 * plane[:, 0]), np.sin(3 * plane[:, 0]), 3 * plane[:, 1]], axis=1)
-    inner = (np.abs(plane[:, :2] - 0.5) < 0.4).all(axis=1)  # at a border the neighbourhoods are one-sided
-    assert harris.saliency(Mesh(rolled, faces))[inner].max() < 1e-3
-
-
 def test_the_eight_best_harris_points_of_a_round_cube_are_its_corners_one_of_each_cluster(sphere):
     ball = sphere(4)
     cube = Mesh(ball.vertices * ((np.abs(ball.vertices) ** 6).sum(axis=1) ** (-1 / 6))[:, None], ball.faces)
@@ -93,16 +84,6 @@ def test_the_eight_best_harris_points_of_a_round_cube_are_its_corners_one_of_eac
     assert len(np.unique(np.sign(places[:8]), axis=0)) == 8
     distance = np.linalg.norm(places[:, None] - places, axis=2) + np.eye(len(places))
     assert distance.min() > harris.SPACING * 2 * 3 ** (1 / 3)  # from corner to corner
-
-
-def test_harris_neighbourhoods_grow_until_they_reach_far_enough(sphere):
-    ball = sphere(4)
-    members = harris._neighbourhoods(ball, 0.25)
-    for vertex in (0, 100, 2000):
-        ring = 2
-        while np.linalg.norm(ball.vertices[ball.rings([vertex], ring)] - ball.vertices[vertex], axis=1).max() < 0.25:
-            ring += 1
-        assert set(members[vertex].indices) == set(np.flatnonzero(ball.rings([vertex], ring))) and ring > 2
 
 
 def test_the_heat_kernel_of_a_sphere_is_even_and_its_spectrum_the_known_one(sphere):
@@ -128,25 +109,16 @@ def test_the_heat_points_of_a_starfish_are_its_tips_and_more_eigenpairs_change_n
     assert np.allclose(values, heat_kernel.saliency(starfish), rtol=1e-4)
 
 
-def test_bending_hardly_changes_the_heat(grid):
-    """Heat knows the surface from within: a strip rolled up keeps its signature (Sun 2009, section 3)."""
-    plane, faces = grid(61, 21)
-    plane = plane / 20
-    rolled = np.stack([np.cos(plane[:, 0]), plane[:, 1], np.sin(plane[:, 0])], axis=1)
-    flat, bent = heat_kernel.saliency(Mesh(plane, faces)), heat_kernel.saliency(Mesh(rolled, faces))
-    assert flat.std() > 0.2 and np.abs(bent - flat).max() < 0.01
-
-
 def test_each_piece_keeps_its_own_heat(sphere):
     """A small ball beside an ellipsoid is even and near one, wherever it lies, and adds no point."""
-    ball, small = sphere(3), sphere(2, 0.1)
+    ball, small = sphere(4), sphere(3, 0.1)
     n, values = len(ball.vertices), []
     for distance in (5, 5000):
         vertices = np.concatenate([ball.vertices * [1, 1, 3], small.vertices + [distance, 0, 0]])
         both = Mesh(vertices, np.concatenate([ball.faces, small.faces + n]))
         values.append(heat_kernel.saliency(both))
         assert set(np.abs(both.vertices[heat_kernel.points(both), 2]).round(1)) == {3.0}
-    assert np.allclose(*values, atol=1e-4) and np.allclose(values[0][n:], 1, atol=2e-3)
+    assert np.allclose(*values, atol=1e-4) and np.allclose(values[0][n:], 1, atol=1e-4)
     assert np.average(values[0][:n]) == pytest.approx(1, abs=0.3) and values[0][:n].max() > 1.15
 
 
@@ -253,13 +225,6 @@ def test_the_descriptor_counts_the_angles_of_a_pair(normals, bins):
     assert [list(part.nonzero()[0]) for part in counts[0].reshape(3, 11)] == [[k] for k in bins]
     assert np.array_equal(counts[0], counts[1]) and counts.sum() == 6
     assert not fpfh(PAIR, np.array([[0.0, 0, 0], [0, 0, 1]]), EACH_OTHER, STARTS).any()  # a zero normal has none
-
-
-def test_a_bump_is_salient_to_tasse_and_the_ball_under_it_is_not(knob, saliency_of):
-    values = saliency_of(tasse, knob)
-    on_it = knob.vertices[:, 0] / np.linalg.norm(knob.vertices, axis=1) > np.cos(0.15)
-    assert values[on_it].mean() > 0.3 and values[knob.vertices[:, 0] < 0].max() < 0.05
-    assert on_it[tasse.points(knob, values)[0]]
 
 
 def test_a_rare_shape_is_more_salient_to_tasse_than_a_common_one(sphere):

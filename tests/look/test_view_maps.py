@@ -76,17 +76,6 @@ def test_a_hidden_front_does_not_lend_its_value_to_the_back(ball):
     assert (values[4:] < 0.01).all()
 
 
-def test_saliency_does_not_depend_on_how_finely_a_place_is_meshed(sight, ball, spot, make_maps):
-    coarse = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
-    mesh = Mesh(coarse.vertices, coarse.faces)
-    values = [
-        views.vertex_saliency(views.maps["edge"], smoothing=0.05)
-        for views in (ViewMaps(mesh, TWELVE, make_maps(mesh, spot, channels=("edge",))), sight)
-    ]
-    nearest = np.linalg.norm(mesh.vertices[:, None] - ball.vertices[None], axis=2).argmin(axis=1)
-    assert np.abs(values[0] - values[1][nearest]).max() < 0.08
-
-
 def test_pixels_that_miss_the_object_or_lie_off_the_mask_do_not_count(ball):
     maps = {"edge": np.ones((1, *SIZE))}
     sight = ViewMaps(ball, TWELVE[:1], maps)

@@ -82,30 +82,6 @@ def test_at_most_four_views_are_added():
     ]  # fmt: skip
 
 
-def faces_met(mesh, origins, direction):
-    """How many faces each ray meets, face by face: Moeller and Trumbore 1997 without any acceleration."""
-    a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2)
-    across = np.cross(direction, c - a)
-    scale = np.einsum("ij,ij->i", b - a, across)
-    met = []
-    for origin in origins:
-        u = np.einsum("ij,ij->i", origin - a, across) / scale
-        v = np.einsum("j,ij->i", direction, np.cross(origin - a, b - a)) / scale
-        met.append(((u >= 0) & (v >= 0) & (u + v <= 1)).sum())
-    return np.array(met)
-
-
-def test_rays_meet_the_faces_that_exact_intersection_counts():
-    """Against brute force: the share of rays through a torus with more than two faces, over its whole silhouette."""
-    torus = as_mesh(trimesh.creation.torus(0.35, 0.15, major_sections=32, minor_sections=16))
-    rng = np.random.default_rng(1)
-    for view in (Viewpoint(0, 30), Viewpoint(0, 90)):
-        met = faces_met(torus, rng.uniform(-0.5, 0.5, (400, 2)) @ view.axes[:2], -view.axes[2])
-        hidden = (met > 2).sum() / (met > 0).sum()
-        seen = np.mean([hidden_surface(torus, [view], seed)[0] for seed in range(60)])
-        assert abs(seen - (1 - (1 - hidden) ** 10)) < 0.2
-
-
 def test_the_rays_of_a_view_depend_on_the_seed_and_the_view_alone():
     torus = as_mesh(trimesh.creation.torus(0.4, 0.05, major_sections=32, minor_sections=12))
     views = [Viewpoint(azimuth, 8) for azimuth in range(0, 360, 10)]
