@@ -108,7 +108,7 @@ def check_judged(rows):
     assert {("control", "centre_prior"), ("control", "random"), ("rival", "glance"), (METHOD, "ewigc")} <= set(
         zip(judged["method"], judged["task"], strict=True)
     )
-    accuracy = rows[rows["metric"] == "accuracy"]
+    accuracy = rows[(rows["metric"] == "accuracy") & (rows["method"] == METHOD)]
     assert set(accuracy["split"]) == {"views", "objects"}
     alone = accuracy[(accuracy["task"] == "level_3") & (accuracy["split"] == "objects")].iloc[0]
     assert np.isnan(alone["value"]) and alone["note"] == "each object is a class of its own"

@@ -41,11 +41,11 @@ def files_of(names, source, folder, mesh=MESH):
 
 
 def test_marks_count_the_annotators_at_each_vertex(tmp_path):
+    assert amounts_of("ball", "household", MESH, tmp_path) is None
     marks(tmp_path / "ball.csv", [("a", 3), ("b", 3), ("c", 70)])
     amounts = amounts_of("ball", "household", MESH, tmp_path)
     assert amounts.dtype == np.float64 and np.flatnonzero(amounts).tolist() == [3, 70]
     assert amounts[3] == 2 and amounts[70] == 1
-    assert amounts_of("cube", "household", MESH, tmp_path) is None
 
 
 def test_marks_off_the_mesh_are_named_with_file_rows_and_distances(tmp_path):
