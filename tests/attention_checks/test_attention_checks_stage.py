@@ -51,16 +51,12 @@ def test_every_check_is_made_on_every_object(workspace):
     nss = rows[(rows["method"] == "glance_nested") & (rows["metric"] == "nss")]
     assert nss["value"].min() > 0.5  # all three are looked at where they end
     assert set(read_json(workspace.metrics / "attention_checks.json")) == {"equal.four", "glance_once", "glance_nested"}
+    for name in ("low", "high"):
+        (workspace.data / f"weights/ground_truth/{name}.npz").unlink()
+    with pytest.raises(ValueError, match="1 objects with ground truth; two are needed"):
+        run(workspace)
 
 
 def test_a_strange_set_of_viewpoints_is_named(make_workspace):
     with pytest.raises(ValueError, match="'three' is not one of best, four, twelve"):
         run(make_workspace({"attention_checks": {"views": ["three"]}}))
-
-
-@pytest.mark.slow
-def test_one_object_teaches_nothing_about_another(workspace):
-    for name in ("low", "high"):
-        (workspace.data / f"weights/ground_truth/{name}.npz").unlink()
-    with pytest.raises(ValueError, match="1 objects with ground truth; two are needed"):
-        run(workspace)

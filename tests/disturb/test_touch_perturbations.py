@@ -24,41 +24,29 @@ def mesh():
     return Mesh(ball.vertices * [0.5, 0.35, 0.22], ball.faces)
 
 
+def touches_of(mesh, **more):
+    return Touches("egg", mesh, np.arange(0, 600, 60), (16, 16), 0.02, **more)
+
+
 @pytest.fixture(scope="module")
 def touches(mesh):
-    saliency = np.linspace(0, 1, len(mesh.vertices))
-    return Touches("egg", mesh, np.arange(0, 600, 40), (16, 16), 0.02, saliency)
+    return touches_of(mesh, saliency=np.linspace(0, 1, len(mesh.vertices)))
 
 
 @pytest.mark.parametrize("name", DISTURBING)
-def test_the_unharmed_severity_changes_nothing(touches, name):
+def test_a_harsh_severity_changes_what_the_registry_says_and_the_unharmed_one_nothing(touches, name):
     known = TOUCH_PERTURBATIONS[name]
-    perturbed = known.apply(touches, known.unharmed, 0)
-    assert np.allclose(perturbed.images, touches.images, atol=1e-3)
-    assert perturbed.positions is None or np.allclose(perturbed.positions, touches.positions, atol=1e-9)
-
-
-@pytest.mark.parametrize("name", DISTURBING)
-def test_a_harsh_severity_changes_imprints_or_places(touches, name):
-    perturbed = TOUCH_PERTURBATIONS[name].apply(touches, HARSH[name], 0)
-    change = np.abs(perturbed.images - touches.images).mean()
-    moved = 0 if perturbed.positions is None else np.abs(perturbed.positions - touches.positions).max()
-    assert max(change, moved) > 0.01 and perturbed.images.shape == touches.images.shape
-    assert perturbed.images.min() >= 0 and perturbed.images.max() <= 1
-
-
-@pytest.mark.parametrize("name", DISTURBING)
-def test_draws_differ_where_it_is_a_matter_of_luck_and_come_again(touches, name):
-    known = TOUCH_PERTURBATIONS[name]
-    first, again, other = (known.apply(touches, HARSH[name], draw).images for draw in (0, 0, 1))
-    assert np.array_equal(first, again) and np.array_equal(first, other) != known.random_draws
-
-
-@pytest.mark.parametrize("name", DISTURBING)
-def test_positions_change_just_where_the_registry_says_so(touches, name):
-    assert (TOUCH_PERTURBATIONS[name].apply(touches, HARSH[name], 0).positions is not None) == TOUCH_PERTURBATIONS[
-        name
-    ].moves_positions
+    calm = known.apply(touches, known.unharmed, 0)
+    assert np.allclose(calm.images, touches.images, atol=1e-3)
+    assert calm.positions is None or np.allclose(calm.positions, touches.positions, atol=1e-9)
+    first, again, other = (known.apply(touches, HARSH[name], draw) for draw in (0, 0, 1))
+    change = np.abs(first.images - touches.images).mean()
+    moved = 0 if first.positions is None else np.abs(first.positions - touches.positions).max()
+    assert max(change, moved) > 0.01 and first.images.shape == touches.images.shape
+    assert first.images.min() >= 0 and first.images.max() <= 1
+    assert (first.positions is not None) == known.moves_positions
+    assert np.array_equal(first.images, again.images)
+    assert np.array_equal(first.images, other.images) != known.random_draws
 
 
 def test_a_turn_about_the_vertical_moves_places_and_leaves_imprints(touches):
@@ -72,14 +60,14 @@ def test_a_turned_object_feels_as_its_turned_mesh_does(mesh, touches):
     perturbed = TOUCH_PERTURBATIONS["object_tilted"].apply(touches, 40.0, 0)
     azimuth = touches.random("object_tilted", 0).uniform(0, 2 * np.pi)
     rotation = rotations_about(np.array([np.cos(azimuth), np.sin(azimuth), 0.0]), np.float64(40.0))
-    tilted = Touches("egg", Mesh(mesh.vertices @ rotation.T, mesh.faces), np.arange(0, 600, 40), (16, 16), 0.02)
+    tilted = touches_of(Mesh(mesh.vertices @ rotation.T, mesh.faces))
     assert np.allclose(perturbed.images, tilted.images, atol=1e-3)
     assert np.allclose(perturbed.positions, tilted.positions)
 
 
 def test_a_scaled_object_feels_as_its_scaled_mesh_does(mesh, touches):
     perturbed = TOUCH_PERTURBATIONS["object_larger"].apply(touches, 1.5, 0)
-    larger = Touches("egg", Mesh(1.5 * mesh.vertices, mesh.faces), np.arange(0, 600, 40), (16, 16), 0.02)
+    larger = touches_of(Mesh(1.5 * mesh.vertices, mesh.faces))
     assert np.allclose(perturbed.images, larger.images, atol=1e-3)
 
 
@@ -89,18 +77,15 @@ def test_a_missed_place_is_on_the_surface_and_no_farther_than_the_error(touches)
     back, _ = snap_with_blended_normals(touches.mesh, perturbed.positions)
     assert np.allclose(back, perturbed.positions, atol=1e-6)
     assert gaps.max() < 0.051 and gaps.min() > 0.02
-
-
-def test_normals_on_the_surface_are_those_of_the_vertices_at_the_vertices(touches):
     positions, normals = snap_with_blended_normals(touches.mesh, touches.positions)
     assert np.allclose(positions, touches.positions) and np.allclose(normals, touches.normals, atol=1e-6)
 
 
 def test_a_simplified_mesh_that_is_there_is_used(mesh):
     flat = Mesh(np.array([[-9, -9, 0], [9, -9, 0], [0, 9, 0.0]]), np.array([[0, 1, 2]]))
-    found = Touches("egg", mesh, np.arange(0, 600, 40), (16, 16), 0.02, levels={"qem_40": flat})
-    assert (TOUCH_PERTURBATIONS["coarse_object"].apply(found, 40.0, 0).images == 0).all()
-    assert (TOUCH_PERTURBATIONS["coarse_object"].apply(found, 100.0, 0).images != 0).any()
+    stored = touches_of(mesh, levels={"qem_40": flat})
+    assert (TOUCH_PERTURBATIONS["coarse_object"].apply(stored, 40.0, 0).images == 0).all()
+    assert (TOUCH_PERTURBATIONS["coarse_object"].apply(stored, 100.0, 0).images != 0).any()
 
 
 @pytest.mark.parametrize(

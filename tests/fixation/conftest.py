@@ -26,7 +26,7 @@ def shapes():
     return {
         "ball": as_mesh(ball),
         "egg": Mesh(ball.vertices * [1, 0.3, 0.3], ball.faces),
-        "torus": as_mesh(trimesh.creation.torus(0.35, 0.12, major_sections=96, minor_sections=48)),
+        "torus": as_mesh(trimesh.creation.torus(0.35, 0.12, major_sections=64, minor_sections=32)),
         "tube": Mesh(tube, faces),
         "flat": Mesh(flat, inside),
     }

@@ -56,16 +56,12 @@ def test_grad_cam_from_maps_is_the_one_by_backpropagation_of_each_class(hidden):
         varies = gradients.std(axis=(2, 3)).max(axis=1) > 1e-6 * np.abs(gradients).max()
         assert varies.all() if hidden else not varies.any()
         assert np.abs(grad_cam(maps, network.classify, classes)[0] - expected).max() < 1e-5 * np.abs(expected).max()
-
-
-def test_grad_cam_of_a_head_on_the_mean_of_each_map_weighs_the_maps_by_it():
-    network, images = small_network(hidden=False)
-    maps, linear = network.convolutions(images).detach(), network.head[-1]
-    head = partial(linear_scores, weights=linear.weight.detach(), bias=linear.bias.detach())
-    for classes in (np.zeros(6, dtype=int), np.arange(6) % 3):
-        expected = torch.relu(torch.einsum("bc,bcij->bij", linear.weight.detach()[classes] / 32**2, maps)).numpy()
-        found, explained = grad_cam(maps, head, classes)
-        assert expected.max() > 0 and np.allclose(found, expected, rtol=1e-5, atol=1e-8)
+    if not hidden:  # a head on the mean of each map weighs the maps by it
+        weights, classes = network.head[-1].weight.detach(), np.arange(6) % 3
+        head = partial(linear_scores, weights=weights, bias=network.head[-1].bias.detach())
+        expected = torch.relu(torch.einsum("bc,bcij->bij", weights[classes] / 32**2, maps)).numpy()
+        cams, explained = grad_cam(maps, head, classes)
+        assert expected.max() > 0 and np.allclose(cams, expected, rtol=1e-5, atol=1e-8)
         assert explained.tolist() == classes.tolist()
 
 
@@ -113,21 +109,12 @@ def test_a_head_names_what_can_be_told_apart_and_survives_dead_channels():
         assert (scores(features, weights, bias).argmax(axis=1) == classes).mean() > 0.95
 
 
-def test_entropy_of_known_pictures():
+def test_fusion_weighs_by_entropy_and_a_constant_map_has_no_say():
     assert entropy(np.full((8, 8), 0.3)) == 0 and not np.signbit(entropy(np.zeros((8, 8))))
-    halves = np.repeat([[0.0, 1.0]], 8, axis=0)
-    assert entropy(halves) == pytest.approx(1)
     assert entropy(np.arange(256).reshape(16, 16) / 255) == pytest.approx(8)
-
-
-def test_fusion_weighs_by_entropy():
     halves, steps = np.repeat([[0.0, 0, 1, 1]], 4, axis=0), np.repeat([[0.0, 1 / 3, 2 / 3, 1]], 4, axis=0)
     assert np.allclose(fuse(np.stack([halves, steps])), (1 * halves + 2 * steps) / 3)
-
-
-def test_a_constant_map_has_no_say_and_constant_maps_alone_say_nothing():
-    steps, even = np.repeat([[0.0, 1 / 3, 2 / 3, 1]], 4, axis=0), np.full((4, 4), 0.9)
-    assert np.allclose(fuse(np.stack([steps, even])), steps)
+    assert np.allclose(fuse(np.stack([steps, np.full((4, 4), 0.9)])), steps)
     for value in (0.0, 0.5, 1.0):
         assert not fuse(np.full((3, 4, 4), value)).any()
         assert not fuse(highest_level(np.full((3, 4, 4), value))).any()
@@ -137,6 +124,9 @@ def test_narrowing_keeps_the_highest_of_four_levels():
     levels = np.repeat([0.1, 0.4, 0.7, 1.0], 16).reshape(8, 8)
     kept = highest_level(levels[None])[0]
     assert (kept[levels == 1.0] == 1.0).all() and not kept[levels < 1.0].any()
+    cams = np.zeros((4, 7, 7))
+    cams[0, 3, 3], cams[1] = 1, 0.5
+    assert alive(cams) == 0.25  # constant maps are not alive
 
 
 @pytest.mark.parametrize("bad", [np.full((1, 4, 4), 1.2), np.full((1, 4, 4), np.nan), np.zeros((4, 4))])
@@ -164,12 +154,6 @@ def test_a_picture_of_positions_comes_back_as_positions(shapes):
     assert np.allclose(found[:, seen], np.array(expected[:2])[:, seen], atol=1e-9)
 
 
-def test_views_are_averaged_over_those_that_see():
-    seen = np.array([[True, True, False], [True, False, False]])
-    values = np.array([[[2.0, 4.0, 0.0]], [[4.0, 0.0, 0.0]]])
-    assert mean_over_views(values, seen).tolist() == [[3.0, 4.0, 0.0]]
-
-
 def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
     ball, views = shapes["ball"], viewpoint_sphere(1, 6)
     place = np.array([0.0, 0.0, 0.5])
@@ -183,6 +167,8 @@ def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
     place_on = partial(to_surface, mesh=ball, viewpoints=views, seen=seen, renders=None)
     values, bits = project_maps(dict.fromkeys(tasks, np.stack(cams)), place_on, 224, "vgg16")
     whole = mean_over_views(values, seen)
+    few = np.array([[[2.0, 4.0, 0.0]], [[4.0, 0.0, 0.0]]])  # averaged over the views that see
+    assert mean_over_views(few, np.array([[True, True, False], [True, False, False]])).tolist() == [[3.0, 4.0, 0.0]]
     assert (
         values.shape == (8, len(tasks) + len(MODELS), len(ball.vertices))
         and set(bits) == set(tasks)
@@ -191,9 +177,3 @@ def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
     for one in whole:
         assert np.linalg.norm(ball.vertices[one.argmax()] - place) < 0.1
     assert (whole[6] > 0).mean() < (whole[5] > 0).mean()  # four levels leave less
-
-
-def test_constant_maps_are_not_alive():
-    cams = np.zeros((4, 7, 7))
-    cams[0, 3, 3], cams[1] = 1, 0.5
-    assert alive(cams) == 0.25

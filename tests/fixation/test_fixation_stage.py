@@ -54,49 +54,64 @@ def rows_of(workspace):
 
 
 @pytest.mark.slow
-def test_stage_writes_the_contract_the_same_bytes_twice(run, shapes):
-    workspace = run()
-    folder = workspace.data / "fixation"
+def test_stage_writes_the_contract_the_same_bytes_twice_without_networks_that_have_no_weights(
+    run, shapes, monkeypatch, capsys
+):
+    build = backbone.build
+
+    def missing(name, *options):
+        if name == "resnet101":
+            raise FetchError("nobody carries it")
+        return build(name, *options)
+
+    monkeypatch.setattr(backbone, "build", missing)
+    workspace = run(methods=[METHOD, "resnet101-frozen"])
+    said = capsys.readouterr()
+    assert "4 objects, 5 views" in said.out and "resnet101-frozen is left out: nobody carries it" in said.err
+    folder, rows = workspace.data / "fixation", rows_of(workspace)
+    assert rows.loc[rows["method"] == "resnet101-frozen", "note"].tolist() == ["nobody carries it"]
+    check_files(folder, rows, len(shapes["ball"].vertices))
+    check_judged(rows)
+    assert not list(folder.glob(".*"))  # the caches are gone
+    before = {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
+    shutil.rmtree(workspace.build)  # or else all comes from the cache
+    run(methods=[METHOD, "resnet101-frozen"])
+    assert before == {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
+
+
+def check_files(folder, rows, n):
+    """The arrays of the ball, of n vertices, the classes of the objects and the elbow."""
     stored = read_arrays(folder / "ball.npz")
-    n = len(shapes["ball"].vertices)
     tasks = ["convexity", "curvature", "eccentricity", "level_1", "level_2", "level_3"]
     kept = [task for task in tasks if f"{METHOD}.{task}" in stored]
     assert kept[-3:] == tasks[-3:] and len(kept) > 3
-    for name in (*kept, "ewigc", "ewigc_l4", "average"):
-        assert stored[f"{METHOD}.{name}"].shape == (n,) and stored[f"{METHOD}.{name}.views"].shape == (3, n)
-        assert stored[f"{METHOD}.{name}"].min() >= 0 and stored[f"{METHOD}.{name}"].max() <= 1
+    names = [f"{METHOD}.{name}" for name in (*kept, "ewigc", "ewigc_l4", "average")]
+    for name in names:
+        assert stored[name].shape == (n,) and stored[f"{name}.views"].shape == (3, n)
+        assert stored[name].min() >= 0 and stored[name].max() <= 1
     assert stored[f"{METHOD}.maps"].shape == (3, len(kept), 2, 2)
     assert stored["visible"].shape == (3, n) and stored["seen"].mean() > 0.9
-    assert {key for key, values in stored.items() if values.ndim == 1 and "." in key} == {
-        f"{METHOD}.{name}" for name in (*kept, "ewigc", "ewigc_l4", "average")
-    }
-    rows, tasks = rows_of(workspace), read_table(folder / "tasks.csv").set_index("object")
+    assert {key for key, values in stored.items() if values.ndim == 1 and "." in key} == set(names)
+    tasks = read_table(folder / "tasks.csv").set_index("object")
     level = rows[(rows["metric"] == "class") & (rows["task"] == "level_2")].set_index("item")["label"]
     assert level.to_dict() == tasks["level_2_class"].to_dict() == {
         "ball": "round", "egg": "round", "torus": "hollow", "tube": "hollow"
     }  # fmt: skip
     elbow = read_table(folder / "elbow.csv")
     assert elbow["ssd"].tolist() == rows[rows["metric"] == "ssd"]["value"].tolist() and elbow["chosen"].any()
-    assert not list(folder.glob(".*"))  # the caches are gone
-    before = {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
-    shutil.rmtree(workspace.build)  # or else all comes from the cache
-    run()
-    assert before == {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.slow
-def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys):
-    rows = rows_of(run())
+def check_judged(rows):
+    """Models, rivals and controls are judged where people looked."""
     judged = rows[rows["metric"] == "pcc"]
     assert set(judged["item"]) == {"ball"} and set(judged["view"]) == {"0", "1", "2", "all"}
     assert {("control", "centre_prior"), ("control", "random"), ("rival", "glance"), (METHOD, "ewigc")} <= set(
         zip(judged["method"], judged["task"], strict=True)
     )
-    accuracy = rows[rows["metric"] == "accuracy"]
+    accuracy = rows[(rows["metric"] == "accuracy") & (rows["method"] == METHOD)]
     assert set(accuracy["split"]) == {"views", "objects"}
     alone = accuracy[(accuracy["task"] == "level_3") & (accuracy["split"] == "objects")].iloc[0]
     assert np.isnan(alone["value"]) and alone["note"] == "each object is a class of its own"
-    assert "4 objects, 5 views" in capsys.readouterr().out
 
 
 @pytest.mark.slow
@@ -108,21 +123,6 @@ def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypat
     assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(own["metric"])
     rates = own.loc[own["metric"] == "rate", "value"].tolist()
     assert rates in ([0.01], [0.03]) if mode == "last_block" else not rates
-
-
-@pytest.mark.slow
-def test_a_network_without_weights_is_left_out_with_the_reason(run, monkeypatch, capsys):
-    def missing(name, *options):
-        if name == "resnet101":
-            raise FetchError("nobody carries it")
-        return build(name, *options)
-
-    build = backbone.build
-
-    monkeypatch.setattr(backbone, "build", missing)
-    rows = rows_of(run(methods=[METHOD, "resnet101-frozen"]))
-    assert rows.loc[rows["method"] == "resnet101-frozen", "note"].tolist() == ["nobody carries it"]
-    assert "resnet101-frozen is left out: nobody carries it" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["mobilenet_v2", "mobilenet_v2-thawed", "-frozen"])

@@ -19,6 +19,18 @@ def ball_mesh(subdivisions=4, radius=1.0):
     return Mesh(shape.vertices, shape.faces)
 
 
+@functools.cache
+def lopsided():
+    """A blob with bumps of different size in no symmetric order."""
+    source = trimesh.creation.icosphere(subdivisions=4)
+    v = source.vertices.copy()
+    for direction, height, width in (((1, 0.2, 0), 1.2, 0.3), ((-0.3, 1, 0.5), 0.7, 0.2), ((0.1, -0.4, -1), 0.9, 0.5)):
+        towards = np.array(direction) / np.linalg.norm(direction)
+        v *= 1 + height * np.exp(-(1 - v @ towards / np.linalg.norm(v, axis=1)) / width**2)[:, None]
+    v -= (v.max(axis=0) + v.min(axis=0)) / 2
+    return Mesh(v / (2 * np.linalg.norm(v, axis=1).max()), source.faces)
+
+
 def raised_ball(tops, widths, heights, subdivisions=5):
     """The unit ball raised round each top (a unit vector) by height * exp(-distance^2 / (2 width^2))."""
     ball = ball_mesh(subdivisions)

@@ -18,21 +18,16 @@ def mark(vertex, time="2026-05-06T07:08:09.123Z", place=(0.1, -0.2, 0.3)):
     return {"time": time, "vertex": vertex, **dict(zip("xyz", place, strict=True))}
 
 
-def test_what_was_written_is_read_back(tmp_path):
+def test_a_written_file_is_read_back_and_can_be_written_again(tmp_path):
     write_marks(tmp_path / "cup.csv", "ann", [mark(3), mark(5, place=(-0.0, 1 / 3, -1e-9))])
-    found = read_marks(tmp_path / "cup.csv")
-    assert list(found) == COLUMNS and list(found.vertex) == [3, 5] and set(found.annotator) == {"ann"}
-    assert found.vertex.dtype == np.int64 and found.x.dtype == np.float64
-    assert np.allclose(found[["x", "y", "z"]], [[0.1, -0.2, 0.3], [0, 1 / 3, 0]], atol=5e-7)
-    assert (tmp_path / "cup.csv").read_text().splitlines()[
-        2
-    ] == "ann,2026-05-06T07:08:09.123Z,5,0.000000,0.333333,0.000000"
-
-
-def test_a_frame_that_was_read_can_be_written(tmp_path):
-    write_marks(tmp_path / "a.csv", "ann", [mark(3), mark(5)])
-    write_marks(tmp_path / "b.csv", "ann", read_marks(tmp_path / "a.csv"))
-    assert (tmp_path / "b.csv").read_bytes() == (tmp_path / "a.csv").read_bytes()
+    marks = read_marks(tmp_path / "cup.csv")
+    assert list(marks) == COLUMNS and list(marks.vertex) == [3, 5] and set(marks.annotator) == {"ann"}
+    assert marks.vertex.dtype == np.int64 and marks.x.dtype == np.float64
+    assert np.allclose(marks[["x", "y", "z"]], [[0.1, -0.2, 0.3], [0, 1 / 3, 0]], atol=5e-7)
+    line = (tmp_path / "cup.csv").read_text().splitlines()[2]
+    assert line == "ann,2026-05-06T07:08:09.123Z,5,0.000000,0.333333,0.000000"
+    write_marks(tmp_path / "again.csv", "ann", marks)
+    assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "cup.csv").read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -44,7 +39,7 @@ def test_times_become_utc(tmp_path, time):
     assert list(read_marks(tmp_path / "cup.csv").time) == ["2026-05-06T07:08:09.000Z"]
 
 
-def test_only_the_annotators_own_rows_are_replaced(tmp_path):
+def test_only_the_annotators_own_rows_are_replaced_and_a_new_annotators_are_appended(tmp_path):
     path = tmp_path / "cup.csv"
     first, second = OTHER.splitlines(keepends=True)
     path.write_text(HEADER + first + "ann,2026-01-01T00:00:00Z,1,0,0,0\n" + second)
@@ -54,22 +49,11 @@ def test_only_the_annotators_own_rows_are_replaced(tmp_path):
     assert list(read_marks(path).vertex) == [7, 2, 4, 8]
     write_marks(path, "ann", [])
     assert path.read_text() == HEADER + OTHER
-
-
-def test_a_new_annotator_is_appended(tmp_path):
-    path = tmp_path / "cup.csv"
     path.write_text(HEADER + OTHER.rstrip("\n"))  # no newline at the end
     write_marks(path, "ann", [mark(2)])
-    assert path.read_text().startswith(HEADER + OTHER) and list(read_marks(path).annotator) == [
-        "zoe",
-        "Doe, Jane",
-        "ann",
-    ]
-
-
-def test_a_spreadsheets_file_is_read(tmp_path):
-    path = tmp_path / "cup.csv"
-    path.write_bytes(b"\xef\xbb\xbf" + (HEADER + OTHER).replace("\n", "\r\n").encode())
+    assert path.read_text().startswith(HEADER + OTHER)
+    assert list(read_marks(path).annotator) == ["zoe", "Doe, Jane", "ann"]
+    path.write_bytes(b"\xef\xbb\xbf" + (HEADER + OTHER).replace("\n", "\r\n").encode())  # a spreadsheet's
     assert list(read_marks(path).vertex) == [7, 8]
 
 
@@ -131,21 +115,23 @@ def test_a_missing_file_is_an_error_and_a_file_without_marks_is_empty(tmp_path):
     with pytest.raises(FileNotFoundError):
         read_marks(tmp_path / "cup.csv")
     (tmp_path / "cup.csv").write_text(HEADER)
-    found = read_marks(tmp_path / "cup.csv")
-    assert found.empty and list(found) == COLUMNS and found.vertex.dtype == np.int64
+    marks = read_marks(tmp_path / "cup.csv")
+    assert marks.empty and list(marks) == COLUMNS and marks.vertex.dtype == np.int64
 
 
-@pytest.mark.parametrize("name", ["", "  ", "a\nb", "a\x00b", "x" * 81, None])
-def test_unusable_names_are_refused(tmp_path, name):
-    with pytest.raises(ValueError, match="name must have 1 to"):
-        write_marks(tmp_path / "cup.csv", name, [mark(1)])
-    assert not (tmp_path / "cup.csv").exists()
-
-
-@pytest.mark.parametrize("bad", [mark(-1), mark(1, "soon"), mark(1, place=(0, np.nan, 0)), mark(1.5)])
-def test_unusable_marks_are_refused_before_anything_is_written(tmp_path, bad):
-    with pytest.raises(ValueError):
-        write_marks(tmp_path / "cup.csv", "ann", [mark(2), bad])
+@pytest.mark.parametrize(
+    ("name", "bad", "message"),
+    [
+        *[(name, mark(1), "name must have 1 to") for name in ("  ", "a\nb", "a\x00b", "x" * 81, None)],
+        ("ann", mark(-1), "not a point of a mesh"),
+        ("ann", mark(1, "soon"), "not a time"),
+        ("ann", mark(1, place=(0, np.nan, 0)), "not a point of a mesh"),
+        ("ann", mark(1.5), "1.5"),
+    ],
+)
+def test_unusable_names_and_marks_are_refused_before_anything_is_written(tmp_path, name, bad, message):
+    with pytest.raises(ValueError, match=message):
+        write_marks(tmp_path / "cup.csv", name, [mark(2), bad])
     assert not (tmp_path / "cup.csv").exists()
 
 

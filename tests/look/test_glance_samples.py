@@ -1,4 +1,4 @@
-"""Samples of a surface: even, on the surface, the same whatever its triangles are, and what is read off them."""
+"""Samples of a surface: even, on the surface, free of noise, and what is read off them."""
 
 import numpy as np
 import pytest
@@ -23,27 +23,25 @@ def ball() -> Samples:
     return samples_of_mesh(sphere(5))
 
 
-def test_samples_are_as_many_as_asked_for_and_lie_on_the_surface(ball):
+def test_samples_are_as_many_as_asked_for_even_and_on_the_surface(ball):
     assert len(ball.points) == pytest.approx(COUNT, rel=0.35)
     assert ball.areas.sum() == pytest.approx(sphere(5).face_areas.sum())
     assert np.linalg.norm(ball.points, axis=1) == pytest.approx(0.5, abs=0.2 * SPACING)
     assert np.einsum("ij,ij->i", ball.normals, ball.points) == pytest.approx(0.5, abs=0.01)
-
-
-def test_samples_are_even(ball):
     polar = [np.sum(ball.areas[np.abs(ball.points[:, axis]) > 0.25]) for axis in range(3)]  # half of a sphere's area
     assert np.array(polar) == pytest.approx(ball.areas.sum() / 2, rel=0.02)
     assert ball.spacing == pytest.approx(SPACING, rel=0.25)
 
 
-def test_samples_hardly_depend_on_the_triangles(ball):
-    away = ball.tree.query(samples_of_mesh(sphere(6)).points)[0]
-    assert away.max() < 2 * SPACING
-    assert len(samples_of_mesh(sphere(6)).points) == pytest.approx(len(ball.points), rel=0.05)
-
-
-def test_samples_are_the_same_at_every_call():
-    assert samples_of_mesh(sphere(3)).points.tobytes() == samples_of_mesh(sphere(3)).points.tobytes()
+def test_samples_hardly_depend_on_the_triangles_and_are_the_same_of_a_cloud_and_at_every_call(ball):
+    coarse = samples_of_mesh(sphere(4))
+    assert ball.tree.query(coarse.points)[0].max() < 2 * SPACING
+    assert len(coarse.points) == pytest.approx(len(ball.points), rel=0.05)
+    assert coarse.points.tobytes() == samples_of_mesh(sphere(4)).points.tobytes()
+    dense = samples_of_mesh(sphere(5), 3 * COUNT)
+    cloud = samples_of_points(dense.points, dense.normals)
+    assert len(cloud.points) == pytest.approx(COUNT, rel=0.3)
+    assert ball.tree.query(cloud.points)[0].max() < 2 * SPACING
 
 
 def test_the_two_sides_of_a_thin_plate_stay_apart():
@@ -54,31 +52,17 @@ def test_the_two_sides_of_a_thin_plate_stay_apart():
     assert np.abs(up[inner]).min() > 0.99
 
 
-def test_noise_is_averaged_away():
-    mesh = sphere(6)
-    noisy = mesh.vertices + rng(0, "noise").normal(0, 0.005, mesh.vertices.shape)
-    samples = samples_of_mesh(Mesh(noisy, mesh.faces))
-    radii = np.linalg.norm(samples.points, axis=1)
-    assert np.sqrt(samples.shares @ (radii - samples.shares @ radii) ** 2) < 0.0026
-    assert np.linalg.norm(samples.normals, axis=1) == pytest.approx(1)
-    cosines = np.einsum("ij,ij->i", samples.normals, unit(samples.points))
-    assert samples.shares @ cosines > 0.95  # noise turned them by 50 degrees
-
-
-def test_values_are_interpolated_exactly_where_they_are_constant_and_nearly_where_they_are_linear(ball):
+def test_values_are_interpolated_nearly_where_they_are_linear_and_from_the_own_side_of_a_thin_plate(ball):
     mesh = sphere(4)
     near, weights = ball.interpolation(mesh.vertices, mesh.vertex_normals)
     assert weights.sum(axis=1) == pytest.approx(1)
     assert (ball.points[near] * weights[:, :, None]).sum(axis=1) == pytest.approx(mesh.vertices, abs=2 * SPACING)
-
-
-def test_a_side_of_a_thin_plate_takes_the_values_of_its_own_side():
     plate = as_mesh(trimesh.creation.box((0.7, 0.7, 0.004)).subdivide_to_size(0.05))
     samples = samples_of_mesh(plate)
     near, weights = samples.interpolation(plate.vertices, plate.vertex_normals)
     inner = np.abs(plate.vertices[:, :2]).max(axis=1) < 0.3
-    found = (samples.normals[near, 2] * weights).sum(axis=1)
-    assert np.abs(found - plate.vertex_normals[:, 2])[inner].mean() < 0.05
+    facing = (samples.normals[near, 2] * weights).sum(axis=1)
+    assert np.abs(facing - plate.vertex_normals[:, 2])[inner].mean() < 0.05
 
 
 def test_smoothing_spreads_by_its_length_and_keeps_a_constant(ball):
@@ -90,19 +74,9 @@ def test_smoothing_spreads_by_its_length_and_keeps_a_constant(ball):
     assert np.sqrt((spread * away**2).sum() / spread.sum() / 2) == pytest.approx(0.05, rel=0.4)
 
 
-def test_samples_of_a_cloud_are_those_of_its_surface(ball):
-    given = samples_of_mesh(sphere(5), 3 * COUNT)
-    cloud = samples_of_points(given.points, given.normals)
-    assert len(cloud.points) == pytest.approx(COUNT, rel=0.3)
-    assert ball.tree.query(cloud.points)[0].max() < 2 * SPACING
-
-
-def test_a_mesh_with_next_to_no_area_still_has_samples_along_it():
+def test_little_surface_has_samples_along_it_and_none_is_an_error():
     needle = samples_of_mesh(Mesh(np.array([[-0.5, 0, 0], [0.5, 0, 0], [0, 1e-14, 0]]), np.array([[0, 1, 2]])))
     assert np.ptp(needle.points[:, 0]) > 0.9 and np.abs(needle.points[:, 1:]).max() < 1e-9
-
-
-def test_nothing_to_look_at_is_an_error():
     with pytest.raises(ValueError, match="without area"):
         samples_of_mesh(Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]])))
     with pytest.raises(ValueError, match="different places"):
@@ -114,7 +88,7 @@ def noisy(mesh: Mesh) -> Samples:
     return samples_of_mesh(Mesh(moved, mesh.faces))
 
 
-def test_noise_does_not_shrink_what_is_curved():
+def test_noise_is_averaged_away_without_shrinking_what_is_curved(ball):
     """An average over the neighbours would move the middle of the radii inwards."""
     samples = noisy(as_mesh(trimesh.creation.torus(0.4, 0.1, 256, 128)))
     circle = unit(samples.points * [1, 1, 0]) * 0.4
@@ -122,13 +96,4 @@ def test_noise_does_not_shrink_what_is_curved():
     assert np.median(thickness) == pytest.approx(0.1, abs=0.001)
     assert np.sqrt(samples.shares @ (thickness - samples.shares @ thickness) ** 2) < 0.0025
     assert samples.shares @ np.einsum("ij,ij->i", unit(samples.points - circle), samples.normals) > 0.965
-
-
-def test_noise_does_not_join_the_sides_of_a_thin_plate():
-    samples = noisy(as_mesh(trimesh.creation.box((0.7, 0.7, 0.02)).subdivide_to_size(0.008)))
-    inner = np.abs(samples.points[:, :2]).max(axis=1) < 0.3
-    assert np.median(np.abs(samples.points[inner, 2])) == pytest.approx(0.01, rel=0.1)
-
-
-def test_a_clean_surface_is_left_as_it_is(ball):
-    assert denoised(ball) is ball
+    assert denoised(ball) is ball  # a clean surface is left as it is

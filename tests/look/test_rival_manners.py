@@ -6,7 +6,6 @@ from types import ModuleType
 import numpy as np
 import pytest
 import trimesh
-from scipy.spatial.transform import Rotation
 
 from haptic_glance.look.rivals import (
     corners,
@@ -21,8 +20,6 @@ from haptic_glance.look.rivals import (
 )
 from haptic_glance.mesh.mesh import Mesh
 
-X = np.array([1.0, 0, 0])
-
 
 @dataclass(frozen=True)
 class Held:
@@ -31,32 +28,26 @@ class Held:
     rival: ModuleType
     same: float  # of the largest value: what another order or size of the mesh may change
     most: float = np.inf  # the largest value that there may be
+    alike: float = 0.99  # correlation with the map of a moved mesh: ties between clusters are told apart anew
     samples: int = 0  # that stand for the mesh: fewer than in use, since this does not depend on how many
+    turns: bool = True  # or else a turn draws other samples, or a grid that does not turn holds other voxels
 
 
+EXACTLY = 1 - 1e-6
 HELD = [
-    Held(harris, 1e-4),
-    Held(corners, 1e-4),
-    Held(heat_kernel, 1e-4),
+    Held(harris, 1e-4, alike=EXACTLY),
+    Held(corners, 1e-4, alike=EXACTLY),
+    Held(heat_kernel, 1e-4, alike=EXACTLY),
     Held(mesh_saliency, 1e-9, most=1 + 1e-12),
     Held(salient_points, 1e-9, most=1 + 1e-12),
-    Held(sift, 1e-9, most=1 + 1e-12),
-    Held(leifman, 1e-6, most=1 + 1e-12, samples=300),
-    Held(song, 1e-4, samples=300),
+    Held(sift, 1e-9, most=1 + 1e-12, turns=False),
+    Held(leifman, 1e-6, most=1 + 1e-12, samples=300, turns=False),
+    Held(song, 1e-4, samples=300, turns=False),
     Held(tasse, 1e-6, most=1 + 1e-12),
 ]
 
 
-def name_of(module):
-    return module.__name__.rpartition(".")[2]
-
-
-def over(*rivals):
-    """Runs a test over these rivals alone."""
-    return pytest.mark.parametrize("rival", rivals, ids=name_of)
-
-
-@pytest.fixture(scope="module", params=HELD, ids=lambda held: name_of(held.rival))
+@pytest.fixture(scope="module", params=HELD, ids=lambda held: held.rival.__name__.rpartition(".")[2])
 def held(request):
     with pytest.MonkeyPatch.context() as patch:
         if request.param.samples:
@@ -82,57 +73,28 @@ def values(rival, bumpy, saliency_of):
     return saliency_of(rival, bumpy)
 
 
-@pytest.mark.slow
-def test_answers_in_the_agreed_form(held, bumpy, values):
+def test_answers_in_the_agreed_form_and_does_not_depend_on_size_and_vertex_order(held, bumpy, values):
     points = held.rival.points(bumpy)
     assert values.shape == (len(bumpy.vertices),) and values.dtype == np.float64
     assert values.min() >= 0 and 0 < values.max() <= held.most
     assert points.dtype == np.int64 and 0 < len(points) == len(set(points))
     assert (np.diff(values[points]) <= 1e-8 * values.max()).all()
-    assert np.array_equal(points, held.rival.points(bumpy, values))
-
-
-@pytest.mark.slow
-def test_does_not_depend_on_size_and_vertex_order(held, bumpy, values):
     order = np.random.default_rng(5).permutation(len(bumpy.vertices))
     place = np.argsort(order)
     shuffled = Mesh(7 * bumpy.vertices[order], np.roll(place[bumpy.faces][::-1], 1, axis=1))
     moved = held.rival.saliency(shuffled)
     assert np.allclose(moved, values[order], rtol=0, atol=held.same * values.max())
-    assert np.array_equal(order[held.rival.points(shuffled, moved)], held.rival.points(bumpy, values))
+    assert np.array_equal(order[held.rival.points(shuffled, moved)], points)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [1e-5, 1e5])
-@over(harris, corners, heat_kernel)
-def test_does_not_depend_on_scale_turn_and_place(rival, bumpy, saliency_of, size):
-    turn = trimesh.transformations.rotation_matrix(1.0, [1, 2, 3])[:3, :3]
-    moved = Mesh(size * (bumpy.vertices @ turn.T + [3, -2, 1]), bumpy.faces)
-    values = saliency_of(rival, bumpy)
-    assert np.allclose(rival.saliency(moved), values, atol=1e-4 * values.max())
-    assert set(rival.points(moved)) == set(rival.points(bumpy))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("rival", "largest", "correlation", "apart"),
-    [(mesh_saliency, 0.05, 0.99, 0), (salient_points, 0.05, 0.99, 0), (sift, 1, 0.95, 0.05)],  # sift: within a voxel
-    ids=["mesh_saliency", "salient_points", "sift"],
-)
-def test_a_turned_mesh_keeps_its_map_and_first_point(rival, largest, correlation, apart, bump_and_swell, saliency_of):
-    mesh, values = bump_and_swell, saliency_of(rival, bump_and_swell)
-    turn = Rotation.from_euler("xyz", [20, 30, 50], degrees=True).as_matrix()
-    turned = Mesh(mesh.vertices @ turn.T, mesh.faces)
-    moved = rival.saliency(turned)
-    assert np.abs(moved - values).max() <= largest and np.corrcoef(moved, values)[0, 1] > correlation
-    first = mesh.vertices[[rival.points(turned, moved)[0], rival.points(mesh, values)[0]]]
-    assert np.linalg.norm(first[0] - first[1]) <= apart
-
-
-@pytest.mark.slow
-def test_does_not_depend_on_which_side_is_out(rival, bumpy, values):
-    inward = Mesh(bumpy.vertices, bumpy.faces[:, ::-1])
-    assert np.allclose(rival.saliency(inward), values, atol=1e-4)
+def test_does_not_depend_on_scale_turn_place_and_which_side_is_out(held, bumpy, values):
+    turn = trimesh.transformations.rotation_matrix(1.0, [1, 2, 3])[:3, :3] if held.turns else np.eye(3)
+    moved = Mesh(1e-5 * (bumpy.vertices @ turn.T + [3, -2, 1]), bumpy.faces[:, ::-1])
+    again = held.rival.saliency(moved)
+    assert np.corrcoef(again, values)[0, 1] > held.alike
+    if held.alike == EXACTLY:
+        assert np.allclose(again, values, atol=1e-4 * values.max())
+        assert set(held.rival.points(moved)) == set(held.rival.points(bumpy))
 
 
 @pytest.fixture(scope="module")
@@ -140,46 +102,30 @@ def bad_meshes(sphere, grid):
     triangle = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
     ball, nothing = sphere(2), np.zeros((0, 3), int)
     long = ball.vertices * [1, 0.3, 0.3]
-    pair = np.concatenate([ball.faces, ball.faces + len(long)])
     soup = long[ball.faces].reshape(-1, 3)  # coincident vertices: no face shares one
     return {
         "no vertices": (np.zeros((0, 3)), nothing),
         "no faces": (triangle, nothing),
         "one triangle": (triangle, [[0, 1, 2]]),
-        "no area": (np.zeros((3, 3)), [[0, 1, 2]]),
         "a needle": (triangle * [1, 0, 0], [[0, 1, 2]]),
-        "a line": ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]),
         "flat": grid(20, 20),
-        "far pieces": (np.concatenate([long, long + 1000]), pair),
-        "very far pieces": (np.concatenate([long, long + [1e6, 0, 0]]), pair),
-        "inward": (long, ball.faces[:, ::-1]),
-        "a vertex in no face": (np.concatenate([long, [[0, 0, 2]]]), ball.faces),
-        "a far vertex in no face": (np.concatenate([long, [[9, 9, 9]]]), ball.faces),
+        "far pieces": (np.concatenate([long, long + [1e6, 0, 0]]), np.concatenate([ball.faces, ball.faces + 162])),
         "coincident vertices": (soup, np.arange(len(soup)).reshape(-1, 3)),
         "a face twice": (triangle, [[0, 1, 2], [0, 1, 2], [2, 1, 0]]),
-        "a face on one edge": (long, np.concatenate([ball.faces, [[0, 0, 12], [5, 5, 5]]])),
+        "untidy": (np.concatenate([long, [[9, 9, 9]]]), np.concatenate([ball.faces, [[0, 0, 12], [5, 5, 5]]])),
     }
 
 
-BAD = [
-    "no vertices", "no faces", "one triangle", "no area", "a needle", "a line", "flat", "far pieces",
-    "very far pieces", "inward", "a vertex in no face", "a far vertex in no face", "coincident vertices",
-    "a face twice", "a face on one edge",
-]  # fmt: skip
-
-
-@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("name", BAD)
-def test_bad_meshes_give_finite_values_and_points_on_the_surface(rival, bad_meshes, name):
-    mesh = Mesh(*bad_meshes[name])
-    values = rival.saliency(mesh)
-    points = rival.points(mesh, values)
-    assert values.shape == (len(mesh.vertices),) and np.isfinite(values).all() and (values >= 0).all()
-    assert points.dtype == np.int64 and np.isin(points, mesh.faces).all()
+def test_bad_meshes_give_finite_values_and_points_on_the_surface(rival, bad_meshes):
+    for name, (vertices, faces) in bad_meshes.items():
+        mesh = Mesh(vertices, faces)
+        values = rival.saliency(mesh)
+        points = rival.points(mesh, values)
+        assert values.shape == (len(mesh.vertices),) and np.isfinite(values).all() and (values >= 0).all(), name
+        assert points.dtype == np.int64 and np.isin(points, mesh.faces).all(), name
 
 
-@pytest.mark.slow
 def test_a_vertex_in_no_face_is_not_salient(rival, bumpy):
     """It lies in the tip of the highest bump."""
     top = bumpy.vertices[np.linalg.norm(bumpy.vertices, axis=1).argmax()]
@@ -194,36 +140,8 @@ def test_values_of_another_mesh_are_refused(rival, bumpy):
         rival.points(bumpy, np.ones(7))
 
 
-@pytest.mark.slow
-@over(mesh_saliency, salient_points, sift, tasse)
-def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(rival, sphere, grid):
+@pytest.mark.parametrize("smooth", [mesh_saliency, salient_points, sift, tasse])
+def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(smooth, sphere, grid):
     for mesh in sphere(4), Mesh(*grid(9, 9)):
-        values = rival.saliency(mesh)
-        assert values.max() == 0
-        assert len(rival.points(mesh, values)) == 0
-
-
-@pytest.mark.slow
-@over(mesh_saliency, salient_points)
-def test_a_bump_far_below_the_scales_counts_less_than_one_of_the_right_size(rival, sphere, raised):
-    """The small bump, one vertex wide, is as steep as the other."""
-    directions = sphere(5).vertices
-    right, fine = np.argmax(directions @ X), np.argmax(directions @ [0, 1, 0])
-    values = rival.saliency(raised(directions[[right, fine]], [0.08, 0.013], [0.06, 0.01]))
-    assert values[fine] < 0.5 * values[right]
-
-
-@pytest.mark.slow
-@over(mesh_saliency, salient_points)
-def test_the_ends_of_an_ellipsoid_come_first(rival, sphere):
-    ellipsoid = Mesh(sphere(4).vertices * [1, 0.3, 0.3], sphere(4).faces)
-    np.testing.assert_allclose(np.abs(ellipsoid.vertices[rival.points(ellipsoid)[:2]]), [X, X], atol=0.02)
-
-
-@pytest.mark.slow
-@over(mesh_saliency, salient_points)
-def test_the_corners_of_a_cube_come_first(rival, cube):
-    mesh = cube(5)
-    first = mesh.vertices[rival.points(mesh)[:8]]
-    assert len(first) == 8
-    np.testing.assert_allclose(np.abs(first), 0.5)
+        values = smooth.saliency(mesh)
+        assert values.max() == 0 and len(smooth.points(mesh, values)) == 0

@@ -23,14 +23,10 @@ def test_saliency_on_the_vertices_follows_the_maps(sight, ball, spot):
     assert np.abs(values - true / true.max()).max() < 0.05
 
 
-def test_a_constant_map_is_constant_on_all_vertices(ball):
-    sight = constant(ball)
-    assert np.allclose(sight.vertex_saliency(sight.maps["edge"]), 1, atol=0.01)
-
-
-def test_maps_of_zeros_give_zeros(ball):
-    sight = constant(ball, value=0.0)
-    assert not sight.vertex_saliency(sight.maps["edge"]).any()
+@pytest.mark.parametrize("value", [0.5, 0.0])
+def test_a_constant_map_is_constant_on_all_vertices(ball, value):
+    sight = constant(ball, value=value)
+    assert np.allclose(sight.vertex_saliency(sight.maps["edge"]), value > 0, atol=0.01)
 
 
 def test_a_gap_in_what_is_seen_takes_its_neighbours_values(ball):
@@ -80,26 +76,11 @@ def test_a_hidden_front_does_not_lend_its_value_to_the_back(ball):
     assert (values[4:] < 0.01).all()
 
 
-@pytest.mark.slow
-def test_saliency_does_not_depend_on_how_finely_a_place_is_meshed(spot, make_maps):
-    coarse, fine = (trimesh.creation.icosphere(subdivisions=s, radius=0.5) for s in (3, 4))
-    meshes = [Mesh(m.vertices, m.faces) for m in (coarse, fine)]
-    values = []
-    for mesh in meshes:
-        sight = ViewMaps(mesh, TWELVE, make_maps(mesh, spot))
-        values.append(sight.vertex_saliency(sight.maps["edge"], smoothing=0.05))
-    nearest = np.linalg.norm(coarse.vertices[:, None] - fine.vertices[None], axis=2).argmin(axis=1)
-    assert np.abs(values[0] - values[1][nearest]).max() < 0.08
-
-
-def test_pixels_that_miss_the_object_do_not_count(ball):
-    sight = ViewMaps(ball, TWELVE[:1], {"edge": np.ones((1, *SIZE))})
+def test_pixels_that_miss_the_object_or_lie_off_the_mask_do_not_count(ball):
+    maps = {"edge": np.ones((1, *SIZE))}
+    sight = ViewMaps(ball, TWELVE[:1], maps)
     disc = np.pi * (0.5 * sight.pixels_per_unit) ** 2
     assert abs(len(sight.vertices) / disc - 1) < 0.02  # the bounding box has 1.27 times as many
-
-
-def test_the_mask_takes_pixels_out(ball):
-    maps = {"edge": np.ones((1, *SIZE))}
     mask = np.zeros((1, *SIZE), dtype=bool)
     mask[0, 30:40, 40:60] = True
     assert len(ViewMaps(ball, TWELVE[:1], maps, mask).vertices) == 200

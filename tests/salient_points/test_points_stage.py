@@ -1,7 +1,6 @@
 """The stage on one object, and on a data set to which an object is added."""
 
 import dataclasses
-import functools
 
 import numpy as np
 import pytest
@@ -12,7 +11,14 @@ from haptic_glance.look.views import TWELVE
 from stages.engine.rows import read_rows
 from stages.salient_points import Params
 from stages.salient_points import __main__ as stage
-from stages.salient_points.measure import mean_spacing, measurement_rows, read_points, read_strong_points, summary
+from stages.salient_points.measure import (
+    mean_spacing,
+    measurement_rows,
+    read_points,
+    read_saliency,
+    read_strong_points,
+    summary,
+)
 from stages.weights.training import weight_table
 
 METHODS = ["glance", "itti", "random"]
@@ -32,13 +38,6 @@ def workspace(ball, spot, make_maps, make_workspace):
     return workspace
 
 
-@pytest.fixture
-def run(workspace):
-    """A function that processes the ball and returns its rows."""
-    work = functools.partial(stage.process, data=workspace.data, settings=SETTINGS, seed=0)
-    return lambda folder: work("ball", workspace.root / folder)
-
-
 @pytest.mark.slow
 def test_one_object_more_costs_one_object(workspace, monkeypatch):
     made = []
@@ -53,29 +52,22 @@ def test_one_object_more_costs_one_object(workspace, monkeypatch):
     assert set(rows["item"]) == set(made) and set(rows["dataset"]) == {"toys"}
 
 
-@pytest.mark.slow
-def test_stage_writes_the_contract(run, tmp_path, ball):
-    run("out")
-    stored = read_arrays(tmp_path / "out/ball.npz")
+def test_stage_writes_the_contract_the_same_bytes_twice_and_measures_every_method(workspace, tmp_path, ball):
+    rows = stage.process("ball", tmp_path / "out", data=workspace.data, settings=SETTINGS, seed=0)
+    stage.process("ball", tmp_path / "again", data=workspace.data, settings=SETTINGS, seed=0)
+    path = tmp_path / "out/ball.npz"
+    assert sha256(path) == sha256(tmp_path / "again/ball.npz")
+    stored = read_arrays(path)
     kinds = {f"{method}.{kind}" for method in METHODS for kind in ("points", "strong", "saliency")}
     assert set(stored) == kinds - {"random.saliency"}
-    assert all(stored[f"{method}.points"].shape == (30,) for method in METHODS)
-    assert all(stored[f"{method}.points"].dtype == np.int64 for method in METHODS)
+    for method in METHODS:
+        assert stored[f"{method}.points"].shape == (30,) and stored[f"{method}.points"].dtype == np.int64
     assert stored["glance.saliency"].shape == (len(ball.vertices),)
     assert stored["glance.saliency"].dtype == np.float32
-    strong = read_strong_points(tmp_path / "out/ball.npz")
+    points, strong = read_points(path), read_strong_points(path)
+    assert list(points) == METHODS and list(read_saliency(path)) == ["glance", "itti"]
     assert len(strong["random"]) == len(strong["glance"]) == stored["glance.strong"]
-    assert (read_points(tmp_path / "out/ball.npz")["itti"][: len(strong["itti"])] == strong["itti"]).all()
-
-
-@pytest.mark.slow
-def test_stage_writes_the_same_bytes_twice(run, tmp_path):
-    run("one"), run("two")
-    assert sha256(tmp_path / "one/ball.npz") == sha256(tmp_path / "two/ball.npz")
-
-
-def test_stage_measures_every_method(run):
-    rows = run("out")
+    assert (points["itti"][: len(strong["itti"])] == strong["itti"]).all()
     assert {(row["method"], row["metric"]) for row in rows} == {
         (method, metric) for method in METHODS for metric in ("points_strong", "points", "spread", "saliency_at_points")
     }
@@ -85,15 +77,9 @@ def test_stage_measures_every_method(run):
     assert means["glance.saliency_at_points"] > means["random.saliency_at_points"]
 
 
-def test_what_does_not_apply_stays_out_of_the_summary(ball):
+def test_what_does_not_apply_stays_out_of_the_summary_and_the_spread_of_a_unit_grid_is_one(ball):
     blind = Detection(np.array([0, 5]), 1, None)
-    assert set(summary(measurement_rows("ball", "random", blind, ball, None, 0.1))) == {
-        "random.points",
-        "random.points_strong",
-        "random.spread",
-    }
-
-
-def test_spread_of_a_unit_grid_is_one():
+    kinds = {"random.points", "random.points_strong", "random.spread"}
+    assert set(summary(measurement_rows("ball", "random", blind, ball, None, 0.1))) == kinds
     assert mean_spacing(np.stack(np.meshgrid(range(3), range(4), [0]), axis=-1).reshape(-1, 3)) == 1
     assert np.isnan(mean_spacing(np.zeros((1, 3))))

@@ -18,19 +18,15 @@ def assert_equal(one, other):
     assert one.viewpoint == other.viewpoint
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])
-@pytest.mark.parametrize("background", ["black", "white"])
-def test_round_trip_is_exact(shapes, name, background, tmp_path):
-    view = render(shapes[name], Viewpoint(120, 45, 10), (225, 300), "raster", background)
-    write_view(tmp_path / "view.npz", view)
+@pytest.mark.parametrize(("name", "background"), [("bowl", "white"), ("coloured", "black"), ("nothing", "grey")])
+def test_round_trip_is_exact_and_equal_views_give_equal_bytes(shapes, name, background, tmp_path):
+    mesh = (shapes | {"nothing": Mesh(np.zeros((0, 3)), np.zeros((0, 3)))})[name]
+    for file in ("view.npz", "again.npz"):
+        view = render(mesh, Viewpoint(120, 45, 10), (225, 300), "raster", background)
+        write_view(tmp_path / file, view)
     assert_equal(read_view(tmp_path / "view.npz"), view)
-
-
-def test_view_of_nothing_comes_back(tmp_path):
-    view = render(Mesh(np.zeros((0, 3)), np.zeros((0, 3))), TWELVE[0], (30, 40), "raster", "grey")
-    write_view(tmp_path / "view.npz", view)
-    assert_equal(read_view(tmp_path / "view.npz"), view)
+    assert (tmp_path / "view.npz").read_bytes() == (tmp_path / "again.npz").read_bytes()
+    assert (tmp_path / "view.npz").stat().st_size < 60_000  # raw arrays have 740,000 bytes
 
 
 def test_view_without_background_comes_back(tmp_path):
@@ -40,15 +36,6 @@ def test_view_without_background_comes_back(tmp_path):
     view = View(rng.integers(0, 256, (7, 9, 3), dtype=np.uint8), depth, face, TWELVE[5])
     write_view(tmp_path / "view.npz", view)
     assert_equal(read_view(tmp_path / "view.npz"), view)
-
-
-@pytest.mark.slow
-def test_equal_views_give_equal_bytes_and_small_ones(shapes, tmp_path):
-    for name in ("a", "b"):
-        write_view(tmp_path / f"{name}.npz", render(shapes["sphere"], TWELVE[5], renderer="raster"))
-    first, second = ((tmp_path / f"{name}.npz").read_bytes() for name in ("a", "b"))
-    assert first == second
-    assert len(first) < 400_000
 
 
 def test_patterned_background_is_refused(shapes, tmp_path):

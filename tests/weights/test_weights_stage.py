@@ -80,8 +80,10 @@ def run(workspace, monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, capsys):
-    stage.run(workspace)
+def test_the_stage_writes_weights_ground_truth_svms_and_rows_and_trains_again_only_where_data_changed(
+    workspace, objects, add_object, monkeypatch, capsys
+):
+    assert run(workspace, monkeypatch) == (["ball", "egg"], ["ball", "egg"])
     assert "2 of 3 objects have ground truth; the glance takes fixations" in capsys.readouterr().out
     folder = workspace.data / "weights"
     files = {str(path.relative_to(folder)) for path in folder.rglob("*.*")}
@@ -89,45 +91,35 @@ def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, caps
     assert files == {"weights.csv", "convexity.csv", "svm.npz", *names}
     assert set(read_arrays(folder / "ground_truth/ball.npz")["points"]) == set(objects[:6])
     assert list(read_table(folder / "convexity.csv").object) == ["ball", "egg"]
-    found = read_learned_weights(folder, "plain", Mesh(np.eye(3), [(0, 1, 2)]))
-    assert "guided_ed" in found.weights and "svm" in found.svms
+    learned = read_learned_weights(folder, "plain", Mesh(np.eye(3), [(0, 1, 2)]))
+    assert "guided_ed" in learned.weights and "svm" in learned.svms
+    check_rows(workspace)
+    before = (folder / "weights.csv").read_bytes()
+    add_object("another", 0.9)
+    assert run(workspace, monkeypatch) == ([], [])
+    assert (folder / "weights.csv").read_bytes() == before
+    add_object("another", 0.9, objects[:5])
+    assert run(workspace, monkeypatch) == (["another"], ["another", "ball", "egg"])
 
 
-@pytest.mark.slow
-def test_rows_hold_points_weights_and_accuracies(workspace, objects):
-    stage.run(workspace)
+def check_rows(workspace):
+    """Rows hold points, weights and accuracies of the ball and the egg."""
     rows = read_rows(workspace.measurements / "weights.csv.gz").fillna({"item": ""})
     assert rows[rows.metric == "points"].set_index("item").value.to_dict() == {"ball": 6, "egg": 7}
     weights = rows[rows.metric == "weight"]
     table = read_table(workspace.data / "weights" / "weights.csv").fillna({"left_out": ""})
-    assert (
-        table[["left_out", "method", "channel"]].values.tolist()
-        == weights[["item", "method", "channel"]].values.tolist()
-    )
+    keys, stored = weights[["item", "method", "channel"]], table[["left_out", "method", "channel"]]
+    assert stored.values.tolist() == keys.values.tolist()
     assert weights.value.tolist() == pytest.approx(table.weight.tolist())
     assert set(weights[weights.method == "glance"].item) == {"", "ball", "egg"}
     accuracies = rows[rows.metric == "accuracy"]
-    assert {"", "ball", "egg"} == set(accuracies.item) and accuracies[
-        ["area", "training", "validation"]
-    ].notna().all().all()
+    assert set(accuracies.item) == {"", "ball", "egg"}
+    assert accuracies[["area", "training", "validation"]].notna().all().all()
     assert set(accuracies[accuracies.item == ""].training) == {"one_for_all"}
     metrics = read_json(workspace.metrics / "weights.json")
-    assert metrics["objects"] == 2
     means = accuracies.groupby(["area", "training", "validation"]).value.mean()
-    assert {".".join(("svm", *key)): value for key, value in means.items()} == pytest.approx(
-        {key: value for key, value in metrics.items() if key != "objects"}, abs=1e-5
-    )
-
-
-@pytest.mark.slow
-def test_only_objects_whose_training_data_changed_are_trained_again(workspace, objects, add_object, monkeypatch):
-    assert run(workspace, monkeypatch) == (["ball", "egg"], ["ball", "egg"])
-    before = (workspace.data / "weights" / "weights.csv").read_bytes()
-    add_object("another", 0.9)
-    assert run(workspace, monkeypatch) == ([], [])
-    assert (workspace.data / "weights" / "weights.csv").read_bytes() == before
-    add_object("another", 0.9, objects[:5])
-    assert run(workspace, monkeypatch) == (["another"], ["another", "ball", "egg"])
+    expected = {".".join(("svm", *key)): value for key, value in means.items()} | {"objects": 2}
+    assert metrics == pytest.approx(expected, abs=1e-5)
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Places worth touching: where the imprint of the array recurs on the object."""
+"""Methods by name and by purpose, and the places worth touching, where the imprint of the array recurs."""
 
 import numpy as np
 import pytest
@@ -7,12 +7,45 @@ import trimesh
 from haptic_glance.look.glance import samples_of_mesh
 from haptic_glance.look.kernels import pressed
 from haptic_glance.look.points import METHODS, detect, find_points
+from haptic_glance.look.points.find import check_name
+from haptic_glance.look.points.methods import MEANT
 from haptic_glance.look.points.options import Options
 from haptic_glance.look.points.touch import CELLS, DISC, WIDTH, imprints, recurrence, spread
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, press_at
 from haptic_glance.touch.surface import sensor_axes
+
+from .conftest import as_mesh
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("thesis", "did you mean thesis_ssim"),
+        ("enhanced attention", "did you mean thesis_ssim"),
+        ("visual-attention", "did you mean itti"),
+        ("glanse", "did you mean glance"),
+        ("Lee", "did you mean mesh_saliency"),
+        ("visatt", "did you mean VisAtt"),
+        ("farthest", "it has no saliency"),
+        ("svm", "learned in the pipeline"),
+        ("qem", "no such method"),
+    ],
+)
+def test_a_name_that_cannot_run_is_answered_with_ours_or_the_reason(name, message):
+    with pytest.raises(ValueError, match=f"--method {name}: .*{message}"):
+        check_name(name)
+
+
+def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_list():
+    for name in ("glance", "glance_any_pose", "itti", "thesis_ssim"):
+        check_name(name)
+    check_name("qem", ["qem"])
+    check_name("farthest", points_alone=True)
+    with pytest.raises(ValueError, match="no such method; choose one of qem, glance, "):
+        check_name("xyzzy", ["qem"])
+    assert set(MEANT.values()) <= set(METHODS) and not set(MEANT) & set(METHODS)
 
 
 @pytest.fixture(scope="module")
@@ -23,41 +56,31 @@ def bumpy(raised):
 
 def test_a_purpose_chooses_the_method(bumpy):
     assert (find_points(bumpy, 5, purpose="touch") == find_points(bumpy, "touch", 5)).all()
-    assert (find_points(bumpy, 5, purpose="look") == find_points(bumpy, "glance", 5)).all()
-    assert (find_points(bumpy, 5) == find_points(bumpy, "glance", 5)).all()
+    looked = find_points(bumpy, "glance", 5)
+    assert (find_points(bumpy, 5, purpose="look") == looked).all() and (find_points(bumpy, 5) == looked).all()
     with pytest.raises(ValueError, match="unknown purpose 'lick': choose one of look, touch$"):
         find_points(bumpy, 5, purpose="lick")
     with pytest.raises(ValueError, match="'touch' chooses the method: leave out method 'itti'"):
         detect(bumpy, "itti", 5, purpose="touch")
 
 
-def test_the_order_and_the_number_of_faces_change_nothing(bumpy):
+def test_the_order_and_the_number_of_faces_change_no_place_to_touch(bumpy):
     places = bumpy.vertices[find_points(bumpy, 12, purpose="touch")]
-    random = np.random.default_rng(0)
-    for faces in (random.permutation(bumpy.faces), np.roll(bumpy.faces, 1, axis=1)):
-        assert (places == bumpy.vertices[find_points(Mesh(bumpy.vertices, faces), 12, purpose="touch")]).all()
-    vertices, faces = trimesh.remesh.subdivide(bumpy.vertices, bumpy.faces)[:2]
-    fine = Mesh(np.asarray(vertices), np.asarray(faces))
+    faces = np.roll(np.random.default_rng(0).permutation(bumpy.faces), 1, axis=1)
+    assert (places == bumpy.vertices[find_points(Mesh(bumpy.vertices, faces), 12, purpose="touch")]).all()
+    fine = Mesh(*trimesh.remesh.subdivide(bumpy.vertices, bumpy.faces))
     again = fine.vertices[find_points(fine, 12, purpose="touch")]
     edge = np.linalg.norm(bumpy.vertices[bumpy.faces[:, 0]] - bumpy.vertices[bumpy.faces[:, 1]], axis=1).max()
     assert np.linalg.norm(places - again, axis=1).max() < edge
 
 
-@pytest.mark.parametrize("count", [1, 25, 400])
-def test_as_many_places_as_asked_for(bumpy, count):
-    found = detect(bumpy, count, purpose="touch")
-    assert len(found.points) == len(set(found.points.tolist())) == count
-    assert found.saliency is not None and found.saliency.max() == 1
-
-
-def test_a_sphere_a_plane_and_one_face_have_places(sphere, grid):
-    ball = sphere(3)
-    found = detect(ball, 7, purpose="touch")
-    assert len(found.points) == 7 and found.saliency is not None and found.saliency.min() > 0.5
-    rows = grid(20, 30)
-    assert len(find_points(Mesh(*rows), 7, purpose="touch")) == 7
+def test_as_many_places_to_touch_as_asked_for_where_there_are_any(bumpy, sphere, grid):
     face = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
-    assert sorted(find_points(face, 7, purpose="touch")) == [0, 1, 2]
+    for mesh, count in ((bumpy, 400), (sphere(3), 7), (Mesh(*grid(20, 30)), 7), (face, 3)):
+        detection = detect(mesh, 7 if mesh is face else count, purpose="touch")
+        assert len(detection.points) == len(set(detection.points.tolist())) == count
+        assert detection.saliency.max() == 1
+        assert detection.saliency.min() > 0.5 or mesh is not sphere(3)  # all of a sphere feels alike
     assert len(METHODS["touch"].find(Mesh(np.zeros((3, 3)), face.faces), None, Options(), 7).points) == 0
 
 
@@ -73,8 +96,7 @@ def test_small_arrays_feel_what_the_sensor_feels(bumpy):
 
 
 def test_places_are_spread_by_area_over_both_sides_of_a_sheet():
-    sheet = trimesh.creation.box((0.8, 0.6, 0.001))
-    samples = samples_of_mesh(Mesh(sheet.vertices, sheet.faces))
+    samples = samples_of_mesh(as_mesh(trimesh.creation.box((0.8, 0.6, 0.001))))
     normals = samples.normals[spread(samples, 400)]
     assert abs((normals[:, 2] > 0.9).mean() - 0.5) < 0.03 and (np.abs(normals[:, 2]) > 0.9).mean() > 0.95
 
@@ -82,6 +104,6 @@ def test_places_are_spread_by_area_over_both_sides_of_a_sheet():
 def test_only_what_feels_alike_beyond_the_array_recurs():
     felt = np.array([[0.0, 1], [0, 1], [0.5, 0.5], [0.5, 0.5], [1, 0]])
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, WIDTH / 2], [0, 0, 1]])
-    found = recurrence(felt, points)
-    assert found[0] == found[1] == 1  # alike and far apart
-    assert found[2:4].max() < 0.01 and found[4] < 0.01  # alike within the array's width; like no other
+    shares = recurrence(felt, points)
+    assert shares[0] == shares[1] == 1  # alike and far apart
+    assert shares[2:4].max() < 0.01 and shares[4] < 0.01  # alike within the array's width; like no other
