@@ -84,6 +84,9 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     with pytest.raises(SystemExit):
         gate.run([str(metrics)])
     assert "needs --baseline" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="no metrics to write"):
+        gate.update({}, tmp_path / "none.json")
+    assert not (tmp_path / "none.json").exists()
 
 
 def test_what_moved_with_the_seed_may_move_as_far(workspace, tmp_path, monkeypatch):
