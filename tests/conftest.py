@@ -1,5 +1,8 @@
 """Meshes, views, imprints and runs that several folders test with."""
 
+import functools
+from copy import deepcopy
+
 import numpy as np
 import pytest
 import trimesh
@@ -13,6 +16,7 @@ from haptic_glance.look.channels.channels import OTHERS
 from haptic_glance.look.views import TWELVE, gl
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
+from stages import compose
 from stages.engine.settings import Workspace
 
 SIZE = (75, 100)
@@ -65,6 +69,15 @@ def make_workspace(tmp_path):
         return Workspace(tmp_path, dataset)
 
     return make
+
+
+@pytest.fixture(scope="module")
+def compose_once():
+    """Hydra composes equal overrides once for a module, since a composition takes 0.4 seconds."""
+    once = functools.cache(compose.composed)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compose, "composed", lambda overrides: deepcopy(once(tuple(overrides))))
+        yield
 
 
 @pytest.fixture(scope="session")

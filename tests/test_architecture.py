@@ -16,7 +16,6 @@ ROOT = Path(__file__).parents[1]
 PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
 ORDER = [stage for stage in PIPELINE if stage != "code"]
 STAGES = {stage: PIPELINE[stage].get("do", PIPELINE[stage]) for stage in ORDER}
-SECTIONS = stage_names()
 
 
 def settings_read(stage):
@@ -29,57 +28,31 @@ def settings_read(stage):
     return {schema.__module__.split(".")[-1] for schema in schemas}
 
 
-def test_every_stage_is_in_the_pipeline():
-    assert sorted(ORDER) == stage_names()
-
-
 @pytest.mark.parametrize("stage", ORDER)
-def test_dvc_knows_the_code_and_the_data_that_a_stage_reads(stage):
-    deps = STAGES[stage]["deps"]
-    assert deps[0] == f"build/code/{stage}"
-    text = "".join(path.read_text() for path in (ROOT / "stages" / stage).rglob("*.py"))
-    listed = {match[1] for dep in deps if (match := re.match(r"data/\$\{\w+\}/(\w+)$", dep))}
+def test_dvc_knows_the_code_the_data_and_the_settings_of_a_stage(stage):
+    block, text = STAGES[stage], "".join(path.read_text() for path in (ROOT / "stages" / stage).rglob("*.py"))
+    assert block["desc"] and block["cmd"].split(" $")[0] == f"python -m stages.{stage}"
+    assert block["deps"][0] == f"build/code/{stage}" and (ROOT / "tests" / stage).is_dir()
+    listed = {match[1] for dep in block["deps"] if (match := re.match(r"data/\$\{\w+\}/(\w+)$", dep))}
     inputs = re.search(r"StageRun\([^)]*inputs=\(([^)]*)\)", text)
-    read = set(re.findall(r'"(\w+)"', inputs[1])) if inputs else set()
-    assert read == listed
+    assert listed == (set(re.findall(r'"(\w+)"', inputs[1])) if inputs else set())
+    if stage != "report":
+        settings = {name.split(".")[1] for name in block["params"] if "." in name}
+        assert settings_read(stage) == settings and "seed" in block["params"]
+    written = [next(iter(out)) if isinstance(out, dict) else out for out in block["outs"] + block.get("metrics", [])]
+    assert all(path.startswith(("${out}/", "data/${", "build/")) for path in written), "not the folder of the run"
 
 
-@pytest.mark.parametrize("stage", [stage for stage in ORDER if stage != "report"])
-def test_dvc_knows_the_settings_that_a_stage_reads(stage):
-    listed = {name.split(".")[1] for name in STAGES[stage]["params"] if "." in name}
-    assert settings_read(stage) == listed and "seed" in STAGES[stage]["params"]
-
-
-@pytest.mark.parametrize("stage", ORDER)
-def test_a_stage_is_one_thing_in_five_places(stage):
-    assert STAGES[stage]["desc"] and STAGES[stage]["cmd"].split(" $")[0] == f"python -m stages.{stage}"
-    assert (ROOT / "tests" / stage).is_dir() and stage in SECTIONS
-
-
-def test_dvc_yaml_reads_like_a_table_of_contents():
-    assert len((ROOT / "dvc.yaml").read_text().splitlines()) <= 280
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("section", SECTIONS)
-def test_every_setting_is_read(section):
-    folder = ROOT / "stages" / section
-    others = [path.read_text() for path in (ROOT / "stages").rglob("*.py") if path != folder / "__init__.py"]
-    text = (folder / "__init__.py").read_text()
-    fields = re.findall(r"^    (\w+): [^\n]*$", text[text.index("class Params") :], re.M)
-    assert fields == list(schema_of(section).__dataclass_fields__)
-    for name in fields:
-        assert any(re.search(rf"\.{name}\b|\"{name}\"", text) for text in others), f"{section}.{name} is never read"
-
-
-def test_the_code_of_a_stage_is_what_it_imports():
-    files = {path.relative_to(ROOT).as_posix() for path in code.stage_files("views")}
-    assert {
-        "haptic_glance/look/views/renderer.py",
-        "haptic_glance/look/views/shaders/segmentation.frag",
-        "stages/engine/run.py",
-    } <= files
-    assert not any(name.startswith(("stages/lod/", "stages/report/")) for name in files)
+def test_every_stage_is_in_the_pipeline_and_every_setting_is_read():
+    assert sorted(ORDER) == stage_names()
+    texts = {path: path.read_text() for path in (ROOT / "stages").rglob("*.py")}
+    for section in stage_names():
+        own = ROOT / "stages" / section / "__init__.py"
+        fields = re.findall(r"^    (\w+): [^\n]*$", texts[own][texts[own].index("class Params") :], re.M)
+        assert fields == list(schema_of(section).__dataclass_fields__)
+        others = "\n".join(text for path, text in texts.items() if path != own)
+        for name in fields:
+            assert re.search(rf"\.{name}\b|\"{name}\"", others), f"{section}.{name} is never read"
 
 
 @pytest.mark.parametrize(

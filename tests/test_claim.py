@@ -1,7 +1,6 @@
 """A claim judged again from the committed rows, as a reader of a fresh clone does it."""
 
 import json
-import re
 import shutil
 import subprocess
 from importlib import import_module
@@ -9,10 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from haptic_glance.base.files import read_table, write_table
 from stages.claim import run
 from stages.engine.settings import Workspace
-from stages.report.records import command
 
 ROOT = Path(__file__).parents[1]
 KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]
@@ -68,22 +65,6 @@ def test_rows_that_are_missing_are_named(clone, capsys):
     assert f"{file} is missing; `git checkout {file}`" in said
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("column", "words"),
-    [("value", r"has no column value: `git checkout \S+lod.csv.gz`"), ("target", "no column target")],
-)
-def test_a_column_that_is_misnamed_is_named(clone, capsys, column, words):
-    for path in clone.glob("reports/measurements/*/lod.csv.gz"):
-        write_table(path, read_table(path).rename(columns={column: "misnamed"}))
-    try:
-        assert run(["keep_metro"]) == 1
-        said = capsys.readouterr().err
-    except ValueError as error:
-        said = str(error)
-    assert re.search(words, said) and "git checkout reports/measurements/" in said
-
-
 def test_a_key_without_a_claim_is_answered_by_its_neighbour():
     with pytest.raises(ValueError, match="there is no claim fit_gase: try fit_gaze"):
         run(["fit_gase"])
@@ -94,10 +75,3 @@ def test_a_set_that_is_not_switched_on_is_not_measured():
     assert "gaze" not in Workspace(Path(".")).params["graph"]["lod"]
     with pytest.raises(ValueError, match=r"lod is not switched on for gaze: `python -m stages.compose 'sets=\[gaze\]'"):
         run(["fit_gaze", "--measure"])
-
-
-def test_the_command_knows_the_folder_not_its_relative_path(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert command(Path("conf"), "lod", ["gaze"]).startswith("python -m stages.compose 'sets=[gaze]'")
-    monkeypatch.chdir(ROOT)
-    assert command(Path("conf"), "lod", ["gaze"]).startswith("python -m stages.compose experiment=attention")

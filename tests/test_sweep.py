@@ -1,6 +1,5 @@
 """The sweep appends tidy rows, replaces those of a repeated job, and ends with a table."""
 
-import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,25 +8,16 @@ import pytest
 from omegaconf import OmegaConf
 
 from haptic_glance.base.files import read_table, write_json, write_table
-from stages import sweep
-from stages.compose import compose, composed
+from stages import compose, sweep
 from stages.engine.settings import ParamsError, load_params
 
+pytestmark = pytest.mark.usefixtures("compose_once")
 
-def job_rows(job, classifier, value, seed=0):
+
+def job_rows(job, classifier, value):
     common = {"dataset": "household", "group": "four", "method": "itti", "classifier": classifier}
-    rows = [
-        {
-            "job": job,
-            **common,
-            "repetition": i,
-            "split": "random",
-            "metric": "accuracy",
-            "value": value + 0.01 * (-1) ** i,
-        }
-        for i in range(4)
-    ]
-    return pd.DataFrame([{**row, "seconds": 0.01, "seed": seed} for row in rows])
+    common |= {"job": job, "split": "random", "metric": "accuracy", "seconds": 0.01, "seed": 0}
+    return pd.DataFrame([common | {"repetition": i, "value": value + 0.01 * (-1) ** i} for i in range(4)])
 
 
 @pytest.fixture
@@ -54,19 +44,11 @@ def test_the_table_has_one_line_a_job_and_classifier():
     assert lines.job.tolist() == ["a", "b"] and lines.accuracy.tolist()[1].startswith("0.250 [0.2")
 
 
-@pytest.mark.slow
-def test_missing_upstream_results_are_named(tmp_path):
-    config = compose(["sets=[household_four]", "profile=smoke", "classifier=knn"])
-    values = {"seed": 0} | config["household_four"]
-    with pytest.raises(SystemExit, match=r"elephant.npz is not there: run `dvc repro meshes@toys` first"):
-        sweep.recognise(values, tmp_path / "data/toys")
-
-
 @pytest.fixture
-def root(tmp_path, monkeypatch):
+def root(tmp_path, monkeypatch, compose_once):
     """A folder with a params.yaml that has another number of repetitions, and the files that jobs read."""
     monkeypatch.chdir(tmp_path)
-    values = compose(["sets=[household_four]", "profile=smoke", "classification.repetitions=3"])
+    values = compose.compose(["sets=[household_four]", "profile=smoke", "classification.repetitions=3"])
     (tmp_path / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
     for stage in sweep.NEEDED:
         write_json(tmp_path / "data/household_four" / stage / "there.json", {})
@@ -74,15 +56,16 @@ def root(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_jobs_begin_with_the_settings_of_params_yaml(root):
+def test_jobs_begin_with_the_settings_of_params_yaml_and_missing_results_are_named(root):
     sweep.prepare(["-m", "data=household_four", "classifier=knn,svm"])
-    values = composed(["data=household_four", "classifier=knn"])
+    values = compose.composed(["data=household_four", "classifier=knn"])
     found = sweep.based(values, "household_four")["classification"]
-    assert (
-        found["repetitions"] == 3 and found["classifiers"] == ["knn"] and values["classification"]["repetitions"] == 20
-    )
-    values = composed(["data=household_four", "classification.repetitions=7"])
+    assert found["repetitions"] == 3 and found["classifiers"] == ["knn"]
+    assert values["classification"]["repetitions"] == 20
+    values["classification"]["repetitions"] = 7
     assert sweep.based(values, "household_four")["classification"]["repetitions"] == 7
+    with pytest.raises(SystemExit, match=r"elephant.npz is not there: run `dvc repro meshes@toys` first"):
+        sweep.recognise(values, root / "data/toys")
 
 
 @pytest.mark.slow
@@ -114,8 +97,3 @@ def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
     assert asked == [(["-m", "dvc", "repro", "weights@household_four"], "runs/sweeps")]
     assert Path("params.yaml").read_text() == before
     assert "weights@household_four first: `dvc repro` makes them" in capsys.readouterr().err
-
-
-def test_a_sweep_writes_to_no_tracked_file():
-    tracked = subprocess.run(["git", "check-ignore", str(sweep.OUT), str(sweep.BASES)], capture_output=True, text=True)
-    assert tracked.stdout.splitlines() == [str(sweep.OUT), str(sweep.BASES)]

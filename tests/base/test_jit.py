@@ -1,10 +1,7 @@
 """Compiled kernels on disk: found again by what their folder holds, wherever it lies."""
 
-import gc
 import importlib.util
 
-import numba
-import numba.extending
 import pytest
 
 from haptic_glance.base.jit import UntilWorthCompiling
@@ -60,37 +57,6 @@ def test_a_cache_that_cannot_be_written_to_is_done_without(tmp_path, monkeypatch
     (tmp_path / "cache").write_text("no folder")
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
     assert hits_of(tmp_path / "one", "2 * x") == 0
-
-
-@pytest.mark.parametrize("collecting", [True, False])
-def test_garbage_is_not_collected_while_numba_compiles(collecting):
-    seen = []
-
-    def marker():
-        """Nothing; numba calls `at_compilation` when it compiles a call of it."""
-
-    def at_compilation():
-        seen.append(gc.isenabled())
-        return lambda: None
-
-    numba.extending.overload(marker)(at_compilation)
-
-    @numba.njit
-    def inner():
-        marker()
-
-    @numba.njit
-    def outer():
-        inner()
-        marker()
-
-    (gc.enable if collecting else gc.disable)()
-    try:
-        outer()
-        assert gc.isenabled() == collecting
-    finally:
-        gc.enable()
-    assert seen and not any(seen)
 
 
 def test_little_work_is_interpreted_and_more_is_compiled(tmp_path, monkeypatch):

@@ -1,23 +1,31 @@
 """`haptic-glance simplify`: several levels from one look, folders, the nodes of a scene, and which axis points up."""
 
-import argparse
 import json
+import shutil
 
 import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.extras import MissingExtra
 from haptic_glance.cli import simplify
 from haptic_glance.cli.simplify import run
+from haptic_glance.lod import measures
 from haptic_glance.lod.export import level_path, levels, write_any
 from haptic_glance.lod.topology import moved_parts, parts_of
 from haptic_glance.mesh import load, rotate_to_z_up
-from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.files import load_unnamed
+from haptic_glance.mesh.mesh import Mesh
 
 
 def egg(subdivisions=3, at=(0.0, 0.0, 0.0), up="z"):
     ball = trimesh.creation.icosphere(subdivisions)
     return Mesh(ball.vertices * [1, 0.7, 1.4] + at, ball.faces, up=up)
+
+
+@pytest.fixture(autouse=True)
+def small_pictures(monkeypatch):
+    monkeypatch.setattr(measures, "SIZE", (60, 80))
 
 
 @pytest.fixture
@@ -36,24 +44,13 @@ def folder(file):
     return file.parent / "meshes"
 
 
-@pytest.mark.parametrize(("text", "found"), [("50%,25%", ["50%", "25%"]), (" 300 ,9%,300", ["300", "9%"])])
-def test_levels_are_counts_or_shares_each_once(text, found):
-    assert levels(text) == found
-
-
-@pytest.mark.parametrize("text", ["", "50%,", "half", "120%", "0"])
-def test_what_is_no_level_is_named(text):
-    with pytest.raises(argparse.ArgumentTypeError, match="^--levels="):
-        levels(text)
-
-
-def test_levels_keep_the_format_where_it_can_be_written(tmp_path):
+def test_levels_are_counts_or_shares_each_once_and_keep_the_format_where_it_can_be_written(tmp_path):
+    assert levels("50%,25%") == ["50%", "25%"] and levels(" 300 ,9%,300") == ["300", "9%"]
     assert level_path(tmp_path, "a", tmp_path / "a.STL", "50%") == tmp_path / "a_50pct.stl"
     assert level_path(tmp_path, "a", tmp_path / "a.xyz", "900") == tmp_path / "a_900.glb"
     assert level_path(tmp_path, "a", tmp_path / "a.stl", "900", "obj") == tmp_path / "a_900.obj"
 
 
-@pytest.mark.slow
 def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
     looks, look = [], simplify.saliency
     monkeypatch.setattr(simplify, "saliency", lambda *given: looks.append(1) or look(*given))
@@ -64,7 +61,6 @@ def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
     assert said.splitlines()[1].split() == ["faces", "1,280", "640", "200", "128"] and "QEM" not in said
 
 
-@pytest.mark.slow
 def test_a_level_that_is_infeasible_does_not_cost_the_others(file, tmp_path, capsys):
     assert run([str(file), "--levels", "100,2", "--out", str(tmp_path / "out")]) == 1
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_100.ply"]
@@ -73,7 +69,6 @@ def test_a_level_that_is_infeasible_does_not_cost_the_others(file, tmp_path, cap
         run([str(file), "--levels", "2", "--out", str(tmp_path / "out")])
 
 
-@pytest.mark.slow
 def test_a_folder_goes_through_at_once_and_what_is_broken_is_named(folder, tmp_path, capsys):
     assert run([str(folder), "--faces", "300", "--format", "glb", "--json", "--out", str(tmp_path / "out")]) == 1
     shown = capsys.readouterr()
@@ -94,6 +89,24 @@ def test_a_folder_goes_through_at_once_and_what_is_broken_is_named(folder, tmp_p
 def test_options_of_one_result_and_of_several_do_not_mix(file, options, reason):
     with pytest.raises(ValueError, match=reason):
         run([str(file), *options])
+
+
+def test_a_file_that_needs_an_extra_does_not_stop_a_folder(file, tmp_path, monkeypatch, capsys):
+    def no_clouds(path):
+        if path.stem == "cloud":
+            raise MissingExtra("pymeshlab is not installed")
+        return load_unnamed(path)
+
+    monkeypatch.setattr(simplify, "load_unnamed", no_clouds)
+    scans = tmp_path / "scans"
+    scans.mkdir()
+    (scans / "cloud.ply").touch()
+    shutil.copy(file, scans / "solid.ply")
+    assert run([str(scans), "--levels", "30%", "--out", str(tmp_path / "levels")]) == 1
+    assert "cloud.ply: pymeshlab is not installed" in capsys.readouterr().err
+    assert [path.name for path in (tmp_path / "levels").iterdir()] == ["solid_30pct.ply"]
+    with pytest.raises(MissingExtra, match=r"cloud.ply: pymeshlab is not installed"):
+        run([str(scans / "cloud.ply"), "--faces", "300", "--out", str(tmp_path / "x.glb")])
 
 
 def test_the_meshes_are_not_written_over(folder, file):
@@ -121,7 +134,6 @@ def named_heights(path):
     return {part.metadata["node"]: part.triangles_center[:, 1].mean() for part in trimesh.load(path).dump()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("painted", [True, False])
 def test_the_nodes_of_a_scene_keep_their_names_and_places(tmp_path, painted):
     scene(tmp_path / "two.glb", painted)
@@ -131,15 +143,7 @@ def test_the_nodes_of_a_scene_keep_their_names_and_places(tmp_path, painted):
     assert len(load(tmp_path / "small.glb").faces) == 400
 
 
-def test_a_node_of_several_pictures_is_one_node_with_numbered_parts(tmp_path):
-    mesh = egg(2)
-    images = tuple(np.full((1, 1, 4), shade, dtype=np.uint8) for shade in (60, 250))
-    texture = Texture(np.zeros((len(mesh.faces), 3, 2)), np.arange(len(mesh.faces)) % 2, images)
-    write_any(tmp_path / "a.glb", Mesh(mesh.vertices, mesh.faces, None, texture), {"vase": np.arange(len(mesh.faces))})
-    assert set(parts_of(tmp_path / "a.glb")) == {"vase", "vase_1"}
-
-
-def test_faces_go_with_the_closest_face():
+def test_faces_go_with_the_closest_face(file):
     low, high = egg(2), egg(2, at=(0, 0, 5.0))
     both = Mesh(np.r_[low.vertices, high.vertices], np.r_[low.faces, high.faces + len(low.vertices)])
     count = len(low.faces)
@@ -147,14 +151,9 @@ def test_faces_go_with_the_closest_face():
     order = np.random.default_rng(0).permutation(2 * count)
     found = moved_parts(parts, both, Mesh(both.vertices, both.faces[order]))
     assert set(found) == {"low", "high"} and set(order[found["low"]]) == set(range(count))
-    assert moved_parts({}, both, both) == {}
+    assert moved_parts({}, both, both) == {} == parts_of(file)  # only a GLB has nodes
 
 
-def test_only_a_glb_has_nodes(file):
-    assert parts_of(file) == {}
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("up", ["z", "y"])
 def test_a_glb_stands_as_the_format_has_it_and_other_formats_stay(file, tmp_path, capsys, up):
     for out in ("small.glb", "small.stl"):

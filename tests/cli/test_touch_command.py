@@ -1,10 +1,6 @@
 """`haptic-glance touch MESH`: a person's own mesh, from file to picture."""
 
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -12,40 +8,34 @@ import pytest
 import trimesh
 from PIL import Image
 
-from haptic_glance.cli.touch import POINT, parse_options, parse_skin, run
+from haptic_glance.cli.touch import POINT, run
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import pictures, press_many
 from haptic_glance.touch import places as user_mesh
-from haptic_glance.touch.pictures import CANDIDATES, _columns, _label_positions, best_views, visible, write_picture
+from haptic_glance.touch.pictures import CANDIDATES, best_views, visible, write_picture
 from haptic_glance.touch.places import UserMesh
-from haptic_glance.touch.skin import Layer, Skin
+from haptic_glance.touch.skin import Layer
 
-PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
-
-
-def bumpy():
-    """A closed ball with bumps, of 1,280 faces, far from the origin and some fifty units wide."""
-    ball = trimesh.creation.icosphere(subdivisions=3)
-    x, y, z = ball.vertices.T
-    radius = 1 + 0.08 * np.sin(5 * x) * np.cos(4 * y) + 0.15 * np.exp(-8 * ((z - 1) ** 2 + x**2))
-    return trimesh.Trimesh(PLACE + SIZE * radius[:, None] * ball.vertices, ball.faces, process=False)
+from .conftest import PLACE, SIZE, bumpy
 
 
-@pytest.fixture(autouse=True)
-def small_views(monkeypatch):
-    monkeypatch.setattr(pictures, "ROWS", 150)
+def exported(path):
+    """The file of the ball as another program would write it, without the axis that is up."""
+    mesh = bumpy()
+    trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(path)
+    return path
 
 
 @pytest.fixture
 def file(tmp_path):
-    bumpy().export(tmp_path / "ball.ply")
-    return tmp_path / "ball.ply"
+    return exported(tmp_path / "ball.ply")
 
 
 @pytest.fixture
-def touched(file, tmp_path, capsys):
-    """Function: runs the command with options and returns (arrays, table, what it said, what it reported)."""
+def touched(file, tmp_path, capsys, monkeypatch):
+    """Function: touches without drawing; returns (arrays, table, standard output, standard error)."""
+    monkeypatch.setattr(pictures, "write_picture", lambda path, *_: path.touch())
 
     def work(*options, source=file):
         run([str(source), *map(str, options), "--out", str(tmp_path / "out")])
@@ -57,7 +47,6 @@ def touched(file, tmp_path, capsys):
     return work
 
 
-@pytest.mark.slow
 def test_json_has_the_places_as_the_table_has_them(touched):
     _, table, said, told = touched("--at", 3, 50, "--json")
     assert "touch: pressing\ntouch: drawing\ntouch: written: " in told
@@ -69,16 +58,21 @@ def test_json_has_the_places_as_the_table_has_them(touched):
     )
 
 
-@pytest.mark.slow
-def test_vertices_feel_what_press_feels(touched, file):
-    arrays, table, _, _ = touched("--at", 3, 200, "--cells", 8, 10, "--pitch", 0.02)
+def test_vertices_feel_what_press_feels_and_relief_has_the_units_of_the_file(touched, file):
+    arrays, table, said, _ = touched("--at", 3, 200, "--cells", 8, 10, "--pitch", 0.02)
     mesh = normalise(load(file))
     assert np.array_equal(arrays["images"], press_many(mesh, [3, 200], (8, 10), 0.02))
     assert table["vertex"].tolist() == arrays["vertices"].tolist() == [3, 200]
-    assert np.allclose(table[["x", "y", "z"]], load(file).vertices[[3, 200]], atol=1e-4)
+    x = load(file).vertices
+    assert np.allclose(table[["x", "y", "z"]], x[[3, 200]], atol=1e-4)
+    relief = np.ptp(arrays["distances"][0])
+    assert table["relief"][0] == pytest.approx(relief, rel=1e-5)
+    assert table["relief_in_file"][0] == pytest.approx(relief * arrays["unit"], rel=1e-5)
+    middle = (x.min(axis=0) + x.max(axis=0)) / 2
+    assert arrays["unit"] == pytest.approx(2 * np.linalg.norm(x - middle, axis=1).max())
+    assert f"1 unit is {arrays['unit']:.4g}" in said
 
 
-@pytest.mark.slow
 def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
     shape = trimesh.creation.icosphere(subdivisions=2)
     trimesh.Trimesh(shape.vertices + 1e6, shape.faces, process=False).export(tmp_path / "far.obj", digits=12)
@@ -90,36 +84,16 @@ def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
     touched("--at", str(raised.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
 
 
-@pytest.mark.slow
-def test_relief_is_in_units_and_in_the_files(touched, file):
-    arrays, table, said, _ = touched("--at", 0)
-    relief = np.ptp(arrays["distances"][0])
-    assert table["relief"][0] == pytest.approx(relief, rel=1e-5)
-    assert table["relief_in_file"][0] == pytest.approx(relief * arrays["unit"], rel=1e-5)
-    x = load(file).vertices
-    middle = (x.min(axis=0) + x.max(axis=0)) / 2
-    assert arrays["unit"] == pytest.approx(2 * np.linalg.norm(x - middle, axis=1).max())
-    assert f"1 unit is {arrays['unit']:.4g}" in said
-
-
-@pytest.mark.slow
-def test_position_of_a_vertex_feels_as_the_vertex(touched, file):
-    vertex = load(file).vertices[77]
-    at_point, table, _, _ = touched("--at", ",".join(f"{value:.9g}" for value in vertex))
-    at_vertex, _, _, _ = touched("--at", 77)
-    assert np.allclose(at_point["images"], at_vertex["images"], atol=1e-4)
-    assert table["vertex"].isna().all() and np.allclose(table[["x", "y", "z"]], vertex, atol=1e-4)
-
-
-@pytest.mark.slow
-def test_positions_may_be_negative_and_stand_beside_vertices(touched, file):
-    z_low = load(file).vertices[load(file).vertices[:, 1].argmin()]
-    _, table, _, _ = touched("--at", 5, ",".join(f"{value:.9g}" for value in z_low))
-    assert table["vertex"].fillna(-1).tolist() == [5, -1] and table["y"][1] < 0
+def test_position_of_a_vertex_feels_as_the_vertex_and_may_be_negative(touched, file):
+    vertices = load(file).vertices
+    lowest = vertices[:, 1].argmin()
+    arrays, table, _, _ = touched("--at", lowest, ",".join(f"{value:.9g}" for value in vertices[lowest]))
+    assert np.allclose(arrays["images"][0], arrays["images"][1], atol=1e-4)
+    assert table["vertex"].fillna(-1).tolist() == [lowest, -1] and table["y"][1] < 0
+    assert np.allclose(table[["x", "y", "z"]], vertices[lowest], atol=1e-4)
     assert POINT.fullmatch("-.5,1,-2e-3") and not POINT.fullmatch("-5") and not POINT.fullmatch("--at")
 
 
-@pytest.mark.slow
 def test_normals_and_axes_are_those_of_the_file(touched, file):
     arrays, table, _, _ = touched("--at", 10, 300, "--up", "y")
     away = load(file).vertices[[10, 300]] - PLACE
@@ -127,7 +101,7 @@ def test_normals_and_axes_are_those_of_the_file(touched, file):
     assert np.allclose(arrays["axes"][:, 2], arrays["normals"]) and (arrays["axes"][:, 1, 1] > 0).all()
 
 
-@pytest.mark.parametrize("up", ["x", "y", "z"])
+@pytest.mark.parametrize("up", ["x", "y"])
 def test_coordinates_come_back_from_the_meshs_frame(up):
     given = Mesh(bumpy().vertices, bumpy().faces, up=up)
     own = UserMesh(given, "ball")
@@ -137,39 +111,31 @@ def test_coordinates_come_back_from_the_meshs_frame(up):
     assert np.allclose(own.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
 
 
-@pytest.mark.slow
 def test_random_places_depend_on_the_seed_alone(touched):
-    first, table, _, _ = touched("--at", "random", "--count", 5)
-    again, _, _, _ = touched("--at", "random", "--count", 5)
-    other, _, _, _ = touched("--at", "random", "--count", 5, "--seed", 1)
-    assert len(table) == 5 and np.array_equal(first["images"], again["images"])
+    first, table, _, _ = touched("--at", "random", "--count", 3)
+    again, _, _, _ = touched("--at", "random", "--count", 3)
+    other, _, _, _ = touched("--at", "random", "--count", 3, "--seed", 1)
+    assert len(table) == 3 and np.array_equal(first["images"], again["images"])
     assert not np.array_equal(first["vertices"], other["vertices"])
 
 
-@pytest.mark.slow
 def test_salient_places_are_those_of_the_method(touched, file):
     arrays, _, _, said = touched("--at", "salient", "--count", 3, "--method", "height", "--up", "z")
     assert len(arrays["images"]) == 3 and load(file).vertices[arrays["vertices"], 2].max() > PLACE[2] + 0.9 * SIZE
     assert "looking at it" in said
 
 
-@pytest.mark.slow
-def test_fewer_places_than_wanted_are_said(tmp_path, touched):
-    trimesh.creation.box().export(tmp_path / "box.stl")
+def test_places_that_are_missing_or_without_a_normal_are_counted(tmp_path, touched):
+    box = trimesh.creation.box()
+    box.export(tmp_path / "box.stl")
     _, table, _, said = touched("--at", "random", "--count", 50, source=tmp_path / "box.stl")
     assert len(table) == 8 and "8 of 50 places: the mesh has no more" in said
-
-
-@pytest.mark.slow
-def test_places_without_a_normal_are_left_out(tmp_path, touched):
-    half = trimesh.creation.box()
-    both = trimesh.util.concatenate([half, trimesh.Trimesh([[2, 0, 0], [3, 0, 0], [2, 1, 0]], [[0, 1, 2], [0, 2, 1]])])
-    both.export(tmp_path / "leaf.ply")
+    leaf = trimesh.Trimesh([[2, 0, 0], [3, 0, 0], [2, 1, 0]], [[0, 1, 2], [0, 2, 1]])
+    trimesh.util.concatenate([box, leaf]).export(tmp_path / "leaf.ply")
     _, table, _, said = touched("--at", "random", "--count", 11, source=tmp_path / "leaf.ply")
     assert len(table) == 8 and "8 of 11 places: the others have no normal" in said
 
 
-@pytest.mark.slow
 def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
     plain, _, _, _ = touched("--at", 0, 50)
     worn, _, _, _ = touched("--at", 0, 50, "--depth", 0.01, "--skin", "blur=1,noise=0.05,dead=0.1")
@@ -179,7 +145,6 @@ def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
     assert dead.sum() >= 26
 
 
-@pytest.mark.slow
 def test_a_load_is_shared_by_the_cells_in_newtons(touched):
     options = "--at", 0, 50, "--load", 0.5, "--unit", "mm", "--layer", "thickness=0.004,modulus=5e5"
     arrays, table, said, _ = touched(*options)
@@ -192,10 +157,7 @@ def test_a_load_is_shared_by_the_cells_in_newtons(touched):
     assert "forces" not in plain and np.array_equal(plain["images"], arrays["images"])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("unit", "pitch", "depth"), [("mm", "1mm", "0.05cm"), ("in", "1in", "0.5in"), ("m", "1m", "50cm")]
-)
+@pytest.mark.parametrize(("unit", "pitch", "depth"), [("mm", "1mm", "0.05cm"), ("in", "1in", "0.5in")])
 def test_lengths_are_those_of_the_object_in_its_unit(touched, file, unit, pitch, depth):
     arrays, _, said, _ = touched("--at", 0, 50, "--unit", unit, "--pitch", pitch, "--depth", depth)
     assert f"({1:.4g} in the file's units" in said
@@ -205,32 +167,16 @@ def test_lengths_are_those_of_the_object_in_its_unit(touched, file, unit, pitch,
     assert np.allclose(arrays["images"], plain["images"], atol=1e-5)
 
 
-def test_a_default_folder_is_not_left_in_a_checkout(file):
-    root, folder = Path(__file__).parents[2], parse_options("", [str(file)]).out
-    if not (root / ".git").exists():
-        pytest.skip("no checkout")
-    ignored = ["git", "-C", str(root), "check-ignore", "-q", "--no-index"]
-    assert subprocess.run([*ignored, f"{folder}/imprints.png"]).returncode == 0
-    assert subprocess.run([*ignored, "stages/coarse_imprints/new.py"]).returncode == 1
-
-
-def test_skin_is_read_by_name():
-    assert parse_skin("blur=0.8, noise=0.02", 3) == Skin(blur=0.8, noise=0.02, seed=3)
-    assert parse_skin(None, 3) is None
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".off", ".glb"])
 def test_every_format_is_touched(suffix, tmp_path, touched):
-    bumpy().export(tmp_path / f"ball{suffix}")
-    arrays, _, _, said = touched("--at", 4, source=tmp_path / f"ball{suffix}")
+    arrays, _, _, said = touched("--at", 4, source=exported(tmp_path / f"ball{suffix}"))
     assert arrays["images"].shape == (1, 16, 16) and ("y up, as" if suffix == ".glb" else "assuming y is up") in said
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [1, 2, 7, 24, 30])
-def test_picture_is_drawn_for_any_number(count, tmp_path):
-    mesh = normalise(Mesh(bumpy().vertices, bumpy().faces))
+@pytest.mark.parametrize("count", [1, 25])
+def test_picture_is_drawn_for_any_number(count, tmp_path, monkeypatch):
+    monkeypatch.setattr(pictures, "ROWS", 60)
+    mesh = normalise(bumpy())
     vertices = np.random.default_rng(count).choice(len(mesh.vertices), count, replace=False)
     axes = np.stack([user_mesh.sensor_normals(mesh, vertices)] * 3, axis=1)
     images = press_many(mesh, vertices, (6, 6), 0.02)
@@ -241,7 +187,7 @@ def test_picture_is_drawn_for_any_number(count, tmp_path):
 
 
 def test_views_show_places_of_both_sides_and_the_fewest_that_do():
-    mesh = normalise(Mesh(bumpy().vertices, bumpy().faces))
+    mesh = normalise(bumpy())
     ids = np.array([mesh.vertices[:, 0].argmax(), mesh.vertices[:, 0].argmin()])
     places, normals = mesh.vertices[ids], np.array([[1.0, 0, 0], [-1, 0, 0]])
     views = best_views(mesh, places, normals)
@@ -260,29 +206,12 @@ def test_place_behind_another_part_is_out_of_sight():
     assert not visible(mesh, place, np.array([[1.0, 0, 0]]), CANDIDATES[2]).any()
 
 
-def test_numbers_keep_apart():
-    at = _label_positions(np.zeros(8), np.linspace(0, 20, 8), 30.0)
-    gaps = np.linalg.norm(at[:, None] - at[None], axis=2) + 100 * np.eye(8)
-    assert gaps.min() > 25 and _label_positions(np.zeros(0), np.zeros(0), 30.0).shape == (0, 2)
-
-
-def test_wide_imprints_stand_one_below_the_other_and_high_ones_side_by_side():
-    assert _columns(3, 8.0) == 1 and _columns(3, 1 / 8) == 3
-
-
-def test_grid_is_as_large_as_it_can_be():
-    assert [_columns(count) for count in (1, 2, 6, 24)] == [1, 2, 3, 6]
-
-
 @pytest.mark.parametrize(
     "options, words",
     [
         (["--at", "9999"], "ball.ply: --at 9999: no such vertex; the mesh has 0 to 641"),
-        (["--at", "-1"], "no such vertex"),
         (["--at", "1.5"], "id of a vertex"),
-        (["--at", "other.stl"], "id of a vertex"),
         (["--at", "1,2"], "three numbers"),
-        (["--at", "1,2,x"], "three numbers"),
         (["--at", "120,-40,100"], "off the mesh, by .* in the file's units .* the nearest place is --at 1"),
         (["--at", "salient", "3"], "cannot be combined"),
         (["--at", "0", "--count", "3"], "--count applies to"),
@@ -301,12 +230,10 @@ def test_grid_is_as_large_as_it_can_be():
         (["--at", "0", "--skin", "blur"], "is not a number"),
         (["--at", "0", "--skin", "dead=2"], "dead must be"),
         (["--at", "0", "--load", "0", "--unit", "m"], "--load 0: give a positive number"),
-        (["--at", "0", "--load", "nan", "--unit", "m"], "--load nan: give"),
         (["--at", "0", "--load", "5"], "--load needs --unit, what the file is in: mm, cm, in, m"),
         (["--at", "0", "--layer", "modulus=1"], "--layer applies to --load only"),
         (["--at", "0", "--unit", "mm"], "--unit applies to --load, and to a --pitch or --depth such as 1mm"),
         (["--at", "0", "--pitch", "1mm"], "--pitch needs --unit"),
-        (["--at", "0", "--depth", "1mm"], "--depth needs --unit"),
         (["--at", "0", "--pitch=-1mm", "--unit", "mm"], "pitch must be"),
         (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 1.5.* is larger than the object"),
         (["--at", "0", "--depth", "0mm", "--unit", "mm"], "--depth 0: give a positive length"),
@@ -352,46 +279,19 @@ def test_window_without_a_display_is_refused_before_any_work(file, tmp_path, mon
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.slow
-def test_array_larger_than_the_object_and_flat_imprints_are_said(touched):
-    _, _, _, said = touched("--at", 0, "--cells", 40, 4, "--pitch", 0.1)
-    assert "most cells will miss it" in said
-    _, _, _, said = touched("--at", 0, "--cells", 1, 1, "--pitch", 2)
-    assert "every imprint is flat" in said
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "words"),
     [
         (["--pitch", "1mm", "--unit", "m"], "is the unit of length right?"),
         (["--pitch", "0.2"], "is the unit of length right?"),
         (["--load", "1", "--unit", "mm", "--layer", "thickness=3,modulus=1e9"], "m across: is --unit mm right?"),
+        (["--cells", 40, 4, "--pitch", 0.1], "most cells will miss it"),
+        (["--cells", 1, 1, "--pitch", 2], "every imprint is flat"),
     ],
 )
 def test_sizes_that_tell_of_a_wrong_unit_are_said(options, words, touched):
-    said = touched("--at", 0, *options)[-1]
-    assert said.count(words) == 1
+    assert touched("--at", 0, *options)[-1].count(words) == 1
+
+
+def test_a_plausible_size_is_not_doubted(touched):
     assert "right?" not in touched("--at", 0, "--pitch", "0.01", "--unit", "cm", "--load", 1)[-1]
-
-
-def test_folder_is_named_after_the_mesh(file):
-    assert parse_options("about", [str(file), "--at", "0"]).out == Path("ball_imprints")
-
-
-@pytest.mark.slow
-def test_command_runs_and_says_errors_in_one_line(file, tmp_path):
-    root = Path(__file__).parents[2]
-    command = [sys.executable, "-m", "haptic_glance", "touch", str(file), "--at", "99999"]
-    done = subprocess.run(command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True)
-    lines = done.stderr.decode().splitlines()
-    assert done.returncode == 1 and "Traceback" not in done.stderr.decode()
-    assert lines[-1].startswith("touch: ") and "no such vertex" in lines[-1]
-
-
-def test_help_tells_of_units_and_has_examples(capsys):
-    with pytest.raises(SystemExit) as done:
-        run(["ball.ply", "--help"])
-    said = capsys.readouterr().out
-    assert "thickness in metres, modulus in pascals" in " ".join(said.split())
-    assert done.value.code == 0 and "--at salient" in said and "bounding sphere is 1 unit across" in said

@@ -4,8 +4,7 @@ import pytest
 
 pytest.importorskip("sphinx")
 
-from _extensions.docstrings import as_rst, linked, with_bold_names  # noqa: E402
-from _extensions.order import ReadingOrder  # noqa: E402
+from _extensions.docstrings import as_rst, linked  # noqa: E402
 from docutils.core import publish_string  # noqa: E402
 
 
@@ -30,13 +29,6 @@ def test_an_indented_block_is_code():
     assert "<pre" in shown and "mesh = load(path)" in shown and "<blockquote" not in shown
 
 
-def test_parameters_are_bold_where_a_sentence_begins_with_them():
-    lines = ["faces: how many. rows, columns (n,): pixels; faces is not one here, nor is a face: that is a word."]
-    assert with_bold_names(lines, ["faces", "rows", "columns"]) == [
-        "**faces**: how many. **rows, columns** (n,): pixels; faces is not one here, nor is a face: that is a word."
-    ]
-
-
 @pytest.mark.parametrize(
     "code, module, shown",
     [
@@ -49,8 +41,3 @@ def test_parameters_are_bold_where_a_sentence_begins_with_them():
 )
 def test_code_that_is_a_public_name_is_a_link(code, module, shown):
     assert linked(code, module) == shown
-
-
-def test_the_galleries_begin_with_what_is_to_be_read_first():
-    files = ["touch_environment.py", "zebra.py", "own_scans.py", "aardvark.py"]
-    assert sorted(files, key=ReadingOrder("")) == ["own_scans.py", "touch_environment.py", "aardvark.py", "zebra.py"]

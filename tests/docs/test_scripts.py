@@ -39,19 +39,12 @@ def test_it_runs_and_draws(path, monkeypatch, tmp_path):
     assert drawn and not list(tmp_path.iterdir())
 
 
-def test_there_are_twenty_examples_and_seven_tutorials():
+def test_there_are_short_examples_that_begin_with_a_title_and_a_text():
     assert len(EXAMPLES) >= 20 and len(TUTORIALS) == 7
-
-
-@pytest.mark.parametrize("path", EXAMPLES, ids=name)
-def test_an_example_is_short(path):
-    assert 8 <= len(code_lines(path)) <= 45
-
-
-@pytest.mark.parametrize("path", EXAMPLES + TUTORIALS, ids=name)
-def test_it_begins_with_a_title_and_a_text(path):
-    title, rule, empty, *text = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()
-    assert set(rule) == {"="} and len(rule) == len(title) and not empty and len(" ".join(text)) > 60
+    for path in EXAMPLES + TUTORIALS:
+        title, rule, empty, *text = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()
+        assert set(rule) == {"="} and len(rule) == len(title) and not empty and len(" ".join(text)) > 60, path
+    assert all(8 <= len(code_lines(path)) <= 45 for path in EXAMPLES)
 
 
 def test_the_cluster_page_names_settings_that_exist():

@@ -4,12 +4,9 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import pytest
-
-import haptic_glance
 
 pytest.importorskip("sphinx_gallery")
 pytest.importorskip("pydata_sphinx_theme")
@@ -35,16 +32,11 @@ def site(tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_it_builds_without_a_warning_and_has_its_pages(site):
+def test_it_builds_without_a_warning_has_its_pages_and_fetches_nothing(site):
     pages = {str(path.relative_to(site)) for path in site.rglob("*.html")}
     assert {"index.html", "first_steps.html", "concepts/attention.html", "api/lod.html", "artifact.html"} <= pages
-    assert "generated/api/haptic_glance.simplify.html" in pages
-
-
-@pytest.mark.slow
-def test_no_page_fetches_anything(site):
+    assert "generated/api/haptic_glance.simplify.html" in pages and len(pages) > 80
     files = [*site.rglob("*.html"), *site.rglob("*.css")]
-    assert len(files) > 80
     assert not [path.name for path in files if FETCHED.search(path.read_text(encoding="utf-8"))]
 
 
@@ -68,17 +60,3 @@ def test_every_link_within_the_site_leads_to_a_page(site):
             if not (path.parent / link).exists():
                 broken.append(f"{path.name}: {link}")
     assert not broken
-
-
-@pytest.mark.slow
-def test_every_public_name_has_an_entry(site):
-    pages = [*(site / "api").glob("*.html"), *(site / "generated/api").glob("*.html")]
-    entries = set(re.findall(r'<dt[^>]* id="([\w.]+)"', "".join(path.read_text(encoding="utf-8") for path in pages)))
-    core = {f"haptic_glance.{each}" for each in haptic_glance.__all__}
-    assert not core - entries
-    for path in (ROOT / "docs/api").glob("*.rst"):
-        if path.stem in ("haptic_glance", "disturb", "deep"):
-            continue
-        package = import_module(re.search(r"automodule:: (\S+)", path.read_text(encoding="utf-8"))[1])
-        own = {f"{package.__name__}.{each}" for each in package.__all__ if each not in haptic_glance.__all__}
-        assert not own - entries, path.name

@@ -16,13 +16,11 @@ from omegaconf import OmegaConf
 from haptic_glance.base.fetch import cache_folder
 from haptic_glance.base.files import write_arrays, write_mesh, write_text
 from haptic_glance.mesh.mesh import Mesh
-from stages.compose import compose
 from stages.engine.parallel import Task, finished, parallel_map
 from stages.engine.rows import read_rows
 from stages.engine.settings import Workspace, check_section
 from stages.lod import Params
 from stages.lod.data_set import simplify_all
-from stages.transfer import __main__ as transfer
 
 pytest.importorskip("distributed", reason="the cluster extra is not installed")
 from stages.engine import cluster  # noqa: E402  # needs that extra
@@ -45,50 +43,28 @@ def look(event, arguments):
         os.kill(os.getpid(), signal.SIGKILL)
 sys.addaudithook(look)
 """
-SMALL = {
-    "lod": {"methods": ["qem", "glance"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
-            "viewpoints": "four", "size": [48, 64], "shrink": True},
-    "transfer": {"touches": 8, "new_object_touches": [1], "detector": "glance", "coarse_cells": [8],
-                 "weights": ["random"], "size": 32, "networks": {"mobilenet_v2": ["frozen"]},
-                 "splits": {"random": 3, "objects": 3}, "copies": 1, "epochs": 2, "search_epochs": 1,
-                 "severities": {}, "hybrid_middles": [], "device": "cpu"},
-}  # fmt: skip
-SHAPES = {
-    "ball": trimesh.creation.icosphere(2), "egg": trimesh.creation.icosphere(2).apply_scale([1, 1, 1.5]),
-    "brick": trimesh.creation.box([1, 1, 0.5]).subdivide().subdivide(),
-    "plank": trimesh.creation.box([1, 0.5, 0.2]).subdivide().subdivide(),
-}  # fmt: skip
+LOD = {"methods": ["qem", "glance"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
+       "viewpoints": "four", "size": [48, 64], "shrink": True}  # fmt: skip
+SHAPES = {"ball": trimesh.creation.icosphere(2), "brick": trimesh.creation.box([1, 1, 0.5]).subdivide().subdivide()}
 
 
-def make_workspace(root, backend):
-    """The Workspace of two classes of two objects below `root`."""
-    smoke = compose(["sets=[household_classes]", "profile=smoke"])["household_classes"]
-    sections = {name: {**smoke.get(name, {}), **values} for name, values in SMALL.items()}
+def run(root, backend):
+    """Runs the stage lod on two objects below `root`; returns ({file: bytes}, its rows without seconds)."""
     values = {"seed": 0, "profile": "test", "parallel": {"backend": backend, "workers": -1}, "sets": ["toys"]}
-    values |= {"graph": {stage: ["toys"] for stage in sections}, "toys": sections}
+    values |= {"graph": {"lod": ["toys"]}, "toys": {"lod": LOD}}
     write_text(root / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
-    data = root / "data/toys"
+    workspace = Workspace(root, "toys")
     for name, shape in SHAPES.items():
         mesh = Mesh(np.array(shape.vertices) / 3, np.array(shape.faces))
-        write_mesh(data / f"meshes/{name}.npz", mesh)
+        write_mesh(workspace.data / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices), dtype=np.float32)
         found = {"points": np.arange(4), "strong": np.int64(4), "saliency": saliency}
-        write_arrays(data / f"salient_points/{name}.npz", **{f"glance.{key}": one for key, one in found.items()})
-    write_text(data / "meshes/classes.csv", "class,object\nround,ball\nround,egg\nsquare,brick\nsquare,plank\n")
-    write_text(data / "weights/weights.csv", "none")
-    return Workspace(root, "toys")
-
-
-def run(workspace, stage):
-    """Runs a stage; returns ({file: bytes}, its rows without seconds)."""
-    if stage == "lod":
-        simplify_all(workspace, check_section(Params, SMALL["lod"]), "household")
-    else:
-        transfer.run(workspace)
-    folder = workspace.data / stage
+        write_arrays(workspace.data / f"salient_points/{name}.npz", **{f"glance.{key}": x for key, x in found.items()})
+    write_text(workspace.data / "weights/weights.csv", "none")
+    simplify_all(workspace, check_section(Params, LOD), "household")
+    folder = workspace.data / "lod"
     files = {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    rows = read_rows(workspace.measurements / f"{stage}.csv.gz").drop(columns="seconds")
-    return files, rows.to_csv()
+    return files, read_rows(workspace.measurements / "lod.csv.gz").drop(columns="seconds").to_csv()
 
 
 def until(ready):
@@ -101,12 +77,12 @@ def until(ready):
 
 
 @pytest.fixture
-def machines(tmp_path, monkeypatch, request):
-    """The processes of two workers in folders of their own; the first to write a file of some suffix is killed."""
+def machines(tmp_path, monkeypatch):
+    """The processes of three workers in folders of their own; the first to write an array is killed."""
     write_text(tmp_path / "preloaded.py", PRELOADED)
     environment = os.environ | {
         "PYTHONPATH": str(ROOT), "HOME": str(tmp_path), "HAPTIC_GLANCE_CACHE": str(cache_folder()),
-        "FORBIDDEN": str(tmp_path / "dask"), "FATAL": getattr(request, "param", "nothing"),
+        "FORBIDDEN": str(tmp_path / "dask"), "FATAL": ".npz",
         "KILLED": str(tmp_path / "killed"), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",
     }  # fmt: skip
     started = []
@@ -123,11 +99,11 @@ def machines(tmp_path, monkeypatch, request):
         until(file.exists)
         address = until(lambda: file.read_text().endswith("}") and json.loads(file.read_text())["address"])
         worker = ("worker", address, "--no-nanny", "--nthreads", "1", "--preload", str(tmp_path / "preloaded.py"))
-        for name in ("first", "second"):
+        for name in ("first", "second", "third"):
             start(name, *worker, "--local-directory", str(tmp_path / name))
         monkeypatch.setenv(cluster.SCHEDULER, address)
         client = cluster.cluster_client(-1)
-        client.wait_for_workers(2, timeout=PATIENCE)
+        client.wait_for_workers(3, timeout=PATIENCE)
         yield started[1:]
         client.close()
     finally:
@@ -138,22 +114,16 @@ def machines(tmp_path, monkeypatch, request):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("stage", "machines"), [("lod", ".npz"), ("transfer", ".pt")], indirect=["machines"])
-def test_a_worker_killed_in_the_middle_changes_no_byte(stage, machines, tmp_path):
-    """In the middle of an object and of a training; no worker can see the run's folder."""
-    expected = run(make_workspace(tmp_path / "alone", "sequential"), stage)
-    found = run(make_workspace(tmp_path / "dask", "dask"), stage)
-    assert sorted(process.poll() or 0 for process in machines) == [-signal.SIGKILL, 0]
-    assert found == expected
-
-
-@pytest.mark.slow
-def test_an_item_that_kills_its_workers_and_other_code_are_named(machines, tmp_path, monkeypatch):
+def test_lost_workers_change_no_byte_and_what_ends_a_run_is_named(machines, tmp_path, monkeypatch):
+    """One worker is killed in the middle of an object; no worker can see the run's folder."""
     there = list(finished(lambda task, folder: os.getpid(), [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
     assert there[0][1] in [process.pid for process in machines]
-    monkeypatch.setattr(cluster, "stage_digest", lambda stage: "another")
-    with pytest.raises(ValueError, match=r"other code of the stage views \(\w{16}\) than this machine \(another\)"):
-        list(finished(lambda task, folder: None, [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
+    with monkeypatch.context() as patch:
+        patch.setattr(cluster, "stage_digest", lambda stage: "another")
+        with pytest.raises(ValueError, match=r"other code of the stage views \(\w{16}\) than this machine \(another\)"):
+            list(finished(lambda task, folder: None, [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
+    assert run(tmp_path / "dask", "dask") == run(tmp_path / "alone", "sequential")
+    assert sorted(process.poll() or 0 for process in machines) == [-signal.SIGKILL, 0, 0]
     with pytest.raises(OSError, match="^cup: lost 2 workers"):
         list(finished(lambda task, folder: os._exit(1), [Task("cup", 0)], tmp_path, "x", "dask"))
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stages.engine.tolerances import Rule, Tolerances, compare, read_tolerances, widest_moves
+from stages.engine.tolerances import DIGITS, Rule, Tolerances, compare, read_tolerances, widest_moves
 
 BASELINE = {"touch.ours.accuracy": 0.70, "touch.blind.accuracy": 0.60, "lod.error": 0.001, "lod.meshes": 12}
 
@@ -11,12 +11,8 @@ def tolerances(*rules: Rule, **pairs: tuple[str, str]) -> Tolerances:
     return Tolerances(list(rules), pairs)
 
 
-@pytest.mark.parametrize("rules", [(), (Rule("*", rel=0.1),), (Rule("touch.*", abs=0.02, direction="more"),)])
-def test_equal_metrics_pass(rules):
-    assert compare(BASELINE, BASELINE, tolerances(*rules)) == []
-
-
 def test_a_metric_without_a_rule_is_held_exactly():
+    assert compare(BASELINE, BASELINE, tolerances()) == []
     (line,) = compare({**BASELINE, "lod.meshes": 11}, BASELINE, tolerances())
     assert line == "lod.meshes moved by -1 from 12 to 11, outside 12 .. 12"
 
@@ -34,9 +30,6 @@ def test_a_metric_without_a_rule_is_held_exactly():
 )
 def test_the_bounds_of_a_rule(rule, low, high):
     assert rule.bounds(0.5) == pytest.approx((low, high))
-
-
-def test_a_share_of_a_negative_value_is_room_on_both_sides():
     assert Rule("*", rel=0.1).bounds(-0.5) == pytest.approx((-0.55, -0.45))
 
 
@@ -79,6 +72,7 @@ def test_the_widest_move_of_each_metric_is_allowed():
     runs = [{**BASELINE, "lod.error": 0.0011}, {**BASELINE, "lod.error": 0.0008, "lod.meshes": 13}]
     moves = widest_moves(runs, BASELINE)
     assert moves == {"lod.error": pytest.approx(0.0002), "lod.meshes": 1}
+    assert widest_moves([{**BASELINE, "lod.meshes": 12 + 6 * DIGITS}], BASELINE) == {}  # of the digits that are kept
     rules = Tolerances([], {}, moves)
     assert all(compare(run, BASELINE, rules) == [] for run in runs)
     assert len(compare({**BASELINE, "lod.error": 0.00121, "touch.ours.accuracy": 0.5}, BASELINE, rules)) == 2
@@ -89,12 +83,9 @@ def test_the_widest_move_of_each_metric_is_allowed():
     [
         ("rules: [", "is not YAML"),
         ("- a", "must have `rules`"),
-        ("rules: []\nbounds: []", "must have `rules`"),
         ("rules: [{abs: 1}]", "a rule has metric"),
         ("rules: [{metric: a, abs: -1}]", "at least 0"),
-        ("rules: [{metric: a, abs: much}]", "at least 0"),
         ("rules: [{metric: a, direction: up}]", "direction is one of"),
-        ("rules: [{metric: a, band: 1}]", "a rule has metric"),
         ("pairs: {lead: [a]}", "must list two metrics"),
         ("pairs: {lead: ['*.a', b]}", "must list two metrics"),
     ],

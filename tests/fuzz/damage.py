@@ -1,4 +1,4 @@
-"""Damaged copies of a file: flipped bits, cuts, swapped and nul bytes, lies in headers, huge counts, deep nesting."""
+"""Damaged copies of a file: flipped bits, cuts, swapped parts, noise, lies in headers, huge counts, deep nesting."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -38,24 +38,9 @@ def _cut_end(content, random):
     return content[: random.integers(0, len(content) + 1)]
 
 
-def _cut_out(content, random):
-    a, b = _span(content, random)
-    return content[:a] + content[b:]
-
-
-def _repeat(content, random):
-    a, b = _span(content, random)
-    return content[:b] + content[a:b] * int(random.integers(1, 4)) + content[b:]
-
-
 def _swap(content, random):
     a, b = _span(content, random)
     return content[b:] + content[a:b] + content[:a]
-
-
-def _nul(content, random):
-    a, b = _span(content, random, 40)
-    return content[:a] + bytes(b - a) + content[b:]
 
 
 def _noise(content, random):
@@ -93,5 +78,5 @@ def _span(content, random, longest=None):
 
 
 DAMAGES: tuple[Callable[[bytes, np.random.Generator], bytes], ...] = (
-    _flip, _cut_end, _cut_out, _repeat, _swap, _nul, _noise, _lie_in_text, _lie_in_bytes, _nest,
+    _flip, _cut_end, _swap, _noise, _lie_in_text, _lie_in_bytes, _nest,
 )  # fmt: skip

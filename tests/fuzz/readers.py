@@ -1,7 +1,6 @@
 """Every reader of files that somebody else may have written, each with small valid files to be damaged."""
 
 import contextlib
-import gzip
 import io
 import json
 import pickle
@@ -26,12 +25,10 @@ from haptic_glance.lod import write_any
 from haptic_glance.look.marks import read_marks, write_marks
 from haptic_glance.mesh import clean, load, normalise
 from haptic_glance.mesh.mesh import Mesh
-from stages.classification.recorded import ELECTRODES, PALMS, read_grasps, read_pressure_images
 from stages.engine.settings import load_params
-from stages.meshes.sources import FIXATION_MAPS, GAZE, collection_files
-from stages.recorded.series import read_touch_events
+from stages.meshes.sources import FIXATION_MAPS, collection_files
 from stages.scene.export import read_lod
-from stages.transfer.recorded import read_bigs, read_picture, read_schunk
+from stages.transfer.recorded import read_picture
 from stages.weights.gaze import fixation_files, fixations_on_vertices, read_gaze
 from stages.weights.ground_truth import read_interest_points
 
@@ -50,7 +47,7 @@ class Reader:
     seeds: Callable[[Path], list[bytes]]
     read: Callable[[Path], object]
     names: bool = True
-    count: int = 1000
+    count: int = 150
 
 
 def mesh_seeds(*kinds):
@@ -197,33 +194,6 @@ def pictures(*kinds):
     return seeds
 
 
-def pressure_seeds(folder):
-    content = pictures("jpg")(folder)
-    for name in ("cup", "vase"):
-        (folder / "Images" / name).mkdir(parents=True)
-        (folder / "Images" / name / "1.jpg").write_bytes(content[0])
-    return content
-
-
-def grasp_seeds(folder):
-    row = ["cup", "1", *("0.5" for _ in ELECTRODES)]
-    content = "\n".join([",".join(["object", "slipped", *ELECTRODES]), *[",".join(row)] * 3, ""])
-    for palm in PALMS:
-        for part in ("", "_test"):
-            (folder / f"bts3v2_palm_{palm}{part}.csv").write_text(content)
-    return [content.encode()]
-
-
-def bigs_seeds(folder):
-    content = "\n".join([",".join("1" * 19)] * 700)
-    for name in ("ball", "box", "cylinder"):
-        for finger in "abc":
-            path = folder / name / "success/1" / f"{finger}.csv"
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(content)
-    return [content.encode()]
-
-
 def mark_seeds(folder):
     rows = [{"time": "2026-05-06T07:08:09.123Z", "vertex": k, "x": 0.1, "y": 0.2, "z": 0.3} for k in range(4)]
     write_marks(folder / "seed.csv", "ann", rows)
@@ -284,23 +254,6 @@ def depth_seeds(folder):
     cv2.imwrite(str(folder / "a.png"), np.full((9, 9), 900, np.uint16))
     numbers = {"fx": 9.0, "fy": 9.0, "cx": 4.5, "cy": 4.5, "scale": 0.001}
     return [json.dumps({"image": "a.png"} | numbers).encode()]
-
-
-def schunk_seeds(folder):
-    arrays = np.empty((1, 6), object)
-    for k in range(6):
-        arrays[0, k] = np.arange((14 - k % 2) * 6 * 294.0).reshape(14 - k % 2, 6, 294)
-    for name in ("ball", "cup"):
-        (folder / name).mkdir()
-        savemat(folder / name / "grasp-0.mat", {"TS": arrays}, do_compression=True)
-    return [(folder / "cup" / "grasp-0.mat").read_bytes()]
-
-
-def event_seeds(folder):
-    for part in ("Ev-Objects/train", "Ev-Objects/test", "Ev-Containers/train", "Ev-Containers/test"):
-        (folder / part).mkdir(parents=True)
-        np.save(folder / part / "sample_0_label_1.npy", np.ones((39, 2, 5), np.float32))
-    return [(folder / "Ev-Objects/train/sample_0_label_1.npy").read_bytes()]
 
 
 def lod_seeds(folder):
@@ -368,10 +321,10 @@ READERS = {
     "glb": Reader("a.glb", lambda folder: [*mesh_seeds("glb")(folder), textured(folder).export(file_type="glb")],
                   read_mesh_file),
     "gltf": Reader("a.glb", gltf_seeds, read_gltf),
-    "cloud": Reader("a.xyz", cloud_seeds, load, count=200),
+    "cloud": Reader("a.xyz", cloud_seeds, load, count=40),
     "pcd": Reader("a.pcd", pcd_seeds, load),
-    "las": Reader("a.las", las_seeds, load, count=200),
-    "depth": Reader("a.depth", depth_seeds, load, count=200),
+    "las": Reader("a.las", las_seeds, load, count=40),
+    "depth": Reader("a.depth", depth_seeds, load, count=40),
     "mesh": Reader("a.npz", npz_seeds, read_mesh),
     "array": Reader("a.npz", npy_seeds, in_npz(read_arrays)),
     "json": Reader("a.json", lambda folder: [json.dumps({"a": [1, 2, {"b": None}], "c": "d"}).encode()], read_json),
@@ -379,26 +332,17 @@ READERS = {
     "tar": Reader("a.tgz", lambda folder: [tar_bytes("w:gz"), tar_bytes("w")],
                   lambda path: dict(read_tar_members(path, ["one", "two"]))),
     "deb": Reader("a.deb", deb_seeds, lambda path: [name for name, _ in debian_files(path)]),
-    "collection": Reader("a.zip", zip_seeds, lambda path: [read() for read in collection_files(path, *GAZE).values()]),
     "lod": Reader("a.glb", lod_seeds, read_lod),
     "params": Reader("params.yaml", lambda folder: [b"seed: 0\nsets: [a, b]\na: {lod: {targets: ['25%']}}\n"],
-                     load_params, count=200),
+                     load_params, count=40),
     "table": Reader("a.csv", lambda folder: [b"item,value,seconds\ncup,1,0.5\nvase,2,\n"], read_table),
-    "packed table": Reader("a.csv.gz", lambda folder: [gzip.compress(b"item,value\ncup,1\n" * 20)], read_table),
     "picture": Reader("a.jpg", pictures("jpg", "png", "bmp"), lambda path: read_picture(path, 16)),
-    "pressure": Reader("Images/cup/1.jpg", pressure_seeds, lambda path: read_pressure_images(path.parents[2])),
-    "grasps": Reader("bts3v2_palm_45.csv", grasp_seeds, lambda path: read_grasps(path.parent), count=200),
-    "events": Reader(
-        "Ev-Objects/test/sample_0_label_1.npy", event_seeds, lambda path: read_touch_events(path.parents[2]), count=200
-    ),
-    "schunk": Reader("ball/grasp-0.mat", schunk_seeds, lambda path: read_schunk(path.parents[1]), count=200),
-    "bigs": Reader("ball/success/1/a.csv", bigs_seeds, lambda path: read_bigs(path.parents[3]), count=200),
     "marks": Reader("a.csv", mark_seeds, read_marks),
     "gaze": Reader("a.txt", lambda folder: [b"0 0 0 0 0 1 0.5 1\n1 0 0 0 0 1 0 0\n"], read_gaze, False),
     "fixations": Reader("FixationMaps/cup_300norm.txt", fixation_seeds,
                         lambda path: read_fixations(path.parents[1])),
     "interest points": Reader("a.mat", interest_seeds, read_interest_points, False),
-    "network": Reader("a.npz", network_seeds, read_network, count=200),
+    "network": Reader("a.npz", network_seeds, read_network, count=40),
     "checkpoint": Reader("a.pt", checkpoint_seeds, read_checkpoint),
     "pickle": Reader("alexnet.ckpt", pickle_seeds, read_pickle, False),
     "torch": Reader("a.pth", checkpoint_seeds, read_torch_file),

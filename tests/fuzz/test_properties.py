@@ -23,7 +23,7 @@ def usable(mesh):
         return None
 
 
-@examples(30)
+@examples(20)
 @given(mesh=meshes())
 def test_a_normalised_mesh_fills_its_bounding_sphere(mesh):
     used = normalise(mesh).vertices[np.unique(mesh.faces)]
@@ -31,7 +31,7 @@ def test_a_normalised_mesh_fills_its_bounding_sphere(mesh):
     assert used.min(axis=0) == pytest.approx(-used.max(axis=0))
 
 
-@examples(30)
+@examples(20)
 @given(mesh=meshes())
 def test_cleaning_keeps_vertices_and_leaves_no_degenerate_or_duplicate_face(mesh):
     cleaned, _ = clean(mesh)
@@ -44,17 +44,7 @@ def test_cleaning_keeps_vertices_and_leaves_no_degenerate_or_duplicate_face(mesh
 
 
 @pytest.mark.slow
-@examples(3)
-@given(mesh=meshes())
-def test_saliency_is_finite_in_0_to_1(mesh):
-    mesh = usable(mesh)
-    values = saliency(mesh)
-    assert values.shape == (len(mesh.vertices),) and np.isfinite(values).all()
-    assert 0 <= values.min() <= values.max() <= 1
-
-
-@pytest.mark.slow
-@examples(12)
+@examples(8)
 @given(mesh=meshes())
 def test_simplifying_gives_fewer_faces_and_no_new_fault(mesh):
     mesh = usable(mesh)
@@ -69,21 +59,16 @@ def test_simplifying_gives_fewer_faces_and_no_new_fault(mesh):
 
 
 @pytest.mark.slow
-@examples(8)
+@examples(4)
 @given(mesh=meshes())
-def test_the_distance_of_a_mesh_to_itself_is_zero(mesh):
+def test_saliency_and_imprints_are_in_0_to_1_and_the_distance_of_a_mesh_to_itself_is_zero(mesh):
     mesh = usable(mesh)
+    values = saliency(mesh)
+    assert values.shape == (len(mesh.vertices),) and np.isfinite(values).all()
+    assert 0 <= values.min() <= values.max() <= 1
     assert max(metro(mesh, mesh).values()) < 1e-7
-
-
-@pytest.mark.slow
-@examples(8)
-@given(mesh=meshes())
-def test_an_imprint_is_in_0_to_1(mesh):
-    mesh = usable(mesh)
-    vertex = int(mesh.faces[0, 0])
     try:
-        image = press(mesh, vertex)
+        image = press(mesh, int(mesh.faces[0, 0]))
     except ValueError as error:
         assert str(error)
         return

@@ -6,7 +6,7 @@ import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.paths import around, through
-from haptic_glance.studio.specimen import Hit, Specimen
+from haptic_glance.studio.specimen import Specimen
 from haptic_glance.touch import Surface, follow
 
 SHEETS = (-0.5, 0.0, -0.15), (-0.5, 0.5, 0.15)  # from x, to x, at y
@@ -57,12 +57,6 @@ def test_a_path_that_leaves_the_mesh_says_where(pair):
     assert len(through(pair.rays, places[:2], 9, 0.01).positions) == 9
     with pytest.raises(ValueError, match="leaves the mesh between places 2 and 3"):
         through(pair.rays, places, 25, 0.01)
-
-
-def test_a_path_through_the_object_is_none(ball):
-    front, back = (Hit(0, 0, np.array([0.0, y / 2, 0.0]), np.array([0.0, y, 0.0])) for y in (-1.0, 1.0))
-    with pytest.raises(ValueError, match="leaves the mesh between places 1 and 2"):
-        through(ball.rays, [front, back], 25, 0.01)
 
 
 def test_a_path_over_a_cliff_is_none():

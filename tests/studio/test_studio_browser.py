@@ -12,6 +12,7 @@ from haptic_glance.look.marks import read_marks
 from haptic_glance.mesh import load, normalise
 from haptic_glance.studio.app import Studio
 from haptic_glance.studio.session import Settings
+from haptic_glance.studio.specimen import Hit
 
 from .conftest import ball
 
@@ -20,8 +21,8 @@ pytestmark = pytest.mark.slow
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
-WIDE, NARROW = {"width": 800, "height": 560}, {"width": 390, "height": 844}
-PATIENCE = 20_000  # milliseconds, on a machine with other work
+WIDE = {"width": 800, "height": 560}
+PATIENCE = 300_000  # milliseconds, on a machine with other work
 DROP = """(hex) => {
   const dataTransfer = new DataTransfer(), bytes = Uint8Array.from(hex.match(/../g), (byte) => parseInt(byte, 16));
   dataTransfer.items.add(new File([bytes], "dropped.ply"));
@@ -56,10 +57,12 @@ def studio(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studio")
     ball().export(folder / "knob.ply")
     ball(knob=-0.3).export(folder / "dent.ply")
-    opened = Studio(Settings([folder / "knob.ply", folder / "dent.ply"], marks=folder / "marks"))
-    opened.folder = folder
-    yield opened
-    opened.stop()
+    with pytest.MonkeyPatch.context() as patch:  # what `make repro` may have left in data/ is not among the known
+        patch.setattr("haptic_glance.studio.panels.know.HOUSEHOLD", folder / "nothing")
+        opened = Studio(Settings([folder / "knob.ply"], marks=folder / "marks"))
+        opened.folder = folder
+        yield opened
+        opened.stop()
 
 
 class Hand:
@@ -90,15 +93,31 @@ class Hand:
     def wait_for_drawing(self, drawn=True):
         """Waits until the middle of the canvas shows a colour; drawn=False: until it does not."""
         x, y = map(int, self.middle())
-        for _ in range(PATIENCE // 100):
-            patch = self.picture()[y - 3 : y + 4, x - 3 : x + 4]
-            if (np.ptp(patch, axis=-1).min() > 25) == drawn:
-                return
-            self.page.wait_for_timeout(100)
-        raise AssertionError("nothing was drawn")
+        middle = slice(y - 3, y + 4), slice(x - 3, x + 4)
+        assert self.until(lambda: (np.ptp(self.picture()[middle], axis=-1).min() > 25) == drawn)
 
-    def click(self):
-        self.page.mouse.click(*self.middle())
+    def click(self, right=0, down=0):
+        """Clicks the canvas, so many pixels beside its middle."""
+        for message in reversed(self.page.locator("[class*=Notification-closeButton]").all()):
+            message.click()  # it would catch the click
+        x, y = self.middle()
+        self.page.mouse.click(x + right, y + down)
+
+    def until(self, holds, milliseconds=PATIENCE):
+        """Waits until a condition holds; returns whether it does."""
+        for _ in range(milliseconds // 100):
+            if holds():
+                return True
+            self.page.wait_for_timeout(100)
+        return False
+
+    def click_until(self, answered, downs=(0,)):
+        """Clicks until a condition holds: a page that is still drawing its first picture misses a click."""
+        for attempt in range(PATIENCE // 5000):
+            self.click(0, downs[attempt % len(downs)])
+            if self.until(answered, 5000):
+                return
+        raise AssertionError("the click was not answered")
 
     def choose(self, panel):
         self.page.get_by_role("button", name=panel, exact=True).click()
@@ -176,20 +195,6 @@ def test_a_broken_file_is_named_and_the_mesh_stays(window, tmp_path):
     hand.reads("320 faces")
 
 
-def test_two_windows_do_not_disturb_each_other(window):
-    one, other = window(), window()
-    for hand in (one, other):
-        hand.reads("bulges out")
-    one.pick("Open", "dent")
-    one.reads("dent")
-    one.choose("Levels")
-    one.reads("Metro error")
-    other.wait_for_drawing()
-    other.click()
-    other.reads("For it:")
-    assert other.page.get_by_text("Metro error").count() == 0 and other.page.get_by_text("knob").first.is_visible()
-
-
 def test_points_are_marked_removed_and_kept_from_two_windows(window, studio):
     hand = window()
     hand.reads("bulges out")
@@ -210,21 +215,6 @@ def test_points_are_marked_removed_and_kept_from_two_windows(window, studio):
     hand.page.get_by_role("button", name="Undo").click()
     hand.reads("Both are kept")
     assert list(read_marks(path).vertex) == [0]
-
-
-def test_a_telephone_shows_the_mesh_and_every_control(window):
-    hand = window(viewport=NARROW, has_touch=True, is_mobile=True)
-    hand.reads("bulges out")
-    for _ in range(PATIENCE // 200):
-        if (np.ptp(hand.picture()[:300], axis=-1) > 60).mean() > 0.05:  # the mesh stands above the panel
-            break
-        hand.page.wait_for_timeout(200)
-    else:
-        raise AssertionError("nothing was drawn above the panel")
-    assert hand.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"]
-    for name in ("Look", "Levels", "Mark"):
-        box = hand.page.get_by_role("button", name=name, exact=True).bounding_box()
-        assert box["x"] >= 0 and box["x"] + box["width"] <= NARROW["width"]
 
 
 def test_the_page_says_when_the_server_has_ended(window, studio):
@@ -260,3 +250,62 @@ def test_the_tour_the_panel_and_a_dropped_file_outlive_a_reload(window, studio):
     hand.reads("2 of 4")
     hand.page.get_by_role("button", name="End the tour").press("Enter")
     playwright.expect(hand.page.get_by_text("2 of 4")).to_be_hidden(timeout=PATIENCE)
+
+
+def test_a_click_shows_what_is_felt_and_a_slider_changes_it_and_a_path_plays_to_its_end(window, studio):
+    hand = window()
+    page = hand.page
+    hand.reads("bulges out")
+    hand.choose("Touch")
+    hand.reads("Click the mesh: the array is pressed there.")
+    grid = page.locator("img.grid")
+    hand.click_until(grid.is_visible)
+    playwright.expect(grid).to_have_attribute("width", "16", timeout=PATIENCE)
+    before = grid.get_attribute("src")
+    page.get_by_role("slider").first.focus()
+    page.keyboard.press("ArrowRight")
+    playwright.expect(grid).to_have_attribute("width", "17", timeout=PATIENCE)
+    hand.reads("17 x 17 cells")
+    assert grid.get_attribute("src") != before
+    assert float(page.locator(".low").inner_text()) > 0 == float(page.locator(".high").inner_text())
+
+    hand.choose("Path")
+    hand.reads("Click two or more places")
+    path = newest(studio).panel
+    hand.click(-40)
+    assert hand.until(lambda: len(path.places) == 1)
+    hand.click(40, 20)
+    hand.reads("2 places")
+    hand.reads("frame 25 of 25")
+    front = path.places[0]
+    beside = Hit(0, 0, front.position + 3 * np.cross(front.normal, [0, 0, 1]), front.normal)  # across a gap
+    newest(studio).run("", lambda: path.on_click(beside))
+    hand.reads("leaves the mesh between places 2 and 3")
+    assert len(path.places) == 2
+
+
+def newest(studio):
+    """The studio's side of the page that was opened last."""
+    return studio.windows[max(studio.windows)][1]
+
+
+def test_a_mystery_to_its_end(window, studio):
+    hand = window()
+    hand.reads("bulges out")
+    hand.choose("Know")
+    hand.page.locator('.bar[data-name="knob"]').wait_for()
+    hand.page.get_by_role("button", name="Mystery object").click()
+    hand.reads("An object hides in the ball")
+    know, scene = newest(studio).panel, newest(studio).scene
+    assert know.guess.hidden and not scene.has("/mesh") and not scene.has("/know/shown")
+    hand.click_until(lambda: know.guess.touches, downs=(0, 25, 50, 75, -25, -50))  # of a torus the middle is empty
+    assert know.guess.helped == 0
+    if not know.guess.over:  # the touch may name the object already
+        hand.page.get_by_role("button", name="Touch until it is known").click()
+    hand.reads("the planner alone")
+    hand.reads(f"It is {know.guess.name}.")
+    assert scene.has("/know/shown") and know.guess.over
+    shown = {bar.get_attribute("data-name") for bar in hand.page.locator(".bar").all()}
+    assert shown == {*know.guess.exploration.library.names}
+    hand.choose("Look")
+    assert hand.until(lambda: scene.has("/mesh") and not scene.has("/know"))

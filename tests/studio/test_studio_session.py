@@ -11,39 +11,30 @@ import trimesh
 
 from haptic_glance.base.files import write_mesh
 from haptic_glance.look.points import detect
-from haptic_glance.look.points.reasons import contributions
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job
 from haptic_glance.studio.levels import HARD, SOFT, Levels
-from haptic_glance.studio.panels.look import for_and_against, listing, methods, views_of
+from haptic_glance.studio.panels.look import views_of
 from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
+
+PATIENCE = 300  # seconds, on a machine with other work
 
 
 def quiet(share, text):
     """Reports nothing."""
 
 
-def test_a_session_without_a_mesh_says_what_to_do():
+def test_sessions_share_nothing_and_another_mesh_leaves_nothing_of_the_last_one(mesh):
+    session, other = Session(), Session()
     with pytest.raises(ValueError, match="open or upload one"):
-        Session().look()
-
-
-def test_another_mesh_leaves_nothing_of_the_last_one(mesh):
-    session = Session()
+        session.look()
     session.put(Specimen(mesh, "one"))
-    session.kept["Touch"] = "something"
+    session.method, session.kept["Touch"] = "height", "something"
+    assert other.specimen is None and other.method == "glance" and other.kept == {}
     session.put(Specimen(mesh, "two"))
     assert session.kept == {} and session.on_table.name == "two"
-
-
-def test_two_sessions_share_nothing(mesh):
-    one, other = Session(), Session()
-    one.put(Specimen(mesh, "one"))
-    one.method = "height"
-    one.kept["Touch"] = 1
-    assert other.specimen is None and other.method == "glance" and other.kept == {}
 
 
 def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
@@ -71,15 +62,15 @@ def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypat
 
     def slow(*given):
         begun.set()
-        go.wait(10)
+        go.wait(PATIENCE)
         return detect(*given)
 
     monkeypatch.setattr("haptic_glance.studio.specimen.detect", slow)
     with ThreadPoolExecutor(3) as pool:
         other = pool.submit(specimen.look, "height")
-        begun.wait(5)
-        pool.submit(specimen.look).result(5)
-        pool.submit(specimen.pick, np.array([5.0, 0, 0]), np.array([-1.0, 0, 0])).result(5)
+        begun.wait(PATIENCE)
+        pool.submit(specimen.look).result(PATIENCE)
+        pool.submit(specimen.pick, np.array([5.0, 0, 0]), np.array([-1.0, 0, 0])).result(PATIENCE)
         assert not other.done()
         go.set()
 
@@ -111,9 +102,6 @@ def test_a_click_finds_the_face_and_its_nearest_corner(mesh):
     assert tip[0] == specimen.mesh.vertices[:, 0].max() and hit.vertex in specimen.mesh.faces[hit.face]
     assert hit.normal[0] > 0.5 and np.linalg.norm(hit.position - tip) < 0.05
     assert specimen.pick(np.array([5.0, 0, 0]), np.array([1.0, 0, 0])) is None
-
-
-def test_an_inside_out_mesh_is_clicked_from_outside(mesh):
     inverted = Specimen(type(mesh)(mesh.vertices, mesh.faces[:, ::-1]), "ball")
     hit = inverted.pick(np.array([5.0, 0, 0]), np.array([-1.0, 0, 0]))
     assert hit is not None and hit.normal[0] > 0.5
@@ -135,12 +123,6 @@ def test_an_uploaded_file_is_that_on_disk_and_reads_no_other(knob_file):
         open_content("/etc/passwd", b"root")
     with pytest.raises(MeshError, match="empty"):
         open_content("x.stl", b"")
-
-
-def test_a_point_cloud_is_opened(tmp_path, mesh):
-    path = tmp_path / "cloud.xyz"
-    np.savetxt(path, np.random.default_rng(0).permutation(mesh.vertices))
-    assert len(open_file(path).mesh.faces) > 100
 
 
 def test_meshes_of_the_pipeline_are_opened(tmp_path, mesh):
@@ -170,20 +152,16 @@ def test_levels_have_the_faces_asked_for_and_larger_errors_with_fewer(mesh):
     assert whole.most == pytest.approx(0, abs=1e-6)
 
 
-def test_hard_levels_keep_the_points(mesh):
+def test_hard_levels_keep_the_points_and_a_level_that_cannot_be_names_what_can(mesh):
     specimen = Specimen(mesh, "ball")
     levels = Levels(specimen, specimen.look("glance", 2))
     level = levels.at(200, HARD, quiet)
     assert list(levels.tasks[HARD].points_kept(level.mesh)) == [True, True]
-
-
-def test_a_level_that_cannot_be_names_what_can(mesh):
-    specimen = Specimen(mesh, "ball")
     with pytest.raises(ValueError, match="ask for .* or more"):
-        Levels(specimen, specimen.look("glance", 2)).at(2, HARD, quiet)
+        levels.at(2, HARD, quiet)
 
 
-@pytest.mark.parametrize("suffix", [".glb", ".obj", ".ply"])
+@pytest.mark.parametrize("suffix", [".glb", ".ply"])
 def test_a_level_comes_back_in_the_units_of_the_file(tmp_path, mesh, suffix):
     far = type(mesh)(mesh.vertices * 30 + 100, mesh.faces, up="z")
     specimen = Specimen(far, "ball")
@@ -193,19 +171,6 @@ def test_a_level_comes_back_in_the_units_of_the_file(tmp_path, mesh, suffix):
     again = load(path)
     assert len(again.faces) == 300 and again.diagonal == pytest.approx(far.diagonal, rel=0.05)
     assert rotate_to_z_up(again).vertices[:, 2].mean() == pytest.approx(far.vertices[:, 2].mean(), abs=3)
-
-
-def test_points_are_listed_with_reasons(mesh):
-    specimen = Specimen(mesh, "ball")
-    look = specimen.look("glance", 2)
-    assert listing(look, [[("bulges out", 2.31)], []]).startswith(f"1. vertex {look.points[0][1]}, saliency ")
-    assert "bulges out (+2.3)" in listing(look, [[("bulges out", 2.31)], []])
-    said = for_and_against(contributions(mesh, look.vertices[:1]), "glance")
-    assert "For it: " in said and "(+" in said and "against it: " in said and "(-" in said
-
-
-def test_every_method_offered_has_a_saliency(mesh):
-    assert {"glance", "itti", "height"} <= set(methods()) and "random" not in methods()
 
 
 def test_the_twelve_views_show_the_object(mesh):
@@ -225,8 +190,8 @@ class Log(list):
 
 def test_a_job_hands_over_its_result_or_its_error():
     log, error = Log(), ValueError("no")
-    log.job(lambda report: 3).start().thread.join(5)
-    log.job(lambda report: (_ for _ in ()).throw(error)).start().thread.join(5)
+    log.job(lambda report: 3).start().thread.join(PATIENCE)
+    log.job(lambda report: (_ for _ in ()).throw(error)).start().thread.join(PATIENCE)
     assert log == [3, "end", error, "end"]
 
 
@@ -235,16 +200,16 @@ def test_a_stopped_job_ends_at_its_next_report_and_its_result_is_dropped():
 
     def work(report):
         begun.set()
-        go.wait(5)
+        go.wait(PATIENCE)
         report(0.5, "half")
         log.append("went on")
 
     job = log.job(work).start()
-    begun.wait(5)
+    begun.wait(PATIENCE)
     job.stop()
     go.set()
-    job.thread.join(5)
+    job.thread.join(PATIENCE)
     assert log == ["end"] and job.stopped
     late = log.job(lambda report: late.stop())  # stopped after its last report
-    late.start().thread.join(5)
+    late.start().thread.join(PATIENCE)
     assert log == ["end", "end"]

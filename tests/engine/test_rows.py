@@ -1,28 +1,48 @@
-"""Rows of many items on the disk: their order, how often they can be read, and what of them is in memory."""
+"""Rows: their schema, their order, and rows of many items on the disk."""
 
 import tracemalloc
 
+import pytest
+
 from stages.engine.objects import ItemRows, KeptRows
 from stages.engine.rows import read_rows, some_rows, write_rows
+
+
+def write(tmp_path, row, columns=()):
+    write_rows(tmp_path / "x.csv.gz", [{"metric": "m", "value": 1} | row], dict.fromkeys(columns, ""), "toys", 0)
+    return read_rows(tmp_path / "x.csv.gz").iloc[0]
+
+
+def test_rows_know_their_data_set_and_names_stay_texts(tmp_path):
+    row = write(tmp_path, {"item": "61", "split": "random", "views": 3}, ["views"])
+    assert (row["dataset"], row["item"], row["views"]) == ("toys", "61", 3)
+
+
+@pytest.mark.parametrize(
+    ("row", "fault"),
+    [
+        ({"veiws": 3}, "columns veiws are not declared"),
+        ({"split": "anywhere"}, "split anywhere is not one of"),
+        ({"metric": None}, "row 0 has no metric"),
+        ({"value": "many"}, "many"),
+    ],
+)
+def test_a_row_outside_the_schema_is_refused(tmp_path, row, fault):
+    with pytest.raises(ValueError, match=fault):
+        write(tmp_path, row)
 
 
 def rows_of(name, count=1):
     return [{"item": name, "method": "m", "metric": "length" if k else "width", "value": k} for k in range(count)]
 
 
-def test_rows_come_in_the_order_of_the_names_however_they_were_put(tmp_path):
-    kept = ItemRows(tmp_path, "abc")
+def test_rows_come_in_the_order_of_the_names_and_an_item_that_was_put_again_has_its_last_rows(tmp_path):
+    kept = ItemRows(tmp_path, "abcd")
+    kept.put("a", rows_of("a", 3))
     for name in "cab":
         kept.put(name, rows_of(name, 2))
     assert list(kept) == list(kept) == [row for name in "abc" for row in rows_of(name, 2)]
     assert (len(kept), kept[0], kept[-1:]) == (6, rows_of("a")[0], rows_of("c", 2)[1:])
-
-
-def test_an_item_that_was_put_again_has_its_last_rows_and_one_that_is_missing_has_none(tmp_path):
-    kept = ItemRows(tmp_path, "ab")
-    kept.put("b", rows_of("b", 3))
-    kept.put("b", rows_of("b"))
-    assert list(kept) == rows_of("b") and len(kept) == 1
 
 
 def test_parts_are_read_one_after_the_other_and_an_iterator_more_than_once(tmp_path):

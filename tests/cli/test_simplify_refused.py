@@ -1,0 +1,160 @@
+"""Requests that `haptic-glance simplify` refuses: the reason, the remedy, and nothing written."""
+
+import os
+import re
+
+import numpy as np
+import pytest
+
+from haptic_glance.cli import simplify as command
+from haptic_glance.cli.simplify import parser, run, share
+from haptic_glance.lod.export import write_any
+from haptic_glance.mesh.mesh import Mesh
+
+from .conftest import bumpy
+
+HARD = ["--neighbourhood", "fixed"]
+GLB = ["--faces", "300", "--out", "x.glb"]
+
+
+@pytest.mark.parametrize("link", ["relative", "of a symlink"])
+def test_the_mesh_itself_is_never_written_over(file, tmp_path, monkeypatch, link):
+    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before it was refused"))
+    (tmp_path / "link.obj").symlink_to(file)
+    mesh, out = (file, os.path.relpath(file)) if link == "relative" else (tmp_path / "link.obj", file)
+    content = file.read_bytes()
+    with pytest.raises(ValueError, match="is the mesh itself"):
+        run([str(mesh), "--faces", "300", "--out", str(out)])
+    assert file.read_bytes() == content
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
+        (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the mesh has only 1,280 faces"),
+        (["--faces", "many", "--out", "x.glb"], "^--faces='many' is not a face count"),
+        (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
+        (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
+        (["--faces", "300", "--out", "missing/x.glb"], "no such folder"),
+        (["--faces", "300", "--out", "folder.glb"], "is a folder"),
+        ([*GLB, "--picture", "x.txt"], "pictures are written as"),
+        ([*GLB, "--method", "guess"], "there is no such method; choose one of qem, glance"),
+        ([*GLB, "--keep", "3"], "--keep has no effect where no faces are frozen"),
+        ([*GLB, "--rings", "-1"], "--rings has no effect where no faces are frozen"),
+        ([*GLB, "--shrink"], "add --neighbourhood fixed or adaptive or area"),
+        ([*GLB, "--method", "qem", "--shrink"], "--shrink has no effect with"),
+        ([*GLB, "--method", "qem", *HARD], "--neighbourhood has no effect with --method"),
+        ([*GLB, "--neighbourhood", "area", "--rings", "2"], "it is for fixed"),
+        ([*GLB, *HARD, "--rings", "-1"], "--rings -1: give 0"),
+        ([*GLB, *HARD, "--keep", "0"], "--keep 0: give 1 or more points"),
+        (["--faces", "90", "--out", "x.glb", *HARD, "--keep", "9"], r"ask for \d+ faces or more.* let them --shrink"),
+        ([*GLB, "--attributes", "colors=1"], "the mesh has no colors"),
+        ([*GLB, "--attributes", "weight=1"], "unknown attribute 'weight'"),
+        ([*GLB, "--attributes", "normals=0.1", "--backend", "pymeshlab"], "has no effect with --backend pymeshlab"),
+    ],
+)
+def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, options, reason):
+    (tmp_path / "folder.glb").mkdir()
+    before = sorted(tmp_path.iterdir())
+    in_folder = [str(tmp_path / word) if re.search(r"\.[a-z]", word) else word for word in options]
+    with pytest.raises(ValueError, match=reason):
+        run([str(file), "--method", "height", *in_folder])
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--method", "nosuch"], "--method nosuch: there is no such method"),
+        (["--method", "random"], "--method random: it has no saliency"),
+        (["--method", "svm"], "--method svm: its weights are learned in the pipeline"),
+        (["--seed", "-1"], "--seed -1: give 0 or more"),
+    ],
+)
+def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch, options, reason):
+    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before they were refused"))
+    with pytest.raises(ValueError, match=reason):
+        run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
+
+
+def test_a_mesh_full_of_holes_is_told_what_is_feasible(simplified, tmp_path):
+    ball = bumpy()
+    apart = np.arange(len(ball.faces)) % 9 > 0  # triangles are missing all over it
+    write_any(tmp_path / "net.ply", Mesh(ball.vertices, ball.faces[apart]))
+    with pytest.raises(ValueError, match=r"--free-borders, or close its \d+ holes first"):
+        simplified("--faces", 300, source=tmp_path / "net.ply")
+    with pytest.raises(ValueError, match=r"ask for (\d+) faces or more") as refused:
+        simplified("--faces", 300, "--free-borders", source=tmp_path / "net.ply")
+    least = re.search(r"ask for (\d+) faces", str(refused.value))[1]
+    simplified("--faces", least, "--free-borders", source=tmp_path / "net.ply")
+
+
+def shards(count):
+    """Triangles that share no vertex."""
+    corners = np.eye(3)[None] + 0.1 * np.arange(count)[:, None, None]
+    return Mesh(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+
+
+def tetrahedron():
+    return Mesh(np.r_[np.eye(3), -np.ones((1, 3))], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options", "reason"),
+    [
+        (shards(200), ["50"], "50 faces are infeasible, since 600 boundary edges .*: join its connected components"),
+        (shards(9), ["4", *HARD, "--keep", "2"], "edges are frozen: join its connected components first$"),
+        (tetrahedron(), ["3"], "3 faces are infeasible: the mesh cannot be simplified further$"),
+        (Mesh(np.eye(3), [[0, 1, 2]]), ["9"], "has only 1 face, there is nothing"),
+    ],
+)
+def test_a_mesh_that_cannot_be_simplified_is_named_with_the_reason(simplified, tmp_path, mesh, options, reason):
+    write_any(tmp_path / "odd.ply", mesh)
+    with pytest.raises(ValueError, match=f"odd.ply: .*{reason}"):
+        simplified("--faces", *options, source=tmp_path / "odd.ply")
+
+
+def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_components(simplified):
+    with pytest.raises(ValueError, match="1,280 faces around 642 points are frozen") as refused:
+        simplified("--faces", 100, *HARD, "--keep", 100000, "--rings", 50)
+    remedies = str(refused.value).split(": ", 2)[-1]
+    assert remedies.startswith("--keep fewer points, or take fewer --rings, or let them --shrink")
+    assert "join" not in remedies and "ask for" not in remedies
+
+
+def test_a_mesh_too_small_for_its_digits_is_refused_with_the_reason(simplified, tmp_path):
+    ball = bumpy()
+    lines = [f"v {x * 1e-30:.8f} {y * 1e-30:.8f} {z * 1e-30:.8f}" for x, y, z in ball.vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in ball.faces]
+    (tmp_path / "tiny.obj").write_text("\n".join(lines))
+    with pytest.raises(ValueError, match="tiny.obj: its extent is 0: export it in smaller units, or with more digits"):
+        simplified("--faces", 9, source=tmp_path / "tiny.obj")
+
+
+PERCENT = "not a share of the diagonal"
+
+
+@pytest.mark.parametrize(
+    ("option", "reason"),
+    [
+        ("--tolerance=0.2", "'0.2': write 20%, 0.2% or "), ("--tolerance=0.01", "'0.01': write 1%, 0.01% or "),
+        ("--tolerance=2", "'2': write 2% or "), ("--tolerance=0", "rounding alone exceeds 0"),
+        ("--tolerance=0%", "rounding alone exceeds 0"), ("--tolerance=-1", PERCENT), ("--tolerance=150%", PERCENT),
+        ("--tolerance=much", PERCENT), ("--tolerance=nan", PERCENT), ("--tolerance=", PERCENT),
+        ("--attributes=uv", "such as"), ("--attributes=uv=much", "such as"), ("--attributes=uv=1=2", "such as"),
+        ("--levels=", "--levels="), ("--levels=50%,", "--levels="), ("--levels=half", "--levels="),
+        ("--levels=120%", "--levels="), ("--levels=0", "--levels="),
+    ],
+)  # fmt: skip
+def test_a_value_that_cannot_be_read_is_named_with_its_form(option, reason, capsys):
+    target = [] if option.startswith(("--tolerance", "--levels")) else ["--faces", "9"]
+    with pytest.raises(SystemExit):
+        parser("").parse_args(["x.stl", "--out", "x.glb", *target, option])
+    assert reason in capsys.readouterr().err
+
+
+def test_values_are_read_as_shares_and_weights():
+    assert [share(text) for text in ("0.2%", "0.002", "1e-4", ".5%")] == pytest.approx([0.002, 0.002, 1e-4, 0.005])
+    chosen = parser("x").parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", "uv=1, colors=.5"])
+    assert chosen.attributes == {"uv": 1.0, "colors": 0.5}
