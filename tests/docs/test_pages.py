@@ -128,7 +128,7 @@ def test_figures_are_shown_as_asked():
     low, high = sorted((float(row["low"]), float(row["high"])))
     assert measured("claims key=keep_metro: effect low high .1f").endswith(f"[{low:.1f}, {high:.1f}]")
     assert measured("claims key=keep_metro: effect high low .1f").endswith(f"[{low:.1f}, {high:.1f}]")
-    assert measured("claims key=keep_metro: 100*effect .0f") == f"{100 * float(row['effect']):.0f}"
+    assert measured("claims key=keep_metro: 100*effect .0f") == f"{100 * float(row['effect']):,.0f}"
     every = [*map(float, rows_of(REPORTS / "bench/tactile.csv", "what=build")["seconds"])]
     assert measured("bench/tactile what=build: count:seconds") == str(len(every))
     assert measured("bench/tactile what=build: most:seconds .6f") == f"{max(every):.6f}"
