@@ -17,6 +17,7 @@ meshoptimizer
 ```
 """
 
+import re
 from collections.abc import Iterable
 
 import pandas as pd
@@ -30,6 +31,8 @@ from stages.report.verdict import WORDS
 
 from .commands import Command, commands
 from .measured import REPORTS
+
+SIGNED_ZERO = re.compile(r"-(0(?:\.0+)?)(?![\d.])")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -128,7 +131,7 @@ def shown(row: pd.DataFrame, column: str) -> str:
     if not parts_of(column)[2]:
         return row[column].iloc[0]
     try:
-        return text_of(row, column)
+        return SIGNED_ZERO.sub(r"\1", text_of(row, column))
     except LookupError:
         return "–"
 
