@@ -62,12 +62,6 @@ def test_strips_of_a_ply_are_faces(tmp_path, binary):
     assert load(tmp_path / "strips.ply", up="z").faces.tolist() == [[0, 1, 2], [3, 2, 1], [2, 3, 4]]
 
 
-def test_an_obj_without_faces_is_a_cloud(tmp_path):
-    points = trimesh.creation.icosphere(3).sample(2000, seed=0)
-    (tmp_path / "cloud.obj").write_text("\n".join("v " + " ".join(f"{x:.6f}" for x in point) for point in points))
-    assert len(load(tmp_path / "cloud.obj", up="z").faces) > 500
-
-
 @pytest.mark.slow
 def test_the_saliency_of_long_triangles_is_drawn_on_a_finer_copy(tmp_path):
     box = trimesh.creation.box((1.0, 2.0, 0.5))
