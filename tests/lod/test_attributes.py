@@ -52,14 +52,6 @@ def test_onto_itself_nothing_changes(make):
     assert mesh.colors is None or (found.colors == mesh.colors).all()
 
 
-@pytest.mark.slow
-def test_texture_follows_the_surface():
-    mesh = painted_sheet()
-    found = carry(mesh, simplify(bare(mesh), 300))
-    plan = found.vertices[found.faces][:, :, :2]
-    assert np.abs(found.texture.uv - plan).max() < 0.02
-
-
 def test_colours_are_interpolated_where_a_vertex_has_moved():
     mesh = painted_sheet()
     shifted = bare(mesh).vertices[mesh.faces].mean(axis=1)
@@ -110,14 +102,6 @@ def test_bad_surfaces_give_finite_coordinates():
     assert np.isfinite(carry(poor, far).texture.uv).all()
     with pytest.raises(ValueError, match="no faces"):
         carry(Mesh(mesh.vertices, np.zeros((0, 3), int), mesh.colors), mesh)
-
-
-def test_scale_changes_nothing():
-    mesh = painted_sheet()
-    small = simplify(bare(mesh), 300)
-    found = carry(mesh, small).texture.uv
-    large = carry(Mesh(1000 * mesh.vertices, mesh.faces, None, mesh.texture), Mesh(1000 * small.vertices, small.faces))
-    assert np.abs(large.texture.uv - found).max() < 1e-6
 
 
 def striped():

@@ -53,13 +53,6 @@ def test_a_plate_folded_onto_itself_can_be_simplified():
     assert faults(found).folded <= faults(flat).folded
 
 
-def test_the_fit_brings_the_surface_nearer_than_qslim():
-    mesh = ball()
-    fitted = collapse(mesh, 200, nothing(mesh))
-    left = simplify(mesh, 200, backend="qslim")
-    assert metro(mesh, fitted)["mean"] < 0.8 * metro(mesh, left)["mean"]
-
-
 def fan(surface, vertex):
     """The half-edges that leave a vertex, found from the one that is named as its first."""
     found = [int(surface.start[vertex])]

@@ -7,7 +7,7 @@ from skimage.metrics import structural_similarity
 
 from haptic_glance.base.similarity import local_moments
 from haptic_glance.lod import perceptual, picture_errors, simplify, take_pictures
-from haptic_glance.lod.perceptual import analyse, laplacian_pyramid, normalise, ssim_error
+from haptic_glance.lod.perceptual import analyse, laplacian_pyramid, ssim_error
 from haptic_glance.look.views import FOUR
 from haptic_glance.mesh.mesh import Mesh
 
@@ -16,11 +16,8 @@ RING = Mesh(KNOT.vertices, KNOT.faces)
 SMALL = (60, 80)
 
 
-def test_equal_meshes_have_no_error():
-    assert perceptual(RING, RING, FOUR, SMALL) == {"ssim": 0.0, "dlap": 0.0, "dnor": 0.0}
-
-
-def test_errors_grow_as_faces_go():
+def test_errors_grow_as_faces_go_from_none():
+    assert perceptual(RING, RING, FOUR[:1], SMALL) == {"ssim": 0.0, "dlap": 0.0, "dnor": 0.0}
     one, other = (perceptual(RING, simplify(RING, faces), FOUR[:1], SMALL) for faces in (800, 100))
     assert all(0 < one[name] < other[name] for name in ("ssim", "dlap", "dnor"))
 
@@ -59,9 +56,6 @@ def test_constant_shift_has_the_published_value():
     a, b, c1 = 100.0, 140.0, (0.01 * 255) ** 2
     expected = 1 - (2 * a * b + c1) / (a * a + b * b + c1)
     assert ssim_error(np.full((40, 50), a), np.full((40, 50), b)) == pytest.approx(expected, rel=1e-9)
-
-
-def test_empty_pictures_are_alike():
     assert ssim_error(np.zeros((20, 20)), np.zeros((20, 20))) == 0
 
 
@@ -138,19 +132,6 @@ def test_an_even_picture_has_only_its_mean():
     *bands, rest = laplacian_pyramid(np.full((64, 96), 102.0))
     assert max(np.abs(band).max() for band in bands) < 1e-7
     assert rest == pytest.approx(np.full(rest.shape, 0.4), rel=1e-6)
-
-
-def test_plain_distance_is_linear_and_the_normalised_one_forgives_contrast():
-    one, other = pair("disc", 60, 80)
-    assert distances(one / 2, other / 2)[0] == pytest.approx(distances(one, other)[0] / 2)
-    weak, strong = (normalise(laplacian_pyramid(gain * one))[0] for gain in (0.5, 1.0))
-    assert np.abs(strong).max() < 2 * np.abs(weak).max()
-
-
-def test_the_ground_beside_an_object_thins_the_error():
-    one, other = pair("disc", 60, 80)
-    wide = distances(*(np.pad(image, ((30, 30), (40, 40))) for image in (one, other)))
-    assert (wide > 0).all() and (wide < distances(one, other)).all()
 
 
 def test_small_pictures_give_finite_distances():

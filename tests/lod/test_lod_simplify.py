@@ -39,15 +39,6 @@ def test_boundary_components_and_genus_hold_and_no_fault_is_added(mesh):
     assert np.isin(np.arange(len(simple.vertices)), simple.faces).all()
 
 
-def test_same_call_gives_same_bytes_whatever_was_called_before():
-    mesh = ball(3)
-    first = simplify(mesh, 400)
-    simplify(mesh, 600, keep=[3])
-    again = simplify(mesh, 400)
-    assert first.vertices.tobytes() == again.vertices.tobytes()
-    assert first.faces.tobytes() == again.faces.tobytes()
-
-
 def test_unit_of_length_does_not_matter():
     mesh = ball(3)
     simple = simplify(mesh, 300)

@@ -53,12 +53,6 @@ def test_lookup_never_asks_for_more_faces_at_a_larger_error_nor_trusts_a_lucky_m
     assert Curve("a", "itti", 3, 5000, [400, 800, 1500], [1e-4, 3e-4, 1e-4]).faces_needed(2e-4) > 800
 
 
-def test_error_read_off_at_the_needed_count_keeps_to_it():
-    curve = law("a", 4000, 5)
-    wanted = np.geomspace(1e-6, curve.errors[0], 50)
-    assert (curve.error_at(curve.faces_needed(wanted)) <= wanted * (1 + 1e-9)).all()
-
-
 @pytest.mark.parametrize("faces, errors", [([], []), ([0, 5], [1, 1]), ([50], [0.1]), ([5], [np.nan]), ([5], [-1])])
 def test_bad_curves_are_refused(faces, errors):
     with pytest.raises(ValueError, match="a:"):

@@ -45,21 +45,6 @@ def test_it_begins_at_the_first_point_and_goes_towards_the_second():
     assert np.linalg.norm(back.positions[1] - LEVEL[1]) < np.linalg.norm(back.positions[0] - LEVEL[1])
 
 
-def test_both_ways_round_meet_the_same_contour():
-    there = follow(BOX, UPRIGHT, cells=CELLS)
-    opposite = np.array([ORIGIN, UPRIGHT[1], -UPRIGHT[2]])
-    back = follow(BOX, opposite, cells=CELLS)
-    assert np.allclose(there.positions[0], back.positions[0])
-    assert np.allclose(there.positions[1:], back.positions[:0:-1])
-
-
-def test_the_array_lies_flat_on_flat_sides():
-    found = follow(BOX, UPRIGHT, frames=60, cells=CELLS)
-    sides = np.abs(found.positions / [0.2, 0.3, 0.1])
-    inside = (sides[:, [0, 2]].min(axis=1) < 0.8) & (sides[:, 2].max() > 0)
-    assert inside.sum() > 20 and np.allclose(np.abs(found.normals[inside]).max(axis=1), 1)
-
-
 def test_the_normal_turns_over_one_pitch_at_an_edge():
     found = follow(BOX, UPRIGHT, frames=200, cells=CELLS, pitch=0.02)
     away = np.linalg.norm(np.abs(found.positions[:, [0, 2]]) - [0.2, 0.1], axis=1)
@@ -133,7 +118,7 @@ def test_rounding_says_nothing_about_the_way_at_the_vertex_where_a_contour_begin
     planes = np.concatenate([np.zeros((40, 1, 3)), corners[pairs]], axis=1)
     order = rng.permutation(len(corners))
     other = Mesh(corners[order], np.argsort(order)[faces][rng.permutation(len(faces))])
-    found, again = (follow_many(mesh, planes, cells=CELLS) for mesh in (Mesh(corners, faces), other))
+    found, again = (follow_many(mesh, planes, frames=3, cells=CELLS) for mesh in (Mesh(corners, faces), other))
     # Single cells at the outline may be hit or missed; an array that is turned differs in most.
     unlike = [np.mean(np.abs(a.images[0] - b.images[0]) > 1e-3) for a, b in zip(found, again, strict=True)]
     assert max(unlike) < 0.1

@@ -43,17 +43,11 @@ def test_max_distance_bounds_the_distance_both_ways(shapes):
     assert found.min() == -0.02 and found.max() == 0.02
 
 
-def test_turning_mesh_and_array_together_changes_nothing(shapes):
+def test_turning_and_scaling_mesh_and_array_together_changes_nothing(shapes):
     mesh, vertex = shapes.solid(SURFACES["saddle"])
     axes = sensor_axes(sensor_normals(mesh, [vertex]))
-    moved = distances(shapes.turned(mesh, ROTATION, shift=1000.0), [vertex], axes=axes @ ROTATION.T)
-    assert np.allclose(moved, distances(mesh, [vertex]), atol=1e-9)
-
-
-def test_distances_scale_with_mesh_and_pitch(shapes):
-    mesh, vertex = shapes.solid(shapes.sphere)
-    small = shapes.turned(mesh, np.eye(3), scale=0.01)
-    assert np.allclose(distances(small, [vertex], pitch=1e-4), 0.01 * distances(mesh, [vertex], pitch=0.01), atol=1e-11)
+    moved = distances(shapes.turned(mesh, ROTATION, 10.0, scale=0.01), [vertex], pitch=1e-4, axes=axes @ ROTATION.T)
+    assert np.allclose(100 * moved, distances(mesh, [vertex], pitch=0.01), atol=1e-9)
 
 
 def test_row_0_is_up_and_column_0_left_seen_from_outside(shapes):
@@ -91,12 +85,6 @@ def test_back_of_a_lone_sheet_counts_as_surface_below(shapes):
     n = len(patch.vertices)
     mesh = Mesh(np.r_[patch.vertices, sheet], np.r_[patch.faces, [[n, n + 2, n + 1]]])  # it looks away from the array
     assert np.allclose(distances(mesh, [vertex])[0][[0, -1]], 0.1)
-
-
-def test_open_mesh_touched_on_its_inside_feels_nothing_below():
-    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, -1, 0]], [[0, 1, 2], [0, 2, 3], [0, 3, 1]])
-    below = Mesh(mesh.vertices, mesh.faces[:, ::-1])
-    assert np.allclose(distances(mesh, [0]), 0, atol=1e-9) and np.allclose(distances(below, [0]), 0, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -31,12 +31,6 @@ def test_pit_is_zero_where_a_rigid_array_would_touch_first(shapes):
     assert image[7, 7] == 1 and image[0, 0] < 1e-12
 
 
-def test_array_larger_than_the_object_gives_a_defined_image(shapes):
-    mesh, vertex = shapes.solid(shapes.sphere)
-    assert (press(mesh, vertex, pitch=10.0) == 0).all()  # every cell misses
-    assert set(np.unique(press(mesh, vertex, cells=(3, 3), pitch=10.0))) == {0.0, 1.0}  # only the middle one touches
-
-
 def test_many_equal_one_by_one_across_batches(shapes):
     mesh, _ = shapes.solid(shapes.sphere)
     vertices = np.random.default_rng(0).choice(len(mesh.vertices), 70)
@@ -98,12 +92,6 @@ def test_gain_is_a_factor_and_saturation_a_ceiling():
     assert np.allclose(load(Skin(gain=3, saturation=0.7)), np.minimum(3 * (1 - IMAGES.astype(float)), 0.7), atol=1e-7)
 
 
-def test_hysteresis_of_an_increasing_load_lags_by_its_width():
-    rising = np.linspace(0, 1, 21)
-    felt = load(Skin(hysteresis=0.1), 1 - rising.reshape(1, -1, 1, 1)).ravel()
-    assert np.allclose(felt, np.maximum(rising - 0.1, 0), atol=1e-6)
-
-
 def test_hysteresis_of_a_falling_load_lags_the_other_way_and_holds_in_between():
     path = np.array([0, 1, 0.9, 0.8, 0.5, 0.6, 0.0])
     felt = load(Skin(hysteresis=0.1), 1 - path.reshape(1, -1, 1, 1)).ravel()
@@ -115,12 +103,6 @@ def test_hysteresis_is_each_sensels_own_and_each_sequences():
     frames = 1 - path.T.reshape(1, 3, 1, 2)
     felt = load(Skin(hysteresis=0.1), np.concatenate([frames, frames[..., ::-1]]))
     assert np.allclose(felt[0, 2, 0], [0.3, 0.2], atol=1e-6) and np.allclose(felt[1], felt[0][..., ::-1])
-
-
-def test_frame_of_ones_lifts_the_array_and_leaves_a_ghost():
-    lifted = np.stack([np.zeros((3, 3)), np.ones((3, 3)), np.ones((3, 3))])[None]
-    felt = load(Skin(hysteresis=0.15), lifted)[0]
-    assert np.allclose(felt[0], 0.85) and np.allclose(felt[1:], 0.15)
 
 
 def test_noise_has_its_size_and_no_bias():
