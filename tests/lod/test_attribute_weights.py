@@ -54,8 +54,8 @@ def test_faces_gather_at_a_painted_step_of_a_flat_square(paint):
 
 
 def test_smooth_colours_come_out_closer_and_the_shape_stays():
-    mesh = painted_ball(lambda v: 127 * (1 + np.sin(6 * v[:, 0]) * np.cos(5 * v[:, 1])), 4)
-    blind, seeing = simplify(mesh, 800), simplify(mesh, 800, attributes={"colors": 0.1})
+    mesh = painted_ball(lambda v: 127 * (1 + np.sin(6 * v[:, 0]) * np.cos(5 * v[:, 1])))
+    blind, seeing = simplify(mesh, 2000), simplify(mesh, 2000, attributes={"colors": 0.1})
     assert colour_error(mesh, seeing) < colour_error(mesh, blind) / 2
     assert metro(mesh, seeing)["mean"] < 1.5 * metro(mesh, blind)["mean"]
 

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from haptic_glance.disturb.perturbed import Conditions
-from haptic_glance.look.points.methods import METHODS
+from haptic_glance.look.points.methods import METHODS, PUBLISHED
 from haptic_glance.look.points.options import Options
 from haptic_glance.look.weights import LearnedWeights
 from haptic_glance.mesh import normalise
@@ -45,7 +45,9 @@ ODD = {
     ),
 }
 CHANNELS = tuple(dict.fromkeys(name for method in METHODS.values() for name in method.channels))
-RUNNING = [name for name, method in METHODS.items() if method.required_weights in {None, *LearnedWeights().weights}]
+# One of each kind of detector, and each published one; others differ from these in channels alone.
+KINDS = ("glance", "itti", "VisAttCurvP", "equal", "random", "farthest", "touch", "height", *PUBLISHED)
+RUNNING = [name for name in KINDS if METHODS[name].required_weights in {None, *LearnedWeights().weights}]
 
 
 @cache
@@ -68,6 +70,13 @@ def test_an_odd_mesh_has_a_defined_answer(name, method):
     if found.saliency is not None:
         assert found.saliency.shape == (len(mesh.vertices),) and np.isfinite(found.saliency).all()
         assert found.saliency.min() >= 0 and found.saliency.max() <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ODD)
+def test_an_odd_mesh_has_finite_maps(name):
+    for channel, values in seen(name)[1].maps.items():
+        assert np.isfinite(values).all() and values.min() >= 0, channel
 
 
 @pytest.mark.slow
