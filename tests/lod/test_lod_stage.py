@@ -15,7 +15,6 @@ from haptic_glance.lod.task import Variant, variant
 from haptic_glance.look.points.options import Detection
 from haptic_glance.look.views import viewpoint_set
 from haptic_glance.mesh.mesh import Mesh
-from stages.compose import compose
 from stages.engine.rows import read_rows
 from stages.lod import Params, __main__, data_set
 from stages.lod import cell as cell_module
@@ -29,6 +28,7 @@ SETTINGS = Params(
     backend="pymeshlab", samples=500, viewpoints="four", size=[48, 64], shrink=False,
 )  # fmt: skip
 SHRINKING = dataclasses.replace(SETTINGS, shrink=True)
+FEW = dataclasses.replace(SHRINKING, methods=["qem", "glance"], targets=["50%", "10%"], samples=200)
 
 
 def new_subject():
@@ -131,8 +131,9 @@ def workspace(make_workspace):
 
     def make(source):
         subject = new_subject()
-        settings = compose()["household"]["meshes"] | {"source": source}
-        workspace = make_workspace({"lod": dataclasses.asdict(SHRINKING), "meshes": settings})
+        settings = {"source": source, "folder": "", "up": "z", "unit": "m", "strict": False}
+        settings |= {"objects": [], "classes": {}}
+        workspace = make_workspace({"lod": dataclasses.asdict(FEW), "meshes": settings})
         write_mesh(workspace.data / "meshes/ball.npz", subject.mesh)
         found = {
             name: Detection(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()
@@ -159,7 +160,7 @@ def test_only_recorded_gaze_is_human_gaze(workspace, source, measured):
 @pytest.mark.slow
 def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
     workspace = workspace("household")
-    work = functools.partial(data_set.process, data=workspace.data, settings=SHRINKING, seed=0, gaze=False)
+    work = functools.partial(data_set.process, data=workspace.data, settings=FEW, seed=0, gaze=False)
     folder = workspace.root
     rows = [work("ball", folder / turn) for turn in ("one", "two")][0]
     curves = [(folder / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]

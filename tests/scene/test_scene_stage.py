@@ -21,6 +21,7 @@ from stages.scene.export import export
 from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
 from stages.scene.online import full
 from stages.scene.rows import summary
+from tests.scene.conftest import bumpy
 
 pytestmark = pytest.mark.slow
 
@@ -45,7 +46,7 @@ def settings():
 def root(meshes, tmp_path_factory):
     """A folder with meshes and salient_points: the two meshes of the scene, and a third without a curve."""
     root = tmp_path_factory.mktemp("root")
-    for name, mesh in (meshes | {"third": meshes["two"]}).items():
+    for name, mesh in {"one": bumpy(0, 3), "two": meshes["two"], "third": meshes["two"]}.items():
         write_mesh(root / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
         found = {"glance.points": np.array([0, 5]), "glance.strong": np.int64(2), "glance.saliency": saliency}
