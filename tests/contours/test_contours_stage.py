@@ -3,9 +3,7 @@
 import os
 import shutil
 import signal
-import subprocess
-import sys
-from pathlib import Path
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -92,44 +90,40 @@ def test_an_object_without_a_contour_gives_none():
         sample_contours(Surface(BOX), np.arange(8), 0, rng(0, "c"), **SMALL)
 
 
-SCRIPT = """
-import os, signal, sys
-from pathlib import Path
-from stages.contours import __main__ as stage
-from stages.engine.settings import Workspace
-read = stage.read_mesh
-def read_mesh(path):
-    if path.stem == "b" and sys.argv[1] == "die":
-        os.kill(os.getpid(), signal.SIGKILL)
-    return read(path)
-stage.read_mesh = read_mesh
-stage.run(Workspace(Path("."), "toys"))
-"""
 SIZES = {"a": (0.4, 0.6, 0.2), "b": (0.3, 0.3, 0.5), "c": (0.2, 0.2, 0.7)}
 
 
 @pytest.mark.slow
-def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(make_workspace):
+def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(make_workspace, monkeypatch):
     settings = {"strategies": ["random", "thesis_ssim"], "count": 3, "frames": 4, "cells": [5, 5], "pitch": 0.02}
     workspace = make_workspace({"contours": settings})
     for name, size in SIZES.items():
         box = trimesh.creation.box(size).subdivide().subdivide()
         write_object(workspace.data, name, Mesh(box.vertices, box.faces), {"thesis_ssim": np.arange(0, 90, 7)})
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2]), "OMP_NUM_THREADS": "1"}
+    read = stage.read_mesh
 
-    def run(how):
-        command = [sys.executable, "-c", SCRIPT, how]
-        done = subprocess.run(command, cwd=workspace.root, env=environment, capture_output=True, text=True)
-        hashes = {path.name: sha256(path) for path in (workspace.data / "contours").glob("*")}
-        return done.returncode, hashes, done.stderr
+    def hashes():
+        return {path.name: sha256(path) for path in (workspace.data / "contours").glob("*")}
 
-    assert run("die")[:2] == (-signal.SIGKILL, {})
-    code, continued, said = run("live")
-    assert code == 0 and set(continued) == {"a.npz", "b.npz", "c.npz"}, said
+    def dying(path):
+        if path.stem == "b":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return read(path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(stage, "read_mesh", dying)
+        child = get_context("fork").Process(target=stage.run, args=(workspace,))
+        child.start()
+        child.join()
+    assert child.exitcode == -signal.SIGKILL and hashes() == {}
+    stage.run(workspace)
+    continued = hashes()
+    assert set(continued) == {"a.npz", "b.npz", "c.npz"}
     rows = read_rows(workspace.measurements / "contours.csv.gz")
     assert len(rows) == 3 * 2 * 5 and set(rows["item"]) == set("abc") and set(rows["dataset"]) == {"toys"}
     shutil.rmtree(workspace.build)
-    assert run("live")[:2] == (0, continued)
+    stage.run(workspace)
+    assert hashes() == continued
 
 
 def as_sets(pairs):

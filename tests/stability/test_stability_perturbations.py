@@ -19,7 +19,7 @@ SIZE = (120, 160)
 MILD = {
     "noise": 0.002, "decimation": 0.5, "remeshing": 0.05, "missing_faces": 0.1, "vertex_order": 1.0, "winding": 0.3,
     "turn": 20.0, "tilt": 20.0, "scale": 100.0, "light": 30.0, "background": 1.0, "background_left_in": 1.0,
-    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5, "scan": 180.0,
+    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5, "scan": 360.0,
 }  # fmt: skip
 INVALID = {
     "noise": -0.1, "decimation": 1.5, "remeshing": 0.0, "missing_faces": 1.0, "vertex_order": 2.0, "winding": -0.5,
@@ -27,7 +27,7 @@ INVALID = {
     "grey": -1.0, "clay": 2.0, "image_size": 0.0, "scan": 0.0,
 }  # fmt: skip
 WHERE_NOT_EVEN = ("decimation", "remeshing", "scan")  # the surface itself moves a little
-STEPS = {"scale": (10, 100), "remeshing": (0.04, 0.08), "scan": (90, 360)}  # mild, harsh; else 0.2, 0.6
+STEPS = {"scale": (10, 100), "remeshing": (0.04, 0.08)}  # mild, harsh; else 0.2, 0.6
 
 ORANGE, TEAL = (240, 120, 30), (20, 150, 190)
 
@@ -68,7 +68,7 @@ def test_the_unharmed_severity_changes_nothing(name, pear):
     assert found.mesh.colors is None or own or (found.mesh.colors == 204).all()
 
 
-@pytest.mark.parametrize("name", PERTURBATIONS)
+@pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"scan"}))  # of which the next test speaks
 def test_harsher_of_the_same_kind_goes_farther(name, pear):
     """What severity counts grows with it, and the mild change is part of the harsh one."""
     mild, harsh = (apply(name, pear, s) for s in STEPS.get(name, (0.2, 0.6)))
@@ -79,7 +79,6 @@ def test_harsher_of_the_same_kind_goes_farther(name, pear):
         "decimation": lambda p: -len(p.mesh.faces),
         "remeshing": lambda p: -len(p.mesh.faces),
         "missing_faces": lambda p: -len(p.mesh.faces),
-        "scan": lambda p: -p.mesh.face_areas.sum(),
         "vertex_order": lambda p: (p.mesh.vertices != pear.vertices).any(axis=1).sum(),
         "winding": lambda p: (p.mesh.faces != pear.faces).any(axis=1).sum(),
         "turn": lambda p: np.linalg.norm(p.mesh.vertices - p.original_positions, axis=1).mean(),
