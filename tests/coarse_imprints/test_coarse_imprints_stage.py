@@ -28,12 +28,8 @@ def test_imprints_are_red_alone_or_grey():
 
 
 def test_blocks_are_of_equal_pixels():
-    image = VARIANTS["blocks"].images(IMPRINTS)[0, 0]
-    assert (
-        torch.unique(image[:5, :5]).numel()
-        == 1
-        < torch.unique(VARIANTS["plain"].images(IMPRINTS)[0, 0, :5, :5]).numel()
-    )
+    blocks, plain = (VARIANTS[name].images(IMPRINTS)[0, 0, :5, :5] for name in ("blocks", "plain"))
+    assert torch.unique(blocks).numel() == 1 < torch.unique(plain).numel()
 
 
 def test_each_variant_differs_from_the_plain_one():
@@ -62,18 +58,16 @@ def workspace(make_workspace):
 
 
 @pytest.mark.slow
-def test_a_run_trains_each_variant_on_every_split(workspace):
+def test_a_run_trains_each_variant_on_every_split_and_refuses_strange_names(workspace, make_workspace):
     run(workspace)
     rows = read_rows(workspace.measurements / "coarse_imprints.csv.gz")
     assert rows["repetition"].tolist() == [0, 1] and set(rows["split"]) == {"random"} and set(rows["chance"]) == {0.5}
     assert rows["value"].between(0, 1).all() and set(rows["weights"]) == {"random"}
     pressed = read_arrays(workspace.data / "coarse_imprints/ball1.npz")
     assert {cells: images.shape for cells, images in pressed.items()} == {"16": (8, 16, 16)}
-
-
-@pytest.mark.slow
-def test_strange_names_are_named(workspace, make_workspace):
-    with pytest.raises(ValueError, match="coarse_imprints.variants: coarse is not one of plain"):
-        run(make_workspace({"coarse_imprints": SETTINGS | {"variants": ["coarse"]}}))
-    with pytest.raises(ValueError, match="detector=glance is not one of thesis_ssim"):
-        run(make_workspace({"coarse_imprints": SETTINGS | {"detector": "glance"}}))
+    for change, words in (
+        ({"variants": ["coarse"]}, "coarse_imprints.variants: coarse is not one of plain"),
+        ({"detector": "glance"}, "detector=glance is not one of thesis_ssim"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            run(make_workspace({"coarse_imprints": SETTINGS | change}))

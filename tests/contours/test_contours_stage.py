@@ -1,11 +1,9 @@
-"""The stage on small objects, in a folder of its own: its files, its rows, and a kill in the middle."""
+"""The stage on small objects, in a folder of its own: its pairs, its files, its rows, and a kill in the middle."""
 
 import os
 import shutil
 import signal
-import subprocess
-import sys
-from pathlib import Path
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -17,7 +15,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, follow
 from stages.contours import Params
 from stages.contours import __main__ as stage
-from stages.contours.contours import Sequences, read_sequences, sample_contours, write_sequences
+from stages.contours.contours import draw_pairs, read_sequences, sample_contours
 from stages.engine.rows import read_rows
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
@@ -55,6 +53,8 @@ def test_stage_writes_the_contract(run, tmp_path):
     assert rows[0]["value"] == 4 and all(row["item"] == "ring" and row["seconds"] > 0 for row in rows)
     means = stage.summary(rows, 0)
     assert means["random"]["sequences"] == 4 and 0 < means["salient"]["share"]["mean"] <= 1
+    with pytest.raises(ValueError, match="contours.strategies: itti is not among salient, random"):
+        run(Params(["itti"], 4, 5, [6, 6], 0.02))
 
 
 def test_a_stored_sequence_is_what_follow_feels():
@@ -63,11 +63,6 @@ def test_a_stored_sequence_is_what_follow_feels():
     assert np.array_equal(found.images[2], np.round(255 * again.images))
     assert np.array_equal(found.positions[2], again.positions.astype(np.float32))
     assert facts["sequences"] == 3 and found.images.max() == 255
-
-
-def test_an_unknown_strategy_names_the_known_ones(run):
-    with pytest.raises(ValueError, match="contours.strategies: itti is not among salient, random"):
-        run(Params(["itti"], 4, 5, [6, 6], 0.02))
 
 
 def test_an_object_with_too_few_pairs_gives_all_and_says_so(run, tmp_path):
@@ -91,55 +86,70 @@ def test_an_object_without_a_contour_gives_none():
     found, facts = sample_contours(Surface(BOX), np.array([3]), 5, rng(0, "c"), **SMALL)
     assert found.images.shape == (0, 5, 6, 6) and found.planes.shape == (0, 2)
     assert facts == {"sequences": 0, "refused": 0, "loops": None, "share": None, "shrunk": None}
-
-
-def test_no_sequences_at_all_are_refused():
     with pytest.raises(ValueError, match="count must be"):
         sample_contours(Surface(BOX), np.arange(8), 0, rng(0, "c"), **SMALL)
 
 
-def test_files_hold_what_was_written(tmp_path):
-    parts = (np.arange(96).reshape(2, 3, 4, 4), np.ones((2, 3, 3)), np.ones((2, 3, 3)), np.ones((2, 3)), np.eye(2))
-    write_sequences(tmp_path / "a.npz", {"random": Sequences(*parts)})
-    found = read_sequences(tmp_path / "a.npz")["random"]
-    assert np.array_equal(found.images, parts[0]) and np.array_equal(found.planes, np.eye(2))
-
-
-SCRIPT = """
-import os, signal, sys
-from pathlib import Path
-from stages.contours import __main__ as stage
-from stages.engine.settings import Workspace
-read = stage.read_mesh
-def read_mesh(path):
-    if path.stem == "b" and sys.argv[1] == "die":
-        os.kill(os.getpid(), signal.SIGKILL)
-    return read(path)
-stage.read_mesh = read_mesh
-stage.run(Workspace(Path("."), "toys"))
-"""
 SIZES = {"a": (0.4, 0.6, 0.2), "b": (0.3, 0.3, 0.5), "c": (0.2, 0.2, 0.7)}
 
 
 @pytest.mark.slow
-def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(make_workspace):
+def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(make_workspace, monkeypatch):
     settings = {"strategies": ["random", "thesis_ssim"], "count": 3, "frames": 4, "cells": [5, 5], "pitch": 0.02}
     workspace = make_workspace({"contours": settings})
     for name, size in SIZES.items():
         box = trimesh.creation.box(size).subdivide().subdivide()
         write_object(workspace.data, name, Mesh(box.vertices, box.faces), {"thesis_ssim": np.arange(0, 90, 7)})
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2]), "OMP_NUM_THREADS": "1"}
+    read = stage.read_mesh
 
-    def run(how):
-        command = [sys.executable, "-c", SCRIPT, how]
-        done = subprocess.run(command, cwd=workspace.root, env=environment, capture_output=True, text=True)
-        hashes = {path.name: sha256(path) for path in (workspace.data / "contours").glob("*")}
-        return done.returncode, hashes, done.stderr
+    def hashes():
+        return {path.name: sha256(path) for path in (workspace.data / "contours").glob("*")}
 
-    assert run("die")[:2] == (-signal.SIGKILL, {})
-    code, continued, said = run("live")
-    assert code == 0 and set(continued) == {"a.npz", "b.npz", "c.npz"}, said
+    def dying(path):
+        if path.stem == "b":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return read(path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(stage, "read_mesh", dying)
+        child = get_context("fork").Process(target=stage.run, args=(workspace,))
+        child.start()
+        child.join()
+    assert child.exitcode == -signal.SIGKILL and hashes() == {}
+    stage.run(workspace)
+    continued = hashes()
+    assert set(continued) == {"a.npz", "b.npz", "c.npz"}
     rows = read_rows(workspace.measurements / "contours.csv.gz")
     assert len(rows) == 3 * 2 * 5 and set(rows["item"]) == set("abc") and set(rows["dataset"]) == {"toys"}
     shutil.rmtree(workspace.build)
-    assert run("live")[:2] == (0, continued)
+    stage.run(workspace)
+    assert hashes() == continued
+
+
+def as_sets(pairs):
+    return {frozenset(pair) for pair in pairs.tolist()}
+
+
+def test_all_pairs_come_once_where_there_are_no_more():
+    points = np.array([7, 3, 11, 40, 5])
+    pairs = draw_pairs(points, 100, rng(0, "a"))
+    assert pairs.shape == (10, 2) and len(as_sets(pairs)) == 10
+    assert {one for pair in pairs.tolist() for one in pair} == set(points.tolist())
+    for few in ([], [3], [3, 3]):
+        assert draw_pairs(np.array(few, dtype=np.int64), 5, rng(0, "e")).shape == (0, 2)
+
+
+@pytest.mark.parametrize("size", [60, 300_000])
+def test_pairs_are_distinct_and_of_the_points(size):
+    pairs = draw_pairs(np.arange(size), 1500, rng(0, "b"))
+    assert len(as_sets(pairs)) == 1500 and (pairs[:, 0] != pairs[:, 1]).all()
+    assert pairs.min() >= 0 and pairs.max() < size
+
+
+def test_every_pair_and_both_orders_are_as_likely():
+    counts = np.zeros((4, 4))
+    for turn in range(3000):
+        first, second = draw_pairs(np.arange(4), 1, rng(turn, "c"))[0]
+        counts[first, second] += 1
+    off = counts[~np.eye(4, dtype=bool)]
+    assert off.min() > 180 and off.max() < 320  # 250 each, five standard deviations

@@ -1,13 +1,16 @@
-"""The files of imprints, and the stage on two small solids."""
+"""Warming up, the files of imprints, and the stage on two small solids."""
 
+import numba
 import numpy as np
 import pytest
 
 from haptic_glance.base.files import write_arrays, write_mesh
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import press, touchable
+from haptic_glance.touch import warm_up as warm
+from haptic_glance.touch.kernels import faces
 from stages.engine.rows import read_rows
-from stages.imprints.__main__ import run
+from stages.imprints import __main__ as stage
 from stages.imprints.imprints import Imprints, read_imprints, write_imprints
 from tests.touch.conftest import solid, sphere
 
@@ -34,7 +37,7 @@ def test_stage_presses_every_method_and_counts_what_it_refuses(make_workspace):
     arrays = {f"{method}.points": ids for method, ids in points.items()}
     arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
     write_arrays(workspace.data / "salient_points/ball.npz", **arrays)
-    run(workspace)
+    stage.run(workspace)
     rows = read_rows(workspace.measurements / "imprints.csv.gz")
     value = rows.set_index(["method", "metric"])["value"]
     assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and np.isnan(value["glance", "relief"])
@@ -43,3 +46,33 @@ def test_stage_presses_every_method_and_counts_what_it_refuses(make_workspace):
     assert np.array_equal(written["itti"].images[0], press(mesh, vertex, (15, 15), 0.01))
     assert np.allclose(written["itti"].positions, mesh.vertices[[vertex]])
     assert not touchable(mesh, [lone])[0]
+
+
+def test_it_works_once_a_process(monkeypatch):
+    touched = []
+    monkeypatch.setitem(warm.__wrapped__.__globals__, "press", lambda *touch: touched.append(touch))
+    warm.cache_clear()
+    warm()
+    warm()
+    assert len(touched) == 1
+
+
+def test_the_stage_warms_up_before_it_reads_the_object(monkeypatch, tmp_path):
+    order = []
+    monkeypatch.setattr(stage, "warm_up", lambda: order.append("warm"))
+    monkeypatch.setattr(stage, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
+    with pytest.raises(OSError):
+        stage.process("ball", tmp_path, tmp_path, None)
+    assert order == ["warm", "read"]
+
+
+def test_a_kernel_leaves_the_folder_of_other_kernels_as_it_was(monkeypatch):
+    numba.config.reload_config()  # numba reads the environment again when it compiles after a test changed it
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "elsewhere")
+    assert faces.kernel(abs_of)(-2.0) == 2.0
+    assert numba.config.CACHE_DIR == "elsewhere"
+
+
+def abs_of(value):
+    """A function to compile."""
+    return abs(value)

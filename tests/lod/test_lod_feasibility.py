@@ -1,4 +1,4 @@
-"""Topology counts and the floor of the face count, on shapes where both are known."""
+"""Topology counts, the floor of the face count, and how neighbourhoods shrink to it, on shapes where they are known."""
 
 import pickle
 
@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.lod import BACKENDS, InfeasibleTarget, frozen_faces, simplify, smallest_feasible
+from haptic_glance.lod import BACKENDS, InfeasibleTarget, frozen_faces, shrunk_rings, simplify, smallest_feasible
 from haptic_glance.lod.topology import Topology, faults, split_nonmanifold_vertices, topology
 from haptic_glance.mesh.mesh import Mesh
+from tests.lod.shapes import ball
+
+LARGE = ball()
+
 
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 TORUS = trimesh.creation.torus(0.35, 0.15, major_sections=24, minor_sections=12)
@@ -69,13 +73,6 @@ def test_smallest_feasible_of_plain_shapes():
     assert smallest_feasible(Mesh(TORUS.vertices, TORUS.faces)) >= 14  # a torus has no triangulation below 14 faces
 
 
-def test_smallest_feasible_grows_with_points_and_rings_up_to_the_mesh():
-    mesh = Mesh(SPHERE.vertices, SPHERE.faces)
-    counts = [smallest_feasible(mesh, keep, rings) for keep, rings in (([9], 1), ([9], 3), ([9, 400], 3))]
-    assert counts == sorted(counts) and len(set(counts)) == 3
-    assert smallest_feasible(mesh, np.arange(len(mesh.vertices))) == len(mesh.faces)
-
-
 def flower():
     away = np.hypot(*SPHERE.vertices.T[:2])
     petals = 1 + 1.4 * np.cos(9 * np.arctan2(*SPHERE.vertices.T[:2])) * away
@@ -93,17 +90,16 @@ def blade():
 
 
 @pytest.mark.parametrize("make", [flower, cup, blade])
-@pytest.mark.parametrize("shrink", [False, True])
-def test_the_count_that_an_infeasible_target_names_can_be_had(make, shrink):
+@pytest.mark.parametrize(("keep", "shrink"), [([], False), ([5, 300, 600], False), ([5], True)])
+def test_the_count_that_an_infeasible_target_names_can_be_had(make, keep, shrink):
     # The floor of `smallest_feasible` is no promise: most of these end above it.
     mesh = make()
-    for keep in ([], [5], [5, 300, 600]):
-        with pytest.raises(InfeasibleTarget) as caught:
-            simplify(mesh, 2, keep, 2, shrink=shrink)
-        found = simplify(mesh, caught.value.smallest, keep, 2, shrink=shrink)
-        assert len(found.faces) <= caught.value.smallest
-        assert topology(found.faces) == topology(mesh.faces)
-        assert not faults(found).added(faults(mesh))
+    with pytest.raises(InfeasibleTarget) as caught:
+        simplify(mesh, 2, keep, 2, shrink=shrink)
+    found = simplify(mesh, caught.value.smallest, keep, 2, shrink=shrink)
+    assert len(found.faces) <= caught.value.smallest
+    assert topology(found.faces) == topology(mesh.faces)
+    assert not faults(found).added(faults(mesh))
 
 
 def test_neighbourhoods_shrink_until_the_backend_gives_in(monkeypatch):
@@ -158,3 +154,40 @@ def test_infeasible_target_travels_between_processes():
     assert (error.faces, error.smallest, error.frozen) == (100, 250, 80)
     with pytest.raises(ValueError, match="250"):
         raise error
+
+
+KEEP = np.array([11, 900, 1500, 2200, 60, 1234])
+
+
+def walk(rings):
+    """The states that neighbourhoods pass through, one step after the other, written out plainly."""
+    rings, states = list(rings), [list(rings)]
+    while max(rings) > 0:
+        for i in reversed(range(len(rings))):
+            if rings[i] > 0:
+                rings[i] -= 1
+                states.append(list(rings))
+    for i in reversed(range(len(rings))):
+        if rings[i] == 0:
+            rings[i] = -1
+            states.append(list(rings))
+    return states
+
+
+def test_a_feasible_target_keeps_everything_and_nothing_kept_has_nothing_to_shrink():
+    assert shrunk_rings(LARGE, smallest_feasible(LARGE, KEEP), KEEP).tolist() == [3] * 6
+    assert shrunk_rings(LARGE, 100, None).shape == (0,)
+
+
+@pytest.mark.parametrize(("rings", "faces"), [([3] * 6, 150), ([3] * 6, 450), ([1, 4, 2, 0, -1, 3], 20)])
+def test_the_first_feasible_state_of_the_walk_is_taken(rings, faces):
+    states = walk(rings)
+    first = next(state for state in states if smallest_feasible(LARGE, KEEP, np.array(state)) <= faces)
+    assert shrunk_rings(LARGE, faces, KEEP, np.array(rings)).tolist() == first
+
+
+def test_a_target_below_the_mesh_itself_is_infeasible():
+    ring = Mesh(TORUS.vertices, TORUS.faces)
+    with pytest.raises(InfeasibleTarget) as caught:
+        shrunk_rings(ring, 10, [3])
+    assert (caught.value.frozen, caught.value.smallest) == (0, smallest_feasible(ring))

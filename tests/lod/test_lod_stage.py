@@ -8,15 +8,16 @@ import pytest
 import trimesh
 
 from haptic_glance.base.files import read_mesh, read_table, write_arrays, write_mesh
-from haptic_glance.lod import shrunk_rings, simplify, take_pictures
+from haptic_glance.lod import shrunk_rings, take_pictures
 from haptic_glance.lod.export import face_count, file_name
+from haptic_glance.lod.simplify import simplify
 from haptic_glance.lod.task import Variant, variant
 from haptic_glance.look.points.options import Detection
 from haptic_glance.look.views import viewpoint_set
 from haptic_glance.mesh.mesh import Mesh
-from stages.compose import compose
 from stages.engine.rows import read_rows
 from stages.lod import Params, __main__, data_set
+from stages.lod import cell as cell_module
 from stages.lod.cell import ObjectInputs, measure_cells, measure_errors
 from stages.lod.data_set import summarise
 from stages.salient_points.measure import write_points
@@ -27,6 +28,7 @@ SETTINGS = Params(
     backend="pymeshlab", samples=500, viewpoints="four", size=[48, 64], shrink=False,
 )  # fmt: skip
 SHRINKING = dataclasses.replace(SETTINGS, shrink=True)
+FEW = dataclasses.replace(SHRINKING, methods=["qem", "glance"], targets=["50%", "10%"], samples=200)
 
 
 def new_subject():
@@ -103,18 +105,12 @@ def test_qslim_is_without_the_fit_whoever_simplifies_the_others_and_is_measured_
     assert fitted < 0.9 * plain
 
 
-def test_without_saliency_there_is_no_salient_error(tmp_path):
-    subject = dataclasses.replace(new_subject(), saliency={})
-    found = cell(measure_cells(subject, "qem", tmp_path, SETTINGS, 0), "qem", "50%")
-    assert "metro_mean" in found and "salient_error" not in found
-
-
 def test_gaze_counts_the_errors_of_the_side_that_people_looked_at():
     subject = new_subject()
     looked = spread_on_surface(subject.mesh, (subject.mesh.vertices[:, 0] > 0.4).astype(float), 0.025)
     subject = dataclasses.replace(subject, gaze=looked)
 
-    def errors(side):
+    def errors(side, subject=subject):
         """Of the ball, flattened on one side of the x axis."""
         vertices = subject.mesh.vertices.copy()
         flat = side * vertices[:, 0] > 0.4
@@ -125,6 +121,8 @@ def test_gaze_counts_the_errors_of_the_side_that_people_looked_at():
     front, back = errors(1), errors(-1)
     assert back["gaze_error"] < 1e-3 * front["gaze_error"] and front["gaze_error"] > 2 * front["metro_mean"]
     assert front["salient_error"] == pytest.approx(back["salient_error"], rel=0.2)  # the model looks up, at neither
+    blind = errors(1, dataclasses.replace(subject, saliency={}, gaze=None))
+    assert "metro_mean" in blind and not {"salient_error", "gaze_error"} & set(blind)
 
 
 @pytest.fixture
@@ -133,8 +131,9 @@ def workspace(make_workspace):
 
     def make(source):
         subject = new_subject()
-        settings = compose()["household"]["meshes"] | {"source": source}
-        workspace = make_workspace({"lod": dataclasses.asdict(SHRINKING), "meshes": settings})
+        settings = {"source": source, "folder": "", "up": "z", "unit": "m", "strict": False}
+        settings |= {"objects": [], "classes": {}}
+        workspace = make_workspace({"lod": dataclasses.asdict(FEW), "meshes": settings})
         write_mesh(workspace.data / "meshes/ball.npz", subject.mesh)
         found = {
             name: Detection(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()
@@ -155,16 +154,13 @@ def test_only_recorded_gaze_is_human_gaze(workspace, source, measured):
     rows = read_rows(workspace.measurements / "lod.csv.gz")
     assert "salient_error" in set(rows["metric"]) and ("gaze_error" in set(rows["metric"])) == measured
     assert set(rows["item"]) == {"ball"} and rows["split"].isna().all()
-
-
-def test_without_a_file_there_is_no_gaze(tmp_path):
-    assert data_set.human_gaze(tmp_path / "cube.npz") is None
+    assert data_set.human_gaze(workspace.data / "cube.npz") is None
 
 
 @pytest.mark.slow
 def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
     workspace = workspace("household")
-    work = functools.partial(data_set.process, data=workspace.data, settings=SHRINKING, seed=0, gaze=False)
+    work = functools.partial(data_set.process, data=workspace.data, settings=FEW, seed=0, gaze=False)
     folder = workspace.root
     rows = [work("ball", folder / turn) for turn in ("one", "two")][0]
     curves = [(folder / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]
@@ -184,16 +180,13 @@ def test_an_infeasible_cell_says_so_and_names_the_smallest_count(rows):
     assert not (folder / "ball" / "glance_10pct.npz").exists()
 
 
-def test_a_target_above_the_mesh_and_a_missing_method_leave_a_note(rows):
+def test_every_cell_has_a_row_and_one_without_a_mesh_a_note(rows):
     rows = rows[1]
+    cells = {(row["method"], row["target"]) for row in rows if row["metric"] == "faces"}
+    assert cells == {(method, target) for method in SETTINGS.methods for target in SETTINGS.targets}
     assert cell(rows, "qem", "4000")["faces"]["note"] == "the object has only 1280 faces"
     assert cell(rows, "itti", "50%")["faces"]["note"] == "salient_points has no itti"
     assert "saliency of random" in cell(rows, "random-area", "50%")["faces"]["note"]
-
-
-def test_every_cell_has_a_row(rows):
-    cells = {(row["method"], row["target"]) for row in rows[1] if row["metric"] == "faces"}
-    assert cells == {(method, target) for method in SETTINGS.methods for target in SETTINGS.targets}
 
 
 def test_a_failing_backend_becomes_a_note(tmp_path, monkeypatch):
@@ -234,12 +227,24 @@ def test_names_of_methods_mean_points_and_a_way(name, method, way):
     assert variant(name) == Variant(name, method, way)
 
 
+@pytest.mark.parametrize(("target", "count"), [("50%", 500), ("12.5%", 125), ("1500", 1500), ("0.01%", 1)])
+def test_targets_mean_face_counts_and_files(target, count):
+    assert face_count(target, 1000) == count
+    assert file_name("glance", target) == f"glance_{target.replace('%', 'pct')}.npz"
+
+
+@pytest.mark.parametrize("target", ["", "half", "-5", "0", "0%", "100%", "1.5k"])
+def test_bad_targets_are_named(target):
+    with pytest.raises(ValueError, match=r"lod\.targets"):
+        face_count(target, 1000)
+
+
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("", "unknown method ''"), ("glanc", "unknown method 'glanc'"), ("glance-", "endings are"),
-        ("glance-fixed", "endings are -adaptive, -area, -soft"), ("glance-soft-area", "ends in 'soft-area'"),
-        ("qem-soft", "unknown method 'qem'"), ("-area", "unknown method ''"),
+        ("glanc", "unknown method 'glanc'"), ("glance-fixed", "endings are -adaptive, -area, -soft"),
+        ("glance-soft-area", "ends in 'soft-area'"), ("qem-soft", "unknown method 'qem'"),
+        ("-area", "unknown method ''"),
     ],
 )  # fmt: skip
 def test_bad_names_of_methods_are_named(name, message):
@@ -247,16 +252,31 @@ def test_bad_names_of_methods_are_named(name, message):
         variant(name)
 
 
-@pytest.mark.parametrize(("target", "count"), [("50%", 500), ("12.5%", 125), ("1500", 1500), ("0.01%", 1)])
-def test_targets_mean_face_counts(target, count):
-    assert face_count(target, 1000) == count
+def test_it_works_once_for_each_backend(monkeypatch):
+    asked = []
+
+    def counted(mesh, faces, *rest, **options):
+        asked.append((faces, options.get("backend")))
+        return simplify(mesh, faces, *rest, **options)
+
+    monkeypatch.setattr(cell_module, "simplify", counted)
+    cell_module.warm_up.cache_clear()
+    cell_module.warm_up("fast")
+    assert len(asked) == 2
+    cell_module.warm_up("fast")
+    assert len(asked) == 2
+    cell_module.warm_up("pymeshlab")
+    assert len(asked) == 4
 
 
-@pytest.mark.parametrize("target", ["", "half", "-5", "0", "0%", "100%", "120%", "1.5k"])
-def test_bad_targets_are_named(target):
-    with pytest.raises(ValueError, match=r"lod\.targets"):
-        face_count(target, 1000)
+def test_the_stage_warms_its_backend_up_before_it_reads_the_object(monkeypatch, tmp_path):
+    order = []
+    monkeypatch.setattr(data_set, "warm_up", order.append)
+    monkeypatch.setattr(data_set, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
 
+    class Settings:
+        backend = "fast"
 
-def test_file_names_hold_no_percent_sign():
-    assert file_name("glance", "25%") == "glance_25pct.npz"
+    with pytest.raises(OSError):
+        data_set.process("ball", tmp_path, tmp_path, Settings, 0, False)
+    assert order == ["fast", "read"]

@@ -26,7 +26,7 @@ def picture(colour, kind="PNG"):
 
 
 def ball(place, **material):
-    part = trimesh.creation.icosphere(subdivisions=3)
+    part = trimesh.creation.icosphere(subdivisions=2)
     part.apply_translation([place, 0, 0])
     part.visual = TextureVisuals(part.vertices[:, :2] / 4 + 0.5, material=PBRMaterial(**material))
     return part
@@ -127,7 +127,7 @@ def test_a_picture_on_other_coordinates_is_left_out(simplified):
     assert "occlusionTexture" not in varnish and "normalTexture" in varnish
 
 
-@pytest.mark.parametrize("wrong", [3, {}, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
+@pytest.mark.parametrize("wrong", [3, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
 def test_what_is_malformed_says_nothing(tmp_path, wrong):
     (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
     rewritten(tmp_path / "art.glb", lambda tree: tree.update(materials=wrong))

@@ -1,34 +1,23 @@
-"""The mesh's facts on shapes whose answer is known."""
+"""The mesh's facts, and the points sampled on it, on shapes whose answer is known."""
 
 import numpy as np
 import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.sampling import points_in_faces, sample_surface
 
 
 def as_mesh(shape):
     return Mesh(shape.vertices, shape.faces)
 
 
-def test_sphere_normals_point_outwards():
-    mesh = as_mesh(trimesh.creation.icosphere(3))
-    assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) > 0.999).all()
-
-
-def test_area_of_a_box():
-    assert as_mesh(trimesh.creation.box((1, 2, 3))).face_areas.sum() == pytest.approx(22)
-
-
-def test_open_mesh_is_not_watertight():
-    box = as_mesh(trimesh.creation.box())
-    assert box.watertight
-    assert not Mesh(box.vertices, box.faces[1:]).watertight
-
-
-def test_a_mesh_is_shown_in_one_line():
-    mesh = Mesh(trimesh.creation.icosphere(4).vertices, trimesh.creation.icosphere(4).faces, up="y")
-    assert repr(mesh) == "Mesh(2,562 vertices, 5,120 faces, y up)"
+def test_normals_areas_and_holes_of_known_shapes():
+    ball, box = as_mesh(trimesh.creation.icosphere(3)), as_mesh(trimesh.creation.box((1, 2, 3)))
+    assert (np.einsum("ij,ij->i", ball.vertex_normals, ball.vertices) > 0.999).all()
+    assert box.face_areas.sum() == pytest.approx(22)
+    assert box.watertight and not Mesh(box.vertices, box.faces[1:]).watertight
+    assert repr(Mesh(ball.vertices, ball.faces, up="y")) == "Mesh(642 vertices, 1,280 faces, y up)"
 
 
 def test_rings_grow_one_edge_at_a_time():
@@ -60,3 +49,40 @@ def test_vertex_in_no_face_has_a_zero_normal():
 def test_bad_arrays_are_refused_at_the_door(vertices, faces, reason):
     with pytest.raises(ValueError, match=reason):
         Mesh(vertices, faces)
+
+
+CORNERS = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 1], [5, 5, 5]], dtype=float)
+THREE = Mesh(CORNERS, [[0, 1, 2], [0, 2, 3], [0, 3, 1]])  # areas 2, 1, 1
+
+
+def sampled(count, areas=None):
+    random = np.random.default_rng(0)
+    return sample_surface(THREE, (np.arange(count) + random.random(count)) / count, random.random((2, count)), areas)
+
+
+def test_each_face_gets_its_share_of_the_points_to_within_one():
+    _, faces, _ = sampled(1001)
+    assert np.abs(np.bincount(faces) - 1001 * np.array([0.5, 0.25, 0.25])).max() < 1
+    _, faces, _ = sampled(1000, areas=np.array([0.0, 3.0, 1.0]))
+    assert np.bincount(faces).tolist() == [0, 750, 250]
+    _, faces, _ = sample_surface(THREE, np.array([0.0, 1.0]), np.full((2, 2), 0.5))
+    assert faces.tolist() == [0, 2]
+
+
+def test_points_are_the_weighted_corners_of_their_faces():
+    points, faces, weights = sampled(500)
+    assert (weights >= 0).all() and weights.sum(axis=1) == pytest.approx(1)
+    assert points == pytest.approx(np.einsum("ki,kij->kj", weights, CORNERS[THREE.faces[faces]]))
+
+
+def test_points_are_uniform_within_a_face():
+    draws = np.stack([grid.ravel() for grid in np.meshgrid(*2 * [(np.arange(200) + 0.5) / 200], indexing="ij")])
+    points, _ = points_in_faces(THREE, np.zeros(len(draws[0]), dtype=np.int64), draws)
+    assert points.mean(axis=0) == pytest.approx([2 / 3, 2 / 3, 0], abs=1e-4)  # the centroid
+    assert (points[:, :2].sum(axis=1) < 1).mean() == pytest.approx(0.25, abs=0.01)  # a quarter of the area
+
+
+@pytest.mark.parametrize("mesh", [Mesh(CORNERS, [[0, 0, 1]]), Mesh(CORNERS, np.zeros((0, 3), dtype=int))])
+def test_a_mesh_without_area_is_refused(mesh):
+    with pytest.raises(ValueError, match="without area"):
+        sample_surface(mesh, np.array([0.5]), np.full((2, 1), 0.5))

@@ -147,12 +147,11 @@ def test_every_way_to_colour_a_mesh_gives_the_vertices_their_colours(item, name)
     mesh, known = prepare_mesh(item(files), colours="own")
     assert len(mesh.vertices) == 4 and len(mesh.faces) == 4 and mesh.watertight and known["colors"]
     assert np.abs(colours_at_corners(mesh) - expected).max() <= 1
-
-
-@pytest.mark.parametrize("name", OWN)
-def test_by_default_only_colours_per_vertex_count(item, name):
-    mesh, known = prepare_mesh(item(OWN[name][0]))
+    mesh, known = prepare_mesh(item(files))  # by default colours per vertex alone count
     assert (mesh.colors is not None) == known["colors"] == ("of vertices" in name)
+    if name == "ply, colours of faces":
+        mesh, _ = prepare_mesh(item(files), colours="palette")
+        assert np.abs(colours_at_corners(mesh) - expected).max() <= 1
 
 
 @pytest.mark.parametrize("name", NONE)
@@ -170,11 +169,6 @@ def test_the_colours_of_an_offs_faces_are_said_not_to_be_read(item):
         MeshError, match=r"of an OFF's faces are not read \(save it as PLY\): set meshes.colours=palette"
     ):
         prepare_mesh(item({"it.off": content}), colours="own")
-
-
-def test_the_palette_leaves_own_colours_alone(item):
-    mesh, _ = prepare_mesh(item(OWN["ply, colours of faces"][0]), colours="palette")
-    assert np.abs(colours_at_corners(mesh) - MEANS).max() <= 1
 
 
 def test_the_palette_goes_by_the_name_and_tells_objects_apart():

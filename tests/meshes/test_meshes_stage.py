@@ -1,16 +1,15 @@
-"""The stage on a person's own folder: good meshes pass, bad ones are named, nothing is lost."""
+"""The stage on a person's own folder: good meshes pass, bad ones are named, nothing is lost; classes of objects."""
 
 import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.base.files import read_json, read_mesh, read_table
+from haptic_glance.base.files import read_json, read_mesh, read_table, write_text
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.repair import rotate_to_z_up
 from stages.engine.rows import read_rows
 from stages.meshes import __main__ as stage
-from stages.meshes.collect import read_classes
+from stages.meshes.collect import chosen_objects, read_classes
 
 
 @pytest.fixture
@@ -43,15 +42,12 @@ def test_good_meshes_pass_and_bad_ones_are_named(start, capsys):
     mesh = read_mesh(folder / "Kiste à thé.npz")
     assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.5)
     assert np.ptp(mesh.vertices, axis=0).argmin() == 1  # x was the shortest side; y up turns x to y
-
-
-def test_rows_hold_the_faces_of_each_mesh_or_why_it_has_none(start):
-    workspace = start()
     rows = read_rows(workspace.measurements / "meshes.csv.gz").set_index("item")
     assert set(rows.metric) == {"faces"} and rows.value["Kiste à thé"] == 12 and np.isnan(rows.value["broken"])
     assert rows.note["broken"] == "the file holds no geometry" and rows.note.isna().sum() == 3
     assert read_json(workspace.metrics / "meshes.json") == {"objects": 3, "refused": 1, "watertight": 3}
-    assert not (workspace.data / "meshes" / "classes.csv").exists()
+    with pytest.raises(ValueError, match=r"classes\.csv is not there: name the classes .* meshes\.classes"):
+        read_classes(folder)
 
 
 @pytest.mark.slow
@@ -75,19 +71,14 @@ def test_only_a_changed_file_is_prepared_again(start, tmp_path, monkeypatch):
 
 def test_strict_stops_at_the_first_refusal_and_keeps_the_earlier_result(start):
     workspace = start()
-    with pytest.raises(ValueError, match="meshes.strict is set"):
-        start(strict=True)
+    for settings, words in (
+        ({"strict": True}, "meshes.strict is set"),
+        ({"folder": "yours"}, "meshes.folder='yours' is not a folder"),
+        ({"source": "attic"}, "meshes.source='attic' is not one of household, furniture"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            start(**settings)
     assert len(read_table(workspace.data / "meshes" / "manifest.csv")) == 3
-
-
-def test_missing_folder_is_named(start):
-    with pytest.raises(ValueError, match="meshes.folder='yours' is not a folder"):
-        start(folder="yours")
-
-
-def test_an_unknown_source_is_named_with_the_known_ones(start):
-    with pytest.raises(ValueError, match="meshes.source='attic' is not one of household, furniture"):
-        start(source="attic")
 
 
 def test_objects_of_classes_are_taken_and_small_classes_have_a_note(start):
@@ -115,9 +106,23 @@ def test_normalise_ignores_vertices_that_no_face_uses():
     assert np.linalg.norm(used, axis=1).max() == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize("up", "xyz")
-def test_turning_up_keeps_handedness(up):
-    axes = Mesh(np.eye(3), np.array([(0, 1, 2)]))
-    turned = rotate_to_z_up(axes, up)
-    assert turned.vertices["xyz".index(up)].tolist() == [0, 0, 1]
-    assert np.linalg.det(turned.vertices) == pytest.approx(1)
+CLASSES = {"vase": ["urn", "jar"], "animal": ["dog", "61"]}
+
+
+def test_classes_say_which_objects_are_taken_unless_objects_are_named():
+    assert chosen_objects([], CLASSES) == ["urn", "jar", "dog", "61"]
+    assert chosen_objects(["urn"], CLASSES) == ["urn"]
+    assert chosen_objects([], {}) == []
+
+
+def test_an_empty_class_and_an_object_of_two_classes_are_refused():
+    with pytest.raises(ValueError, match="every class must name at least one object"):
+        chosen_objects([], CLASSES | {"car": []})
+    with pytest.raises(ValueError, match="jar, urn named twice"):
+        chosen_objects(["urn"], CLASSES | {"pot": ["urn", "jar"]})
+
+
+def test_classes_are_read_in_their_order_and_names_stay_texts(tmp_path):
+    write_text(tmp_path / "classes.csv", "class,object\nvase,urn\nanimal,dog\nanimal,61\nvase,jar\n")
+    found = read_classes(tmp_path)
+    assert found == CLASSES and list(found) == ["vase", "animal"]

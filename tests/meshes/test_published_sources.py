@@ -14,7 +14,6 @@ from scipy.io import savemat
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.mesh import MeshError
 from haptic_glance.mesh.files import parse
-from stages.meshes.__main__ import run
 from stages.meshes.sources import SOURCES, Content
 
 ROOT = Path(__file__).parents[2]
@@ -122,12 +121,6 @@ def test_an_absent_or_foreign_archive_is_named_with_the_remedy(archives, source,
     (archives / "other/readme.txt").write_text("")
     with pytest.raises(FetchError, match="none of the 1 files matches .* the published archive"):
         items(source, archives / "other")
-
-
-def test_the_stage_says_so(make_workspace):
-    section = {"source": "gaze", "folder": "nowhere.zip", "up": "z", "unit": "m", "objects": [], "strict": False}
-    with pytest.raises(FetchError, match="meshes.folder='nowhere.zip' does not hold the gaze data: get Models_3D"):
-        run(make_workspace({"meshes": section | {"classes": {}}}))
 
 
 @pytest.mark.skipif(not (SHARED / "psb.zip").exists(), reason="../shared/data is not there")

@@ -1,7 +1,5 @@
 """Scenes drawn at random: reproducible, on the ground, apart from each other, and seen."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -29,17 +27,13 @@ def circles(settings):
 
 
 def test_an_equal_seed_draws_an_equal_scene_and_another_seed_or_number_another():
-    assert draw() == draw()
+    assert draw() == draw() == draw(boxes=dict(reversed(BOXES.items())))
     others = [draw(number=1), draw(seed=1)]
     assert all(other.objects != draw().objects and other.camera != draw().camera for other in others)
     assert [one.name for one in (draw(), draw(number=7))] == ["random_00", "random_07"]
 
 
-def test_the_order_of_the_objects_given_does_not_count():
-    assert draw(boxes=dict(reversed(BOXES.items()))) == draw()
-
-
-@pytest.mark.parametrize("number", range(30))
+@pytest.mark.parametrize("number", range(8))
 def test_objects_stand_on_the_ground_apart_and_are_seen(number):
     settings = draw(number)
     names = [item.name for item in settings.objects]
@@ -68,9 +62,3 @@ def test_objects_that_do_not_fit_the_ground_make_it_grow():
     middles, radii = circles(settings)
     apart = np.linalg.norm(middles[:, None] - middles, axis=2) - radii[:, None] - radii
     assert apart[~np.eye(len(radii), dtype=bool)].min() > 0
-
-
-def test_a_drawn_scene_differs_from_the_settings_in_what_is_drawn_alone():
-    changed = {field.name for field in dataclasses.fields(Params)
-               if getattr(draw(), field.name) != getattr(SETTINGS, field.name)}  # fmt: skip
-    assert changed == {"name", "objects", "camera"}

@@ -81,13 +81,6 @@ def test_all_levels_hang_on_the_finest_by_msft_lod(painted, make_scene, tmp_path
     assert len(shares) == 3 and shares == sorted(shares, reverse=True) and shares[-1] == 0
 
 
-def test_one_level_alone_needs_no_extension(painted, make_scene, tmp_path):
-    write_lod(tmp_path / "one.glb", painted[:1], rows_of(painted[:1], make_scene()), 60)
-    assert "extensionsUsed" not in nodes(tmp_path / "one.glb")
-    with pytest.raises(ValueError, match="no MSFT_lod"):
-        read_lod(tmp_path / "one.glb")
-
-
 def test_the_manifest_tells_up_to_which_size_a_level_is_enough(chains, make_scene):
     scene, level = make_scene(tolerance=2.0), chains["two"][5]
     row = describe("two", level, metres_per_unit(level.mesh, 0.2), scene)
@@ -114,16 +107,22 @@ def test_a_file_that_comes_back_otherwise_is_named(painted, tmp_path):
         check_glb(path, [mesh], ["a"])
 
 
-def test_a_join_that_goes_wrong_is_named(painted, make_scene, tmp_path, monkeypatch):
-    monkeypatch.setattr("stages.scene.export.read_lod", lambda path: ["two_1"])
-    with pytest.raises(ValueError, match=r"lod\.glb: MSFT_lod came back as two_1"):
-        write_lod(tmp_path / "lod.glb", painted, rows_of(painted, make_scene()), 60)
-
-
 def test_equal_meshes_give_equal_bytes(chains, tmp_path):
     for name in "ab":
         write_glb(tmp_path / f"{name}.glb", [to_gltf(chains["two"][3].mesh)], ["x"])
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
+def test_one_level_alone_needs_no_extension_and_a_join_that_goes_wrong_is_named(
+    painted, make_scene, tmp_path, monkeypatch
+):
+    write_lod(tmp_path / "one.glb", painted[:1], rows_of(painted[:1], make_scene()), 60)
+    assert "extensionsUsed" not in nodes(tmp_path / "one.glb")
+    with pytest.raises(ValueError, match="no MSFT_lod"):
+        read_lod(tmp_path / "one.glb")
+    monkeypatch.setattr("stages.scene.export.read_lod", lambda path: ["two_1"])
+    with pytest.raises(ValueError, match=r"lod\.glb: MSFT_lod came back as two_1"):
+        write_lod(tmp_path / "lod.glb", painted, rows_of(painted, make_scene()), 60)
 
 
 def validator():

@@ -21,6 +21,7 @@ from stages.scene.export import export
 from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
 from stages.scene.online import full
 from stages.scene.rows import summary
+from tests.scene.conftest import bumpy
 
 pytestmark = pytest.mark.slow
 
@@ -45,7 +46,7 @@ def settings():
 def root(meshes, tmp_path_factory):
     """A folder with meshes and salient_points: the two meshes of the scene, and a third without a curve."""
     root = tmp_path_factory.mktemp("root")
-    for name, mesh in (meshes | {"third": meshes["two"]}).items():
+    for name, mesh in {"one": bumpy(0, 3), "two": meshes["two"], "third": meshes["two"]}.items():
         write_mesh(root / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
         found = {"glance.points": np.array([0, 5]), "glance.strong": np.int64(2), "glance.saliency": saliency}
@@ -87,40 +88,34 @@ def test_every_scene_is_sound(path):
     assert len(scene.cameras) == settings.frames and all(0.02 < placed.size < 0.5 for placed in scene.objects)
 
 
-def test_a_scene_goes_on_without_what_is_not_there_and_says_so(settings, capsys):
-    scene, missing = scene_of(settings, ["one", "two"])
+@pytest.mark.parametrize(
+    ("present", "placed", "words"),
+    [
+        (["one", "two"], ["one", "two"], "without them; not in data/SET/meshes: nothing"),
+        (["cube", "urn"], ["cube", "urn"], "with cube, urn in their places"),
+    ],
+)
+def test_a_scene_goes_on_without_what_is_not_there_and_says_so(settings, capsys, present, placed, words):
+    scene, missing = scene_of(settings, present)
     report_missing(settings, scene, missing)
-    assert [placed.name for placed in scene.objects] == ["one", "two"]
-    assert "without them; not in data/SET/meshes: nothing" in capsys.readouterr().err
-
-
-def test_other_meshes_stand_in_where_the_data_has_none_of_the_scene(settings, capsys):
-    scene, missing = scene_of(settings, ["cube", "urn"])
-    report_missing(settings, scene, missing)
-    assert [placed.name for placed in scene.objects] == ["cube", "urn"]
-    assert [placed.size for placed in scene.objects] == [item.size for item in settings.objects[:2]]
-    assert "with cube, urn in their places" in capsys.readouterr().err
-
-
-def test_a_scene_of_nothing_is_refused(settings):
-    with pytest.raises(ValueError, match="scene small has no object"):
-        scene_of(settings, [])
+    assert [item.name for item in scene.objects] == placed and {item.size for item in scene.objects} == {0.2}
+    assert words in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
-    ("change", "reason"),
+    ("change", "present", "reason"),
     [
-        ({"tolerance": 0.0}, "tolerance"),
-        ({"tolerance": -2.0}, "tolerance"),
-        ({"frames": 0}, "camera path"),
-        ({"camera": []}, "camera path"),
-        ({"screen": [48]}, "rows and columns"),
-        ({"kind": "metres"}, "kind"),
+        ({"tolerance": -2.0}, ["one"], "tolerance"),
+        ({"frames": 0}, ["one"], "camera path"),
+        ({"camera": []}, ["one"], "camera path"),
+        ({"screen": [48]}, ["one"], "rows and columns"),
+        ({"kind": "metres"}, ["one"], "kind"),
+        ({}, [], "scene small has no object"),
     ],
 )
-def test_bad_settings_are_named(settings, change, reason):
+def test_bad_settings_are_named(settings, change, present, reason):
     with pytest.raises(ValueError, match=reason):
-        scene_of(dataclasses.replace(settings, **change), ["one", "two"])
+        scene_of(dataclasses.replace(settings, **change), present)
 
 
 def value(rows, method, metric, matched="", factor=1.0):
@@ -136,14 +131,15 @@ def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
     assert value(rows, "ours", "error_worst") <= 1.0 and value(rows, "full", "error") == 0
     assert value(rows, "ours", "step_worst") <= 1.0
     assert value(rows, "ours", "faces", factor=2.0) <= value(rows, "ours", "faces") < value(rows, "full", "faces") / 2
-
-
-def test_planners_without_foresight_are_measured_beside_ours(run):
-    rows = run[1]
     for method in ("online", "online_unrendered"):
         assert 0 < value(rows, method, "faces") < value(rows, "full", "faces")
         assert value(rows, method, "planning_ms") >= 0
-    assert value(rows, "ours", "planning_ms") > 0
+    found = summary(rows)
+    assert {"faces_ours", "faces_full", "held_ours", "error_uniform", "saved_uniform_error"} <= set(found)
+    assert all(np.isfinite(number) for number in found.values())
+    network = [row for row in rows if row["method"] == "network"]  # there is no curve to learn from
+    assert [(row["kind"], row["tolerance"]) for row in network] == [("pixels", 1.0), ("pixels", 2.0)]
+    assert all("curve.csv" in row["note"] for row in network)
 
 
 def test_no_picture_is_of_a_frame_of_few_pixels(settings, meshes, chains, frames_of):
@@ -163,41 +159,21 @@ def test_rivals_have_no_smaller_error_than_ours_or_say_so(run):
         assert value(rows, method, "error_worst", "held") <= 1.0
 
 
-def test_without_curves_the_network_is_a_row_with_the_reason(run):
-    rows = [row for row in run[1] if row["method"] == "network"]
-    assert [(row["kind"], row["tolerance"]) for row in rows] == [("pixels", 1.0), ("pixels", 2.0)]
-    assert all("curve.csv" in row["note"] for row in rows)
-
-
-def test_frames_of_the_table_add_up(run):
+def test_frames_of_the_table_add_up_and_each_level_is_exported_once(run):
     folder, rows = run
     plan = read_table(folder / "plan.csv")
-    mean = plan[plan["in_view"]].groupby("frame")["faces"].sum().mean()
+    plan = plan[plan["in_view"]]
+    mean = plan.groupby("frame")["faces"].sum().mean()
     assert mean == pytest.approx(value(rows, "ours", "faces"))
     of_frames = [row["value"] for row in rows if row["method"] == "ours" and row["metric"] == "faces"
                  and row["frame"] != "all"]  # fmt: skip
     assert np.mean(of_frames) == pytest.approx(mean) and len(of_frames) == 4
-
-
-def test_pictures_show_the_full_frame_beside_the_others(run):
-    stored = read_arrays(run[0] / "pictures.npz")
+    wanted = {f"{row.item}_{row.faces}.glb" for row in plan.itertuples()}
+    assert wanted | {"one.glb", "two.glb", "scene.glb"} == {path.name for path in (folder / "export").glob("*.glb")}
+    stored = read_arrays(folder / "pictures.npz")
     assert stored["methods"].tolist()[0] == "full" and "ours" in stored["methods"]
     assert stored["rgb"].shape[1:] == (3, 48, 64, 3) and stored["rgb"][:, 0].max() > 100
     assert np.nanmax(stored["displacement"][:, 0]) == 0 < np.nanmax(stored["displacement"][:, -1])
-
-
-def test_each_level_of_the_plan_is_exported_once(run):
-    folder, _ = run
-    plan = read_table(folder / "plan.csv").query("in_view")
-    wanted = {f"{row.item}_{row.faces}.glb" for row in plan.itertuples()}
-    names = {path.name for path in (folder / "export").glob("*.glb")}
-    assert wanted | {"one.glb", "two.glb", "scene.glb"} == names
-
-
-def test_the_summary_is_small_and_finite(run):
-    found = summary(run[1])
-    assert {"faces_ours", "faces_full", "held_ours", "error_uniform", "saved_uniform_error"} <= set(found)
-    assert all(np.isfinite(number) for number in found.values())
 
 
 def test_equal_runs_give_equal_files(run, run_in, root):

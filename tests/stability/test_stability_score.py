@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.engine.statistics import breaking_interval, expanded_levels, resampled_means
+from stages.engine.statistics import breaking_interval, expanded_levels
 from stages.report import stability
 from stages.report.results import NotRun
 from stages.report.stability.panels import cell
@@ -49,18 +49,19 @@ def scored(found, **given):
     return scores(of_points(pd.DataFrame(found)), **given).set_index("method")
 
 
-def test_the_reference_is_one_and_others_are_measured_by_it():
+def test_the_reference_is_one_chance_scores_as_chance_and_others_are_measured_by_it():
     found = scored(rows())
     assert found.loc["itti", ["mce", "mce_low", "mce_high", "relative"]].tolist() == [1, 1, 1, 1]
     assert found["mce"]["glance"] == pytest.approx(0.5) and found["mce"]["harris"] == pytest.approx(0.5 / 3)
     assert found.loc["harris", ["surface", "pose", "picture"]].tolist() == pytest.approx([0.5, 0, 0])
-    assert scored(rows(), reference="glance")["mce"]["itti"] == pytest.approx(2)
-
-
-def test_what_is_equal_to_chance_scores_as_chance():
-    found = scored(rows())
     assert found["mce"]["random"] == pytest.approx(np.mean([1 / 0.4, 1 / 0.8, 1 / 0.5]))
     assert found["found"]["random"] == pytest.approx(0) and found["found"]["harris"] == pytest.approx(1 - 0.2 / 3)
+    assert scored(rows(), reference="glance")["mce"]["itti"] == pytest.approx(2)
+    # Hendrycks and Dietterich sum first: no division by zero for a shape on which the reference loses nothing.
+    assert scored(rows(spread=1.0))["mce"]["glance"] == pytest.approx(0.5)
+    assert scored(rows(objects=1))["mce_low"].isna().all()
+    with pytest.raises(NotRun, match="itti, the reference of the score"):
+        scored(rows(lost={"harris": (0.1, 0.1, 0.1)}))
 
 
 def test_the_score_is_paired_over_the_objects():
@@ -73,17 +74,6 @@ def test_the_score_is_paired_over_the_objects():
     table.loc[some & (table["method"] == "glance"), "value"] = 0.2
     known = scores(of_points(table)).set_index("method").loc["glance"]
     assert known["mce_low"] < known["mce"] - 0.1 and known["mce_high"] > known["mce"] + 0.1
-
-
-def test_the_order_of_the_shapes_does_not_matter():
-    one, other = scored(rows()), scored(rows()[::-1])
-    pd.testing.assert_frame_equal(one.sort_index(), other.sort_index()[one.columns])
-
-
-def test_errors_of_the_mean_shape_are_divided_and_not_means_of_ratios():
-    """As Hendrycks and Dietterich sum first: a shape on which the reference loses nothing is no division by zero."""
-    found = rows(spread=1.0)  # the first object loses nothing at all
-    assert scored(found)["mce"]["glance"] == pytest.approx(0.5)
 
 
 def test_severities_are_summed_before_the_ratio():
@@ -104,12 +94,6 @@ def test_what_costs_the_reference_nothing_is_left_out_and_named(tmp_path):
     assert built.summary.startswith("The most stable method, 3D-Harris, loses 25 [")
 
 
-def test_the_table_of_breaking_points_says_where_the_glance_breaks(tmp_path):
-    found = rows(lost=LOST | {"glance": (0.2, 0.8, 0.25)}, spread=0.1)
-    built = build_one(stability, "tables", "stability_breaking", results(tmp_path, found))
-    assert built.summary.startswith("Half of the points of our glance are lost when the object is tilted by 10 [")
-
-
 def test_a_disturbance_that_failed_on_a_shape_counts_for_no_method():
     table = pd.DataFrame(rows())
     failed = (table["item"] == "object 3") & (table["perturbation"] == "tilt")
@@ -127,21 +111,6 @@ def test_copies_of_a_shape_count_once():
     keys = ["item", "method", "perturbation", "severity", "metric"]
     three = table.replace({"cubelarge": "cubesmall"}).groupby(keys, as_index=False, sort=False)["value"].mean()
     assert curves == pytest.approx(breaking_points(three[three["method"] == "itti"])["tilt", "itti"])
-
-
-def test_means_are_over_what_was_measured():
-    found = resampled_means(np.array([[1, np.nan], [3, 5]]), np.array([[1.0, 1], [2, 0], [1, 3]]))
-    assert np.array_equal(found, [[2, 5], [1, np.nan], [2.5, 5]], equal_nan=True)
-
-
-def test_one_shape_has_no_interval():
-    found = scored(rows(objects=1))
-    assert found["mce_low"].isna().all() and found["mce"]["glance"] == pytest.approx(0.5)
-
-
-def test_a_missing_reference_is_named():
-    with pytest.raises(NotRun, match="itti, the reference of the score"):
-        scored(rows(lost={"harris": (0.1, 0.1, 0.1)}))
 
 
 def test_relative_errors_are_those_beyond_the_undisturbed():

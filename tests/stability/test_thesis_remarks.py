@@ -17,7 +17,7 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.measure import silhouette_share
 
 SIZE, MAP = (450, 600), (112, 150)
-VIEWPOINTS = (Viewpoint(-32, 17), Viewpoint(60, 20), Viewpoint(200, -30))
+VIEWPOINTS = (Viewpoint(-32, 17), Viewpoint(60, 20))
 BALL = trimesh.creation.icosphere(subdivisions=5)
 FROM_THE_PICTURE = ["contrast", "edge", "entropy", "intensity", "orientation"]
 
@@ -53,40 +53,32 @@ def agreement(mesh, view):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("viewpoint", VIEWPOINTS, ids=lambda viewpoint: viewpoint.name)
-def test_entropy_adds_nothing_without_texture(viewpoint):
+def test_entropy_adds_nothing_without_texture():
     """T3.1.5. On a smooth grey shape it repeats what contrast says already; on the same shape with a grain it does not.
 
     Without texture both measure the slope of the shading.
     """
     mesh = SMOOTH["bumpy"]
-    view = render(mesh, viewpoint, SIZE, "raster")
+    view = render(mesh, VIEWPOINTS[0], SIZE, "raster")
     assert agreement(mesh, view) > 0.85
     assert agreement(mesh, textured(view)) < 0.6
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SMOOTH)
-def test_entropy_measures_texture(name):
+def test_entropy_measures_texture():
     """T3.1.5. The grain adds more than a bit where the shading is even, facing the light."""
-    view = render(SMOOTH[name], VIEWPOINTS[0], SIZE, "raster")
+    view = render(SMOOTH["ellipsoid"], VIEWPOINTS[0], SIZE, "raster")
     rows, columns = (ids[::7] for ids in np.nonzero(view.mask & (view.rgb[..., 0] > 170)))
     bits = [local_entropy(v.rgb[..., 0], view.mask, rows, columns).mean() for v in (view, textured(view))]
     assert bits[1] > bits[0] + 1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("radii", [(0.45, 0.45, 0.45), (0.45, 0.44, 0.43)])
-def test_symmetry_says_nothing_on_a_compact_shape(radii):
+def test_symmetry_says_something_on_a_long_shape_alone():
     """T3.2.3: where the extremes deviate little from the centre, the feature's information gain is zero."""
-    gains, maps = symmetry_at_the_ends(stretched(*radii))
+    gains, maps = symmetry_at_the_ends(stretched(0.45, 0.44, 0.43))
     assert not any(values.any() for values in maps)
     assert gains == pytest.approx([0] * len(gains), abs=1e-12)
-
-
-@pytest.mark.slow
-def test_symmetry_says_something_on_a_long_shape():
-    """T3.2.3, the other side: the same feature has a gain where the extremes stand out."""
     gains, maps = symmetry_at_the_ends(stretched(0.45, 0.25, 0.12))
     assert any(values.any() for values in maps)
     assert np.mean(gains) > 0.02
@@ -106,10 +98,9 @@ def symmetry_at_the_ends(mesh):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SMOOTH)
-def test_a_black_background_left_in_draws_the_maps_to_the_contour_least(name):
+def test_a_black_background_left_in_draws_the_maps_to_the_contour_least():
     """T3.1.5 chose black before grey and white by the error of the simplified meshes; here by the maps themselves."""
-    shares = {background: contour_share(SMOOTH[name], background) for background in ("black", "grey", "white")}
+    shares = {background: contour_share(SMOOTH["bumpy"], background) for background in ("black", "grey", "white")}
     assert shares["black"] < shares["grey"] < shares["white"]
     assert shares["white"] > 1.3 * shares["black"]
 
@@ -157,10 +148,7 @@ def low(k):
     return lambda features: features[:, k] < 0.5
 
 
-def test_an_svm_an_object_is_better_on_its_object_where_the_channels_mean_other_things():
+def test_an_svm_an_object_is_better_on_its_object_only_where_the_channels_mean_other_things():
     """T3.2.3: the weight of a channel (symmetry there) changes a lot from object to object."""
     assert advantage([high(0), low(0), high(1), low(1)]) > 0.2
-
-
-def test_an_svm_an_object_has_no_advantage_where_they_mean_the_same():
     assert abs(advantage([high(0), high(0), high(0), high(0)])) < 0.03

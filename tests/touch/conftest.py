@@ -42,7 +42,7 @@ def turned(mesh, rotation, shift=0.0, scale=1.0):
     return Mesh(scale * mesh.vertices @ np.asarray(rotation).T + shift, mesh.faces)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def shapes():
     """The functions above, for the tests of this folder."""
     return SimpleNamespace(solid=solid, cell_places=cell_places, sphere=sphere, turned=turned)

@@ -30,7 +30,7 @@ def punch():
     return Mesh(box.vertices, box.faces)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def ball(shapes):
     """Function: forces of a fine array on the top of a sphere of radius 0.3 m."""
     mesh, vertex = shapes.solid(shapes.sphere, half=60, spacing=0.0015)
@@ -59,19 +59,15 @@ def test_forces_are_those_of_the_first_version(name, pressed, cells, known):
     np.testing.assert_allclose([felt.sum(), felt.max(), felt[2, 3], felt[4, 1]], known, rtol=1e-14)
 
 
-@pytest.mark.parametrize("pressed", [{"depth": np.linspace(0.01, 0, 60)}, {"load": np.linspace(0.01, 3, 60)}])
-@pytest.mark.parametrize("cells, pitch", [((16, 16), 0.0006), ((7, 12), 0.001), ((1, 1), 0.002)])
-def test_a_press_is_its_gaps_made_forces_bit_for_bit(pressed, cells, pitch):
-    knot = trimesh.creation.torus(0.03, 0.012, major_sections=60, minor_sections=30)
+@pytest.mark.parametrize("pressed", [{"depth": np.linspace(0.01, 0, 60)}, {"load": np.linspace(0.01, 1, 60)}])
+def test_a_press_is_its_gaps_made_forces_bit_for_bit(pressed):
+    knot, cells = trimesh.creation.torus(0.03, 0.012, major_sections=60, minor_sections=30), (7, 12)
     surface = Surface(Mesh(1000 * knot.vertices, knot.faces))  # in millimetres
     vertices = np.random.default_rng(0).choice(len(knot.vertices), 60)
-    pressed = {
-        name: values * cells[0] * cells[1] / 256 if name == "load" else values for name, values in pressed.items()
-    }
     places = surface.mesh.vertices[vertices], sensor_axes(sensor_normals(surface.mesh, vertices))
-    gaps = gaps_at(surface, *places, LAYER.thickness, cells, 1000 * pitch, 0.001)
-    known = forces(gaps, LAYER, (1000 * pitch * 0.001) ** 2, **pressed)
-    felt = press_forces(surface, *places, LAYER, cells, 1000 * pitch, unit=0.001, **pressed)
+    gaps = gaps_at(surface, *places, LAYER.thickness, cells, 1.0, 0.001)
+    known = forces(gaps, LAYER, 0.001**2, **pressed)
+    felt = press_forces(surface, *places, LAYER, cells, 1.0, unit=0.001, **pressed)
     assert known.any()
     np.testing.assert_array_equal(felt, known)
 
@@ -88,7 +84,11 @@ def test_a_press_is_its_gaps_made_forces_bit_for_bit(pressed, cells, pitch):
         ([0, 0, 0], np.eye(3), {"load": [0.1, 0.0]}, "load must be above 0 N, got 0"),
         ([0, 0, 0], np.eye(3), {"load": [0.1, np.inf]}, "load must be finite, got inf"),
         ([0, 0, 0], np.eye(3), {"depth": [0.1, 0.1, 0.1]}, r"depth must be a number or have shape \(2,\)"),
+        ([0, 0, 0], np.eye(3), {"depth": np.nan}, "depth must be finite"),
+        ([0, 0, 0], np.eye(3), {"depth": -0.001}, "depth must be 0 m or more"),
         ([0, 0, 0], np.eye(3), {}, "give either load"),
+        ([0.5, 0, 0], np.eye(3), {"load": 1.0}, "touch 1 touches nothing, so no load can be reached: move the array"),
+        ([0, 0, 0], np.eye(3), {"load": 1.0, "unit": 0.0}, "unit must be a positive number of metres"),
     ],
 )
 def test_presses_that_cannot_be_are_named(punch, place, axes, pressed, words):
@@ -108,11 +108,10 @@ def test_a_flat_punch_is_borne_equally_by_the_cells_below_it(punch):
     assert np.allclose(by_depth, felt)
 
 
-@pytest.mark.parametrize("depth", [0.002, 0.004, 0.008])
+@pytest.mark.parametrize("depth", [0.002, 0.008])
 def test_a_sphere_is_answered_as_the_foundation_answers_it(ball, depth):
     felt, known = ball(LAYER, depth=depth).sum(), np.pi * LAYER.stiffness * depth**2
     assert felt == pytest.approx(known * (RADIUS - depth / 3), rel=0.003)  # a spherical cap's volume
-    assert felt == pytest.approx(known * RADIUS, rel=0.01)
 
 
 def test_the_load_of_a_sphere_finds_the_depth_of_that_load(ball):
@@ -122,16 +121,12 @@ def test_the_load_of_a_sphere_finds_the_depth_of_that_load(ball):
     assert ball(LAYER, load=500.0).max() == pytest.approx(peak, rel=0.01)
 
 
-@pytest.mark.parametrize("load", [1e-9, 1e-3, 1.0, 20.0])
+@pytest.mark.parametrize("load", [1e-9, 20.0])
 def test_the_sum_is_the_load(load):
     areas, cosines = np.random.default_rng(1).uniform(0.5, 2, (2, 12, 10))
     felt = forces(RANDOM, LAYER, areas * 1e-5, load=load, cosines=cosines / 2)
     assert np.allclose((felt * cosines / 2).sum(axis=(1, 2)), load, rtol=1e-9) and (felt >= 0).all()
-
-
-def test_more_load_presses_no_taxel_less():
-    felt = np.array([forces(RANDOM, LAYER, 1e-5, load=load) for load in (0.01, 0.1, 1.0, 10.0)])
-    assert (np.diff(felt, axis=0) >= 0).all() and (np.diff((felt > 0).sum(axis=(1, 2, 3))) > 0).all()
+    assert not forces(np.full((2, 3, 3), np.inf), LAYER, 1e-5, depth=0.001).any()
 
 
 def test_touches_are_answered_one_by_one_and_from_any_height():
@@ -142,8 +137,9 @@ def test_touches_are_answered_one_by_one_and_from_any_height():
     assert np.allclose(forces(RANDOM.reshape(40, -1), LAYER, 1e-5, load=loads), felt.reshape(40, -1))
 
 
-@pytest.mark.parametrize("offset", [1.0, 1000.0, -1e6])
-@pytest.mark.parametrize("pressed", [{"load": 1e-6}, {"load": 1.0}, {"depth": 1e-4}])
+@pytest.mark.parametrize(
+    ("offset", "pressed"), [(1000.0, {"load": 1e-6}), (-1e6, {"load": 1.0}), (-1e6, {"depth": 1e-4})]
+)
 def test_gaps_from_far_away_lose_nothing(offset, pressed):
     far = RANDOM + offset
     near = far - far.min(axis=(1, 2), keepdims=True)  # exact, by Sterbenz
@@ -152,17 +148,12 @@ def test_gaps_from_far_away_lose_nothing(offset, pressed):
     assert "load" not in pressed or np.allclose(felt.sum(axis=(1, 2)), pressed["load"], rtol=1e-12)
 
 
-def test_taxels_of_which_none_can_touch_bear_nothing():
-    assert not forces(np.full((2, 3, 3), np.inf), LAYER, 1e-5, depth=0.001).any()
-
-
-@pytest.mark.parametrize("shift", [[0, 0, 1000], [1000, 0, 0], [-1000, 1000, 1000]])
 @pytest.mark.parametrize("pressed", [{"load": 0.5}, {"depth": 0.001}])
-def test_forces_of_an_object_do_not_depend_on_where_it_stands(shift, pressed):
+def test_forces_of_an_object_do_not_depend_on_where_it_stands(pressed):
     ball, top = trimesh.creation.icosphere(4, radius=0.02), np.array([[0.0003, 0.0007, 0.02]])
     felt = [
         press_forces(Mesh(ball.vertices + by, ball.faces), top + by, ABOVE[1], LAYER, (17, 19), 0.001, **pressed)
-        for by in np.array([[0, 0, 0], shift])
+        for by in np.array([[0, 0, 0], [-1000, 1000, 1000]])
     ]
     assert np.allclose(*felt, rtol=0, atol=1e-9 * felt[0].max())
 
@@ -181,25 +172,19 @@ def test_units_of_the_mesh_change_no_force():
     )
 
 
-def test_gaps_are_from_where_the_array_stands(punch):
-    places = np.array([[0, 0, 0.007], [0, 0, 0.004], [0.5, 0, 0]])
-    gaps = gaps_at(punch, places, np.repeat(ABOVE[1], 3, 0), LAYER.thickness, (4, 4), 0.001)
-    assert np.allclose(gaps[0], 0.002) and np.allclose(gaps[1], -0.001) and np.isinf(gaps[2]).all()
-    felt = forces(gaps, LAYER, 1e-6, depth=np.clip(-gaps.min(axis=(1, 2)), 0, LAYER.thickness))
-    assert not felt[[0, 2]].any() and np.allclose(felt[1], LAYER.stiffness * 1e-6 * 0.001)
-
-
-@pytest.mark.parametrize("cells, pitch", [((16, 16), 0.01), ((9, 30), 0.02), ((1, 1), 0.1)])
-def test_gaps_are_the_distances_of_a_rigid_array_within_the_layer(cells, pitch):
-    knot = trimesh.creation.torus(0.3, 0.12, major_sections=60, minor_sections=30)
+def test_gaps_are_the_distances_of_a_rigid_array_within_the_layer(punch):
+    knot, cells, pitch = trimesh.creation.torus(0.3, 0.12, major_sections=60, minor_sections=30), (9, 30), 0.02
     surface = Surface(Mesh(knot.vertices, knot.faces))
-    vertices = np.random.default_rng(0).choice(len(knot.vertices), 200)
+    vertices = np.random.default_rng(0).choice(len(knot.vertices), 100)
     centres, axes = knot.vertices[vertices], sensor_axes(sensor_normals(surface.mesh, vertices))
     near = distances_at(surface, centres, axes, cells, pitch, contact="rigid")
     near -= near.min(axis=(1, 2), keepdims=True)
     gaps = gaps_at(surface, centres, axes, 0.03, cells, pitch)
     first = gaps.min(axis=(1, 2), keepdims=True)
     assert np.allclose(gaps - first, np.where(near <= 0.03, near, np.inf), atol=1e-12)
+    places = np.array([[0, 0, 0.007], [0, 0, 0.004], [0.5, 0, 0]])  # over, within and beside the punch
+    gaps = gaps_at(punch, places, np.repeat(ABOVE[1], 3, 0), LAYER.thickness, (4, 4), 0.001)
+    assert np.allclose(gaps[0], 0.002) and np.allclose(gaps[1], -0.001) and np.isinf(gaps[2]).all()
 
 
 def test_cells_past_the_object_bear_nothing_even_under_a_layer_thicker_than_the_array(punch):
@@ -232,65 +217,37 @@ def test_shear_sticks_slides_and_points_along_the_slip():
     assert np.array_equal(taxels.reshape(turning.shape), shear(normal, turning, LAYER, 1e-6))
 
 
-@pytest.mark.parametrize(
-    "values, words",
-    [
-        ({"thickness": 0.0}, "layer: thickness must be above 0 metres"),
-        ({"modulus": -1.0}, "layer: modulus must be above 0 pascals"),
-        ({"modulus": float("nan")}, "modulus must be .*, got nan"),
-        ({"modulus": float("inf")}, "modulus must be .* finite, got inf"),
-        ({"poisson": 0.5}, "poisson must be above -1 and below 0.5"),
-        ({"friction": 0}, "friction must be above 0"),
-    ],
-)
-def test_layers_that_cannot_be_are_named(values, words):
-    with pytest.raises(ValueError, match=words):
-        Layer(**values)
-
-
-@pytest.mark.parametrize(
-    "pressed, words",
-    [
-        ({"load": 0}, "load must be above 0 N, got 0: give newtons"),
-        ({"load": [1.0, -2.0]}, "load must be above 0 N, got -2"),
-        ({"load": float("nan")}, "load must be finite, got nan"),
-        ({"load": [1.0, 2.0, 3.0]}, r"load must be a number or have shape \(2,\)"),
-        ({"depth": float("inf")}, "depth must be finite"),
-        ({"depth": -0.001}, "depth must be 0 m or more, got -0.001: it counts from the first contact"),
-        ({"load": 1e6}, "touch 0 needs more than the layer's thickness of 0.01 m: press less, or"),
-        ({"depth": [0.001, 0.02]}, "touch 1 needs more than the layer's thickness"),
-        ({}, "give either load, in newtons, or depth"),
-        ({"load": 1.0, "depth": 0.1}, "give either load"),
-    ],
-)
-def test_loads_and_depths_that_cannot_be_are_named(pressed, words):
-    with pytest.raises(ValueError, match=words):
-        forces(RANDOM[:2], LAYER, 1e-5, **pressed)
-
-
-def test_a_sensor_that_touches_nothing_is_named(punch):
-    beside = np.array([[0, 0, 0.005], [0.5, 0, 0.005]]), np.repeat(ABOVE[1], 2, 0)
-    with pytest.raises(ValueError, match="touch 1 touches nothing, so no load can be reached: move the array over"):
-        press_forces(punch, *beside, LAYER, load=1.0)
-    with pytest.raises(ValueError, match="unit must be a positive number of metres"):
-        press_forces(punch, *ABOVE, LAYER, load=1.0, unit=0.0)
-    with pytest.raises(ValueError, match="gaps must be numbers"):
-        forces(np.full((1, 2, 2), np.nan), LAYER, 1e-5, load=1.0)
-    with pytest.raises(ValueError, match="areas must be above 0 m2"):
-        forces(RANDOM, LAYER, 0.0, load=1.0)
-    with pytest.raises(ValueError, match=r"slips must be finite and of shape \(k, 2\)"):
-        shear(RANDOM, [0.1, 0.2], LAYER, 1e-5)
+def pressed(**values):
+    return forces(RANDOM[:2], LAYER, 1e-5, **values)
 
 
 @pytest.mark.parametrize(
     "work, words",
     [
+        (lambda: Layer(0.0, 1e5), "layer: thickness must be above 0 metres"),
+        (lambda: Layer(0.01, -1.0), "layer: modulus must be above 0 pascals"),
+        (lambda: Layer(0.01, np.nan), "modulus must be .*, got nan"),
+        (lambda: Layer(0.01, np.inf), "modulus must be .* finite, got inf"),
+        (lambda: Layer(0.01, 1e5, poisson=0.5), "poisson must be above -1 and below 0.5"),
+        (lambda: Layer(0.01, 1e5, friction=0), "friction must be above 0"),
+        (lambda: pressed(load=0), "load must be above 0 N, got 0: give newtons"),
+        (lambda: pressed(load=np.nan), "load must be finite, got nan"),
+        (lambda: pressed(load=[1.0, 2.0, 3.0]), r"load must be a number or have shape \(2,\)"),
+        (lambda: pressed(depth=np.inf), "depth must be finite"),
+        (lambda: pressed(depth=-0.001), "depth must be 0 m or more, got -0.001: it counts from the first contact"),
+        (lambda: pressed(load=1e6), "touch 0 needs more than the layer's thickness of 0.01 m: press less, or"),
+        (lambda: pressed(depth=[0.001, 0.02]), "touch 1 needs more than the layer's thickness"),
+        (lambda: pressed(), "give either load, in newtons, or depth"),
+        (lambda: pressed(load=1.0, depth=0.1), "give either load"),
+        (lambda: pressed(depth=0.001, cosines=np.nan), "cosines must lie in 0..1, got nan"),
+        (lambda: pressed(load=1.0, cosines=-0.5), "cosines must lie in 0..1, got -0.5"),
+        (lambda: pressed(load=1.0, cosines=0), "touch 0 touches nothing"),
+        (lambda: forces(np.full((1, 2, 2), np.nan), LAYER, 1e-5, load=1.0), "gaps must be numbers"),
         (lambda: forces(np.full((1, 2, 2), -np.inf), LAYER, 1e-5, depth=0.001), "gaps must be numbers of metres"),
         (lambda: forces(np.array(0.1), LAYER, 1e-5, depth=0.001), r"gaps must have shape \(k, \.\.\.\)"),
+        (lambda: forces(RANDOM, LAYER, 0.0, load=1.0), "areas must be above 0 m2"),
         (lambda: forces(RANDOM, LAYER, np.nan, depth=0.001), "areas must be above 0 m2, got nan"),
-        (lambda: forces(RANDOM, LAYER, 1e-5, depth=0.001, cosines=np.nan), "cosines must lie in 0..1, got nan"),
-        (lambda: forces(RANDOM, LAYER, 1e-5, load=1.0, cosines=-0.5), "cosines must lie in 0..1, got -0.5"),
-        (lambda: forces(RANDOM, LAYER, 1e-5, load=1.0, cosines=0), "touch 0 touches nothing"),
+        (lambda: shear(RANDOM, [0.1, 0.2], LAYER, 1e-5), r"slips must be finite and of shape \(k, 2\)"),
         (lambda: shear(RANDOM * np.nan, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
         (lambda: shear(-RANDOM, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
         (lambda: shear(RANDOM, np.ones((40, 2)), LAYER, np.nan), "areas must be above 0 m2, got nan"),
@@ -307,5 +264,3 @@ def test_numbers_that_no_touch_has_are_named(work, words):
 def test_a_reach_that_cannot_be_is_named(punch, within):
     with pytest.raises(ValueError, match=f"within must be 0 m or more, got {within:g}"):
         gaps_at(punch, *ABOVE, within)
-    with pytest.raises(ValueError, match="depth must be (finite|0 m or more)"):
-        press_forces(punch, *ABOVE, LAYER, depth=within)

@@ -1,31 +1,32 @@
-"""The raw distances of the virtual pressure array against shapes whose distance is known."""
+"""The raw distances of the virtual pressure array against known shapes, and against rays cast one by one."""
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial.transform import Rotation
 
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import distances, sensor_axes, sensor_normals
+from haptic_glance.mesh.rays import RayScene
+from haptic_glance.touch import Surface, distances, distances_at, sensor_axes, sensor_normals, touchable
+from haptic_glance.touch.surface import LIFT
 
 SURFACES = {
-    "plane": lambda x, y: 0 * x,
     "sphere": lambda x, y: np.sqrt(0.3**2 - x**2 - y**2),
-    "cylinder": lambda x, y: np.sqrt(0.3**2 - y**2),
     "saddle": lambda x, y: 2 * x * x - 3 * y * y,
-    "pit": lambda x, y: 4 * (x * x + y * y),
     "step": lambda x, y: np.where(np.abs(x) > 0.031, 0.2, 0.0),
     "pyramid": lambda x, y: -np.maximum(np.abs(x), np.abs(y)),
 }
 ROTATION = Rotation.from_euler("xyz", [0.4, -1.1, 2.0]).as_matrix()
 
 
-@pytest.mark.parametrize("cells", [(16, 16), (15, 15), (8, 20)])
+@pytest.mark.parametrize("cells", [(15, 15), (8, 20)])
 @pytest.mark.parametrize("name", SURFACES)
 def test_distances_are_exact_and_negative_inside(shapes, name, cells):
     mesh, vertex = shapes.solid(SURFACES[name])
     x, y = shapes.cell_places(cells, 0.01)
     expected = SURFACES[name](0.0, 0.0) - SURFACES[name](x, y)
     assert np.allclose(distances(mesh, [vertex], cells, 0.01, max_distance=1.0)[0], expected, atol=1e-14, rtol=0)
+    assert distances(mesh, np.zeros(0, dtype=int), cells).shape == (0, *cells)
 
 
 def test_cells_off_the_object_report_max_distance(shapes):
@@ -42,35 +43,11 @@ def test_max_distance_bounds_the_distance_both_ways(shapes):
     assert found.min() == -0.02 and found.max() == 0.02
 
 
-def test_turning_mesh_and_array_together_changes_nothing(shapes):
+def test_turning_and_scaling_mesh_and_array_together_changes_nothing(shapes):
     mesh, vertex = shapes.solid(SURFACES["saddle"])
     axes = sensor_axes(sensor_normals(mesh, [vertex]))
-    moved = distances(shapes.turned(mesh, ROTATION, shift=1000.0), [vertex], axes=axes @ ROTATION.T)
-    assert np.allclose(moved, distances(mesh, [vertex]), atol=1e-9)
-
-
-def test_turning_about_the_vertical_changes_nothing_away_from_the_poles(shapes):
-    upright, vertex = shapes.solid(SURFACES["saddle"])
-    upright = shapes.turned(upright, Rotation.from_euler("y", 70, degrees=True).as_matrix())
-    around = Rotation.from_euler("z", 131, degrees=True).as_matrix()
-    assert np.allclose(distances(shapes.turned(upright, around), [vertex]), distances(upright, [vertex]), atol=1e-9)
-
-
-def test_distances_scale_with_mesh_and_pitch(shapes):
-    mesh, vertex = shapes.solid(shapes.sphere)
-    small = shapes.turned(mesh, np.eye(3), scale=0.01)
-    assert np.allclose(distances(small, [vertex], pitch=1e-4), 0.01 * distances(mesh, [vertex], pitch=0.01), atol=1e-11)
-
-
-def test_order_of_vertices_faces_and_corners_does_not_matter(shapes):
-    mesh, vertex = shapes.solid(SURFACES["saddle"])
-    random = np.random.default_rng(0)
-    order = random.permutation(len(mesh.vertices))
-    place = np.argsort(order)
-    faces = np.roll(place[mesh.faces][random.permutation(len(mesh.faces))], 1, axis=1)
-    touched = [vertex, 40, 900]
-    found = distances(Mesh(mesh.vertices[order], faces), place[touched])
-    assert np.allclose(found, distances(mesh, touched), atol=1e-9)
+    moved = distances(shapes.turned(mesh, ROTATION, 10.0, scale=0.01), [vertex], pitch=1e-4, axes=axes @ ROTATION.T)
+    assert np.allclose(100 * moved, distances(mesh, [vertex], pitch=0.01), atol=1e-9)
 
 
 def test_row_0_is_up_and_column_0_left_seen_from_outside(shapes):
@@ -110,18 +87,13 @@ def test_back_of_a_lone_sheet_counts_as_surface_below(shapes):
     assert np.allclose(distances(mesh, [vertex])[0][[0, -1]], 0.1)
 
 
-def test_open_mesh_touched_on_its_inside_feels_nothing_below():
-    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, -1, 0]], [[0, 1, 2], [0, 2, 3], [0, 3, 1]])
-    below = Mesh(mesh.vertices, mesh.faces[:, ::-1])
-    assert np.allclose(distances(mesh, [0]), 0, atol=1e-9) and np.allclose(distances(below, [0]), 0, atol=1e-9)
-
-
 @pytest.mark.parametrize(
     "change, words",
     [
         ({"cells": (0, 16)}, "cells must be"),
         ({"cells": (16,)}, "cells must be"),
         ({"cells": (2.5, 4)}, "cells must be"),
+        ({"cells": (np.nan, 4)}, "cells must be"),
         ({"pitch": 0.0}, "pitch must be"),
         ({"pitch": np.nan}, "pitch must be"),
         ({"max_distance": -1.0}, "max_distance must be"),
@@ -134,8 +106,7 @@ def test_open_mesh_touched_on_its_inside_feels_nothing_below():
         ({"axes": np.zeros((1, 3, 3))}, "perpendicular"),
         ({"axes": np.eye(3)}, "shape"),
         ({"axes": np.diag([-1.0, 1, 1])[None]}, "right x up"),
-        ({"cells": (np.nan, 4)}, "cells must be"),
-        ({"cells": (4, np.inf)}, "cells must be"),
+        ({"contact": "soft"}, "tangent, rigid, got 'soft'"),
     ],
 )
 def test_what_makes_no_touch_is_named(change, words):
@@ -145,6 +116,95 @@ def test_what_makes_no_touch_is_named(change, words):
         distances(Mesh(corners, faces), **{"vertices": [0], **change})
 
 
-def test_no_vertices_give_no_imprints(shapes):
-    mesh, _ = shapes.solid(shapes.sphere)
-    assert distances(mesh, np.zeros(0, dtype=int), (4, 5)).shape == (0, 4, 5)
+def by_rays(mesh, centres, axes, cells, pitch):
+    """(k, rows, cols) signed distances, inf where missed, one ray a cell down, and one up where it may be inside."""
+    rows, columns = cells
+    middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+    scene, lift = RayScene(Mesh(mesh.vertices - middle, mesh.faces)), LIFT * mesh.diagonal
+    right, up, normal = axes.transpose(1, 0, 2)[:, :, None, None]
+    down_rows = (((rows - 1) / 2 - np.arange(rows)) * pitch)[:, None, None]
+    along_columns = ((np.arange(columns) - (columns - 1) / 2) * pitch)[None, :, None]
+    points = ((centres - middle)[:, None, None] + down_rows * up + along_columns * right).reshape(-1, 3)
+    normals = np.broadcast_to(normal, (len(centres), rows, columns, 3)).reshape(-1, 3)
+
+    def cast(origins, directions):
+        hits = scene.cast(origins, directions)
+        return hits.distance, hits.hit & (np.einsum("ij,ij->i", scene.mesh.face_crosses[hits.face], directions) > 0)
+
+    below, from_back = cast(points + lift * normals, -normals)
+    found, maybe = below - lift, np.flatnonzero(from_back)
+    above, out_of_object = cast(points[maybe] - lift * normals[maybe], normals[maybe])
+    found[maybe[out_of_object]] = lift - above[out_of_object]
+    return found.reshape(len(centres), rows, columns)
+
+
+def shaped(name):
+    """A mesh of trimesh, turned so that no face lies along a column by chance."""
+    made = {
+        "ball": lambda: trimesh.creation.icosphere(subdivisions=4, radius=0.5),
+        "ring": lambda: trimesh.creation.torus(0.35, 0.12, major_sections=90, minor_sections=40),
+        "box": lambda: trimesh.creation.box((0.8, 0.5, 0.3)),
+        "pipe": lambda: trimesh.creation.annulus(0.2, 0.3, 0.7),
+    }[name]()
+    turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    return Mesh(made.vertices @ (turn * np.linalg.det(turn)), made.faces)
+
+
+def compare(mesh, cells, pitch, count=20):
+    """The share of cells in which both ways differ, at vertices drawn at random."""
+    random = np.random.default_rng(0)
+    vertices = random.permutation(len(mesh.vertices))
+    vertices = vertices[touchable(mesh, vertices)][:count]
+    axes, max_distance = sensor_axes(sensor_normals(mesh, vertices)), 2 * mesh.diagonal
+    expected = np.clip(by_rays(mesh, mesh.vertices[vertices], axes, cells, pitch), -max_distance, max_distance)
+    found = distances_at(Surface(mesh), mesh.vertices[vertices], axes, cells, pitch, max_distance)
+    return float((np.abs(found - expected) > 1e-9).mean())
+
+
+@pytest.mark.parametrize(
+    ("name", "cells", "pitch"),
+    [("ball", (9, 16), 0.1), ("ring", (32, 32), 0.01), ("box", (16, 12), 0.002), ("pipe", (32, 32), 0.01)],
+)
+def test_cells_feel_what_rays_meet(name, cells, pitch):
+    assert compare(shaped(name), cells, pitch) < 2e-4  # embree, in single precision, misses a hit on an edge
+
+
+def test_cells_feel_what_rays_meet_among_triangles_turned_anyhow():
+    random = np.random.default_rng(4)
+    corners = random.uniform(-0.4, 0.4, (300, 1, 3)) + random.normal(0, 0.1, (300, 3, 3))
+    assert compare(Mesh(corners.reshape(-1, 3), np.arange(900).reshape(-1, 3)), (24, 24), 0.03) < 2e-4
+
+
+def test_no_column_slips_between_faces():
+    mesh = shaped("ball")
+    places = mesh.vertices[mesh.faces]
+    ends = np.concatenate([places[:, 0], (places[:, 0] + places[:, 1]) / 2, places[:, 0] * 0.3 + places[:, 2] * 0.7])
+    axes = sensor_axes(ends / np.linalg.norm(ends, axis=1)[:, None])
+    lifted = ends + 0.05 * axes[:, 2]  # one cell each, right above a vertex or a place on an edge
+    assert np.allclose(distances_at(Surface(mesh), lifted, axes, (1, 1), 0.1), 0.05, atol=1e-12)
+
+
+def test_an_array_is_measured_alike_alone_and_among_others():
+    mesh, vertices = shaped("ring"), np.arange(0, 2000, 400)
+    many = distances(mesh, vertices, (32, 32), 0.008)
+    for vertex, imprint in zip(vertices, many, strict=True):
+        assert np.array_equal(distances(Surface(mesh), [vertex], (32, 32), 0.008)[0], imprint)
+
+
+def test_the_order_of_the_faces_changes_no_bit():
+    mesh = shaped("ring")
+    shuffled = Mesh(mesh.vertices, np.random.default_rng(2).permutation(mesh.faces))
+    axes = sensor_axes(sensor_normals(mesh, [5, 90]))
+    centres = mesh.vertices[[5, 90]]
+    one, other = (distances_at(Surface(each), centres, axes, (32, 32), 0.02) for each in (mesh, shuffled))
+    assert np.array_equal(one, other)
+
+
+def test_where_one_part_stands_on_another_its_inside_is_inside_whatever_the_order_of_faces():
+    low, high = (trimesh.creation.box((1, 1, 1), trimesh.transformations.translation_matrix((0, 0, z))) for z in (0, 1))
+    both = trimesh.util.concatenate([low, high])
+    for faces in (both.faces, both.faces[::-1]):
+        found = distances_at(
+            Mesh(both.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, max_distance=5.0
+        )
+        assert np.allclose(found, -0.6, atol=1e-15)

@@ -1,16 +1,12 @@
-"""The cut of a mesh by a plane against shapes whose cuts are known, and against trimesh on real meshes."""
-
-from pathlib import Path
+"""The cut of a mesh by a plane against shapes whose cuts are known, and against trimesh."""
 
 import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.base.files import read_mesh
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import section
 
-MESHES = Path("data/meshes")
 ORIGIN, X, Z = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 
@@ -34,22 +30,9 @@ def on_edges(mesh, curve):
     return np.allclose((1 - curve.weights[:, None]) * a + curve.weights[:, None] * b, curve.points, atol=1e-12)
 
 
-@pytest.mark.parametrize("height", [0.0, 0.2, -0.4])
-def test_a_sphere_is_cut_in_a_circle_of_the_right_length(height):
-    (circle,) = section(BALL, (0, 0, height), (0.3, -0.2, 1.0))
-    away = abs(height) * 1.0 / np.linalg.norm([0.3, -0.2, 1.0])
-    assert circle.closed and circle.length == pytest.approx(2 * np.pi * np.sqrt(0.25 - away**2), rel=3e-3)
-
-
-def test_points_lie_on_the_plane_and_on_their_edges():
-    point, normal = np.array([0.05, 0.02, 0.01]), np.array([0.4, 0.5, -0.7])
-    for curve in section(RING, point, normal):
-        assert np.abs((curve.points - point) @ normal).max() < 1e-12
-        assert on_edges(RING, curve) and in_order(curve)
-
-
 def test_points_follow_each_other_within_the_face_named():
     (circle,) = section(BALL, (0.01, 0.02, 0.03), (1, 2, 3))
+    assert np.abs((circle.points - [0.01, 0.02, 0.03]) @ [1, 2, 3]).max() < 1e-12 and on_edges(BALL, circle)
     after = np.roll(circle.edges, -1, axis=0)
     for face, here, there in zip(BALL.faces[circle.faces], circle.edges, after, strict=True):
         assert set(here) | set(there) == set(face)
@@ -61,13 +44,6 @@ def test_a_torus_is_cut_in_two_loops():
     assert [curve.length for curve in across] == pytest.approx([2 * np.pi * 0.15] * 2, rel=5e-3)
     outer, inner = section(RING, ORIGIN, Z)
     assert (outer.length, inner.length) == pytest.approx((2 * np.pi * 0.5, 2 * np.pi * 0.2), rel=5e-3)
-
-
-def test_a_box_is_cut_in_its_outline():
-    (outline,) = section(BOX, ORIGIN, Z)
-    assert outline.length == pytest.approx(12.0) and outline.closed
-    (slanted,) = section(BOX, ORIGIN, (0, 1, 1))
-    assert slanted.length == pytest.approx(4 + 2 * np.hypot(4, 4))
 
 
 def test_a_plane_through_vertices_and_edges_gives_whole_loops():
@@ -97,13 +73,6 @@ def test_an_open_mesh_gives_a_line_from_rim_to_rim():
     assert not arc.closed and arc.length == pytest.approx(np.pi * 0.5, rel=0.05)
 
 
-def test_several_pieces_come_longest_first():
-    small = Mesh(BALL.vertices * 0.2 + [2, 0, 0], BALL.faces)
-    both = Mesh(np.r_[small.vertices, BALL.vertices], np.r_[small.faces, BALL.faces + len(small.vertices)])
-    long, short = section(both, ORIGIN, Z)
-    assert long.length == pytest.approx(5 * short.length, rel=1e-6)
-
-
 def test_an_edge_of_three_faces_ends_a_line_and_one_of_four_does_not():
     spokes = [(1, 0), (0, 1), (-1, 0), (0, -1)]
     corners = [[0, 0, 0], [0, 0, 1], *[[x, y, 0.5] for x, y in spokes]]
@@ -114,28 +83,19 @@ def test_an_edge_of_three_faces_ends_a_line_and_one_of_four_does_not():
         assert sum(curve.length for curve in found) == pytest.approx(0.8 * count)
 
 
-def test_pieces_do_not_depend_on_the_turn_of_faces_nor_on_inward_ones():
+def test_neither_a_seam_of_doubled_vertices_nor_a_turned_face_ends_a_loop():
+    soup = Mesh(BALL.vertices[BALL.faces].reshape(-1, 3), np.arange(3 * len(BALL.faces)).reshape(-1, 3))
     turned = BALL.faces.copy()
     turned[::3] = turned[::3, ::-1]
-    (plain,), (mixed,) = section(BALL, ORIGIN, (1, 2, 3)), section(Mesh(BALL.vertices, turned), ORIGIN, (1, 2, 3))
-    assert mixed.closed and mixed.length == pytest.approx(plain.length)
-
-
-def test_a_seam_of_doubled_vertices_does_not_end_a_loop():
-    soup = Mesh(BALL.vertices[BALL.faces].reshape(-1, 3), np.arange(3 * len(BALL.faces)).reshape(-1, 3))
-    (plain,), (torn,) = section(BALL, ORIGIN, (1, 2, 3)), section(soup, ORIGIN, (1, 2, 3))
-    assert torn.closed and torn.length == pytest.approx(plain.length) and on_edges(soup, torn)
-
-
-def test_faces_without_area_do_not_break_a_loop():
-    sliver = np.r_[BOX.vertices, [[0, 0, 3]]]
-    collapsed = Mesh(np.r_[sliver, [[0, 0, 3]]], np.r_[BOX.faces, [[8, 9, 0]]])
-    assert [curve.closed for curve in section(collapsed, ORIGIN, Z)] == [True]
+    (plain,) = section(BALL, ORIGIN, (1, 2, 3))
+    for mesh in (soup, Mesh(BALL.vertices, turned)):
+        (found,) = section(mesh, ORIGIN, (1, 2, 3))
+        assert found.closed and found.length == pytest.approx(plain.length) and on_edges(mesh, found)
 
 
 def test_every_crossed_face_of_a_soup_is_walked_once_and_in_its_place():
     rng = np.random.default_rng(0)
-    for _ in range(100):
+    for _ in range(60):
         corners = rng.integers(0, 3, size=(8, 3)).astype(float)  # many at one place, on the plane, in one line
         faces = rng.integers(0, 8, size=(15, 3))
         soup = Mesh(corners, faces[(np.sort(faces)[:, 1:] != np.sort(faces)[:, :-1]).all(axis=1)])
@@ -165,19 +125,16 @@ def test_a_plane_that_is_none_is_refused(normal):
         section(BALL, ORIGIN, normal)
 
 
-@pytest.mark.parametrize("name", ["airplane", "bowl", "camera", "eyeglasses", "teapot"])
-def test_agrees_with_trimesh_on_real_meshes(name):
-    if not (MESHES / f"{name}.npz").exists():
-        pytest.skip("data/meshes is not there: run `dvc repro meshes`")
-    mesh = read_mesh(MESHES / f"{name}.npz")
+def test_agrees_with_trimesh():
+    bumps = 1 + 0.2 * np.sin(9 * RING.vertices[:, [1, 2, 0]])
+    mesh = Mesh(RING.vertices * bumps, RING.faces)
     peer = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
     for normal in np.random.default_rng(0).normal(size=(5, 3)):
         found = section(mesh, ORIGIN, normal)
         lines = trimesh.intersections.mesh_plane(peer, normal, ORIGIN)
         expected = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
         assert sum(curve.length for curve in found) == pytest.approx(expected, rel=1e-5)
-        if mesh.watertight:
-            assert len(found) == len(peer.section(normal, ORIGIN).discrete)
+        assert len(found) == len(peer.section(normal, ORIGIN).discrete)
 
 
 @pytest.mark.parametrize(("gap", "closed"), [(1e-4, True), (1e-2, False)])

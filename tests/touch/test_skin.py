@@ -1,11 +1,51 @@
-"""The sensor model: each step does what it says and no more."""
+"""Imprints in 0..1, and the model of the skin that feels them: each step does what it says and no more."""
+
+from importlib import import_module
 
 import numpy as np
 import pytest
 
-from haptic_glance.touch.distances import distances
-from haptic_glance.touch.press import normalise, press_many
-from haptic_glance.touch.skin import Skin, dead_cells, indent
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Skin, distances, indent, normalise, press, press_many
+from haptic_glance.touch.skin import dead_cells
+
+
+@pytest.mark.parametrize("precision", [np.float64, np.float32])
+def test_plane_gives_flat_imprint(shapes, precision):
+    mesh, vertex = shapes.solid(lambda x, y: 0.1 * x + 0.2 * y)
+    assert (press(Mesh(mesh.vertices.astype(precision), mesh.faces), vertex) == 0).all()
+
+
+def test_sphere_is_zero_at_contact_and_one_farthest_away(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    image = press(mesh, vertex, cells=(15, 15), pitch=0.01)
+    x, y = shapes.cell_places((15, 15), 0.01)
+    depth = 0.3 - shapes.sphere(x, y)
+    assert image.dtype == np.float32 and image[7, 7] == 0 and image[0, 0] == 1
+    assert np.allclose(image, depth / depth.max(), atol=1e-6)
+
+
+def test_pit_is_zero_where_a_rigid_array_would_touch_first(shapes):
+    mesh, vertex = shapes.solid(lambda x, y: 4 * (x * x + y * y))
+    image = press(mesh, vertex, cells=(15, 15))
+    assert image[7, 7] == 1 and image[0, 0] < 1e-12
+
+
+def test_many_equal_one_by_one_across_batches(shapes):
+    mesh, _ = shapes.solid(shapes.sphere)
+    vertices = np.random.default_rng(0).choice(len(mesh.vertices), 70)
+    many = press_many(mesh, vertices, (32, 32), 0.004)
+    assert many.shape == (70, 32, 32)
+    for vertex, image in zip(vertices[[0, 33, 69]], many[[0, 33, 69]], strict=True):
+        assert np.array_equal(press(mesh, vertex, (32, 32), 0.004), image)
+
+
+def test_blocks_change_no_imprint(monkeypatch):
+    raw = np.random.default_rng(0).normal(size=(9, 4, 4))
+    whole = normalise(raw, 0.01)
+    monkeypatch.setattr(import_module("haptic_glance.touch.press"), "BLOCK", 30)
+    assert np.array_equal(normalise(raw, 0.01), whole)
+
 
 IMAGES = np.random.default_rng(0).random((6, 12, 10)).astype(np.float32)
 FULL = Skin(blur=0.7, gain=1.2, saturation=0.9, hysteresis=0.05, noise=0.1, dead=0.1, seed=3)
@@ -16,12 +56,15 @@ def load(skin, images=IMAGES, **where):
     return 1 - skin(images, **where).astype(np.float64)
 
 
-def test_defaults_change_nothing():
+def test_defaults_change_nothing_and_separate_touches_have_no_history():
     assert np.array_equal(Skin()(IMAGES), IMAGES) and Skin()(IMAGES).dtype == np.float32
     assert np.array_equal(Skin(seed=5)(IMAGES[None])[0], IMAGES)
+    skin = Skin(hysteresis=0.2)
+    assert np.array_equal(skin(IMAGES[::-1]), skin(IMAGES)[::-1])
+    assert not np.allclose(skin(IMAGES[None])[0, 1:], skin(IMAGES)[1:])
 
 
-@pytest.mark.parametrize("blur", [0.3, 1.0, 6.0, 40.0])
+@pytest.mark.parametrize("blur", [0.3, 40.0])
 def test_blur_keeps_the_sum_and_flattens(blur):
     felt = load(Skin(blur=blur))
     assert np.allclose(felt.sum(axis=(1, 2)), (1 - IMAGES).sum(axis=(1, 2)), rtol=1e-6)
@@ -49,18 +92,6 @@ def test_gain_is_a_factor_and_saturation_a_ceiling():
     assert np.allclose(load(Skin(gain=3, saturation=0.7)), np.minimum(3 * (1 - IMAGES.astype(float)), 0.7), atol=1e-7)
 
 
-def test_saturation_is_monotone():
-    ramp = np.linspace(0, 1, 100).reshape(1, 10, 10)
-    felt = Skin(gain=2, saturation=0.8)(ramp).ravel()
-    assert (np.diff(felt) >= 0).all() and felt[0] == pytest.approx(0.2) and felt[-1] == 1
-
-
-def test_hysteresis_of_an_increasing_load_lags_by_its_width():
-    rising = np.linspace(0, 1, 21)
-    felt = load(Skin(hysteresis=0.1), 1 - rising.reshape(1, -1, 1, 1)).ravel()
-    assert np.allclose(felt, np.maximum(rising - 0.1, 0), atol=1e-6)
-
-
 def test_hysteresis_of_a_falling_load_lags_the_other_way_and_holds_in_between():
     path = np.array([0, 1, 0.9, 0.8, 0.5, 0.6, 0.0])
     felt = load(Skin(hysteresis=0.1), 1 - path.reshape(1, -1, 1, 1)).ravel()
@@ -72,18 +103,6 @@ def test_hysteresis_is_each_sensels_own_and_each_sequences():
     frames = 1 - path.T.reshape(1, 3, 1, 2)
     felt = load(Skin(hysteresis=0.1), np.concatenate([frames, frames[..., ::-1]]))
     assert np.allclose(felt[0, 2, 0], [0.3, 0.2], atol=1e-6) and np.allclose(felt[1], felt[0][..., ::-1])
-
-
-def test_separate_touches_have_no_history():
-    skin = Skin(hysteresis=0.2)
-    assert np.array_equal(skin(IMAGES[::-1]), skin(IMAGES)[::-1])
-    assert not np.allclose(skin(IMAGES[None])[0, 1:], skin(IMAGES)[1:])
-
-
-def test_frame_of_ones_lifts_the_array_and_leaves_a_ghost():
-    lifted = np.stack([np.zeros((3, 3)), np.ones((3, 3)), np.ones((3, 3))])[None]
-    felt = load(Skin(hysteresis=0.15), lifted)[0]
-    assert np.allclose(felt[0], 0.85) and np.allclose(felt[1:], 0.15)
 
 
 def test_noise_has_its_size_and_no_bias():
@@ -145,18 +164,6 @@ def test_values_out_of_range_are_named(change, words):
         Skin(**change)
 
 
-@pytest.mark.parametrize("images", [np.zeros((4, 4)), np.full((1, 2, 2), 1.5), np.full((1, 2, 2), np.nan)])
-def test_what_is_no_imprint_is_refused(images):
-    with pytest.raises(ValueError, match="imprints must"):
-        Skin()(images)
-
-
-def test_indent_to_the_relief_is_the_normalised_imprint(shapes):
-    mesh, vertex = shapes.solid(shapes.sphere)
-    raw = distances(mesh, [vertex], (15, 15), 0.01)
-    assert np.allclose(indent(raw, np.ptp(raw)), press_many(mesh, [vertex], (15, 15), 0.01), atol=1e-6)
-
-
 def test_indent_feels_a_sphere_where_it_is_higher_than_the_depth(shapes):
     mesh, vertex = shapes.solid(shapes.sphere)
     x, y = shapes.cell_places((15, 15), 0.01)
@@ -171,7 +178,20 @@ def test_indent_tells_shallow_from_deep_where_normalise_does_not():
     assert np.array_equal(*normalise(raw, 0.01)) and np.allclose(indent(raw, 0.02)[:, 0, 1], [0.5, 1])
 
 
-@pytest.mark.parametrize("depth", [0, -1, np.nan, np.inf])
-def test_indent_wants_a_depth(depth):
-    with pytest.raises(ValueError, match="depth must be"):
-        indent(np.zeros((1, 2, 2)), depth)
+@pytest.mark.parametrize(
+    ("work", "words"),
+    [
+        (lambda: normalise(np.zeros((4, 4)), 0.01), "shape"),
+        (lambda: normalise(np.full((3, 2, 2), np.nan), 0.01), "distances must be finite"),
+        (lambda: indent(np.full((3, 2, 2), -np.inf), 0.01), "distances must be finite"),
+        (lambda: indent(np.zeros((1, 2, 2)), 0), "depth must be"),
+        (lambda: indent(np.zeros((1, 2, 2)), np.nan), "depth must be"),
+        (lambda: press(Mesh(np.eye(3), [[0, 1, 2]]), [0, 1]), "vertices must have shape"),
+        (lambda: Skin()(np.zeros((4, 4))), "imprints must"),
+        (lambda: Skin()(np.full((1, 2, 2), 1.5)), "imprints must"),
+        (lambda: Skin()(np.full((1, 2, 2), np.nan)), "imprints must"),
+    ],
+)
+def test_what_is_no_imprint_is_refused(work, words):
+    with pytest.raises(ValueError, match=words):
+        work()

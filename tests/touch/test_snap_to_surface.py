@@ -50,40 +50,42 @@ def test_a_place_at_a_vertex_is_touched_as_the_vertex_is():
     assert np.allclose(press_at(mesh, positions, sensor_axes(normals)), press_many(mesh, np.arange(7)), atol=1e-6)
 
 
-def test_one_place_and_none():
-    mesh = ball()
-    assert np.allclose(snap_to_surface(mesh, [[0.0, 0, 0.5]])[0], [[0, 0, 0.5]])
-    assert snap_to_surface(mesh, np.zeros((0, 3)))[0].shape == (0, 3)
+def snapped(*points, **options):
+    return snap_to_surface(ball(), points, **options)
+
+
+def measured(**changes):
+    return distances_at(ball(), **{"centres": [[0, 0, 0.5]], "axes": np.eye(3)[None], **changes})
+
+
+def test_a_place_off_the_surface_is_taken_within_the_tolerance():
+    assert np.allclose(snapped([0, 0, 0.6], tolerance=0.2)[0], [[0, 0, 0.5]])
+    assert snap_to_surface(ball(), np.zeros((0, 3)))[0].shape == (0, 3)
+
+
+TWICE = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]])
 
 
 @pytest.mark.parametrize(
-    "points, words",
+    "work, words",
     [
-        ([[0, 0, 0.6]], r"point \[0.0, 0.0, 0.6\] is off the mesh: its surface is 0.1 away"),
-        ([[0.0, np.nan, 0]], "finite"),
-        ([0.0, 0, 0.5], "shape"),
+        (lambda: snapped([0, 0, 0.6]), r"point \[0.0, 0.0, 0.6\] is off the mesh: its surface is 0.1 away"),
+        (lambda: snapped([0.0, np.nan, 0]), "finite"),
+        (lambda: snapped(0.0, 0, 0.5), "shape"),
+        (lambda: snapped([0, 0, 0.6], tolerance=np.nan), "tolerance must be"),
+        (lambda: snapped([0, 0, 0.6], tolerance=-1.0), "tolerance must be"),
+        (lambda: snap_to_surface(TWICE, [[0.5, 0, 0]]), "cancel out"),
+        (lambda: measured(centres=[[0.0, 0]]), "centres must be"),
+        (lambda: measured(centres=[[0.0, 0, np.inf]]), "centres must be"),
+        (lambda: measured(pitch=[0.1, 0.2]), "pitch must be a number or have shape"),
+        (lambda: measured(pitch=[-0.1]), "pitch must be a positive"),
+        (lambda: measured(max_distance=[0.0]), "max_distance must be a positive"),
+        (lambda: measured(axes=np.zeros((2, 3, 3))), "axes must have shape"),
     ],
 )
-def test_a_point_that_is_no_place_is_named(points, words):
+def test_what_is_no_place_or_array_is_named(work, words):
     with pytest.raises(ValueError, match=words):
-        snap_to_surface(ball(), points)
-
-
-@pytest.mark.parametrize("wrong", [np.nan, -1.0])
-def test_a_tolerance_that_is_none_is_named(wrong):
-    with pytest.raises(ValueError, match="tolerance must be"):
-        snap_to_surface(ball(), [[0, 0, 0.6]], tolerance=wrong)
-
-
-def test_a_larger_tolerance_takes_points_farther_off():
-    assert np.allclose(snap_to_surface(ball(), [[0, 0, 0.6]], tolerance=0.2)[0], [[0, 0, 0.5]])
-
-
-def test_faces_that_cancel_out_have_no_normal():
-    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0]], [[0, 1, 2], [1, 3, 0][::-1]])
-    twice = Mesh(mesh.vertices, [[0, 1, 2], [0, 1, 2][::-1]])
-    with pytest.raises(ValueError, match="cancel out"):
-        snap_to_surface(twice, [[0.5, 0, 0]])
+        work()
 
 
 def test_an_array_has_its_own_pitch_and_max_distance():
@@ -97,23 +99,6 @@ def test_an_array_has_its_own_pitch_and_max_distance():
     assert together[2].max() == 0.03
     images = press_at(mesh, centres, axes, (9, 7), pitches, max_distances)
     assert images.min() == 0 and images.max() == 1
-
-
-@pytest.mark.parametrize(
-    "change, words",
-    [
-        ({"centres": [[0.0, 0]]}, "centres must be"),
-        ({"centres": [[0.0, 0, np.inf]]}, "centres must be"),
-        ({"pitch": [0.1, 0.2]}, "pitch must be a number or have shape"),
-        ({"pitch": [-0.1]}, "pitch must be a positive"),
-        ({"max_distance": [0.0]}, "max_distance must be a positive"),
-        ({"cells": (0, 3)}, "cells must be"),
-        ({"axes": np.zeros((2, 3, 3))}, "axes must have shape"),
-    ],
-)
-def test_what_makes_no_array_is_named(change, words):
-    with pytest.raises(ValueError, match=words):
-        distances_at(ball(), **{"centres": [[0, 0, 0.5]], "axes": np.eye(3)[None], **change})
 
 
 def test_an_array_larger_than_the_object_feels_what_is_there():

@@ -1,4 +1,4 @@
-"""The touch_stability stage on a small run of its own."""
+"""The touch_stability stage on a small run of its own, and its denoisers."""
 
 import numpy as np
 import pandas as pd
@@ -7,12 +7,13 @@ import trimesh
 
 from haptic_glance.base.files import read_json, write_arrays, write_mesh
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import press_many
+from haptic_glance.touch import Skin, press_many
 from stages.engine.rows import read_rows
 from stages.engine.statistics import lead_left
 from stages.imprints.imprints import Imprints, write_imprints
 from stages.touch_stability import Params
 from stages.touch_stability import __main__ as stage
+from stages.touch_stability.denoisers import DENOISERS
 from stages.touch_stability.trial import CLEAN, first_of_each, recognition_rows
 
 SEVERITIES = {"noise": [0.05, 1.0], "object_turned": [90.0], "coarse_model": [60.0], "few_touches": [8.0]}
@@ -53,18 +54,19 @@ def run(tmp_path, make_workspace):
 
 
 @pytest.mark.slow
-def test_a_run_measures_every_severity_by_every_split(run):
+def test_a_run_measures_every_severity_by_every_split(run, tmp_path):
     rows = run()
     found = set(zip(rows["perturbation"], rows["severity"], strict=True))
     assert found == {(CLEAN, 0.0), *((name, one) for name, levels in SEVERITIES.items() for one in levels)}
     assert set(rows["split"]) == {"random", "regions"} and rows["value"].between(0, 1).all()
     assert set(rows.loc[rows["features"] == "imprint_place", "perturbation"]) == {CLEAN, "object_turned"}
     assert (rows["chance"] == 0.5).all()
-
-
-def test_clean_touches_are_told_apart_and_pure_noise_is_not(run):
-    means = run().groupby(["perturbation", "severity"])["value"].mean()
+    means = rows.groupby(["perturbation", "severity"])["value"].mean()
     assert means[CLEAN, 0.0] > 0.9 and means["noise", 1.0] < 0.7
+    found = read_json(tmp_path / "reports/metrics/toys/touch_stability.json")
+    assert 0 < found["breaking_point"]["anywhere.imprint.knn.noise"] < 1
+    assert found["breaking_point"]["anywhere.imprint.knn.object_turned"] is None
+    assert found["accuracy"]["anywhere.imprint.knn"] > 0.9
 
 
 @pytest.mark.slow
@@ -82,21 +84,6 @@ def test_denoised_touches_are_asked_about_beside_the_others(run):
 def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessing():
     assert lead_left([0.6, 0.4], 0.8, 0.4) == pytest.approx([0.5, 0.0])
     assert np.isnan(lead_left([0.1, 0.3], 0.3, 0.4)).all() and np.isnan(lead_left([0.1], 0.4, 0.4)).all()
-
-
-@pytest.mark.slow
-def test_the_metrics_hold_accuracy_and_breaking_points(run, tmp_path):
-    run()
-    found = read_json(tmp_path / "reports/metrics/toys/touch_stability.json")
-    assert 0 < found["breaking_point"]["anywhere.imprint.knn.noise"] < 1
-    assert found["breaking_point"]["anywhere.imprint.knn.object_turned"] is None
-    assert found["accuracy"]["anywhere.imprint.knn"] > 0.9
-
-
-@pytest.mark.slow
-def test_equal_runs_give_equal_rows(run):
-    first, second = (run().drop(columns="seconds") for _ in range(2))
-    pd.testing.assert_frame_equal(first, second)
 
 
 def test_a_severity_that_cannot_be_had_is_a_note_and_the_others_are_measured(run):
@@ -151,3 +138,46 @@ def test_what_is_learned_from_coarse_models_is_asked_about_clean_touches():
     rows = pd.DataFrame(recognition_rows(both, swapped, truth, train, test, severities, ["knn"], 0))
     means = rows[rows["features"] == "imprint"].groupby("perturbation")["value"].mean()
     assert means[CLEAN] == 1 and means["noise"] == 0 and means["coarse_model"] == 0
+
+
+def domes(count, seed):
+    """(count, 16, 16) f4 in 0..1: round domes at random places, of random size."""
+    random, grid = np.random.default_rng(seed), np.mgrid[:16, :16]
+    middle, width = random.uniform(4, 12, (2, count, 1, 1)), random.uniform(3, 8, (count, 1, 1))
+    return (1 - np.exp(-((grid[0] - middle[0]) ** 2 + (grid[1] - middle[1]) ** 2) / width**2)).astype(np.float32)
+
+
+def test_the_median_restores_single_dead_cells():
+    flat = np.full((1, 16, 16), 0.5, dtype=np.float32)
+    worn = flat.copy()
+    worn[0, 3::4, 3::4] = 1
+    assert np.array_equal(DENOISERS["median"](flat, 0)(worn), flat)
+
+
+@pytest.fixture(scope="module")
+def learned():
+    """An autoencoder that learned from a hundred domes in a few passes."""
+    autoencoder = pytest.importorskip("stages.touch_stability.autoencoder")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(autoencoder, "PASSES", 40)
+        return autoencoder, DENOISERS["autoencoder"](domes(100, 0), 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", [{"noise": 0.2}, {"dead": 0.2}])
+def test_the_autoencoder_brings_domes_that_it_never_felt_nearer_to_the_truth(learned, fault):
+    clean = domes(40, 1)
+    worn = Skin(**fault, seed=1)(clean, "domes")
+    left, before = (float(((images - clean) ** 2).mean()) for images in (learned[1](worn), worn))
+    assert left < 0.5 * before
+
+
+@pytest.mark.slow
+def test_what_it_learns_to_undo_varies_and_equal_seeds_give_equal_denoisers(learned, monkeypatch):
+    module, clean = learned[0], domes(20, 2)
+    monkeypatch.setattr(module, "PASSES", 2)
+    first, again, other = (DENOISERS["autoencoder"](domes(10, 0), seed)(domes(3, 1)) for seed in (0, 0, 1))
+    assert np.array_equal(first, again) and not np.array_equal(first, other)
+    monkeypatch.setattr(module, "UNDONE", {"dead": 0.3})
+    dead = [float((module.disturbed(clean, np.random.default_rng(seed)) == 1).mean()) for seed in range(30)]
+    assert 0.2 < max(dead) < 0.35 and min(dead) < 0.1
