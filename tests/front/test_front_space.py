@@ -37,12 +37,6 @@ def test_settings_are_those_of_the_choice():
     assert settings.imprints.cells[0] * settings.imprints.pitch == pytest.approx(WIDTH)
 
 
-def test_the_default_is_that_of_the_project():
-    settings, usual = settings_of(DEFAULT), settings_of(replace(BLIND, method="glance"))
-    assert settings.views == usual.views and settings.conspicuity == usual.conspicuity
-    assert settings.imprints.pitch == 0.01
-
-
 def test_an_option_that_the_settings_do_not_know_is_named():
     with pytest.raises(ParamsError, match="unknown option classifier=nn"):
         settings_of(replace(DEFAULT, classifier="nn"))

@@ -36,9 +36,9 @@ def test_bins_hold_the_logarithm_of_one_more_than_the_events():
 
 def test_a_rotation_keeps_all_distances_on_fewer_axes():
     features = binned(series().values, 10)
-    found = rotated(features)
-    assert found.shape == (32, 32) and features.shape == (32, 780)
-    assert np.allclose(pdist(found), pdist(features))
+    turned = rotated(features)
+    assert turned.shape == (32, 32) and features.shape == (32, 780)
+    assert np.allclose(pdist(turned), pdist(features))
 
 
 def test_time_is_divided_where_it_tells_the_objects_apart():
