@@ -144,7 +144,7 @@ def test_unknown_passes_and_patience_are_refused():
         Learning(VALIDATION, 0)
 
 
-IMPRINTS = np.random.default_rng(0).random((60, 16, 16)).astype(np.float32)
+IMPRINTS = np.random.default_rng(0).random((80, 16, 16)).astype(np.float32)
 SHORT = {"rate": 0.01, "epochs": 4, "batch": 20, "seed": 5}  # three steps a pass
 
 

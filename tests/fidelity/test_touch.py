@@ -45,9 +45,9 @@ def test_cross_correlation(imprints, agreement):
     agreement("difference", np.abs(found - literal).max())
 
 
-def test_features(imprints, agreement):
+def test_features(dromedary, agreement):
     """T4.2.3.4: of three levels norm, mean, deviation, entropy of each band; of the imprint five numbers."""
-    images = imprints[::8].astype(float)
+    images = press_many(dromedary, spread(dromedary, 6), CELLS, PITCH).astype(float)
     literal = []
     for image in images:
         row, levels = [], pywt.wavedec2(image, "db2", mode="symmetric", level=3)

@@ -26,7 +26,7 @@ SEARCHED, UNSEEN = halves([f"shape{k}" for k in range(12)], {"a": ["x"], "b": ["
 
 
 def answers(regions, objects, seconds=1.0, faces=100.0):
-    common = {"seconds": seconds, "faces": faces, "touches": 1}
+    common = {"seconds": seconds, "faces": faces, "touches": 1, "item": "x"}
     return [{"split": "regions", "value": regions, **common}, {"split": "objects", "value": objects, **common}]
 
 

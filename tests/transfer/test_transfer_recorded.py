@@ -56,7 +56,7 @@ def test_vt60_has_sixty_objects_of_ten_classes_and_touches_by_number(vt60):
     assert touches.images[:2, 0, 0, 0] == pytest.approx([20, 100], abs=5)  # img_2 before img_10
 
 
-def test_vt60_names_what_is_missing(vt60):
+def test_vt60_names_a_picture_that_is_none_and_an_empty_folder(vt60):
     here = vt60 / "touch/01_class1/01"
     bad = sorted(here.iterdir())[0]
     bad.write_text("no picture")
@@ -66,6 +66,9 @@ def test_vt60_names_what_is_missing(vt60):
         file.unlink()
     with pytest.raises(ValueError, match="01_class1/01 holds no picture"):
         read_vt60(vt60)
+
+
+def test_vt60_names_the_folder_that_is_missing(vt60):
     for gone, reason in (("touch/04_class4/03", "touch/04_class4/03"), ("touch/04_class4", "04_"), ("touch", "touch")):
         (vt60 / gone).rename(vt60 / f"elsewhere{len(gone)}")
         with pytest.raises(ValueError, match=f"{reason}.*VT-60: touch/NN_CLASS"):
