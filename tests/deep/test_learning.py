@@ -197,15 +197,19 @@ def test_a_checkpoint_is_whole_or_absent(tmp_path, monkeypatch):
     [
         ({"width": 4}, {}, "another architecture"), ({"size": 40}, {}, "with other images"),
         ({}, {"rate": 0.5}, "with other rate"), ({}, {"seed": 6}, "with other seed"),
-        ({}, {"learning": Learning(VALIDATION, 9)}, "with other patience"),
+        ({}, {"patience": 9}, "with other patience"),
     ],
 )  # fmt: skip
 def test_a_checkpoint_of_another_training_is_passed_over_with_a_word(tmp_path, capsys, network, changes, word):
-    path, settings = tmp_path / "trial.pt", SHORT | {"learning": Learning(VALIDATION, 8)}
+    path = tmp_path / "trial.pt"
+
+    def train(task, patience=8, checkpoint=None, **other):
+        return learn(task, Learning(VALIDATION, patience), **SHORT | other, checkpoint=checkpoint)
+
     with pytest.raises(Killed):
-        learn(killed_after(4, task_of("finetuned", **network)), **settings | changes, checkpoint=path)
-    model = learn(task_of("finetuned"), **settings, checkpoint=path)
-    assert same(model, learn(task_of("finetuned"), **SHORT | {"learning": Learning(VALIDATION, 8)}))
+        train(killed_after(4, task_of("finetuned", **network)), **changes, checkpoint=path)
+    model = train(task_of("finetuned"), checkpoint=path)
+    assert same(model, train(task_of("finetuned")))
     message = capsys.readouterr().err
     assert "trial.pt: ignored" in message and word in message
 
