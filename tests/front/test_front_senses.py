@@ -54,10 +54,9 @@ def test_a_coarse_model_is_learned_and_the_object_itself_is_asked_and_what_was_f
 
 @pytest.mark.slow
 def test_looking_costs_more_with_more_pictures(feeler):
-    looks = (("itti", "four"), ("itti", "twelve"), ("thesis_ssim", "twelve"))
-    choices = [choice_of(SMALL | {"method": method, "viewpoints": viewpoints}) for method, viewpoints in looks]
-    seconds = [feeler.feel("one", choice).seconds["looking"] for choice in (BLIND, *choices)]
-    assert seconds == sorted(set(seconds))
+    choices = [choice_of(SMALL | {"method": "itti", "viewpoints": viewpoints}) for viewpoints in ("four", "twelve")]
+    blind, four, twelve = (feeler.feel("one", choice).seconds["looking"] for choice in (BLIND, *choices))
+    assert blind < four < twelve
 
 
 @pytest.mark.slow
@@ -79,7 +78,7 @@ def test_a_tiny_study_leaves_rows_that_a_second_call_finds_done(tmp_path, monkey
     from stages.front import search as halving
     from stages.front.known import Effort
 
-    few = {name: tuple(option for option in options if option in (SMALL[name], "itti", 3, "svm"))
+    few = {name: tuple(option for option in options if option in (SMALL[name], "harris", 3, "svm"))
            for name, options in SPACE.items()}  # fmt: skip
     efforts = {name: Effort(shapes=6, sixes=1, regions=1, folds=2) for name in halving.RUNGS}
     for part in (space, search):
