@@ -11,13 +11,13 @@ from stages.recorded.splits import block_split, split_number
 
 @pytest.fixture
 def recognised(monkeypatch, tmp_path):
-    """A function from images to the rows of all sets, two repetitions of one classifier."""
+    """A function from images and names of sets, none for all, to their rows, two repetitions of one classifier."""
     monkeypatch.setattr(pressure_images, "CLASSIFIERS", ["knn"])
 
-    def rows(images):
+    def rows(images, *names):
         touches = describe(images)
         sets = class_sets(touches, repetitions=2, seed=0)
-        return pd.DataFrame([row for one in sets.values() for row in process(one, tmp_path, touches, seed=0)])
+        return pd.DataFrame([row for name in names or sets for row in process(sets[name], tmp_path, touches, seed=0)])
 
     return rows
 
@@ -45,7 +45,7 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
 def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(recognised, recordings):
     images = recordings.touches(noise=0.1, count=24)
     images["a"][::2], images["b"][::2] = images["a"][::2].transpose(0, 2, 1), images["a"][1::2].transpose(0, 2, 1)
-    rows = recognised(images)
+    rows = recognised(images, "all", "four_alike")
     whole = rows[(rows["group"] == "all") & (rows["metric"] == "accuracy") & (rows["split"] == "random")]
     whole = whole.set_index("method")
     assert whole.loc["selected", "test"].max() < whole.loc["all", "test"].min()  # the test part shrinks as well
@@ -62,7 +62,7 @@ def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(rec
 def test_a_set_of_which_too_little_is_left_says_so(recognised, recordings):
     images = recordings.touches()
     images["b"] = images["a"]
-    rows = recognised(images)
+    rows = recognised(images, "all")
     selected = rows[(rows["group"] == "all") & (rows["method"] == "selected")]
     assert selected["value"].isna().all() and selected["note"].tolist() == ["a keeps 0 touches, 10 are needed"]
 
