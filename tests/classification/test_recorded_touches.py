@@ -14,16 +14,17 @@ from stages.classification.recorded import ELECTRODES, PALMS, read_grasps, read_
 SHARED = Path(__file__).parents[2].parent / "shared/data"
 
 
-def jpg(value, shape=(28, 50)):
+def jpg(values):
     stream = io.BytesIO()
-    Image.fromarray(np.full(shape, value, dtype=np.uint8)).save(stream, "JPEG")
+    Image.fromarray(values.astype(np.uint8)).save(stream, "JPEG", quality=95)
     return stream.getvalue()
 
 
 def images(**changes):
     """Files of an archive of two classes; the value of a picture is its number times ten."""
-    files = {f"Images/{name}/{name[:3]}{k}.jpg": jpg(10 * k) for name in ("tube", "ball") for k in (1, 2, 10)}
-    return {name: found for name, found in (files | changes).items() if found is not None}
+    pictures = {k: jpg(np.full((28, 50), 10 * k)) for k in (1, 2, 10)}
+    files = {f"Images/{name}/{name[:3]}{k}.jpg": pictures[k] for name in ("tube", "ball") for k in pictures}
+    return files | changes
 
 
 def table(objects=("apple", "cup"), **changes):
@@ -42,52 +43,47 @@ def grasps(**changes):
     }
 
 
+def write(folder, files):
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
+    return folder
+
+
+def write_zip(path, files):
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return path
+
+
 @pytest.fixture(params=["zip", "folder"])
 def stored(request, tmp_path):
-    def write(files):
-        path = tmp_path / ("archive.zip" if request.param == "zip" else "archive")
-        if request.param == "zip":
-            with zipfile.ZipFile(path, "w") as archive:
-                for name, content in files.items():
-                    archive.writestr(name, content)
-        else:
-            path.mkdir()
-            for name, content in files.items():
-                (path / name).parent.mkdir(parents=True, exist_ok=True)
-                (path / name).write_bytes(content)
-        return path
-
-    return write
+    if request.param == "zip":
+        return lambda files: write_zip(tmp_path / "archive.zip", files)
+    return lambda files: write(tmp_path / "archive", files)
 
 
-def test_classes_are_sorted_and_touches_stand_by_their_number(stored):
-    found = read_pressure_images(stored(images()))
-    assert list(found) == ["ball", "tube"]
-    assert found["tube"].shape == (3, 28, 50) and found["tube"].dtype == np.float64
-    assert found["tube"].mean(axis=(1, 2)) == pytest.approx(np.array([10, 20, 100]) / 255, abs=0.005)
+def test_classes_are_sorted_and_touches_stand_by_their_number_with_rows_along_the_shorter_side(stored):
+    ramp = np.repeat(np.arange(28)[:, None] * 9, 50, axis=1)
+    touches = read_pressure_images(stored(images(**{"Images/ball/bal1.jpg": jpg(ramp)})))
+    assert list(touches) == ["ball", "tube"]
+    assert touches["tube"].shape == (3, 28, 50) and touches["tube"].dtype == np.float64
+    assert touches["tube"].mean(axis=(1, 2)) == pytest.approx(np.array([10, 20, 100]) / 255, abs=0.005)
+    assert np.abs(255 * touches["ball"][0] - ramp).max() < 6
 
 
-def test_rows_of_a_picture_are_the_shorter_side_of_the_sensor(stored):
-    ramp = np.repeat(np.arange(28, dtype=np.uint8)[:, None] * 9, 50, axis=1)
-    stream = io.BytesIO()
-    Image.fromarray(ramp).save(stream, "JPEG", quality=95)
-    found = read_pressure_images(stored(images(**{"Images/tube/tub1.jpg": stream.getvalue()})))["tube"][0]
-    assert np.abs(255 * found - ramp).max() < 6
-
-
-def test_an_archive_of_pressure_images_without_its_folder_is_refused(stored):
-    with pytest.raises(ValueError, match=r"archive.*no \.jpg in Images.*expected"):
-        read_pressure_images(stored({"other.txt": b"none"}))
-
-
-def test_a_picture_that_is_none_is_named(stored):
-    with pytest.raises(ValueError, match=r"tub2\.jpg is not a readable picture: download"):
-        read_pressure_images(stored(images(**{"Images/tube/tub2.jpg": b"no picture"})))
-
-
-def test_pictures_of_several_sizes_are_refused(stored):
-    with pytest.raises(ValueError, match="several sizes"):
-        read_pressure_images(stored(images(**{"Images/tube/tub2.jpg": jpg(1, (16, 16))})))
+@pytest.mark.parametrize(
+    ("files", "reason"),
+    [
+        ({"other.txt": b"none"}, r"archive.*no \.jpg in Images.*expected"),
+        (images(**{"Images/tube/tub2.jpg": b"no picture"}), r"tub2\.jpg is not a readable picture: download"),
+        (images(**{"Images/tube/tub2.jpg": jpg(np.ones((16, 16)))}), "several sizes"),
+    ],
+)
+def test_pressure_images_that_are_none_are_named(tmp_path, files, reason):
+    with pytest.raises(ValueError, match=reason):
+        read_pressure_images(write(tmp_path / "archive", files))
 
 
 @pytest.mark.parametrize("read", [read_pressure_images, read_grasps])
@@ -100,10 +96,7 @@ def test_what_is_no_zip_file_or_not_there_is_named(read, tmp_path):
 
 
 def test_a_damaged_member_is_named(tmp_path):
-    path = tmp_path / "damaged.zip"
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, content in images().items():
-            archive.writestr(name, content)
+    path = write_zip(tmp_path / "damaged.zip", images())
     content = bytearray(path.read_bytes())
     content[content.index(b"tub1.jpg") + 60] ^= 0xFF
     path.write_bytes(content)
@@ -112,56 +105,42 @@ def test_a_damaged_member_is_named(tmp_path):
 
 
 def test_grasps_keep_electrodes_objects_palms_labels_and_which_are_tests(stored):
-    found = read_grasps(stored(grasps(side_test=table(objects=("new", "newer"), th_biotac_24=7.5))))
-    assert found.electrodes.shape == (12, 72) and found.electrodes.dtype == np.float64
-    assert found.palms.tolist() == [palm for _ in range(2) for palm in PALMS for _ in range(2)]
-    assert found.test.tolist() == [False] * 6 + [True] * 6 and found.slipped.tolist() == [False, True] * 6
-    assert found.objects[-2:].tolist() == ["new", "newer"] and found.electrodes[-1, -1] == 7.5
-    assert found.electrodes[0].tolist() == list(range(72))
+    recorded = read_grasps(stored(grasps(side_test=table(objects=("new", "newer"), th_biotac_24=7.5))))
+    assert recorded.electrodes.shape == (12, 72) and recorded.electrodes.dtype == np.float64
+    assert recorded.palms.tolist() == [palm for _ in range(2) for palm in PALMS for _ in range(2)]
+    assert recorded.test.tolist() == [False] * 6 + [True] * 6 and recorded.slipped.tolist() == [False, True] * 6
+    assert recorded.objects[-2:].tolist() == ["new", "newer"] and recorded.electrodes[-1, -1] == 7.5
+    assert recorded.electrodes[0].tolist() == list(range(72))
 
 
-def test_a_missing_table_is_named(stored):
-    with pytest.raises(ValueError, match=r"archive.* has no bts3v2_palm_down_test\.csv; expected"):
-        read_grasps(stored(grasps(down_test=None)))
-
-
-def test_a_missing_column_is_named(stored):
-    with pytest.raises(ValueError, match=r"palm_45\.csv has no column mf_biotac_3"):
-        read_grasps(stored(grasps(**{"45": table().drop(columns="mf_biotac_3")})))
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    "change, said",
+    ("files", "reason"),
     [
-        ({"ff_biotac_1": [1, "odd"]}, "line 3: an empty cell or not a number"),
-        ({"th_biotac_9": [None, 1]}, "line 2: an empty cell or not a number"),
-        ({"slipped": [0, 2]}, "line 3: slipped must be 0 or 1, not 2"),
+        (grasps(down_test=None), r"archive.* has no bts3v2_palm_down_test\.csv; expected"),
+        (grasps(**{"45": table().drop(columns="mf_biotac_3")}), r"palm_45\.csv has no column mf_biotac_3"),
+        (grasps(side=table(ff_biotac_1=[1, "odd"])), r"palm_side\.csv, line 3: an empty cell or not a number"),
+        (grasps(side=table(th_biotac_9=[None, 1])), r"palm_side\.csv, line 2: an empty cell or not a number"),
+        (grasps(side=table(slipped=[0, 2])), r"palm_side\.csv, line 3: slipped must be 0 or 1, not 2"),
+        (grasps() | {"bts3v2_palm_side.csv": b""}, r"palm_side\.csv is not a valid table"),
     ],
 )
-def test_a_bad_cell_is_named_by_its_line(stored, change, said):
-    with pytest.raises(ValueError, match=rf"palm_side\.csv, {said}"):
-        read_grasps(stored(grasps(side=table(**change))))
-
-
-def test_a_table_that_is_none_is_named(stored):
-    files = grasps() | {"bts3v2_palm_side.csv": b""}
-    with pytest.raises(ValueError, match=r"palm_side\.csv is not a valid table"):
-        read_grasps(stored(files))
+def test_tables_of_grasps_that_are_none_are_named(tmp_path, files, reason):
+    with pytest.raises(ValueError, match=reason):
+        read_grasps(write(tmp_path / "archive", files))
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not (SHARED / "pressure_images.zip").exists(), reason="no pressure_images.zip in ../shared/data")
 def test_the_true_archive_of_pressure_images():
-    found = read_pressure_images(SHARED / "pressure_images.zip")
-    assert len(found) == 22 and {touches.shape for touches in found.values()} == {(50, 28, 50)}
-    assert all(touches.max() > 0.3 and touches.min() == 0 for touches in found.values())
+    classes = read_pressure_images(SHARED / "pressure_images.zip")
+    assert len(classes) == 22 and {touches.shape for touches in classes.values()} == {(50, 28, 50)}
+    assert all(touches.max() > 0.3 and touches.min() == 0 for touches in classes.values())
 
 
 @pytest.mark.skipif(not (SHARED / "biotac_grasps.zip").exists(), reason="no biotac_grasps.zip in ../shared/data")
 def test_the_true_archive_of_grasps():
-    found = read_grasps(SHARED / "biotac_grasps.zip")
-    assert found.electrodes.shape == (5831, 72) and found.test.sum() == 1149
-    assert (found.slipped[~found.test].sum(), found.slipped[found.test].sum()) == (2354, 589)  # as its authors count
-    assert not set(found.objects[found.test]) & set(found.objects[~found.test])
-    assert len(set(found.objects)) == 51
+    recorded = read_grasps(SHARED / "biotac_grasps.zip")
+    test, slipped = recorded.test, recorded.slipped
+    assert recorded.electrodes.shape == (5831, 72) and test.sum() == 1149
+    assert (slipped[~test].sum(), slipped[test].sum()) == (2354, 589)  # as its authors count
+    assert not set(recorded.objects[test]) & set(recorded.objects[~test]) and len(set(recorded.objects)) == 51

@@ -11,7 +11,6 @@ from stages.engine.rows import read_rows
 from stages.imprints.imprints import Imprints, write_imprints
 
 NAMES = ("cup", "duck", "hand")
-PLAIN = ("plain", "training", "accuracy")
 
 
 @pytest.fixture
@@ -29,34 +28,20 @@ def imprints(tmp_path, bumps):
 
 
 def settings(**changes):
-    return Params(
-        **{
-            "sets": {"three": list(NAMES)},
-            "drawn": 0,
-            "classifiers": ["knn", "naive_bayes"],
-            "repetitions": 2,
-            "closer": [],
-            "touches": [1, 2],
-            "combinations": 2,
-            **changes,
-        }  # fmt: skip
-    )
+    values = {
+        "sets": {"three": list(NAMES)}, "drawn": 0, "classifiers": ["knn"], "repetitions": 1, "closer": [],
+        "touches": [1, 2], "combinations": 2,
+    }  # fmt: skip
+    return Params(**values | changes)
 
 
-def test_all_samplings_of_a_set_use_equally_many_imprints(imprints):
-    sets = {"three": list(NAMES), "two": ["hand", "cup"]}
-    assert plan(sets, imprints) == {"three.itti": 12, "three.random": 12, "two.itti": 16, "two.random": 16}
-
-
-def test_set_with_a_missing_object_is_left_out_and_names_it_and_those_that_are_there(imprints):
-    planned = plan({"three": ["cow", "cup"], "two": ["hand", "cup"]}, imprints)
-    assert "no imprints of cow" in planned["three."] and "cup, duck, hand" in planned["three."]
-    assert planned["two.itti"] == 16
-
-
-def test_sampling_with_too_few_imprints_is_left_out_with_its_reason(imprints, tmp_path, bumps):
-    few = Imprints(bumps()["cup"][:9], np.arange(9), np.zeros((9, 3)), 0.01)
-    many = Imprints(bumps()["cup"], np.arange(16), np.zeros((16, 3)), 0.01)
+def test_samplings_of_a_set_use_equally_many_imprints_and_what_is_left_out_is_named(imprints, tmp_path, bumps):
+    sets = {"three": list(NAMES), "two": ["hand", "cup"], "gone": ["cow", "cup"]}
+    planned = plan(sets, imprints)
+    missing = planned.pop("gone.")
+    assert planned == {"three.itti": 12, "three.random": 12, "two.itti": 16, "two.random": 16}
+    assert "no imprints of cow" in missing and "cup, duck, hand" in missing
+    few, many = (Imprints(bumps()["cup"][:n], np.arange(n), np.zeros((n, 3)), 0.01) for n in (9, 16))
     write_imprints(imprints / "cup.npz", {"itti": few, "random": many})
     planned = plan(settings().sets, imprints)
     assert planned["three.random"] == 16 and "itti: cup has 9 imprints" in planned["three.itti"]
@@ -66,16 +51,21 @@ def test_sampling_with_too_few_imprints_is_left_out_with_its_reason(imprints, tm
 
 @pytest.mark.slow
 def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, bumps):
-    planned = plan(settings().sets, imprints)
-    rows = process("three.random", tmp_path / "a", imprints.parent, planned, settings(), 7)
-    process("three.random", tmp_path / "b", imprints.parent, planned, settings(), 7)
+    chosen = settings(classifiers=["knn", "naive_bayes"], repetitions=2)
+    planned = plan(chosen.sets, imprints)
+    rows = process("three.random", tmp_path / "a", imprints.parent, planned, chosen, 7)
+    process("three.random", tmp_path / "b", imprints.parent, planned, chosen, 7)
     assert (tmp_path / "a/three.random.npz").read_bytes() == (tmp_path / "b/three.random.npz").read_bytes()
     images = {name: stack[:12].astype("f4") for name, stack in bumps(NAMES, 16, jitter=2.0).items()}
-    expected = [row["value"] for name in ("knn", "naive_bayes") for row in evaluate(images, name, 2, seed=7)]
-    plain = [row for row in rows if (row["variant"], row.get("scaling"), row["metric"]) == PLAIN]
+    expected = [row["value"] for name in chosen.classifiers for row in evaluate(images, name, 2, seed=7)]
+    wanted = ("plain", "training", "accuracy")
+    plain = [row for row in rows if (row["variant"], row.get("scaling"), row["metric"]) == wanted]
     assert [row["value"] for row in plain if row.get("split") in ("random", "folds")] == expected
     stored = read_arrays(tmp_path / "a/three.random.npz")
     assert stored["objects"].tolist() == list(NAMES) and stored["knn.confusion"].sum() == 2 * 9
+    shares = [row for row in rows if row["metric"] == "similar_share" and row["variant"] == "plain"]
+    assert [row["item"] for row in shares] == [None, *NAMES]
+    assert shares[0]["value"] == pytest.approx(np.mean([row["value"] for row in shares[1:]]))
 
 
 @pytest.mark.slow
@@ -84,7 +74,7 @@ def test_a_failing_classifier_does_not_lose_the_others(imprints, tmp_path, monke
     chosen = settings(classifiers=["broken", "knn"])
     rows = process("three.itti", tmp_path, imprints.parent, plan(chosen.sets, imprints), chosen, 0)
     assert rows[0]["value"] is None and "broken failed: division by zero" in rows[0]["note"]
-    assert len([row for row in rows if row["classifier"] == "knn" and row["value"] is not None]) >= 4
+    assert len([row for row in rows if row["classifier"] == "knn" and row["value"] is not None]) >= 2
     assert list(read_arrays(tmp_path / "three.itti.npz")) == ["objects", "knn.confusion"]
 
 
@@ -105,51 +95,33 @@ def test_summary_holds_mean_and_interval_of_the_repetitions():
 
 @pytest.mark.slow
 def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imprints, tmp_path):
-    chosen = settings(sets={"three": list(NAMES), "two": ["hand", "cup"]}, closer=["random"], repetitions=1)
+    chosen = settings(sets={"three": list(NAMES), "two": ["hand", "cup"]}, closer=["random"])
     planned = plan(chosen.sets, imprints)
     variants = {
         item: {row["variant"] for row in process(item, tmp_path, imprints.parent, planned, chosen, 0)}
-        for item in sorted(planned)
+        for item in ("three.random", "three.itti", "two.random")
     }
-    assert "touches_2_mixed" in variants["three.random"] and "selected" in variants["three.random"]
+    assert {"touches_2_mixed", "selected"} <= variants["three.random"]
     assert "selected" in variants["two.random"] and "touches_2" not in variants["two.random"]
     one_touch = {"pixels", "wavelet_features", "image_features", "locations", "locations_turned"}
     assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", *one_touch, "plain_side"}
 
 
 @pytest.mark.slow
-def test_shares_are_told_of_all_objects_and_of_each(imprints, tmp_path):
-    planned = plan(settings().sets, imprints)
-    rows = process("three.random", tmp_path, imprints.parent, planned, settings(), 0)
-    shares = [row for row in rows if row["metric"] == "similar_share" and row["variant"] == "plain"]
-    assert [row["item"] for row in shares] == [None, *NAMES]
-    assert shares[0]["value"] == pytest.approx(np.mean([row["value"] for row in shares[1:]]))
-
-
-@pytest.mark.slow
-def test_the_stage_writes_rows_by_split_and_metrics_by_their_names(imprints, make_workspace):
-    workspace = make_workspace({"classification": vars(settings(closer=["random"], repetitions=1))})
+@pytest.mark.parametrize("drawn", [0, 2])
+def test_the_stage_writes_rows_by_split_and_metrics_by_their_names_and_drawn_sets(imprints, make_workspace, drawn):
+    workspace = make_workspace({"classification": vars(settings(closer=["random"], drawn=drawn))})
     run(workspace)
     rows = read_rows(workspace.measurements / "classification.csv.gz")
     assert set(rows["split"].dropna()) == {"random", "folds", "regions", "random_fewer"}
     assert set(rows["group"]) == {"three"} and set(rows["item"].dropna()) == set(NAMES)
     metrics = read_json(workspace.metrics / "classification.json")
     names = {f"accuracy_{split}" for split in ("holdout", "fivefold", "apart", "fewer", "side")}
-    assert set(metrics["three"]["random"]["knn"]) == names
+    assert set(metrics) == {"three", "variants"} and set(metrics["three"]["random"]["knn"]) == names
     assert set(metrics["variants"]["three"]["locations"]) == {"accuracy_holdout", "accuracy_side"}
-    assert {path.name for path in (workspace.data / "classification").iterdir()} == {
-        "three.itti.npz",
-        "three.random.npz",
-    }
-
-
-@pytest.mark.slow
-def test_drawn_sets_take_the_place_of_the_named_one_each_with_all_its_variants(imprints, make_workspace):
-    own = settings(sets={"two": ["cup", "hand"]}, drawn=3, closer=["random"], repetitions=1, classifiers=["knn"])
-    workspace = make_workspace({"classification": vars(own)})
-    run(workspace)
-    rows = read_rows(workspace.measurements / "classification.csv.gz")
-    assert set(rows["group"]) == {"two"} and set(rows["set"]) == {1, 2, 3}
-    several = rows[rows["variant"].eq("touches_2") & rows["method"].eq("random")]
-    assert set(several["set"]) == {1, 2, 3}  # of every set, not of the first alone
-    assert set(read_json(workspace.metrics / "classification.json")) == {"two", "variants"}
+    if drawn:  # they take the place of the named one, each with all its variants, not the first alone
+        several = rows[rows["variant"].eq("touches_2") & rows["method"].eq("random")]
+        assert set(rows["set"]) == set(several["set"]) == {1, 2}
+    else:
+        files = {path.name for path in (workspace.data / "classification").iterdir()}
+        assert files == {"three.itti.npz", "three.random.npz"}

@@ -1,10 +1,12 @@
-"""The further experiments: what each trains and tests on."""
+"""The further experiments: what each trains and tests on, and random sets of objects."""
+
+from collections import Counter
 
 import numpy as np
 import pytest
 
 from stages.classification.multi_touch import MultiTouchTrials, evaluate_variants
-from stages.classification.trials import TouchSet, selection_trials, single_touch_trials
+from stages.classification.trials import TouchSet, drawn_sets, selection_trials, set_of, single_touch_trials
 
 
 def touched(bumps, count=24, jitter=0.5):
@@ -36,33 +38,22 @@ def test_locations_are_the_last_three_columns_and_turn_about_the_vertical_in_the
     assert not np.allclose(turned.samples[test, -3:], data.places[test])
 
 
-@pytest.mark.slow
-def test_selection_removes_before_the_split_or_from_training_alone(bumps):
+def test_selection_removes_before_the_split_or_from_training_alone_and_its_control_as_many_others(bumps):
     data = touched(bumps, jitter=2.5)
     trials = by_name(selection_trials(data, 3))
-    everywhere, training = (trials[name, "random"] for name in ("selected", "selected_train"))
     left = data.samples[~data.confusable, 0]
-    assert 0 < len(left) < 72 and np.array_equal(everywhere.samples[:, 0], left)
-    train, test = training.parts
-    assert len(test) == 18 and (np.bincount(data.truth[test]) == 6).all()
-    similarities = data.similarities[np.ix_(train, train)] >= 0.85
-    assert not (similarities & (data.truth[train][:, None] != data.truth[train])).any()
-    rows = evaluate_variants(data, ["knn"], 2, with_selection=True)
-    assert {row["metric"] for row in rows if row["variant"] == "selected"} == {"accuracy", "recall"}
-    assert {row["metric"] for row in rows if row["variant"] == "selected_control"} == {"accuracy", "recall"}
-
-
-def test_control_of_selection_has_as_many_imprints_of_each_object_but_others(bumps):
-    data = touched(bumps, jitter=2.5)
-    trials = by_name(selection_trials(data, 3))
+    assert 0 < len(left) < 72 and np.array_equal(trials["selected", "random"].samples[:, 0], left)
+    trained, control = (trials[name, "random"] for name in ("selected_train", "selected_train_control"))
+    train, test = trained.parts
+    assert len(test) == 18 and (np.bincount(data.truth[test]) == 6).all() and np.array_equal(test, control.parts[1])
+    similar = data.similarities[np.ix_(train, train)] >= 0.85
+    assert not (similar & (data.truth[train][:, None] != data.truth[train])).any()
+    others = control.parts[0]
+    assert np.array_equal(np.bincount(data.truth[train]), np.bincount(data.truth[others])) and {*train} != {*others}
+    assert not np.isin(others, test).any()
     for variant in ("selected", "first_15_selected"):
         kept, control = (trials[name, "random"] for name in (variant, f"{variant}_control"))
         assert np.array_equal(kept.truth, control.truth) and not np.array_equal(kept.samples, control.samples)
-    trained, control = (trials[name, "random"] for name in ("selected_train", "selected_train_control"))
-    assert np.array_equal(trained.parts[1], control.parts[1])
-    kept, drawn = trained.parts[0], control.parts[0]
-    assert np.array_equal(np.bincount(data.truth[kept]), np.bincount(data.truth[drawn])) and {*kept} != {*drawn}
-    assert not np.isin(drawn, control.parts[1]).any()
 
 
 def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
@@ -81,6 +72,8 @@ def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
         assert scalings[variant, "random"] == [(scaling, metric) for scaling in every for metric in valid[::2]]
     assert scalings["touches_2_ordered", "random"] == [("training", "accuracy")]
     assert scalings["touches_2_mixed", "random"] == [("training", metric) for metric in valid[::2]]
+    for variant in ("selected", "selected_control"):
+        assert {row["metric"] for row in rows if row["variant"] == variant} == {"accuracy", "recall"}
     shares = [row["value"] for row in rows if row["metric"] == "commonest_share"]
     assert min(shares) >= 1 / 3 - 1e-9 and all(row.get("seconds") is None for row in rows if row["metric"] in valid[1:])
     rows = evaluate_variants(touched(bumps, jitter=2.5), ["naive_bayes", "svm"], 1)
@@ -103,32 +96,28 @@ def test_selection_that_leaves_too_little_says_so_once(bumps):
     assert len(rows) == 1 and rows[0]["value"] is None and "fewer than 4 of its 48" in rows[0]["note"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("way", ["", "_unplaced", "_ordered", "_disjoint", "_many"])
-def test_no_touch_is_on_both_sides(bumps, way):
+@pytest.mark.parametrize(
+    ("way", "count", "kind"),
+    [("", 108, "joined"), ("_unplaced", 108, "reduced"), ("_ordered", 108, "joined"), ("_disjoint", 18, "joined"),
+     ("_many", 540, "joined")],
+)  # fmt: skip
+def test_no_touch_is_on_both_sides(bumps, way, count, kind):
     data = touched(bumps)
-    trials = by_name(MultiTouchTrials((1, 3), 2, True).trials(data, 5))
-    trial = trials[f"touches_3{way}", "random"]
+    trial = by_name(MultiTouchTrials((1, 3), 2, True).trials(data, 5))[f"touches_3{way}", "random"]
+    assert (trial.kind, trial.samples.shape[1]) == (kind, 6 if way == "_unplaced" else 15)
+    assert len(trial.parts[0]) == count and trial.skipped == (("svm",) if way == "_many" else ())
     if way != "_unplaced":
         train, test = (trial.samples[side][:, 2::5] for side in trial.parts)  # the x of each touch is its number
         assert train.shape[1] == 3 and not np.isin(train, test).any()
         assert (data.truth[train.astype(int)] == trial.truth[trial.parts[0]][:, None]).all()
-    assert trial.samples.shape[1] == (6 if way == "_unplaced" else 15) and trial.kind == (
-        "reduced" if way == "_unplaced" else "joined"
-    )
-    assert len(trial.parts[0]) == {"_disjoint": 18, "_many": 540}.get(way, 2 * 3 * 18)
-    assert trial.skipped == (("svm",) if way == "_many" else ())
 
 
-def test_mixed_combinations_share_touches_and_come_of_fifteen_too(bumps):
+def test_mixed_combinations_share_touches_and_too_many_are_left_out_with_the_reason(bumps):
     trials = by_name(MultiTouchTrials((4,), 2, True).trials(touched(bumps), 5))
     mixed = trials["touches_4_mixed", "random"]
     train, test = (mixed.samples[side][:, 2::5] for side in mixed.parts)
     assert np.isin(test, train).mean() > 0.9
     assert len(trials["first_15_touches_4_mixed", "random"].samples) == 2 * 45
-
-
-def test_more_touches_than_one_side_has_are_left_out_with_the_reason(bumps):
     trials = by_name(MultiTouchTrials((2, 5), 1, False).trials(touched(bumps, count=16), 5))
     assert trials["touches_2", "random"].parts
     assert "4 touches on one side of the split: no combination of 5" in trials["touches_5", "random"].note
@@ -138,9 +127,27 @@ def test_more_touches_than_one_side_has_are_left_out_with_the_reason(bumps):
 @pytest.mark.slow
 def test_rows_are_the_same_from_run_to_run(bumps):
     def run():
-        rows = evaluate_variants(
-            touched(bumps), ["knn", "naive_bayes"], 2, 3, MultiTouchTrials((1, 2), 1, True), with_selection=True
-        )
+        several = MultiTouchTrials((1, 2), 1, True)
+        rows = evaluate_variants(touched(bumps), ["knn"], 1, 3, several, with_selection=True)
         return [{key: value for key, value in row.items() if key != "seconds"} for row in rows]
 
     assert run() == run()
+
+
+GROUPS = {"six": list("abcdef"), "four": list("abcd")}
+OBJECTS = [f"object_{k:02}" for k in range(20)]
+
+
+def test_drawn_sets_are_nested_and_dealt_like_cards_by_the_seed_alone():
+    sets = drawn_sets(GROUPS, OBJECTS, 6, 0)
+    assert len(sets) == 12
+    sixes = [sets[f"six.{number:02}"] for number in range(1, 7)]
+    for number, six in enumerate(sixes, start=1):
+        assert len(set(six)) == 6 and sets[f"four.{number:02}"] == six[:4] and set(six) <= set(OBJECTS)
+    assert max(Counter(sum(sixes[:3], [])).values()) == 1  # none comes again before too few are left
+    assert max(Counter(sum(sixes, [])).values()) == 2
+    assert drawn_sets(GROUPS, OBJECTS[::-1], 6, 0) == sets != drawn_sets(GROUPS, OBJECTS, 6, 1)
+    assert list(sets.items())[:4] == list(drawn_sets(GROUPS, OBJECTS, 2, 0).items())
+    assert set_of("six.07") == {"group": "six", "set": 7} and set_of("six") == {"group": "six", "set": None}
+    with pytest.raises(ValueError, match="takes 6 objects, there are 5"):
+        drawn_sets(GROUPS, OBJECTS[:5], 1, 0)

@@ -6,45 +6,30 @@ import torch
 
 from haptic_glance.deep.images import MEAN, STD, augmentation, normalise, to_images
 
-
-@pytest.fixture
-def imprints():
-    return np.random.default_rng(0).random((5, 24, 24), dtype=np.float32)
+IMPRINTS = np.random.default_rng(0).random((5, 24, 24), dtype=np.float32)
 
 
-def test_grey_goes_to_red_and_the_rest_is_zero(imprints):
-    images = to_images(imprints, 24).numpy()
-    assert np.array_equal(images[:, 0], imprints)
-    assert not images[:, 1:].any()
-
-
-def test_bytes_and_floats_agree():
+def test_grey_goes_to_red_and_the_rest_is_zero():
+    images = to_images(IMPRINTS, 24).numpy()
+    assert np.array_equal(images[:, 0], IMPRINTS) and not images[:, 1:].any()
     grey = np.arange(256, dtype=np.uint8).reshape(1, 16, 16)
     assert torch.equal(to_images(grey, 16), to_images(grey.astype(np.float32) / 255, 16))
+    assert to_images(IMPRINTS, 8)[:, 0].mean().item() == pytest.approx(IMPRINTS.mean(), abs=0.01)
 
 
-def test_resizing_keeps_the_mean(imprints):
-    assert to_images(imprints, 8)[:, 0].mean().item() == pytest.approx(imprints.mean(), abs=0.01)
-
-
-def test_normalised_photographs_of_imagenets_mean_are_zero():
+def test_normalised_photographs_of_imagenets_mean_are_zero_and_one_deviation_is_one():
     image = torch.tensor(MEAN).view(1, 3, 1, 1).expand(1, 3, 4, 4)
     assert normalise(image).abs().max() == 0
     image = image + torch.tensor(STD).view(1, 3, 1, 1)
     assert torch.allclose(normalise(image), torch.ones(1, 3, 4, 4), atol=1e-6)
 
 
-def test_augmentation_moves_images_but_no_value_range_and_no_channel(imprints):
-    images = to_images(imprints, 24)
+def test_augmentation_moves_images_but_no_value_range_and_no_channel_and_no_contact_from_outside():
+    images = to_images(IMPRINTS, 24)
     torch.manual_seed(0)
     moved = augmentation()(images)
-    assert moved.shape == images.shape
-    assert not torch.allclose(moved, images)
-    assert not moved[:, 1:].any()
-    assert moved.min() >= 0 and moved.max() <= 1
-
-
-def test_augmentation_brings_in_no_contact_from_outside():
+    assert moved.shape == images.shape and not torch.allclose(moved, images)
+    assert not moved[:, 1:].any() and moved.min() >= 0 and moved.max() <= 1
     far = to_images(np.ones((8, 16, 16), dtype=np.float32), 16)
     assert torch.allclose(augmentation()(far)[:, 0], far[:, 0], atol=1e-5)
 

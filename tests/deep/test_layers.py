@@ -17,15 +17,14 @@ def with_parameters(network):
 
 
 def test_every_layer_has_one_number_and_every_parameter_one_layer(network):
-    found = layers()
-    assert [layer.number for layer in found] == list(range(1, LAYERS + 1))
-    assert len({layer.name for layer in found}) == LAYERS
-    modules = [layer.module for layer in found if layer.module]
+    assert [layer.number for layer in layers()] == list(range(1, LAYERS + 1))
+    assert len({layer.name for layer in layers()}) == LAYERS
+    modules = [layer.module for layer in layers() if layer.module]
     assert len(set(modules)) == len(modules)
     assert with_parameters(network) <= set(modules) <= dict(network.named_modules()).keys()
 
 
-def test_the_numbers_that_table_5_6_cuts_at_are_those_of_matlab(network):
+def test_the_numbers_that_table_5_6_cuts_at_are_those_of_matlab():
     named = {layer.number: layer.name for layer in layers()}
     ends = {1: "input_1", 10: "block_1_expand", 16: "block_1_project", 17: "block_1_project_BN", 18: "block_2_expand"}
     ends |= {134: "block_15_depthwise", 138: "block_15_project_BN", 139: "block_15_add", 140: "block_16_expand"}
@@ -34,41 +33,28 @@ def test_the_numbers_that_table_5_6_cuts_at_are_those_of_matlab(network):
 
 
 def test_layers_are_of_the_kind_that_their_names_say(network):
-    kinds = {"_BN": torch.nn.BatchNorm2d, "_bn": torch.nn.BatchNorm2d, "_relu": torch.nn.ReLU6}
-    kinds |= {"_expand": torch.nn.Conv2d, "_depthwise": torch.nn.Conv2d, "_project": torch.nn.Conv2d}
-    seen = 0
-    for layer in layers():
-        kind = next((kinds[end] for end in kinds if layer.name.endswith(end)), None)
-        if kind:
-            module = network.get_submodule(layer.module)
-            assert isinstance(module, kind), layer
-            if layer.name.endswith("_depthwise"):
-                assert module.groups == module.in_channels
-            seen += 1
-    assert seen == 136
-
-
-def test_a_sum_stands_where_torchvision_has_a_residual_connection(network):
+    kinds = {"BN": torch.nn.BatchNorm2d, "bn": torch.nn.BatchNorm2d, "relu": torch.nn.ReLU6}
+    kinds |= dict.fromkeys(("expand", "depthwise", "project"), torch.nn.Conv2d)
+    named = [(layer, layer.name.rpartition("_")[2]) for layer in layers()]
+    named = [(network.get_submodule(layer.module), end) for layer, end in named if "_" in layer.name and end in kinds]
+    assert len(named) == 136
+    for module, end in named:
+        assert isinstance(module, kinds[end]) and (end != "depthwise" or module.groups == module.in_channels)
     sums = {int(layer.name.split("_")[1]) for layer in layers() if layer.name.endswith("_add")}
     assert sums == {i for i in range(1, 17) if network.convolutions[i + 1].use_res_connect}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("layer_range", "first", "last"),
     [
         ("18:139", "convolutions.3.conv.0.0", "convolutions.16.conv.3"),
         ("16:138", "convolutions.2.conv.2", "convolutions.16.conv.3"),
-        ("1:134", "convolutions.0.0", "convolutions.16.conv.1.0"),
-        ("1:144", "convolutions.0.0", "convolutions.17.conv.1.1"),
         ("10:150", "convolutions.2.conv.0.0", "convolutions.18.1"),
     ],
 )
 def test_a_range_freezes_what_lies_within_and_nothing_else(network, layer_range, first, last):
-    found = frozen_modules(layer_range, network)
-    assert (found[0], found[-1]) == (first, last)
     order = [layer.module for layer in layers() if layer.module in with_parameters(network)]
-    assert found == order[order.index(first) : order.index(last) + 1]
+    assert frozen_modules(layer_range, network) == order[order.index(first) : order.index(last) + 1]
 
 
 @pytest.mark.parametrize(

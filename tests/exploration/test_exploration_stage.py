@@ -1,7 +1,6 @@
 """The exploration stage on a small run of its own."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from stages.engine.rows import read_rows
@@ -35,39 +34,27 @@ def run(tmp_path, make_workspace):
 
 
 @pytest.mark.slow
-def test_a_run_writes_every_experiment(run):
+def test_a_run_writes_every_experiment_and_tells_objects_apart_that_have_nothing_in_common(run):
     rows = run()
     assert set(zip(rows["split"], rows["likelihood"], strict=True)) == set(EXPERIMENTS)
     assert set(rows["stop"]) == {"fixed", "confidence"} and set(rows["repetition"]) == {0, 1}
     fixed = rows[rows["stop"] == "fixed"]
     assert set(fixed["level"]) == {1, 2, 3} and (fixed["touches"] == fixed["level"]).all()
     assert rows["touches"].dropna().between(1, 3).all() and rows["belief"].dropna().between(0, 1).all()
+    assert rows.loc[(rows["split"] == "random") & (rows["metric"] == "accuracy"), "value"].mean() > 0.95
 
 
-def test_objects_that_nothing_has_in_common_are_told_apart(run):
-    rows = run()
-    rows_used = rows[(rows["split"] == "random") & (rows["metric"] == "accuracy")]
-    assert rows_used["value"].mean() > 0.95
-
-
-@pytest.mark.slow
-def test_equal_runs_give_equal_rows(run):
-    first, second = (run().drop(columns="seconds") for _ in range(2))
-    pd.testing.assert_frame_equal(first, second)
-
-
-def test_a_set_without_imprints_is_a_note(run):
-    rows = run(objects=("flat", "gone"))
-    assert rows["value"].isna().all() and "no imprints of gone" in rows["note"].iloc[0]
-
-
-def test_one_object_alone_is_a_note(run):
-    assert "at least two objects" in run(objects=("flat",))["note"].iloc[0]
-
-
-def test_a_sampling_that_nobody_made_is_a_note(run):
-    rows = run(methods=["elsewhere"])
-    assert "no imprints by elsewhere of flat, rough" in rows["note"].iloc[0]
+@pytest.mark.parametrize(
+    ("objects", "changes", "note"),
+    [
+        (("flat", "gone"), {}, "no imprints of gone"),
+        (("flat",), {}, "at least two objects"),
+        (("flat", "rough"), {"methods": ["elsewhere"]}, "no imprints by elsewhere of flat, rough"),
+    ],
+)
+def test_what_cannot_be_explored_is_a_note(run, objects, changes, note):
+    rows = run(objects, **changes)
+    assert rows["value"].isna().all() and note in rows["note"].iloc[0]
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,13 @@
 """Each test here compares the library with the letter of the thesis; the fidelity table states how well they agree."""
 
+import functools
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.mesh import load, normalise
 from stages.report.fidelity import matches
 
 ROOT = Path(__file__).parents[2]
@@ -31,17 +33,23 @@ def agreement(request):
     return measured
 
 
+@pytest.fixture(scope="session")
+def composed_set():
+    """A function from a data set to its settings, composed once."""
+    from stages.compose import composed
+
+    return functools.cache(lambda dataset: composed([f"data={dataset}"]))
+
+
 @pytest.fixture
-def settings():
+def settings(composed_set):
     """A function that holds printed settings against those of a data set: (how many hold, how many there are).
 
     printed: dict "section.key" -> the value in print, or a predicate.
     """
-    from stages.compose import composed
 
     def held(dataset, printed):
-        values = composed([f"data={dataset}"])
-        count = 0
+        values, count = composed_set(dataset), 0
         for key, wanted in printed.items():
             value = values
             for part in key.split("."):
@@ -61,7 +69,13 @@ def pytest_runtest_makereport(item):
         report.outcome, report.longrepr = "failed", f"skipped: the row of {item.name} would not be tested"
 
 
-def _picture():
+@pytest.fixture(scope="session")
+def dromedary():
+    return normalise(load(ROOT / "samples/dromedary.glb"))
+
+
+@pytest.fixture(scope="session")
+def picture():
     """(rgb (h, w, 3) u1 on black, mask (h, w)): two coloured, shaded and striped bodies."""
     y, x = np.mgrid[:288, :384]
     rgb = np.zeros((288, 384, 3))
@@ -75,9 +89,3 @@ def _picture():
         mask |= inside
     rgb[120:150, 110:150] = (0.2, 0.8, 0.3)
     return (rgb * 255).astype(np.uint8), mask
-
-
-@pytest.fixture(scope="session")
-def picture():
-    """See _picture."""
-    return _picture()

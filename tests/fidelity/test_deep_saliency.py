@@ -11,7 +11,6 @@ from skimage.filters import threshold_multiotsu
 
 from haptic_glance.deep.cam import grad_cam
 from haptic_glance.look.weights.convexity import convexity
-from haptic_glance.mesh import load, normalise
 from haptic_glance.mesh.mesh import Mesh
 from stages.fixation.fusion import fuse, highest_level, subtractive_clusters
 from stages.fixation.places import FLAT, curvature_shares, eccentricity, gaussian_curvature
@@ -74,15 +73,14 @@ def test_curvature_shares(agreement):
     agreement("share", float(100 * np.abs(np.array(curvature_shares(mesh)) - literal).max()))
 
 
-def test_eccentricity(agreement):
+def test_eccentricity(dromedary, agreement):
     """eq. 3.23 with the means of the 10 % largest and smallest distances to the centre of gravity."""
-    mesh = normalise(load(ROOT / "samples/dromedary.glb"))
-    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
-    vertices = mesh.vertices[np.unique(mesh.faces)]
+    solid = trimesh.Trimesh(dromedary.vertices, dromedary.faces, process=False)
+    vertices = dromedary.vertices[np.unique(dromedary.faces)]
     distances = np.sort(np.linalg.norm(vertices - solid.centroid, axis=1))
     tenth = round(0.1 * len(distances))
     literal = np.sqrt(1 - distances[:tenth].mean() ** 2 / distances[-tenth:].mean() ** 2)
-    agreement("difference", abs(eccentricity(mesh) - literal))
+    agreement("difference", abs(eccentricity(dromedary) - literal))
 
 
 def test_classes(agreement):

@@ -1,7 +1,5 @@
 """T3.1.4 and T3.2.9: the errors of a simplified mesh."""
 
-from pathlib import Path
-
 import numpy as np
 import trimesh
 from scipy import ndimage
@@ -11,7 +9,6 @@ from haptic_glance.lod.errors import metro
 from haptic_glance.lod.perceptual import CONSTANTS, NEIGHBOURS, band_distance, laplacian_pyramid, normalise, ssim_error
 from haptic_glance.mesh.mesh import Mesh
 
-ROOT = Path(__file__).parents[2]
 BINOMIAL = np.array([1, 4, 6, 4, 1]) / 16
 
 

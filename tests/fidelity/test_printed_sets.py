@@ -198,11 +198,9 @@ def test_red_channel(agreement):
     agreement("difference", float(np.abs(to_images(imprints, 16).numpy() - literal).max()))
 
 
-def test_learning_rates(agreement):
+def test_learning_rates(composed_set, agreement):
     """Tables 5.1 to 5.5: how many of the printed rates are among those tried."""
-    from stages.compose import composed
-
-    tried = composed(["data=princeton_six"])["transfer"]
+    tried = composed_set("princeton_six")["transfer"]
     held, count = 0, 0
     for path in sorted((ROOT / "data/reference/thesis").glob("table_5_[1-5]_*.csv")):
         table = pd.read_csv(path)

@@ -1,25 +1,15 @@
 """T3.2.6 and T3.2.7, T3.1.1: from a pixel to the surface, the size of a neighbourhood, the light."""
 
-from pathlib import Path
-
 import numpy as np
-import pytest
 
 from haptic_glance.lod.neighbourhood import adaptive_rings
 from haptic_glance.look.camera import DISTANCE, Viewpoint, pixel_rays, pixels_per_unit, project
 from haptic_glance.look.channels.surface import nearest_corners
 from haptic_glance.look.views import TWELVE, render
-from haptic_glance.mesh import load, normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 
-ROOT = Path(__file__).parents[2]
 SIZE = (900, 1200)
-
-
-@pytest.fixture(scope="module")
-def dromedary():
-    return normalise(load(ROOT / "samples/dromedary.glb"))
 
 
 def printed_places(rows, columns, viewpoint):

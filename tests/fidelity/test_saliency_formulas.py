@@ -1,7 +1,5 @@
 """T3.1.1 and T3.2, eq. 3.1 to 3.9: conspicuity maps and their averages, in plain loops of numpy and scipy."""
 
-from pathlib import Path
-
 import numpy as np
 from scipy import ndimage
 
@@ -11,10 +9,8 @@ from haptic_glance.look.channels.channels import mask_at_size
 from haptic_glance.look.channels.colour import LINEAR, MECHANISMS
 from haptic_glance.look.points.fuse import COMBINATIONS, fuse
 from haptic_glance.look.views import View, render
-from haptic_glance.mesh import load, normalise
 from haptic_glance.mesh.mesh import Mesh
 
-ROOT = Path(__file__).parents[2]
 MESH = Mesh([[0, -0.5, -0.5], [0, 0.5, -0.5], [0, 0, 0.5]], [[0, 1, 2]])
 BINOMIAL = np.array([1, 4, 6, 4, 1]) / 16  # the dyadic Gaussian pyramid of Burt and Adelson
 PAIRS = [(c, c + delta) for c in (2, 3, 4) for delta in (3, 4)]
@@ -223,12 +219,11 @@ def test_weighted_average(agreement):
     agreement("difference", np.abs(fuse(maps, weights) - literal).max())
 
 
-def test_our_formulas(agreement):
+def test_our_formulas(dromedary, agreement):
     """Nine maps of a dromedary by our own formulas, background filled, beside the printed ones: the least likeness."""
-    mesh = normalise(load(ROOT / "samples/dromedary.glb"))
-    view = render(mesh, Viewpoint(90, 0), (450, 600), renderer="raster")
-    ours = conspicuity(mesh, view)
-    letter = conspicuity(mesh, view, filled=False, formulas="printed")
+    view = render(dromedary, Viewpoint(90, 0), (450, 600), renderer="raster")
+    ours = conspicuity(dromedary, view)
+    letter = conspicuity(dromedary, view, filled=False, formulas="printed")
     inside = mask_at_size(view.mask, ours["intensity"].shape)
     likeness = [np.corrcoef(ours[name][inside], letter[name][inside])[0, 1] for name in ours if letter[name].any()]
     assert len(likeness) == 9

@@ -1,14 +1,14 @@
 """Chapter 4: imprints, their similarity and features, contours and sequences."""
 
-from pathlib import Path
-
 import numpy as np
+import pytest
 import pywt
+import trimesh
 from scipy import ndimage, stats
 
 from haptic_glance.know.features import FEATURES, SIMILARITY_THRESHOLD, confusable, features, similarity
 from haptic_glance.know.touches import concatenate_touches, draw_combinations, touch_map
-from haptic_glance.mesh import load, normalise
+from haptic_glance.lod import simplify
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch.distances import adaptive_distances, distances
 from haptic_glance.touch.follow import follow
@@ -18,22 +18,21 @@ from haptic_glance.touch.surface import sensor_axes, sensor_normals
 from stages.imprints.imprints import FaceCentres
 from stages.sequences.series import sequence_features
 
-ROOT = Path(__file__).parents[2]
 CELLS, PITCH = (16, 16), 0.01
 
 
-def dromedary():
-    return normalise(load(ROOT / "samples/dromedary.glb"))
+def spread(mesh, count):
+    return np.linspace(0, len(mesh.vertices) - 1, count).astype(int)
 
 
-def imprints(count=12):
-    mesh = dromedary()
-    return press_many(mesh, np.linspace(0, len(mesh.vertices) - 1, count).astype(int), CELLS, PITCH)
+@pytest.fixture(scope="module")
+def imprints(dromedary):
+    return press_many(dromedary, spread(dromedary, 40), CELLS, PITCH)
 
 
-def test_cross_correlation(agreement):
+def test_cross_correlation(imprints, agreement):
     """T4.2.3.3: the normalised cross-correlation of two imprints, and those removed at 0.85."""
-    images = imprints(40)
+    images = imprints
     literal = np.empty((len(images), len(images)))
     for i, a in enumerate(images):
         for j, b in enumerate(images):
@@ -46,9 +45,9 @@ def test_cross_correlation(agreement):
     agreement("difference", np.abs(found - literal).max())
 
 
-def test_features(agreement):
+def test_features(dromedary, agreement):
     """T4.2.3.4: of three levels norm, mean, deviation, entropy of each band; of the imprint five numbers."""
-    images = imprints(6).astype(float)
+    images = press_many(dromedary, spread(dromedary, 6), CELLS, PITCH).astype(float)
     literal = []
     for image in images:
         row, levels = [], pywt.wavedec2(image, "db2", mode="symmetric", level=3)
@@ -64,9 +63,9 @@ def test_features(agreement):
     agreement("difference", np.abs(found - literal).max())
 
 
-def test_several_touches(agreement):
+def test_several_touches(imprints, agreement):
     """T4.2.3.5: a map of two dimensions, three coordinates, and random others of the same object in one vector."""
-    samples, places = features(imprints(40)), np.random.default_rng(0).random((40, 3))
+    samples, places = features(imprints), np.random.default_rng(0).random((40, 3))
     labels = np.arange(40) // 10
     mapped = touch_map().fit(samples).transform(samples)
     five = np.column_stack([mapped, places])
@@ -81,9 +80,9 @@ def test_several_touches(agreement):
     agreement("settings", (sum(map(bool, held)), len(held)))
 
 
-def test_quasi_tangent_plane(agreement):
+def test_quasi_tangent_plane(dromedary, agreement):
     """T4.2.3.1: the plane of the three closest neighbours; its normal is the cross product of P1P2 and P1P3."""
-    mesh = dromedary()
+    mesh = dromedary
     vertices = np.arange(5, len(mesh.vertices), 997)
     _, axes = quasi_tangent(mesh, vertices)
     apart = []
@@ -126,8 +125,6 @@ def printed_distances(mesh, vertex, centres_of_faces):
 
 def convex():
     """A ball of few faces, on which no cell of a tangent plane is inside but close to the place."""
-    import trimesh
-
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
     return Mesh(ball.vertices, ball.faces)
 
@@ -154,21 +151,18 @@ def test_face_centres(agreement):
     agreement("difference", np.abs(found - literal).max())
 
 
-def test_hit_beside_face_centre(agreement):
+def test_hit_beside_face_centre(dromedary, agreement):
     """The imprints of the two, on a dromedary of 4,000 faces."""
-    from haptic_glance.lod import simplify
-
-    mesh = simplify(dromedary(), 4000)
-    vertices = np.linspace(0, len(mesh.vertices) - 1, 40).astype(int)
-    pairs = zip(*(press_many(surface, vertices, CELLS, PITCH) for surface in (mesh, FaceCentres(mesh))), strict=True)
+    mesh = simplify(dromedary, 4000)
+    hits, centres = (press_many(surface, spread(mesh, 40), CELLS, PITCH) for surface in (mesh, FaceCentres(mesh)))
+    pairs = zip(hits, centres, strict=True)
     likeness = [np.corrcoef(a.ravel(), b.ravel())[0, 1] for a, b in pairs if a.any() and b.any()]
     agreement("r", float(np.mean(likeness)))
 
 
-def test_smaller_array(agreement):
+def test_smaller_array(dromedary, agreement):
     """T4.4.3: 32 x 32 cells, closer together where the array would intersect the object."""
-    mesh = dromedary()
-    vertices = np.linspace(0, len(mesh.vertices) - 1, 60).astype(int)
+    mesh, vertices = dromedary, spread(dromedary, 60)
     axes = sensor_axes(sensor_normals(mesh, vertices))
     pitches, found = adaptive_distances(mesh, mesh.vertices[vertices], axes)
     saddles = pitches < 0.01

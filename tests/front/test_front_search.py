@@ -1,20 +1,72 @@
-"""A study goes on where it stopped, is the same by its seed, and refuses what another version has found."""
+"""Which choices go on, by Pareto rank; a study goes on where it stopped and refuses what another version has found."""
 
 import numpy as np
 import pytest
 
 from haptic_glance.base.rng import rng
 from stages.front.known import halves
-from stages.front.search import ranks
 
 optuna = pytest.importorskip("optuna", reason="pip install 'haptic-glance[front]'")
 from stages.front import search as module  # noqa: E402
-from stages.front.search import OutOfTime, Search  # noqa: E402
+from stages.front.search import (  # noqa: E402
+    DIRECTIONS,
+    OutOfTime,
+    Search,
+    aims,
+    best_share,
+    crowding,
+    losses,
+    ranks,
+    smallest_of,
+)
 from stages.front.space import DEFAULT, choice_of  # noqa: E402
 
 MADE_OF = {"code": "1234", "meshes": "abcd"}
 SEARCHED, UNSEEN = halves([f"shape{k}" for k in range(12)], {"a": ["x"], "b": ["y"]}, 0)
-TRIALS = 30
+
+
+def answers(regions, objects, seconds=1.0, faces=100.0):
+    common = {"seconds": seconds, "faces": faces, "touches": 1, "item": "x"}
+    return [{"split": "regions", "value": regions, **common}, {"split": "objects", "value": objects, **common}]
+
+
+def dominates(one, other):
+    return bool((one <= other).all() and (one < other).any())
+
+
+def test_a_dominated_choice_is_never_on_the_front_and_each_rank_is_dominated_by_the_one_before():
+    points = np.random.default_rng(0).integers(0, 4, size=(60, 3))  # with many ties
+    rank = ranks(points)
+    beaten = np.array([any(dominates(other, one) for other in points) for one in points])
+    assert ((rank == 0) == ~beaten).all() and rank.max() > 1
+    for k in range(1, rank.max() + 1):
+        assert all(any(dominates(one, other) for one in points[rank == k - 1]) for other in points[rank == k])
+
+
+def test_the_ends_of_an_aim_stand_apart_and_a_crowd_does_not():
+    apart = crowding([[0, 4], [1, 3], [1.1, 2.9], [4, 0]])
+    assert np.isinf(apart[[0, 3]]).all() and apart[1] == pytest.approx(1.1 / 4 + 1.1 / 4)
+    assert (crowding(np.ones((3, 2))) == 0).all()
+
+
+def test_a_third_goes_on_the_better_rank_first_and_a_crowded_one_before_a_lonely_one_behind():
+    front = [[0, 2], [2, 0]]
+    assert best_share([[3, 3], *front, [4, 4], [5, 5], [2.5, 2.5]]).tolist() == [1, 2]
+    assert best_share([[1, 1]]).tolist() == [0]
+    front, behind = [[0, 4], [2, 2], [4, 0]], [[1, 9], [9, 1]]
+    assert best_share([*behind, *front, [10, 10], [11, 11], [12, 12], [13, 13]]).tolist() == [2, 3, 4]
+
+
+def test_aims_are_means_over_the_objects_and_what_could_not_be_asked_is_no_good():
+    assert aims([*answers(0.5, 0.25), *answers(0.7, None, seconds=None)]) == pytest.approx([0.6, 0.25, 1.0, 100.0, 1.0])
+    assert aims(answers(None, 0.5))[0] == 0
+    assert losses([answers(0.5, 0.25)]).tolist() == [[-0.5, -0.25, 1, 100, 1]] and len(DIRECTIONS) == 5
+
+
+def test_the_smallest_is_the_quickest_within_two_points_of_the_best():
+    choices = {"best": answers(0.8, 0.6, 9), "near": answers(0.79, 0.58, 2), "slow": answers(0.8, 0.59, 3)}
+    assert smallest_of(choices | {"far": answers(0.7, 0.6, 1)}) == "near"
+    assert smallest_of({"b": answers(0.5, 0.5, faces=9), "a": answers(0.5, 0.5, faces=10)}) == "b"
 
 
 @pytest.fixture
@@ -25,10 +77,8 @@ def asked(monkeypatch):
     def known(senses, objects, choice, effort, seed):
         calls.append((objects, choice))
         random = rng(7, choice.name)
-        base = choice.columns | {"seconds": float(random.random()), "faces": 100.0}
-        return [
-            base | {"split": split, "value": float(random.random()), "item": "x"} for split in ("regions", "objects")
-        ]
+        base = choice.columns | {"seconds": float(random.random()), "faces": 100.0, "item": "x"}
+        return [base | {"split": split, "value": float(random.random())} for split in ("regions", "objects")]
 
     monkeypatch.setattr(module, "known", known)
     return calls
@@ -38,7 +88,7 @@ def search(folder, made_of=MADE_OF, seed=0, minutes=60.0):
     return Search(folder, made_of, None, seed, minutes)
 
 
-def run(folder, trials=TRIALS, **options):
+def run(folder, trials=30, **options):
     return search(folder, **options).run(SEARCHED, UNSEEN, trials)
 
 
@@ -46,7 +96,7 @@ def of_rung(rows, rung):
     return [row for row in rows if row["rung"] == rung]
 
 
-def test_a_study_that_was_stopped_goes_on_like_one_that_was_not(asked, tmp_path, monkeypatch):
+def test_a_study_that_was_stopped_goes_on_like_one_that_was_not_and_the_seed_decides(asked, tmp_path, monkeypatch):
     whole = run(tmp_path / "whole")
     count = len(asked)
     known = module.known
@@ -63,11 +113,7 @@ def test_a_study_that_was_stopped_goes_on_like_one_that_was_not(asked, tmp_path,
     assert run(tmp_path / "stopped") == whole
     assert len(asked) == 2 * count  # nothing was asked twice
     assert run(tmp_path / "stopped") == whole and len(asked) == 2 * count
-
-
-def test_the_same_seed_proposes_the_same_choices(asked, tmp_path):
-    first, again, other = (run(tmp_path / str(k), seed=seed) for k, seed in enumerate((0, 0, 1)))
-    assert first == again != other
+    assert run(tmp_path / "other", seed=1) != whole
 
 
 def test_minutes_that_are_over_stop_it(asked, tmp_path):
@@ -77,45 +123,36 @@ def test_minutes_that_are_over_stop_it(asked, tmp_path):
 
 
 def test_more_trials_go_on_from_fewer(asked, tmp_path):
-    run(tmp_path, trials=6)
+    run(tmp_path / "few", trials=3)
     few = {choice for objects, choice in asked if objects is SEARCHED}
-    rows = run(tmp_path)
-    assert rows == run(tmp_path / "whole") and few < {choice for _, choice in asked}
+    rows = run(tmp_path / "few", trials=9)
+    assert rows == run(tmp_path / "whole", trials=9) and few < {choice for _, choice in asked}
+    for key, value in {"code": "5678", "meshes": "efgh"}.items():
+        reason = rf"{key} {MADE_OF[key]}, now {value}\).*remove that folder to search anew"
+        with pytest.raises(ValueError, match=reason):
+            search(tmp_path / "few", MADE_OF | {key: value})
 
 
-@pytest.mark.parametrize("change", [{"code": "5678"}, {"meshes": "efgh"}])
-def test_a_study_of_another_version_is_refused_with_the_remedy(asked, tmp_path, change):
-    run(tmp_path, trials=3)
-    ((key, value),) = change.items()
-    with pytest.raises(ValueError, match=rf"{key} {MADE_OF[key]}, now {value}\).*remove that folder to search anew"):
-        search(tmp_path, MADE_OF | change)
-
-
-def test_what_is_confirmed_is_asked_of_unseen_objects_alone(asked, tmp_path):
-    rows = run(tmp_path)
-    confirmed = {row["number"] for row in [*of_rung(rows, "confirmation"), *of_rung(rows, "one_choice")]}
-    on_unseen = [choice for objects, choice in asked if objects is UNSEEN]
-    assert len(on_unseen) == len(set(on_unseen)) == len(confirmed)
-    assert all(objects in (SEARCHED, UNSEEN) for objects, _ in asked) and DEFAULT in on_unseen
-
-
-def test_a_dominated_choice_is_not_confirmed_and_a_third_goes_on(asked, tmp_path):
+def test_a_third_goes_on_and_of_the_last_the_front_is_confirmed_on_unseen_objects_alone(asked, tmp_path):
     rows = run(tmp_path)
     counts = [len({row["number"] for row in of_rung(rows, rung)}) for rung in ("wide", "narrow", "last")]
     assert counts[1] == counts[0] // 3 and counts[2] == counts[1] // 3
-    last = {row["number"]: module.aims([one for one in of_rung(rows, "last") if one["number"] == row["number"]])
+    last = {row["number"]: aims([one for one in of_rung(rows, "last") if one["number"] == row["number"]])
             for row in of_rung(rows, "last")}  # fmt: skip
     front = np.array(list(last))[ranks(np.array(list(last.values())) * [-1, -1, 1, 1, 1]) == 0]
     confirmed = {row["number"]: row["role"] for row in of_rung(rows, "confirmation")}
-    allowed = {*front.tolist(), *(number for number, role in confirmed.items() if role)}
-    assert set(confirmed) == allowed and sorted(filter(None, confirmed.values())) == ["default", "smallest"]
+    assert set(confirmed) == {*front.tolist(), *(number for number, role in confirmed.items() if role)}
+    assert sorted(filter(None, confirmed.values())) == ["default", "smallest"]
+    on_unseen = [choice for objects, choice in asked if objects is UNSEEN]
+    numbers = {*confirmed, *(row["number"] for row in of_rung(rows, "one_choice"))}
+    assert len(on_unseen) == len(set(on_unseen)) == len(numbers)
+    assert all(objects in (SEARCHED, UNSEEN) for objects, _ in asked) and DEFAULT in on_unseen
 
 
-def test_where_one_choice_beats_all_it_alone_is_confirmed_beside_the_default(asked, tmp_path, monkeypatch):
+def test_where_one_choice_beats_all_it_alone_is_confirmed_beside_the_default(tmp_path, monkeypatch):
     def known(senses, objects, choice, effort, seed):
         value = float(rng(7, choice.name).random())
-        base = {"seconds": 1 - value, "faces": 1.0, "touches": 1, "value": value, "item": "x"}
-        return [base | {"split": split} for split in ("regions", "objects")]
+        return answers(value, value, seconds=1 - value)
 
     monkeypatch.setattr(module, "known", known)
     rows = run(tmp_path)

@@ -29,6 +29,12 @@ def library(shapes):
     return learn(shapes)
 
 
+@pytest.fixture(scope="module")
+def blind(shapes):
+    """What is known without the places: its likelihood asks what was felt, not where."""
+    return learn(shapes, placed=False)
+
+
 def ball(bump):
     """A ball of radius 0.4 with, or without, a bump of 0.1 on one side, as wide as the array."""
     shape = trimesh.creation.icosphere(subdivisions=5)
@@ -44,18 +50,21 @@ def touched(library, mesh, count, name="again"):
     return exploration
 
 
-def test_six_shapes_are_known_without_a_file(shapes):
-    assert tuple(shapes) == NAMES
-    for mesh in shapes.values():
-        assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.5)
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_touches_of_a_known_object_end_in_it(library, shapes, name):
+    assert tuple(shapes) == NAMES and np.linalg.norm(shapes[name].vertices, axis=1).max() == pytest.approx(0.5)
     exploration = Exploration(library, Surface(shapes[name]), rng(3, name))
     assert exploration.finish() == name
     assert exploration.belief.probabilities[name] >= 0.95
     assert not any(belief.known for belief in exploration.beliefs[:-1])
+
+
+def test_the_gain_is_none_where_the_object_is_known(library, shapes):
+    exploration = Exploration(library, Surface(shapes["torus"]), rng(3, "torus"))
+    first = library.gains(exploration.belief, exploration.expected)
+    exploration.finish()
+    known = library.gains(exploration.belief, exploration.expected)
+    assert 0.3 < first.max() < np.log(6) + 1e-9 and abs(known).max() < 0.2
 
 
 def test_the_belief_sums_to_one_and_begins_even(library, shapes):
@@ -79,13 +88,13 @@ def test_a_pair_that_feels_the_same_stays_undecided(shapes):
 
 def test_belief_is_as_right_as_it_says(library, shapes):
     """Calibrated within what 120 explorations of four touches can tell."""
-    said, right = [], []
+    confidence, right = [], []
     for name in NAMES:
         for draw in range(20):
             belief = touched(library, shapes[name], 4, f"{name} {draw}").belief
-            said.append(belief.values.max())
+            confidence.append(belief.values.max())
             right.append(next(iter(belief.probabilities)) == name)
-    assert np.mean(said) == pytest.approx(np.mean(right), abs=0.1)
+    assert np.mean(confidence) == pytest.approx(np.mean(right), abs=0.1)
 
 
 def test_the_next_touch_goes_where_two_objects_differ():
@@ -100,15 +109,7 @@ def test_the_next_touch_goes_where_two_objects_differ():
         assert exploration.belief.probabilities[name] > 0.7
 
 
-def test_the_gain_is_none_where_the_object_is_known(library, shapes):
-    exploration = Exploration(library, Surface(shapes["torus"]), rng(3, "torus"))
-    first = library.gains(exploration.belief, exploration.expected)
-    exploration.finish()
-    known = library.gains(exploration.belief, exploration.expected)
-    assert 0.3 < first.max() < np.log(6) + 1e-9 and abs(known).max() < 0.2
-
-
-def test_no_place_is_touched_again(library, shapes):
+def test_no_place_is_touched_again_and_the_planner_stops_where_nothing_is_fresh(library, shapes):
     exploration = Exploration(library, Surface(shapes["ball"]), rng(3, "ball"))
     for _ in range(12):
         place = exploration.next_place()
@@ -116,49 +117,34 @@ def test_no_place_is_touched_again(library, shapes):
             break
         exploration.touch(place)
     apart = np.linalg.norm(exploration.positions[:, None] - exploration.positions[None], axis=2)
-    assert apart[~np.eye(len(apart), dtype=bool)].min() > FRESH
-
-
-def test_the_planner_stops_where_nothing_is_fresh(library, shapes):
-    exploration = Exploration(library, Surface(shapes["ball"]), rng(3, "ball"))
+    assert len(apart) > 2 and apart[~np.eye(len(apart), dtype=bool)].min() > FRESH
     exploration.positions = exploration.candidates.positions
     assert exploration.next_place() is None
 
 
-def test_a_mesh_is_learned_once_and_by_its_content(shapes):
-    some = {name: shapes[name] for name in NAMES[:3]}
-    copies = {name: Mesh(mesh.vertices.copy(), mesh.faces.copy()) for name, mesh in some.items()}
-    assert learn(some) is learn(copies)
-    moved = {**copies, "ball": Mesh(shapes["ball"].vertices * 0.9, shapes["ball"].faces)}
-    assert learn(some) is not learn(moved)
+def test_a_mesh_is_learned_once_and_by_its_content(library, blind, shapes):
+    copies = {name: Mesh(mesh.vertices.copy(), mesh.faces.copy()) for name, mesh in shapes.items()}
+    assert learn(copies) is library and blind is not library
+    pair = {"ball": shapes["ball"], "box": shapes["box"]}
+    assert learn(pair) is not learn(pair | {"ball": Mesh(shapes["ball"].vertices * 0.9, shapes["ball"].faces)})
 
 
-def test_an_object_may_lie_anywhere_unless_it_is_placed(shapes):
-    """Without places the likelihood asks what was felt, not where."""
-    blind, aside = learn(shapes, placed=False), Mesh(shapes["torus"].vertices + [3.0, 1.0, 0.0], shapes["torus"].faces)
-    assert touched(blind, aside, 12).belief.known == "torus"
-    assert touched(blind, aside, 12).belief.probabilities == pytest.approx(
-        touched(blind, shapes["torus"], 12).belief.probabilities, abs=1e-6
-    )
-    assert learn(shapes) is not blind
+def test_an_object_may_lie_anywhere_unless_it_is_placed_and_a_known_place_helps(library, blind, shapes):
+    aside = Mesh(shapes["torus"].vertices + [3.0, 1.0, 0.0], shapes["torus"].faces)
+    belief = touched(blind, aside, 12).belief
+    assert belief.known == "torus"
+    assert belief.probabilities == pytest.approx(touched(blind, shapes["torus"], 12).belief.probabilities, abs=1e-6)
+    right = [np.mean([touched(known, shapes[name], 2).belief.probabilities[name] for name in NAMES])
+             for known in (library, blind)]  # fmt: skip
+    assert right[0] > right[1] + 0.1
 
 
-def test_a_known_place_helps(library, shapes):
-    blind = learn(shapes, placed=False)
-    right = {one.placed: [touched(one, shapes[name], 2).belief.probabilities[name] for name in NAMES * 3]
-             for one in (library, blind)}  # fmt: skip
-    assert np.mean(right[True]) > np.mean(right[False]) + 0.1
-
-
-def test_one_object_alone_is_refused_and_a_bad_one_is_named(shapes):
+def test_what_cannot_be_learned_or_felt_is_named(library, shapes):
     with pytest.raises(ValueError, match="at least two"):
         learn({"ball": shapes["ball"]})
     flat = Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
     with pytest.raises(ValueError, match="nothing: cannot sample a mesh without area"):
         learn({"ball": shapes["ball"], "nothing": flat})
-
-
-def test_imprints_of_another_array_are_refused(library):
     with pytest.raises(ValueError, match=r"learned with \(16, 16\) cells"):
         library.log_likelihoods(np.zeros((1, 8, 8)), np.zeros((1, 3)))
 
@@ -166,10 +152,8 @@ def test_imprints_of_another_array_are_refused(library):
 def test_a_learned_touch_is_not_compared_with_itself():
     """Two objects with samples drawn alike: with itself counted each touch would favour its own object."""
     random = np.random.default_rng(0)
-    same = Library(
-        ("one", "two"), random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3)), False
-    )
-    own = same._own.reshape(2, TOUCHES, 2)
+    samples, places = random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3))
+    own = Library(("one", "two"), samples, places, False)._own.reshape(2, TOUCHES, 2)
     ahead = np.stack([own[0, :, 0] - own[0, :, 1], own[1, :, 1] - own[1, :, 0]])
     assert abs(ahead.mean()) < 0.05
 
@@ -200,11 +184,10 @@ def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes
     (tmp_path / "notes.txt").write_text("no mesh")
     monkeypatch.setitem(sys.modules, "pymeshlab", None)
     (tmp_path / "cloud.xyz").write_text("\n".join(f"{i % 9} {i % 7} {i % 5}" for i in range(200)))
-    found, notes = known_objects(tmp_path)
-    assert list(found) == ["cubelarge", "small"] and [note.partition(":")[0] for note in notes] == [
-        "broken.stl", "cloud.xyz",
-    ]  # fmt: skip
-    assert np.linalg.norm(found["small"].vertices, axis=1).max() == pytest.approx(0.5)
+    meshes, notes = known_objects(tmp_path)
+    assert list(meshes) == ["cubelarge", "small"]
+    assert [note.partition(":")[0] for note in notes] == ["broken.stl", "cloud.xyz"]
+    assert np.linalg.norm(meshes["small"].vertices, axis=1).max() == pytest.approx(0.5)
     few, left_out = known_objects(tmp_path, most=1)
     assert not few and len(left_out) == 4  # the first by name is the broken one
     assert known_objects(tmp_path / "nowhere") == ({}, [])

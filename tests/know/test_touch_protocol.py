@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from sklearn.metrics.pairwise import rbf_kernel
 
 from haptic_glance.know import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
 from haptic_glance.know.protocol import Prepared
@@ -12,40 +11,36 @@ def mean(rows, split):
     return np.mean([row["value"] for row in rows if (row["metric"], row["split"]) == ("accuracy", split)])
 
 
+def noise(*shape):
+    """(samples of this shape, labels): two classes that nothing tells apart."""
+    return np.random.default_rng(0).normal(size=shape), np.repeat([0, 1], shape[0] // 2)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"])
 def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, name):
-    easy = bumps(count=24)
-    assert mean(evaluate(easy, name, 3), "random") > 0.8
-    assert mean(evaluate(easy, name, 3), "folds") > 0.7
-    noise = dict(zip("abc", np.random.default_rng(1).random((3, 40, 16, 16)), strict=True))
-    assert mean(evaluate(noise, name, 4), "random") < 0.6
+    rows = evaluate(bumps(count=24), name, 3)
+    assert mean(rows, "random") > 0.8 and mean(rows, "folds") > 0.7
+    images = dict(zip("abc", np.random.default_rng(1).random((3, 40, 16, 16)), strict=True))
+    assert mean(evaluate(images, name, 4), "random") < 0.6
 
 
-def test_thesis_settings():
+def test_classifiers_are_the_thesis_s_behind_twelve_components():
     assert set(CLASSIFIERS) == {"knn", "svm", "decision_tree", "naive_bayes", "deep_learning"}
-    settings = {name: classifier(name, 5)[-1].get_params() for name in CLASSIFIERS}
-    assert (
-        settings["knn"]["n_neighbors"] == 1 and settings["knn"]["metric"] == "minkowski" and settings["knn"]["p"] == 2
-    )
-    kernel = settings["svm"]["kernel"]
-    assert (kernel.func, kernel.keywords, settings["svm"]["C"]) == (rbf_kernel, {"gamma": 1.0}, 1.5)
-    assert settings["svm"]["tol"] == 0.001 and settings["decision_tree"]["max_depth"] == 10
-    assert settings["deep_learning"] == {"hidden": (50, 50), "epochs": 10, "seed": 5}
+    assert classifier("deep_learning", 5)[-1].get_params() == {"hidden": (50, 50), "epochs": 10, "seed": 5}
     assert classifier("knn")[-2].n_components == 12
 
 
 @pytest.mark.slow
 def test_rows_are_equal_from_run_to_run_but_for_the_seconds(bumps):
-    def stripped(rows):
+    def rows_of(images, seed):
+        rows = evaluate(images, "decision_tree", 2, seed=seed)
         return [{key: value for key, value in row.items() if key != "seconds"} for row in rows]
 
     images = bumps(jitter=3.0)
-    backwards = dict(reversed(images.items()))
-    rows = stripped(evaluate(images, "decision_tree", 3, seed=4))
-    assert rows == stripped(evaluate(backwards, "decision_tree", 3, seed=4))
-    assert rows != stripped(evaluate(images, "decision_tree", 3, seed=5))
-    assert [row["repetition"] for row in rows] == [0, 0, 1, 1, 2, 2]
+    rows = rows_of(images, 4)
+    assert rows == rows_of(dict(reversed(images.items())), 4) != rows_of(images, 5)
+    assert [row["repetition"] for row in rows] == [0, 0, 1, 1]
 
 
 def test_every_object_gives_as_many_as_the_poorest(bumps):
@@ -67,21 +62,24 @@ def test_hold_out_is_a_quarter_and_never_trained_on():
     assert np.array_equal(np.sort(np.concatenate([check for _, check in folds])), np.sort(train))
 
 
-def test_reduction_is_fitted_to_the_training_part_alone():
-    random = np.random.default_rng(0)
-    samples, truth = random.normal(size=(60, 44)), np.repeat([0, 1], 30)
-    train, test = np.arange(0, 60, 2), np.arange(1, 60, 2)
-    for kind, width in (("features", 12), ("located", 15), ("reduced", 44), ("joined", 44)):
-        far = samples.copy()
-        far[test] += 100
-        one, other = (Prepared.from_split(those, truth, (train, test), kind) for those in (samples, far))
-        assert one.train.shape == (30, width) and np.array_equal(one.train, other.train)
-        assert not np.allclose(one.test, other.test) and np.array_equal(one.test_truth, truth[test])
+@pytest.mark.parametrize(("kind", "width"), [("features", 12), ("located", 15), ("reduced", 44), ("joined", 44)])
+def test_preparation_is_fitted_to_the_training_part_alone_and_answers_as_the_pipeline_does(kind, width):
+    samples, truth = noise(80, 44)
+    samples[:, :6] += truth[:, None]
+    train, test = protocol.random_holdout(truth, 3)
+    far = samples.copy()
+    far[test] += 100
+    prepared, other = (Prepared.from_split(those, truth, (train, test), kind) for those in (samples, far))
+    assert prepared.train.shape == (60, width) and np.array_equal(prepared.train, other.train)
+    assert not np.allclose(prepared.test, other.test) and np.array_equal(prepared.test_truth, truth[test])
+    for name in ("knn", "naive_bayes", "decision_tree"):
+        model = classifier(name, 3, kind).fit(samples[train], truth[train])
+        assert np.array_equal(prepared.predict(name, 3)[0], model.predict(samples[test]))
 
 
 def test_other_scalings_are_of_all_data():
-    random = np.random.default_rng(0)
-    samples, truth = random.normal(3, 5, size=(80, 45)), np.repeat([0, 1], 40)
+    samples, truth = noise(80, 45)
+    samples = 5 * samples + 3
     train, test = protocol.random_holdout(truth, 3)
 
     def both(kind, scaling):
@@ -104,11 +102,6 @@ def test_other_scalings_are_of_all_data():
     assert np.ptp(both("joined", "min_max")[0], axis=0) == pytest.approx(np.ones(45))
 
 
-def test_unknown_scaling_is_named():
-    with pytest.raises(ValueError, match="scaling must be one of training, .*, min_max, got 'none'"):
-        classifier("knn", scaling="none")
-
-
 def test_a_dead_classifier_shows_in_its_rows():
     near, truth = 100 * np.eye(12), np.repeat([0, 1, 2], 4)
     dead = Prepared(near, truth, -near, truth, 0.0).predict("svm", 0, with_training=True)  # all far from each other
@@ -118,18 +111,6 @@ def test_a_dead_classifier_shows_in_its_rows():
     ]
     alive = Prepared(near, truth, near[:6], truth[:6], 0.0).predict("knn", 0)
     assert [row["value"] for row in alive.validity] == [None, pytest.approx(4 / 6)]
-
-
-@pytest.mark.parametrize("kind", ["features", "located", "reduced", "joined"])
-def test_shared_preparation_answers_as_the_pipeline_does(kind):
-    random = np.random.default_rng(0)
-    samples, truth = random.normal(size=(80, 20)), np.repeat([0, 1], 40)
-    samples[:, :6] += truth[:, None]
-    train, test = protocol.random_holdout(truth, 3)
-    prepared = Prepared.from_split(samples, truth, (train, test), kind)
-    for name in ("knn", "naive_bayes", "decision_tree"):
-        model = classifier(name, 3, kind).fit(samples[train], truth[train])
-        assert np.array_equal(prepared.predict(name, 3)[0], model.predict(samples[test]))
 
 
 def test_splits_depend_on_nothing_but_the_repetition(monkeypatch):
@@ -143,12 +124,14 @@ def test_splits_depend_on_nothing_but_the_repetition(monkeypatch):
     assert all(np.array_equal(one, other) for one, other in zip(drawn[:12], drawn[12:], strict=True))
 
 
-def test_confusion_counts_the_hold_outs(bumps):
+def test_confusion_counts_the_hold_outs_and_regions_are_none_where_all_touches_overlap(bumps):
     images = bumps(count=16)
-    samples = np.concatenate([features(stack) for stack in images.values()])
-    rows, confusion = evaluate_features(samples, np.repeat(list(images), 16), "knn", repetitions=5)
-    assert (confusion.sum(axis=1) == 5 * 4).all()
+    samples, truth = np.concatenate([features(stack) for stack in images.values()]), np.repeat(list(images), 16)
+    rows, confusion = evaluate_features(samples, truth, "knn", 3, places=np.zeros((48, 3)), min_distance=0.16)
+    assert (confusion.sum(axis=1) == 3 * 4).all()
     assert confusion.trace() / confusion.sum() == pytest.approx(mean(rows, "random"))
+    last = [(row["split"], row["value"]) for row in rows[-2:]]
+    assert last == [("regions", None), ("random_fewer", None)]
 
 
 def test_apart_holds_out_a_region_far_from_all_training():
@@ -164,13 +147,14 @@ def test_apart_holds_out_a_region_far_from_all_training():
         assert not np.isin(few, other_test).any()
 
 
-def test_apart_is_none_where_all_touches_overlap(bumps):
-    samples = np.concatenate([features(stack) for stack in bumps().values()])
-    rows, _ = evaluate_features(
-        samples, np.repeat([0, 1, 2], 16), "knn", 1, places=np.zeros((48, 3)), min_distance=0.16
-    )
-    assert [row["split"] for row in rows[-2:]] == ["regions", "random_fewer"]
-    assert rows[-2]["value"] is None and rows[-1]["value"] is None
+def test_side_is_held_out_of_all_objects_alike():
+    places, truth = np.random.default_rng(0).uniform(-1, 1, size=(120, 3)), np.repeat([0, 1], 60)
+    train, test = protocol.region_holdout(truth, places, 0.1, 5, side=True)
+    centre = places[test].mean(axis=0)
+    for label in (0, 1):
+        known, side = (places[part[truth[part] == label]] for part in (train, test))
+        assert len(side) == 15 and side.mean(axis=0) @ centre > 0.5 * np.linalg.norm(centre) ** 2
+        assert np.linalg.norm(known[:, None] - side, axis=2).min() > 0.1
 
 
 @pytest.mark.slow
@@ -179,24 +163,21 @@ def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
     places = random.random((400, 3))
     labels = np.repeat([0, 1], 200)
     felt = np.hstack([places, places**2, np.sin(9 * places), np.cos(9 * places)])  # tells the place, not the object
-    noise = felt + 1e-3 * random.normal(size=felt.shape)
+    shaken = felt + 1e-3 * random.normal(size=felt.shape)
     differing = places + np.where(labels, 0.5, 0)[:, None] * (places[:, :1] > 0.5)  # objects differ on one side alone
-    rows, _ = evaluate_features(np.hstack([noise, differing]), labels, "knn", 6, places=places, min_distance=0.3)
+    rows, _ = evaluate_features(np.hstack([shaken, differing]), labels, "knn", 6, places=places, min_distance=0.3)
     assert mean(rows, "random_fewer") > mean(rows, "regions") + 0.05
 
 
 def test_located_samples_keep_the_place_behind_the_components():
-    random = np.random.default_rng(0)
-    samples, labels = random.normal(size=(120, 41)), np.repeat([0, 1], 60)
-    places = random.normal(size=(120, 3)) * 1e-3
+    samples, labels = noise(120, 41)
+    places = np.random.default_rng(1).normal(size=(120, 3)) * 1e-3
     places[:, 2] += 1e-2 * labels
     located = classifier("decision_tree", 0, "located").fit(np.hstack([samples, places])[::2], labels[::2])
     components = located[0].transform(np.hstack([samples, places]))
     plain = classifier("knn").fit(samples[::2], labels[::2])[:-1]
     assert components.shape == (120, 15) and np.allclose(components[:, :12], plain.transform(samples))
     assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
-    with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
-        classifier("knn", 0, "places")
 
 
 @pytest.mark.parametrize(
@@ -213,18 +194,10 @@ def test_what_cannot_be_classified_is_named(bumps, change, name, words):
         evaluate({**bumps(), **change}, name)
 
 
-def test_one_object_cannot_be_told_apart(bumps):
+def test_one_object_and_settings_of_no_classifier_are_named(bumps):
     with pytest.raises(ValueError, match="two objects"):
         evaluate(bumps(("cup",)), "knn")
-
-
-def test_side_is_held_out_of_all_objects_alike():
-    places = np.random.default_rng(0).uniform(-1, 1, size=(120, 3))
-    truth = np.repeat([0, 1], 60)
-    train, test = protocol.region_holdout(truth, places, 0.1, 5, side=True)
-    centre = places[test].mean(axis=0)
-    for own in (test[truth[test] == 0], test[truth[test] == 1]):
-        assert len(own) == 15 and places[own].mean(axis=0) @ centre > 0.5 * np.linalg.norm(centre) ** 2
-    for one in (0, 1):
-        gaps = places[train[truth[train] == one]][:, None] - places[test[truth[test] == one]]
-        assert np.linalg.norm(gaps, axis=2).min() > 0.1
+    with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
+        classifier("knn", 0, "places")
+    with pytest.raises(ValueError, match="scaling must be one of training, .*, min_max, got 'none'"):
+        classifier("knn", scaling="none")

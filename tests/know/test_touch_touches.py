@@ -1,11 +1,14 @@
-"""Several touches as one sample."""
+"""Several touches as one sample, and how alike two imprints are."""
 
 import numpy as np
 import pytest
+from skimage.feature import match_template
 
-from haptic_glance.know import concatenate_touches, draw_combinations, touch_map
+from haptic_glance.know import concatenate_touches, confusable, draw_combinations, similarity, touch_map
+from haptic_glance.know.features import as_many
 
 RANDOM = np.random.default_rng(0)
+IMAGES = RANDOM.random((5, 9, 7))
 TRUTH = np.repeat([0, 1, 2], 8)
 
 
@@ -19,17 +22,13 @@ def test_map_keeps_neighbours_near_and_strangers_apart():
     assert np.linalg.norm(centres[0] - centres[2]) > np.linalg.norm(centres[0] - centres[1]) * 1.2
 
 
-def test_map_is_decided_by_the_training_samples_alone():
+def test_map_is_decided_by_the_training_samples_alone_and_bears_a_feature_that_never_changes():
     samples, others = RANDOM.normal(size=(30, 4)), RANDOM.normal(size=(9, 4))
-    first_of_each = touch_map().fit(samples).transform(others)
-    assert np.array_equal(first_of_each, touch_map().fit(samples).transform(others))
-    assert np.array_equal(first_of_each[:2], touch_map().fit(samples).transform(others[:2]))
-    assert not np.array_equal(first_of_each, touch_map().fit(others).transform(others))
-
-
-def test_map_bears_a_feature_that_never_changes():
-    samples = np.hstack([RANDOM.normal(size=(30, 3)), np.ones((30, 1))])
-    assert np.isfinite(touch_map().fit(samples).transform(samples)).all()
+    samples[:, 3] = 1
+    places = touch_map().fit(samples).transform(others)
+    assert np.isfinite(places).all() and np.array_equal(places, touch_map().fit(samples).transform(others))
+    assert np.array_equal(places[:2], touch_map().fit(samples).transform(others[:2]))
+    assert not np.array_equal(places, touch_map().fit(others).transform(others))
 
 
 @pytest.mark.parametrize("count", [1, 3, 8])
@@ -38,9 +37,6 @@ def test_each_imprint_begins_one_combination_of_different_imprints_of_its_object
     assert joined.shape == (24, count) and np.array_equal(joined[:, 0], np.arange(24))
     assert (TRUTH[joined] == TRUTH[:, None]).all()
     assert all(len(set(row)) == count for row in joined.tolist())
-
-
-def test_combination_larger_than_an_object_is_refused():
     with pytest.raises(ValueError, match="an object has 8 imprints, a combination needs 9"):
         draw_combinations(TRUTH, 9, np.random.default_rng(0))
 
@@ -48,3 +44,40 @@ def test_combination_larger_than_an_object_is_refused():
 def test_joined_numbers_stand_one_touch_after_another():
     numbers = np.arange(48).reshape(24, 2)
     assert concatenate_touches(numbers, np.array([[2, 0], [5, 23]])).tolist() == [[4, 5, 0, 1], [10, 11, 46, 47]]
+
+
+def test_similarity_is_a_template_match_at_zero_lag_however_hard_it_was_pressed():
+    expected = [[match_template(one, other)[0, 0] for other in IMAGES] for one in IMAGES]
+    assert np.allclose(similarity(IMAGES), expected)
+    assert np.allclose(similarity(IMAGES[:2], IMAGES[1:]), np.array(expected)[:2, 1:])
+    assert np.allclose(similarity(IMAGES, 0.3 * IMAGES + 0.2), expected)
+    assert np.allclose(np.diag(similarity(IMAGES, 1 - IMAGES)), -1)
+
+
+@pytest.mark.parametrize("value", [0.0, 0.3, 1.0])
+def test_flat_imprints_are_like_each_other_and_like_nothing_else(value):
+    images = np.concatenate([IMAGES[:1], np.full((1, 9, 7), value), np.zeros((1, 9, 7))])
+    assert np.allclose(similarity(images), [[1, 0, 0], [0, 1, 1], [0, 1, 1]])
+
+
+def test_shared_are_those_that_another_object_has_too():
+    similarities = similarity(np.concatenate([IMAGES[:2], IMAGES[:1], IMAGES[2:4]]))
+    assert confusable(similarities, ["a", "a", "b", "b", "b"]).tolist() == [True, False, True, False, False]
+    assert not confusable(similarities, ["a", "a", "a", "b", "b"]).any()
+    assert not confusable(similarities, ["a", "a", "b", "b", "b"], among=[0, 1, 3]).tolist()[0]
+
+
+def test_what_cannot_be_compared_is_refused():
+    for bad in (np.zeros((9, 7)), np.full((1, 9, 7), np.nan)):
+        with pytest.raises(ValueError, match="images must be finite"):
+            similarity(bad)
+    with pytest.raises(ValueError, match="the same number of cells: 63 and 64"):
+        similarity(IMAGES, np.zeros((1, 8, 8)))
+
+
+def test_a_control_of_selection_keeps_as_many_of_each_object():
+    labels = np.array(["a"] * 5 + ["b"] * 5)
+    kept = np.array([True, True, False, False, False] + [True] * 4 + [False])
+    drawn = [as_many(labels, kept, np.random.default_rng(seed)) for seed in range(20)]
+    assert {(one[:5].sum(), one[5:].sum()) for one in drawn} == {(2, 4)}
+    assert len({tuple(one) for one in drawn}) > 5

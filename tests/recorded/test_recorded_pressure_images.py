@@ -6,17 +6,18 @@ import pytest
 
 from stages.recorded import pressure_images
 from stages.recorded.pressure_images import class_sets, describe, neighbour_rows, process
+from stages.recorded.splits import block_split, split_number
 
 
 @pytest.fixture
 def recognised(monkeypatch, tmp_path):
-    """A function from images to the rows of all sets, two repetitions of one classifier."""
+    """A function from images and names of sets, none for all, to their rows, two repetitions of one classifier."""
     monkeypatch.setattr(pressure_images, "CLASSIFIERS", ["knn"])
 
-    def rows(images):
+    def rows(images, *names):
         touches = describe(images)
         sets = class_sets(touches, repetitions=2, seed=0)
-        return pd.DataFrame([row for one in sets.values() for row in process(one, tmp_path, touches, seed=0)])
+        return pd.DataFrame([row for name in names or sets for row in process(sets[name], tmp_path, touches, seed=0)])
 
     return rows
 
@@ -35,11 +36,8 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
     assert scalings["six_drawn", "selected_control", "random"] == ["training", "beforehand", "min_max"]
     assert scalings["six", "all", "random"] == scalings["all", "all", "blocks"] == ["training"]
     dead = rows[rows["metric"].isin(["train_accuracy", "commonest_share"])]
-    assert (
-        set(dead["split"]) == {"random"}
-        and set(dead["method"]) == {"all"}
-        and dead["value"].between(1 / len(recordings.touches()), 1).all()
-    )
+    assert set(dead["split"]) == {"random"} and set(dead["method"]) == {"all"}
+    assert dead["value"].between(1 / 7, 1).all()  # of seven classes
     assert set(accuracy.loc[accuracy["group"] == "six_drawn", "split"]) == {"random", "blocks"}
 
 
@@ -47,7 +45,7 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
 def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(recognised, recordings):
     images = recordings.touches(noise=0.1, count=24)
     images["a"][::2], images["b"][::2] = images["a"][::2].transpose(0, 2, 1), images["a"][1::2].transpose(0, 2, 1)
-    rows = recognised(images)
+    rows = recognised(images, "all", "four_alike")
     whole = rows[(rows["group"] == "all") & (rows["metric"] == "accuracy") & (rows["split"] == "random")]
     whole = whole.set_index("method")
     assert whole.loc["selected", "test"].max() < whole.loc["all", "test"].min()  # the test part shrinks as well
@@ -64,7 +62,7 @@ def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(rec
 def test_a_set_of_which_too_little_is_left_says_so(recognised, recordings):
     images = recordings.touches()
     images["b"] = images["a"]
-    rows = recognised(images)
+    rows = recognised(images, "all")
     selected = rows[(rows["group"] == "all") & (rows["method"] == "selected")]
     assert selected["value"].isna().all() and selected["note"].tolist() == ["a keeps 0 touches, 10 are needed"]
 
@@ -74,3 +72,14 @@ def test_repeated_poses_show_as_correlation_of_neighbours():
     slow = np.repeat(random.random((6, 16, 16)), 4, axis=0)
     rows = pd.DataFrame(neighbour_rows({"a": slow})).set_index("metric")["value"]
     assert rows["neighbour_correlation"] > rows["pair_correlation"] + 0.3
+
+
+def test_a_block_holds_out_neighbours_of_each_class_and_each_repetition_has_a_split_of_its_own():
+    labels = np.repeat(["a", "b"], [20, 12])
+    train, test = block_split(labels, 3)
+    assert sorted([*train, *test]) == list(range(32))
+    for label, count in (("a", 5), ("b", 3)):
+        held_out = np.sort(test[labels[test] == label])
+        assert len(held_out) == count and (np.diff(held_out) == 1).all()
+    assert len({tuple(block_split(labels, number)[1]) for number in range(9)}) > 3
+    assert len({split_number(seed, repetition) for seed in (0, 1) for repetition in range(9)}) == 18

@@ -6,6 +6,7 @@ import pytest
 from haptic_glance.base.files import read_json
 from stages.classification.recorded import ELECTRODES, PALMS
 from stages.engine.rows import read_rows
+from stages.recorded import pressure_images
 from stages.recorded.__main__ import run
 
 
@@ -14,7 +15,8 @@ def settings(kind, folder):
 
 
 @pytest.mark.slow
-def test_pressure_images(make_workspace, recordings, tmp_path):
+def test_pressure_images(make_workspace, recordings, tmp_path, monkeypatch):
+    monkeypatch.setattr(pressure_images, "CLASSIFIERS", ["knn"])
     recordings.write_archive(tmp_path / "archive", recordings.touches(noise=0.01))
     workspace = make_workspace(settings("pressure_images", "archive"))
     run(workspace)

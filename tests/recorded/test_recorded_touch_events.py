@@ -26,19 +26,21 @@ def series(count=8, classes=4, steps=60, seed=0):
 def test_bins_hold_the_logarithm_of_one_more_than_the_events():
     values = np.zeros((1, 39, 2, 10), np.uint8)
     values[0, 3, 1, [0, 4, 5]] = 1
-    found = binned(values, 2).reshape(39, 2, 2)
-    assert found[3, 1].tolist() == [np.log(3), np.log(2)] and found.sum() == np.log(3) + np.log(2)
+    expected = np.zeros((39, 2, 2))
+    expected[3, 1] = np.log1p([2, 1])
+    assert binned(values, 2).reshape(39, 2, 2) == pytest.approx(expected, rel=1e-14)
     assert np.array_equal(binned(values, 2)[:, ::2], binned(values, 2, 0.5))
     cut = binned(values, 2, 0.4).reshape(39, 2, 1)  # four steps: not the fifth of the first bin
-    assert cut[3, 1, 0] == np.log(2) and binned(values, 1, 0.5).sum() == np.log(3)
+    assert cut[3, 1, 0] == pytest.approx(np.log(2), rel=1e-14)
+    assert binned(values, 1, 0.5).sum() == pytest.approx(np.log(3), rel=1e-14)
     assert binned(values, 5, 0.5).shape == (1, 78 * 3)  # two bins and half of the third
 
 
 def test_a_rotation_keeps_all_distances_on_fewer_axes():
     features = binned(series().values, 10)
-    found = rotated(features)
-    assert found.shape == (32, 32) and features.shape == (32, 780)
-    assert np.allclose(pdist(found), pdist(features))
+    turned = rotated(features)
+    assert turned.shape == (32, 32) and features.shape == (32, 780)
+    assert np.allclose(pdist(turned), pdist(features))
 
 
 def test_time_is_divided_where_it_tells_the_objects_apart():
@@ -47,7 +49,7 @@ def test_time_is_divided_where_it_tells_the_objects_apart():
     assert choice.bins > 1 and choice.accuracy > 0.9 and choice.parameter in METHODS["discriminant"][1]
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["knn", "discriminant"])
 def test_the_test_part_changes_neither_the_choice_nor_what_is_measured_within_training(method, monkeypatch, tmp_path):
     monkeypatch.setattr(binned_module, "BINS", (4,))
     touches = series()

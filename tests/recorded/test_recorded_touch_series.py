@@ -25,22 +25,19 @@ def events(tmp_path):
     return tmp_path
 
 
-def test_events_are_read_in_order_with_the_publishers_parts(events):
-    found = read_touch_events(events)
-    assert found["objects"].values.shape == (10, 39, 2, 50) and found["containers"].values.shape == (10, 39, 2, 65)
-    one = found["objects"]
+def test_events_are_read_in_order_with_the_publishers_parts_from_a_folder_or_a_zip_file(events, tmp_path_factory):
+    touches = read_touch_events(events)
+    assert touches["objects"].values.shape == (10, 39, 2, 50) and touches["containers"].values.shape == (10, 39, 2, 65)
+    one = touches["objects"]
     assert one.labels.tolist() == ["00", "01"] * 5 and one.test.tolist() == [False] * 6 + [True] * 4
     assert one.names[[0, 6]].tolist() == ["train 0", "test 0"] and one.values.dtype == np.uint8
     assert np.array_equal(one.values[7], np.load(events / "Ev-Objects/test/sample_1_label_1.npy"))
-
-
-def test_a_zip_file_gives_the_same_as_its_folder(events, tmp_path_factory):
     archive = tmp_path_factory.mktemp("zip") / "events.zip"
     with zipfile.ZipFile(archive, "w") as file:
-        for one in sorted(events.rglob("*.npy"), reverse=True):
-            file.write(one, one.relative_to(events))
-    first, second = read_touch_events(events)["containers"], read_touch_events(archive)["containers"]
-    assert np.array_equal(first.values, second.values) and np.array_equal(first.labels, second.labels)
+        for path in sorted(events.rglob("*.npy"), reverse=True):
+            file.write(path, path.relative_to(events))
+    zipped = read_touch_events(archive)["objects"]
+    assert np.array_equal(one.values, zipped.values) and np.array_equal(one.labels, zipped.labels)
 
 
 TOUCH = "Ev-Objects/train/sample_2_label_0.npy"

@@ -1,4 +1,4 @@
-"""Trainings on recorded touches: splits, what is trained, what is kept of it, and what the rows say."""
+"""Trainings on recorded touches: splits, what is trained, what is kept of it, what the rows say, and the neighbours."""
 
 from dataclasses import replace
 
@@ -7,12 +7,16 @@ import pandas as pd
 import pytest
 import torch
 
-from stages.compose import compose
+from stages.classification.recorded import ELECTRODES, PALMS, Grasps
 from stages.engine.rows import read_rows
 from stages.engine.settings import check_section
+from stages.recorded.biotac_grasps import Model
+from stages.recorded.biotac_grasps import process as grasp_rows
+from stages.recorded.pressure_images import class_sets, describe
+from stages.recorded.pressure_images import process as image_rows
 from stages.recorded_networks import Params, data, trial
 from stages.recorded_networks import __main__ as stage
-from stages.recorded_networks.data import SOURCES, Recording, object_split, parts
+from stages.recorded_networks.data import SOURCES, Recording, neighbour_rows, object_split, parts
 from stages.recorded_networks.trial import Run, Trial, passes, process, trials
 from stages.transfer.recorded import Recorded
 
@@ -42,16 +46,15 @@ def recording(groups=GROUPS, color=False, splits=("random",), kept=()):
 
 @pytest.mark.parametrize("split", ["random", "blocks", "objects"])
 def test_parts_are_disjoint_and_hold_all(split):
-    fit, validation, test = parts(recording(), split, 3)
+    fit, validation, test = sides = parts(recording(), split, 3)
     assert sorted([*fit, *validation, *test]) == list(range(48))
     for part in (validation, test):
         assert len(part) and set(LABELS[part]) == {0, 1}
-
-
-def test_no_object_lies_on_two_sides_of_a_split_by_objects():
-    sides = [set(GROUPS[part]) for part in parts(recording(), "objects", 3)]
-    assert not sides[0] & sides[1] and not sides[0] & sides[2] and not sides[1] & sides[2]
-    assert len(sides[2]) == 4  # a quarter of six, in each class
+    if split == "blocks":  # of neighbours
+        assert all((np.diff(np.sort(test[LABELS[test] == label])) == 1).all() for label in (0, 1))
+    if split == "objects":  # no object lies on two sides
+        groups = [set(GROUPS[part]) for part in sides]
+        assert sum(map(len, groups)) == 12 and len(groups[2]) == 4  # a quarter of six, in each class
 
 
 def test_an_object_with_touches_of_both_classes_stays_on_one_side():
@@ -60,20 +63,13 @@ def test_an_object_with_touches_of_both_classes_stays_on_one_side():
     assert set(groups[test]) == {"object4"} and not set(groups[fit]) & set(groups[validation])
 
 
-def test_blocks_are_neighbours():
-    _, _, test = parts(recording(), "blocks", 3)
-    for label in (0, 1):
-        assert (np.diff(np.sort(test[LABELS[test] == label])) == 1).all()
-
-
-def test_a_class_with_one_recording_cannot_hold_one_out():
+def test_what_cannot_be_split_or_trained_is_named():
     with pytest.raises(ValueError, match="class 0 has too few groups to hold one out"):
         object_split(LABELS, np.where(LABELS == 0, "a", GROUPS), 0)
-
-
-def test_objects_that_nobody_knows_cannot_be_held_out():
     with pytest.raises(ValueError, match="do not say which object a touch is of"):
         parts(recording(groups=None), "objects", 0)
+    with pytest.raises(ValueError, match="'thawed' is not one of frozen, finetuned"):
+        trials({"a": recording()}, small(networks={"alexnet": ["thawed"]}))
 
 
 def test_grey_is_red_and_colours_stay():
@@ -84,50 +80,41 @@ def test_grey_is_red_and_colours_stay():
     assert torch.allclose(color[0, 2], data.as_images(recording(color=True).touches.images[..., 2], 16)[0, 0])
 
 
-def train(tmp_path, mode, split="random", network="mobilenet_v2", kept=(), **changes):
+def train(mode, split="random", network="mobilenet_v2", kept=(), **changes):
     """{(item, metric): value} of one training."""
     one = Trial(network, "random", mode, (Run("tiny", split, 0),))
-    rows = process(one, tmp_path, {"tiny": recording(kept=kept)}, small(**changes), seed=0)
+    rows = process(one, None, {"tiny": recording(kept=kept)}, small(**changes), seed=0)
     return {(row.get("item", ""), row["metric"]): row["value"] for row in rows}
 
 
 @pytest.mark.slow
-def test_a_frozen_network_learns_its_head_alone(tmp_path):
-    found = train(tmp_path, "frozen", network="alexnet", size=64)  # an untrained one that keeps much of an image
-    assert found["", "accuracy"] >= 0.7 and found["", "chance"] == found["", "majority"] == 0.5
-    assert found["", "trained_parameters"] == 2 * 256 + 2
+def test_a_frozen_network_learns_its_head_alone_and_the_same_again():
+    values = train("frozen", network="alexnet", size=64)  # an untrained one that keeps much of an image
+    assert values["", "accuracy"] >= 0.7 and values["", "chance"] == values["", "majority"] == 0.5
+    assert values["", "trained_parameters"] == 2 * 256 + 2
+    assert values == train("frozen", network="alexnet", size=64)
 
 
 @pytest.mark.slow
-def test_the_same_training_gives_the_same_result(tmp_path):
-    assert train(tmp_path, "frozen") == train(tmp_path, "frozen")
+def test_fine_tuning_trains_every_parameter():
+    values = train("finetuned", "test_objects", kept=("0/1", "1/1"))
+    assert values["", "trained_parameters"] == values["", "parameters"] > 2e6
+    assert {name for name, _ in values} == {"", "0/1", "1/1"}
 
 
-@pytest.mark.slow
-def test_fine_tuning_trains_every_parameter(tmp_path):
-    found = train(tmp_path, "finetuned", "test_objects", kept=("0/1", "1/1"))
-    assert found["", "trained_parameters"] == found["", "parameters"] > 2e6
-    assert {name for name, _ in found} == {"", "0/1", "1/1"}
-
-
-@pytest.mark.slow
 def test_passes_over_many_touches_are_fewer():
-    settings = check_section(Params, default("pressure_images"))
+    settings = small(steps=600, batch={"frozen": 32, "finetuned": 16}, epochs={"frozen": 20, "finetuned": 10})
     assert passes("finetuned", 825, settings) == 10 and passes("finetuned", 4373, settings) == 2
-    assert passes("frozen", 4373, settings) == settings.epochs["frozen"]
-
-
-def default(dataset):
-    return compose([f"sets=[{dataset}]"])[dataset]["recorded_networks"]
+    assert passes("frozen", 4373, settings) == 20
 
 
 def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone():
     networks = {"mobilenet_v2": ["frozen", "finetuned"]}
     settings = small(networks=networks, weights=["imagenet", "random"], repetitions={"frozen": 2, "finetuned": 2})
-    found = trials({"a": recording(splits=("random", "blocks")), "b": recording()}, settings)
-    shared = [[{run.repetition for run in one.runs} for one in found if len(one.runs) == size] for size in (6, 3)]
+    planned = trials({"a": recording(splits=("random", "blocks")), "b": recording()}, settings)
+    shared = [[{run.repetition for run in one.runs} for one in planned if len(one.runs) == size] for size in (6, 3)]
     assert shared == [[{0, 1}], [{0}, {1}]]  # an untrained network is drawn for each repetition
-    assert len(found) == 3 + 12 and len({one.name for one in found}) == len(found)
+    assert len(planned) == 3 + 12 and len({one.name for one in planned}) == len(planned)
 
 
 @pytest.mark.slow
@@ -137,18 +124,14 @@ def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     turned = replace(recording().touches, images=recording().touches.images[:, ::-1, ::-1])
     both = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
     one = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in both))
-    found = trial.frozen_features_by_data(one, both, small(), seed=0)
-    assert len(computed) == 2 and found["tiny"][0] is found["same"][0]
+    features = trial.frozen_features_by_data(one, both, small(), seed=0)
+    assert len(computed) == 2 and features["tiny"][0] is features["same"][0]
     alone = trial.frozen_features_by_data(replace(one, runs=one.runs[2:]), both, small(), seed=0)
-    assert torch.equal(found["other"][0], alone["other"][0]) and not torch.equal(found["other"][0], found["tiny"][0])
+    assert torch.equal(features["other"][0], alone["other"][0])
+    assert not torch.equal(features["other"][0], features["tiny"][0])
     second = replace(one, runs=(one.runs[2]._replace(repetition=1),))
     drawn = trial.frozen_features_by_data(second, both, small(), seed=0)["other"][0]
     assert not torch.equal(alone["other"][0], drawn)
-
-
-def test_a_strange_mode_is_named():
-    with pytest.raises(ValueError, match="'thawed' is not one of frozen, finetuned"):
-        trials({"a": recording()}, small(networks={"alexnet": ["thawed"]}))
 
 
 @pytest.fixture
@@ -166,36 +149,35 @@ def measure(workspace):
 
 @pytest.mark.slow
 def test_a_finished_training_is_kept_and_other_settings_train_anew(workspace, monkeypatch):
-    found = measure(workspace())
-    assert set(found["split"]) == {"random", "blocks"} and set(found["pretrained"]) == {"none"}
+    first = measure(workspace())
+    assert set(first["split"]) == {"random", "blocks"} and set(first["pretrained"]) == {"none"}
     monkeypatch.setattr(trial, "_train", lambda *_: pytest.fail("trained again"))
-    pd.testing.assert_frame_equal(measure(workspace()), found)
+    pd.testing.assert_frame_equal(measure(workspace()), first)
     monkeypatch.setattr(trial, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
     assert set(measure(workspace(momentum=0.5))["value"]) == {0.25}
     more = measure(workspace(repetitions={"frozen": 2, "finetuned": 1}))
     assert set(more.loc[more["repetition"] == 1, "value"]) == {0.25}
-    pd.testing.assert_frame_equal(more[more["repetition"] == 0].reset_index(drop=True), found)
+    pd.testing.assert_frame_equal(more[more["repetition"] == 0].reset_index(drop=True), first)
 
 
 @pytest.mark.slow
 def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, monkeypatch, capsys):
     monkeypatch.setattr(trial, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
     networks = {"googlenet": ["frozen", "finetuned"]}  # no package registry has its weights
-    found = measure(workspace(networks=networks, weights=["imagenet", "random"]))
-    absent = found[found["note"] == "not run: weights not at hand"]
+    rows = measure(workspace(networks=networks, weights=["imagenet", "random"]))
+    absent = rows[rows["note"] == "not run: weights not at hand"]
     assert absent["value"].isna().all() and set(absent["weights"]) == {"imagenet"}
     assert absent["mode"].tolist() == ["frozen", "finetuned"] and set(absent["data"]) == {"tiny"}
-    assert set(found.loc[found["value"].notna(), "weights"]) == {"random"}
+    assert set(rows.loc[rows["value"].notna(), "weights"]) == {"random"}
     assert "googlenet: no package registry has" in capsys.readouterr().err
 
 
 def test_a_training_to_convergence_learns_from_fewer_touches_and_stops_by_itself():
     settings = small(passes=["printed", "converged"], patience=3, most_epochs=60)
-    found = {one.name: one for one in trials({"toy": recording()}, settings)}
-    assert list(found) == ["alexnet-random-frozen-toy-random-0", "alexnet-random-frozen-toy-random-0-converged"]
-    rows = pd.DataFrame(
-        process(found["alexnet-random-frozen-toy-random-0-converged"], None, {"toy": recording()}, settings, 0)
-    )
+    planned = {one.name: one for one in trials({"toy": recording()}, settings)}
+    name = "alexnet-random-frozen-toy-random-0"
+    assert list(planned) == [name, f"{name}-converged"]
+    rows = pd.DataFrame(process(planned[f"{name}-converged"], None, {"toy": recording()}, settings, 0))
     values = rows[rows["group"].isna()].set_index("metric")["value"]
     assert values["epochs"] < 60 and values["train_accuracy"] == 1.0
     assert rows["passes"].unique().tolist() == ["converged"]
@@ -209,3 +191,34 @@ def test_a_training_that_diverges_is_a_row_with_a_note_and_the_others_run():
         rows = process(one, None, {"toy": recording()}, settings, 0)
         assert [row["value"] for row in rows] == [None] and "diverged" in rows[0]["note"]
     assert stage.summary(rows) == {}
+
+
+@pytest.mark.slow
+def test_neighbours_of_pressure_images_are_those_of_the_stage_recorded(monkeypatch, tmp_path):
+    random = np.random.default_rng(0)
+    images = {name: random.random((16, 16)) + 0.5 * random.random((12, 16, 16)) for name in "abcdef"}
+    monkeypatch.setattr(data, "read_pressure_images", lambda path: images)
+    ours = pd.DataFrame(neighbour_rows("pressure_images", tmp_path, 2, seed=0))
+    assert set(ours["method"]) == {"features_knn"}
+    touches = describe(images)
+    same = pd.DataFrame(image_rows(class_sets(touches, 2, 0)["all"], tmp_path, touches, 0))
+    same = same.query("classifier == 'knn' and method == 'all' and metric == 'accuracy' and scaling == 'training'")
+    for split in ("random", "blocks"):
+        values = [rows.loc[rows["split"] == split, "value"].tolist() for rows in (ours, same)]
+        assert values[0] == values[1] and len(values[0]) == 2
+    assert neighbour_rows("vitac", tmp_path, 2, seed=0) == []  # pictures of cameras have no such features
+
+
+def test_neighbours_of_grasps_are_those_of_the_stage_recorded(monkeypatch, tmp_path):
+    random, names = np.random.default_rng(0), np.repeat([f"o{k:02}" for k in range(12)], 30)
+    electrodes = random.normal(size=(len(names), len(ELECTRODES)))
+    slipped = random.random(len(names)) + 0.2 * electrodes[:, 0] < 0.5
+    grasps = Grasps(electrodes, names, np.tile(PALMS, len(names) // 3), slipped, names >= "o08")
+    monkeypatch.setattr(data, "read_grasps", lambda path: grasps)
+    ours = pd.DataFrame(neighbour_rows("biotac_grasps", tmp_path, 1, seed=0))
+    same = pd.DataFrame(grasp_rows(Model("knn", None), tmp_path, grasps, 1, 0)).query("scaled == 'training'")
+    slips, own = same.query("split == 'test_objects' and palm == 'all'"), ours[ours["data"] == "grasps_slip"]
+    assert own[["value", "item"]].values[:-1].tolist() == slips[["value", "item"]].values.tolist()
+    assert own["value"].iloc[-1] == pytest.approx(np.average(slips["value"], weights=slips["count"]))
+    recognised = same.loc[same["task"] == "recognition", "value"].tolist()
+    assert ours.loc[ours["data"] == "grasps_object", "value"].tolist() == recognised

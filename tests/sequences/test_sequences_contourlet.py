@@ -5,7 +5,7 @@ import pytest
 
 from stages.sequences.contourlet import STEPS, detail, directional_bands, directional_std
 
-SIZES = [(32, 32), (16, 16), (8, 8), (24, 16)]
+SIZES = [(32, 32), (8, 8), (24, 16)]
 # Do and Vetterli 2005: quincunx and resampling matrices, and which of them follow each other.
 Q0, Q1 = np.array([[1, -1], [1, 1]]), np.array([[1, 1], [-1, 1]])
 SHEARS = [np.array(one) for one in ([[1, 1], [0, 1]], [[1, -1], [0, 1]], [[1, 0], [1, 1]], [[1, 0], [-1, 1]])]
@@ -19,12 +19,6 @@ SEVEN = (0.788485616406, 0.418092273222, -0.040689417609, -0.064538882629)
 
 def noise(shape, seed=0):
     return np.random.default_rng(seed).random(shape)
-
-
-def wave(y, x, size=64):
-    """A wave with y and x periods down and along the image."""
-    down, along = np.mgrid[:size, :size]
-    return np.cos(2 * np.pi * (x * along + y * down) / size)
 
 
 def allpass(image, axes, sign):
@@ -113,47 +107,23 @@ def test_pyramid_gives_the_image_back(size):
     np.testing.assert_allclose(coarse(found), 0, atol=1e-10)
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_sub_bands_have_as_many_coefficients_as_the_image_has_pixels(size):
-    rows, columns = size
-    steep, flat = directional_bands(noise((3, *size)))
-    assert steep.shape == (3, 8, rows // 8, columns // 2) and flat.shape == (3, 8, rows // 2, columns // 8)
-    assert steep[0].size + flat[0].size == rows * columns
-
-
-def test_shift_by_eight_cells_shifts_the_sub_bands():
+def test_sub_bands_have_as_many_coefficients_as_the_image_has_pixels_and_shift_with_it():
     images = noise((2, 32, 48), 3)
-    moved = directional_bands(np.roll(images, (8, 16), axis=(1, 2)))
-    for found, bands, steps in zip(moved, directional_bands(images), STEPS, strict=True):
-        expected = np.roll(bands, (8 // steps[0], 16 // steps[1]), axis=(2, 3))
-        np.testing.assert_allclose(found, expected, atol=1e-12)
+    bands, moved = (directional_bands(one) for one in (images, np.roll(images, (8, 16), axis=(1, 2))))
+    assert bands[0].shape == (2, 8, 4, 24) and bands[1].shape == (2, 8, 16, 6)
+    for shifted, band, steps in zip(moved, bands, STEPS, strict=True):
+        expected = np.roll(band, (8 // steps[0], 16 // steps[1]), axis=(2, 3))
+        np.testing.assert_allclose(shifted, expected, atol=1e-12)
 
 
-def test_shift_by_eight_cells_keeps_the_deviations():
-    images = noise((2, 32, 48), 3)
-    moved = np.roll(images, (8, 16), axis=(1, 2))
-    np.testing.assert_allclose(directional_std(moved), directional_std(images), atol=1e-12)
-
-
-@pytest.mark.parametrize("radius", [22, 26, 29])
+@pytest.mark.parametrize("radius", [22, 29])
 @pytest.mark.parametrize("band", range(16))
 def test_wave_lights_the_sub_band_of_its_direction(band, radius):
-    slope = (band % 8 + 0.5) / 4 - 1
-    across = round(radius * slope)
-    y, x = (across, radius) if band < 8 else (radius, -across)
-    energy = directional_std(wave(y, x)[None])[0] ** 2
+    across = round(radius * ((band % 8 + 0.5) / 4 - 1))
+    y, x = (across, radius) if band < 8 else (radius, -across)  # periods of the wave down and along the image
+    down, along = np.mgrid[:64, :64]
+    energy = directional_std(np.cos(2 * np.pi * (x * along + y * down) / 64)[None])[0] ** 2
     assert energy.argmax() == band and energy[band] > 0.5 * energy.sum()
-
-
-def test_transform_is_linear():
-    one, other = noise((2, 3, 16, 32), 4)
-    for found, first, second in zip(
-        directional_bands(detail(2 * one - 3 * other)),
-        directional_bands(detail(one)),
-        directional_bands(detail(other)),
-        strict=True,
-    ):
-        np.testing.assert_allclose(found, 2 * first - 3 * second, atol=1e-12)
 
 
 @pytest.mark.parametrize("image", [np.zeros((8, 8)), np.full((32, 32), 0.7), np.full((32, 32), 200, dtype=np.uint8)])
@@ -161,12 +131,14 @@ def test_constant_image_gives_zeros(image):
     assert directional_std(image[None]).max() < 1e-15
 
 
-def test_deviations_are_those_of_the_sub_bands_of_the_detail():
+def test_deviations_are_those_of_the_sub_bands_of_the_detail_also_in_pieces(monkeypatch):
     images = noise((3, 16, 32), 5)
     bands = [one for half in directional_bands(detail(images)) for one in np.moveaxis(half, 1, 0)]
-    found = directional_std(images)
-    assert found.shape == (3, 16)
-    np.testing.assert_allclose(found, np.transpose([band.std(axis=(1, 2)) for band in bands]), rtol=1e-10)
+    expected = np.transpose([band.std(axis=(1, 2)) for band in bands])
+    np.testing.assert_allclose(directional_std(images), expected, rtol=1e-10)
+    monkeypatch.setattr("stages.sequences.contourlet.BATCH", 2)
+    np.testing.assert_allclose(directional_std(images), expected, rtol=1e-10)
+    assert directional_std(images[:0]).shape == (0, 16)
 
 
 def test_whole_numbers_are_of_a_scale_of_255():
@@ -181,17 +153,6 @@ def test_image_of_other_sides_is_mirrored_up_to_a_multiple_of_eight():
     assert mirrored.shape == (1, 16, 40)
     np.testing.assert_allclose(directional_std(image), directional_std(mirrored), rtol=1e-10)
     assert (directional_std(noise((1, 4, 4))) > 0).all()
-
-
-def test_many_images_go_in_pieces(monkeypatch):
-    images = noise((7, 8, 8))
-    whole = directional_std(images)
-    monkeypatch.setattr("stages.sequences.contourlet.BATCH", 3)
-    np.testing.assert_allclose(directional_std(images), whole, rtol=1e-12)
-
-
-def test_none_gives_none():
-    assert directional_std(np.zeros((0, 32, 32))).shape == (0, 16)
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,12 @@
-"""The two networks: layers as in the thesis's tables, training that is repeatable and learns."""
+"""Series along a contour and their features; the two networks: layers as in the thesis's tables, and training."""
 
 import numpy as np
 import pytest
+import pywt
 import torch
+from scipy import stats
 
+from stages.sequences.contourlet import directional_std
 from stages.sequences.networks import (
     ImageInputs,
     ImageNet,
@@ -13,118 +16,141 @@ from stages.sequences.networks import (
     layers,
     train_network,
 )
+from stages.sequences.series import CHANNELS, FEATURES, sequence_features, series
+
+KINDS = [(ImageInputs, "images"), (NormalInputs, "normals")]
+TRAIN, TEST = np.arange(40), np.arange(40, 60)
 
 
-def films(count=60, frames=8, cells=8, classes=3, seed=0):
-    """(images, normals, labels): each class has its own bright frame and its own direction, under noise."""
-    random = np.random.default_rng(seed)
-    labels = np.arange(count) % classes
-    images = random.integers(0, 60, (count, frames, cells, cells), dtype=np.uint8)
-    images[np.arange(count), 2 * labels + 1] += 150
-    normals = random.normal(scale=0.3, size=(count, frames, 3)) + np.eye(3)[labels][:, None]
-    return images, normals.astype(np.float32), labels
+@pytest.fixture
+def films():
+    """{images, normals, labels}: each class has its own bright frame and its own direction, under noise."""
+    random = np.random.default_rng(0)
+    labels = np.arange(60) % 3
+    images = random.integers(0, 60, (60, 8, 8, 8), dtype=np.uint8)
+    images[np.arange(60), 2 * labels + 1] += 150
+    normals = random.normal(scale=0.3, size=(60, 8, 3)) + np.eye(3)[labels][:, None]
+    return {"images": images, "normals": normals.astype(np.float32), "labels": labels}
 
 
-def outputs(network, *inputs):
-    """dict layer -> shape of its output for one sample."""
-    return {row["layer"]: row["output"] for row in layers(network, *inputs)}
-
-
-def test_3d_network_has_the_shapes_of_table_4_7():
-    found = outputs(ImageNet(25, (32, 32), 8), torch.zeros(1, 25, 32, 32))
-    assert found["conv1"] == "8x5x16x16"  # 25 frames in steps of 5; 32 cells in steps of 2
-    assert found["conv2"] == "16x3x14x14"
-    assert found["scores"] == "8"
-
-
-def test_1d_network_has_the_shapes_of_table_4_8():
-    found = outputs(NormalNet(25, 8), torch.zeros(1, 25, 3))
-    assert (found["conv1"], found["conv2"], found["scores"]) == ("32x21", "32x19", "8")
-    assert NormalNet(25, 8).fc1.in_features == 32 * 9  # pooled by two
-
-
-def test_settings_are_those_of_the_tables():
+def test_networks_have_the_shapes_of_tables_4_7_and_4_8_and_all_parameters_are_counted():
     network = ImageNet(25, (32, 32), 8)
-    assert (network.conv1.kernel_size, network.conv1.padding, network.conv1.stride) == ((5, 5, 5), (2, 2, 2), (5, 2, 2))
-    assert (network.conv2.kernel_size, network.conv2.padding) == ((3, 5, 5), (0, 1, 1))
-    assert network.drop.p == pytest.approx(0.2)  # 0.8 are kept
-    assert NormalNet(25, 8).drop_convolved.p == pytest.approx(0.5)
+    rows = layers(network, torch.zeros(1, 25, 32, 32))
+    outputs = {row["layer"]: row["output"] for row in rows}
+    assert outputs["conv1"] == "8x5x16x16"  # 25 frames in steps of 5; 32 cells in steps of 2
+    assert (outputs["conv2"], outputs["scores"]) == ("16x3x14x14", "8")
+    assert sum(row["value"] for row in rows) == sum(p.numel() for p in network.parameters())
+    outputs = {row["layer"]: row["output"] for row in layers(NormalNet(25, 8), torch.zeros(1, 25, 3))}
+    assert (outputs["conv1"], outputs["conv2"], outputs["scores"]) == ("32x21", "32x19", "8")
+    assert NormalNet(25, 8).fc1.in_features == 32 * 9  # pooled by two
     assert (ImageInputs.batch, NormalInputs.batch) == (10, 16)
 
 
-def test_table_of_layers_counts_all_parameters():
-    network = ImageNet(25, (32, 32), 8)
-    counts = [row["value"] for row in layers(network, torch.zeros(1, 25, 32, 32))]
-    assert sum(counts) == sum(p.numel() for p in network.parameters())
-
-
-@pytest.mark.parametrize(("frames", "cells"), [(13, 32), (25, 16), (25, 8), (13, 8), (8, 5), (1, 5)])
-def test_3d_network_takes_shorter_films_and_smaller_imprints(frames, cells):
+@pytest.mark.parametrize(("frames", "cells"), [(13, 32), (25, 8), (8, 5), (1, 5)])
+def test_networks_take_shorter_films_and_smaller_imprints_and_name_what_is_too_small(frames, cells):
     assert ImageNet(frames, (cells, cells), 4)(torch.zeros(2, frames, cells, cells)).shape == (2, 4)
-
-
-def test_too_small_is_named():
+    assert NormalNet(8, 3)(torch.zeros(2, 8, 3)).shape == (2, 3)
     with pytest.raises(ValueError, match="5 x 5"):
         ImageNet(25, (4, 4), 8)
     with pytest.raises(ValueError, match="8 frames"):
         NormalNet(7, 8)
-    assert NormalNet(8, 3)(torch.zeros(2, 8, 3)).shape == (2, 3)
 
 
-@pytest.mark.parametrize("kind", [ImageInputs, NormalInputs])
-def test_training_learns_classes_that_differ(kind):
-    images, normals, labels = films()
-    train, test = np.arange(40), np.arange(40, 60)
-    inputs = kind(images if kind is ImageInputs else normals, train)
-    chances = class_probabilities(train_network(inputs, labels, train, 3, 30, seed=0), inputs, test)
+@pytest.mark.parametrize(("kind", "name"), KINDS)
+def test_training_learns_classes_that_differ(films, kind, name):
+    inputs, labels = kind(films[name], TRAIN), films["labels"]
+    chances = class_probabilities(train_network(inputs, labels, TRAIN, 3, 30, seed=0), inputs, TEST)
     np.testing.assert_allclose(chances.sum(axis=1), 1, rtol=1e-5)
-    assert (chances.argmax(axis=1) == labels[test]).mean() > 0.9
+    assert (chances.argmax(axis=1) == labels[TEST]).mean() > 0.9
 
 
-def test_training_is_repeatable_and_leaves_the_caller_s_chance_alone():
-    images, _, labels = films()
-    inputs = ImageInputs(images, np.arange(40))
+@pytest.mark.parametrize(("kind", "name"), KINDS)
+def test_training_is_repeatable_from_the_training_part_alone_and_leaves_the_caller_s_chance(films, kind, name):
+    changed = films[name].copy()
+    changed[40:] = 100
     torch.manual_seed(5)
     before = torch.rand(1)
     torch.manual_seed(5)
-    first = train_network(inputs, labels, np.arange(40), 3, 2, seed=1)
+    first, again, other = (
+        train_network(kind(values, TRAIN), films["labels"], TRAIN, 3, 1, seed=seed)
+        for values, seed in ((films[name], 1), (changed, 1), (films[name], 2))
+    )
     assert torch.rand(1) == before
-    torch.manual_seed(99)
-    again = train_network(inputs, labels, np.arange(40), 3, 2, seed=1)
-    for one, other in zip(first.parameters(), again.parameters(), strict=True):
-        assert torch.equal(one, other)
-    assert not torch.equal(first.fc1.weight, train_network(inputs, labels, np.arange(40), 3, 2, seed=2).fc1.weight)
+    assert all(torch.equal(a, b) for a, b in zip(first.parameters(), again.parameters(), strict=True))
+    assert not torch.equal(first.fc1.weight, other.fc1.weight)
 
 
-def test_nothing_of_the_test_part_leaks_into_training():
-    images, normals, labels = films()
-    train, changed, bent = np.arange(40), images.copy(), normals.copy()
-    changed[40:], bent[40:] = 255, 100.0
-    for kind, usual, other in ((ImageInputs, images, changed), (NormalInputs, normals, bent)):
-        one, two = (train_network(kind(values, train), labels, train, 3, 1, seed=0) for values in (usual, other))
-        assert torch.equal(one.fc1.weight, two.fc1.weight)
-
-
-def test_inputs_are_standardised_by_the_training_part():
-    images, normals, _ = films()
-    train = np.arange(30)
-    standard = ImageInputs(images, train)(train)
+def test_inputs_are_standardised_by_the_training_part_and_constant_ones_are_finite(films):
+    standard = ImageInputs(films["images"], TRAIN)(TRAIN)
     assert float(standard.mean()) == pytest.approx(0, abs=1e-4) and float(standard.std()) == pytest.approx(1, abs=1e-3)
-    moved = NormalInputs(normals, train)(train)
+    moved = NormalInputs(films["normals"], TRAIN)(TRAIN)
     np.testing.assert_allclose(moved.mean(dim=(0, 1)), 0, atol=1e-5)
     np.testing.assert_allclose(moved.std(dim=(0, 1)), 1, rtol=1e-2)
+    few = np.arange(4)
+    assert torch.isfinite(ImageInputs(np.full((4, 8, 8, 8), 7, dtype=np.uint8), few)(few)).all()
+    assert torch.isfinite(NormalInputs(np.ones((4, 8, 3), dtype=np.float32), few)(few)).all()
 
 
-def test_constant_inputs_are_finite():
-    train = np.arange(4)
-    assert torch.isfinite(ImageInputs(np.full((4, 8, 8, 8), 7, dtype=np.uint8), train)(train)).all()
-    assert torch.isfinite(NormalInputs(np.ones((4, 8, 3), dtype=np.float32), train)(train)).all()
-
-
-def test_network_that_ran_away_says_nothing():
-    _, normals, labels = films()
-    inputs = NormalInputs(normals, np.arange(40))
+def test_network_that_ran_away_says_nothing(films):
+    inputs = NormalInputs(films["normals"], TRAIN)
     network = inputs.network(3).eval()
     with torch.no_grad():
         network.scores.bias[0] = float("nan")
     np.testing.assert_allclose(class_probabilities(network, inputs, np.arange(5)), 1 / 3)
+
+
+def named(values):
+    """dict of name -> (n,) of features of series (n, frames, 19)."""
+    return dict(zip(FEATURES, sequence_features(values).T, strict=True))
+
+
+def walk(frames=25):
+    return np.random.default_rng(0).normal(size=(3, frames, len(CHANNELS)))
+
+
+def test_statistics_of_19_series_are_those_of_scipy_on_the_coefficients_of_pywt():
+    values = walk()
+    ours = named(values)
+    assert len(CHANNELS) == 19 and len(FEATURES) == 228 == len(ours)
+    for k, channel in ((0, "direction0"), (17, "normal_y")):
+        one = values[1, :, k]
+        bands = dict(zip(("detail3", "detail2", "detail1"), pywt.wavedec(one, "db2", "symmetric", 3)[1:], strict=True))
+        for band, numbers in {**bands, "sequence": one}.items():
+            assert ours[f"{channel}.{band}.rms"][1] == pytest.approx(np.sqrt(np.mean(numbers**2)))
+            assert ours[f"{channel}.{band}.std"][1] == pytest.approx(np.std(numbers))
+            assert ours[f"{channel}.{band}.skewness"][1] == pytest.approx(stats.skew(numbers))
+
+
+@pytest.mark.parametrize("level", [0.0, 0.1, -1.0, 1e5])
+def test_constant_series_have_no_spread_and_no_skewness(level):
+    for name, (value,) in named(np.full((1, 25, 19), level)).items():
+        if name.endswith((".std", ".skewness")):
+            assert value == 0
+        elif ".sequence." in name:
+            assert value == pytest.approx(abs(level))
+        else:
+            assert value == pytest.approx(0, abs=1e-9 * max(abs(level), 1))
+
+
+@pytest.mark.parametrize("frames", [2, 4, 7, 13])
+def test_short_series_have_finite_features(frames):
+    assert np.isfinite(sequence_features(walk(frames))).all()
+
+
+def test_series_join_directions_and_normals_frame_by_frame():
+    random = np.random.default_rng(1)
+    images, normals = random.integers(0, 256, (2, 5, 16, 16), dtype=np.uint8), random.normal(size=(2, 5, 3))
+    joined = series(images, normals)
+    assert joined.shape == (2, 5, 19)
+    np.testing.assert_array_equal(joined[:, :, 16:], normals)
+    for frame in range(5):
+        np.testing.assert_allclose(joined[:, frame, :16], directional_std(images[:, frame]), rtol=1e-5)
+
+
+def test_bad_series_are_named():
+    with pytest.raises(ValueError, match="normals"):
+        series(np.zeros((2, 5, 16, 16)), np.zeros((2, 4, 3)))
+    with pytest.raises(ValueError, match="2 frames"):
+        sequence_features(np.zeros((2, 1, 19)))
+    with pytest.raises(ValueError, match="NaN"):
+        sequence_features(np.full((2, 25, 19), np.nan))

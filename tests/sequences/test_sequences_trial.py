@@ -25,14 +25,13 @@ from stages.sequences.trial import (
 
 CLASSES = {"flat": ["plate", "tray"], "round": ["ball", "egg"]}
 SETTINGS = SimpleNamespace(
-    repetitions=1,
-    trainings=1,
-    image_epochs=3,
-    normal_epochs=3,
-    smaller_strategy="guided",
-    smaller=["5x4"],
+    repetitions=1, trainings=1, image_epochs=3, normal_epochs=3, smaller_strategy="guided", smaller=["5x4"],
     smaller_networks=["9x8"],
-)
+)  # fmt: skip
+
+
+def changed(**settings):
+    return SimpleNamespace(**vars(SETTINGS) | settings)
 
 
 def sequences(level, count=10, frames=10, cells=8, seed=0):
@@ -83,38 +82,22 @@ def test_of_two_objects_the_check_is_drawn_from_the_one_that_trains():
     assert len(split.validation) == 4 and len(split.fit) == 16
 
 
-def test_fewer_frames_are_evenly_spread_and_cells_are_means_of_blocks(contours):
-    data = read_sequence_data(contours, CLASSES, "guided")
+def test_data_know_class_and_object_and_smaller_ones_are_evenly_spread_frames_of_means_of_blocks(contours):
+    assert count_sequences(contours / "ball.npz") == {"guided": 10, "random": 10}
+    data = read_sequence_data(contours, CLASSES, "random")
+    assert data.labels.tolist() == [0] * 20 + [1] * 20
+    assert data.ranks.tolist() == ([0] * 10 + [1] * 10) * 2
+    assert data.folds == 2 and data.classes == ["flat", "round"]
     less = downsample(data, 5, 4)
     assert less.images.shape == (40, 5, 4, 4) and less.images.dtype == np.uint8
     np.testing.assert_array_equal(less.normals, data.normals[:, [0, 2, 4, 6, 8]])
     assert less.images[3, 1, 2, 1] == np.round(data.images[3, 2, 4:6, 2:4].mean())
     assert downsample(data, 10, 8) is data
-
-
-def test_oblong_imprints_are_averaged_in_squares(contours):
-    data = read_sequence_data(contours, CLASSES, "guided")
-    wide = downsample(replace(data, images=data.images[:, :, :4]), 10, 2)
-    assert wide.images.shape == (40, 10, 2, 4)
-
-
-@pytest.mark.parametrize(
-    ("frames", "cells", "word"), [(11, 8, "frames requested"), (0, 8, "frames"), (10, 3, "averaged")]
-)
-def test_impossible_size_is_named(contours, frames, cells, word):
-    with pytest.raises(ValueError, match=word):
-        downsample(read_sequence_data(contours, CLASSES, "guided"), frames, cells)
-
-
-def test_data_know_class_and_object(contours):
-    data = read_sequence_data(contours, CLASSES, "random")
-    assert data.labels.tolist() == [0] * 20 + [1] * 20
-    assert data.ranks.tolist() == ([0] * 10 + [1] * 10) * 2
-    assert data.folds == 2 and data.classes == ["flat", "round"]
-
-
-def test_counts_are_read_without_the_images(contours):
-    assert count_sequences(contours / "ball.npz") == {"guided": 10, "random": 10}
+    oblong = replace(data, images=data.images[:, :, :4])
+    assert downsample(oblong, 10, 2).images.shape == (40, 10, 2, 4)
+    for frames, cells, word in ((11, 8, "frames requested"), (0, 8, "frames"), (10, 3, "averaged")):
+        with pytest.raises(ValueError, match=word):
+            downsample(data, frames, cells)
 
 
 def test_plan_holds_both_splits_and_the_smaller_sequences(contours):
@@ -128,7 +111,7 @@ def test_plan_holds_both_splits_and_the_smaller_sequences(contours):
 
 @pytest.mark.slow
 def test_each_fold_of_objects_is_trained_for_as_often_as_asked(contours, tmp_path):
-    settings = SimpleNamespace(**{**vars(SETTINGS), "trainings": 2, "smaller": [], "smaller_networks": []})
+    settings = changed(trainings=2, smaller=[], smaller_networks=[])
     names = [trial.name for trial in plan(CLASSES, contours, settings).trials if trial.split == "objects"]
     assert len(names) == 2 * 2 * 2 * 2 and "guided.objects.3.networks.10x8" in names
     first, again = (
@@ -142,7 +125,7 @@ def test_each_fold_of_objects_is_trained_for_as_often_as_asked(contours, tmp_pat
 
 
 def test_what_is_left_out_is_said(contours):
-    settings = SimpleNamespace(**{**vars(SETTINGS), "smaller": ["20x8"], "smaller_networks": ["5x8"]})
+    settings = changed(smaller=["20x8"], smaller_networks=["5x8"])
     (contours / "egg.npz").unlink()
     write_sequences(contours / "ball.npz", {"guided": sequences(220), "random": sequences(220, count=3)})
     notes = " ".join(plan(CLASSES | {"far": ["away"]}, contours, settings).notes)
@@ -151,21 +134,20 @@ def test_what_is_left_out_is_said(contours):
         assert words in notes
     alone = plan({"flat": ["plate"]}, contours, settings)
     assert alone.trials == [] and "two classes" in alone.notes[-1]
-
-
-def test_mistyped_size_is_an_error(contours):
-    settings = SimpleNamespace(**{**vars(SETTINGS), "smaller": ["5 by 8"]})
     with pytest.raises(ValueError, match="FRAMESxCELLS"):
-        plan(CLASSES, contours, settings)
+        plan(CLASSES, contours, changed(smaller=["5 by 8"]))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("split", ["random", "objects"])
-def test_trials_tell_clear_classes_apart(contours, tmp_path, split):
-    rows = []
-    for kind in ("networks", "conventional"):
-        name = f"guided.{split}.0.{kind}.10x8"
-        rows += process(name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)
+def test_trials_tell_clear_classes_apart_and_the_same_way_again(contours, tmp_path, split):
+    def train(kind):
+        return process(f"guided.{split}.0.{kind}.10x8", tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)
+
+    kinds = ("conventional", "networks") if split == "random" else ("networks", "conventional")
+    once, again = train(kinds[0]), train(kinds[0])
+    assert [row["value"] for row in once] == [row["value"] for row in again]
+    rows = once + train(kinds[1])
     frame = pd.DataFrame(rows)
     rates = frame[frame["metric"] == "accuracy"].set_index("classifier")["value"]
     assert set(rates.index) == {"cnn", "cnn_images", "cnn_normals", *CONVENTIONAL}
@@ -173,14 +155,6 @@ def test_trials_tell_clear_classes_apart(contours, tmp_path, split):
     assert set(frame.loc[frame["metric"] == "map_dimensions", "classifier"]) == {"knn", "svm"}
     assert (frame.loc[frame["metric"] == "accuracy", "seconds"] > 0).all()
     assert {row.get("group") for row in rows} - {None} == (set(CLASSES) if split == "objects" else set())
-
-
-@pytest.mark.slow
-def test_trial_is_the_same_when_repeated(contours, tmp_path):
-    for kind in ("networks", "conventional"):
-        name = f"guided.random.0.{kind}.10x8"
-        first, again = (process(name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0) for _ in range(2))
-        assert [row["value"] for row in first] == [row["value"] for row in again]
 
 
 @pytest.mark.slow

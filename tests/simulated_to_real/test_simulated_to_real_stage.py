@@ -1,4 +1,4 @@
-"""The simulated_to_real stage on two objects, whose other imprints stand for the real touches."""
+"""Objects laid on the array, and the stage on two objects whose other imprints stand for the real touches."""
 
 import numpy as np
 import pandas as pd
@@ -9,13 +9,19 @@ from PIL import Image
 from haptic_glance.base.files import read_arrays, write_mesh, write_table
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
+from stages.simulated_to_real import trial
 from stages.simulated_to_real.__main__ import run, shares
-from stages.simulated_to_real.trial import simulate
+from stages.simulated_to_real.trial import LARGE_PITCH, PITCH, SIMULATIONS, simulate
 
 SOLIDS = {"sphere": trimesh.creation.icosphere(2, radius=0.5), "cube": trimesh.creation.box((0.5, 0.5, 0.5))}
 MEMBERS = {"ball": "sphere", "box": "cube"}
 SIZES = {"sphere": 0.04, "cube": 0.03}
+CELLS = (28, 50)
 SETTINGS = {"simulations": ["resting"], "simulated": 24, "real": [0, 7], "repetitions": 2}
+
+
+def mesh_of(solid):
+    return Mesh(np.asarray(solid.vertices, dtype=np.float64), np.asarray(solid.faces, dtype=np.int64))
 
 
 @pytest.fixture
@@ -25,10 +31,9 @@ def workspace(make_workspace, tmp_path):
     workspace = make_workspace({"simulated_to_real": SETTINGS, "recorded": recorded})
     meshes = workspace.data / "meshes"
     for name, object_name in MEMBERS.items():
-        solid = SOLIDS[object_name]
-        mesh = Mesh(np.array(solid.vertices), np.array(solid.faces))
+        mesh = mesh_of(SOLIDS[object_name])
         write_mesh(meshes / f"{object_name}.npz", mesh)
-        pressed = simulate("resting", mesh, 24, (28, 50), SIZES[object_name], np.random.default_rng(1))
+        pressed = simulate("resting", mesh, 24, CELLS, SIZES[object_name], np.random.default_rng(1))
         (tmp_path / "archive/Images" / name).mkdir(parents=True)
         for k, picture in enumerate(pressed):
             path = tmp_path / f"archive/Images/{name}/{name}{k}.jpg"
@@ -60,3 +65,24 @@ def test_a_class_that_nobody_recorded_is_named(workspace):
 def test_the_objects_of_a_class_share_its_imprints():
     assert shares({"ball": ["a", "b", "c"], "box": ["d"]}, 48) == {"a": 16, "b": 16, "c": 16, "d": 48}
     assert sum(shares({"ball": ["a", "b", "c"]}, 10).values()) == 10
+
+
+def test_an_object_lies_on_the_array_at_its_true_size(monkeypatch):
+    brick = mesh_of(trimesh.creation.box((0.8, 0.4, 0.05)))  # 38 x 19 mm, flat: lies on its large sides
+    monkeypatch.setattr(trial, "ASIDE", 0.0)
+    found = simulate("resting", brick, 48, CELLS, 0.038, np.random.default_rng(0))
+    assert found.shape == (48, *CELLS)
+    cells = 38 * 19 / PITCH**2
+    assert np.median((found > 0.5).sum(axis=(1, 2))) == pytest.approx(cells, rel=0.1)
+    smaller = simulate("resting_small", brick, 48, CELLS, 0.038, np.random.default_rng(0))
+    shrunk = cells * (PITCH / LARGE_PITCH) ** 2
+    assert np.median((smaller > 0.5).sum(axis=(1, 2))) == pytest.approx(shrunk, rel=0.15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", SIMULATIONS)
+def test_simulated_touches_are_pressures_and_the_same_in_every_run(kind):
+    ball = mesh_of(SOLIDS["sphere"])
+    found, again = (simulate(kind, ball, 4, CELLS, 0.04, np.random.default_rng(0)) for _ in range(2))
+    assert np.array_equal(found, again) and found.min() >= 0 and found.max() <= 1
+    assert (found.max(axis=(1, 2)) > 0.25).all() and found[:, 0, 0].max() < 0.5

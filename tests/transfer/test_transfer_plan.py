@@ -1,14 +1,23 @@
-"""What is trained, and what has to be left out."""
+"""What is trained, on which split, and what has to be left out."""
 
+import numpy as np
 import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh.mesh import Mesh
 from stages.transfer import plan as planning
-from stages.transfer.plan import Trial, check, plan
+from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, stratified_split
+from stages.transfer.touches import choose_vertices
 
 CLASSES = {"animal": ["dog", "horse", "cow"], "chair": ["stool", "bench"], "vase": ["urn"]}
 ENOUGH = dict.fromkeys([name for objects in CLASSES.values() for name in objects], 100)
+LABELS = np.repeat([0, 1], [30, 40])  # of three and four objects of ten touches
+RANKS = np.r_[np.repeat([0, 1, 2], 10), np.repeat([0, 1, 2, 3], 10)]
+
+
+def rng(seed=3):
+    return np.random.default_rng(seed)
 
 
 @pytest.fixture
@@ -26,26 +35,20 @@ def weights(monkeypatch):
 
 def test_a_trials_name_is_its_file_and_gives_it_back():
     trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2)
-    assert trial.name == "imprints128.mobilenet_v2.imagenet.18-139.objects.2"
-    assert Trial.parse(trial.name) == trial
-
-
-def test_a_training_to_convergence_has_a_name_of_its_own():
-    trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2, "converged")
-    assert trial.name == "imprints128.mobilenet_v2.imagenet.18-139.objects.2.converged"
-    assert Trial.parse(trial.name) == trial
+    name = "imprints128.mobilenet_v2.imagenet.18-139.objects.2"
+    for one, expected in ((trial, name), (trial._replace(passes="converged"), f"{name}.converged")):
+        assert one.name == expected and Trial.parse(expected) == one
 
 
 def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_with_a_normalisation(small, weights):
     networks = {"mobilenet_v2": ["frozen", "finetuned"], "alexnet": ["frozen"]}
     changes = {"weights": ["random", "random_initial"], "passes": ["printed", "converged"], "splits": {"random": 1}}
     trials = plan(CLASSES, ENOUGH, small.settings(networks=networks, coarse_cells=[], **changes)).trials
-    kinds = [(one.network, one.weights, one.mode) for one in trials if one.passes == "converged"]
-    assert kinds == [(one.network, one.weights, one.mode) for one in trials if one.passes == "printed"]
-    assert kinds == [
-        ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
-        ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
-    ]  # fmt: skip
+    for passes in ("printed", "converged"):
+        assert [(one.network, one.weights, one.mode) for one in trials if one.passes == passes] == [
+            ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
+            ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
+        ]  # fmt: skip
 
 
 def test_initial_statistics_are_refused_in_half_precision(small, monkeypatch):
@@ -55,33 +58,17 @@ def test_initial_statistics_are_refused_in_half_precision(small, monkeypatch):
         check(small.settings(weights=["random_initial"]))
 
 
-@pytest.mark.parametrize(("key", "value", "said"), [
-    ("passes", ["all"], "transfer.passes: all not known, choose from printed, converged"),
-    ("patience", 0, "patience and most_epochs must be 1 or more"),
-])  # fmt: skip
-def test_passes_that_cannot_be_made_are_named(small, key, value, said):
-    with pytest.raises(ValueError, match=said):
-        check(small.settings(**{key: value}))
-
-
-def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):
-    networks = {"mobilenet_v2": ["frozen", "finetuned", "18:139"], "alexnet": ["frozen", "finetuned"]}
-    both = small.settings(weights=["imagenet", "random"], networks=networks, splits={"random": 1})
-    trials = plan(CLASSES, ENOUGH, both).trials
-    kinds = {trial[:4] for trial in trials}
-    assert len(kinds) == len(trials) == 2 * 4 + 1 + 2 * 2
-    assert {kind for kind in kinds if kind[3] == "18:139"} == {("imprints32", "mobilenet_v2", "imagenet", "18:139")}
-    assert {kind[2] for kind in kinds if kind[0] == "imprints8"} == {"imagenet"}
-
-
-def test_large_networks_and_coarse_arrays_can_be_left_out(small, weights):
-    networks = {"mobilenet_v2": ["frozen"], "vgg16": ["frozen"]}
-    some = {"weights": ["imagenet", "random"], "networks": networks, "splits": {"random": 1}, "uncontrolled": ["vgg16"]}
-    trials = plan(CLASSES, ENOUGH, small.settings(**some, coarse_cells=[])).trials
-    assert {trial[:3] for trial in trials} == {
-        ("imprints32", "mobilenet_v2", "imagenet"), ("imprints32", "mobilenet_v2", "random"),
-        ("imprints32", "vgg16", "imagenet"),
-    }  # fmt: skip
+def test_controls_and_ranges_are_trained_on_the_fine_array_alone_and_of_some_networks(small, weights):
+    networks = {"mobilenet_v2": ["frozen", "finetuned", "18:139"], "vgg16": ["frozen"]}
+    changes = {"weights": ["imagenet", "random"], "splits": {"random": 1}, "uncontrolled": ["vgg16"]}
+    kinds = [trial[:4] for trial in plan(CLASSES, ENOUGH, small.settings(networks=networks, **changes)).trials]
+    assert sorted(kinds) == [
+        ("imprints32", "mobilenet_v2", "imagenet", "18:139"), ("imprints32", "mobilenet_v2", "imagenet", "finetuned"),
+        ("imprints32", "mobilenet_v2", "imagenet", "frozen"), ("imprints32", "mobilenet_v2", "random", "finetuned"),
+        ("imprints32", "mobilenet_v2", "random", "frozen"), ("imprints32", "vgg16", "imagenet", "frozen"),
+        ("imprints8", "mobilenet_v2", "imagenet", "finetuned"), ("imprints8", "mobilenet_v2", "imagenet", "frozen"),
+        ("imprints8", "vgg16", "imagenet", "frozen"),
+    ]  # fmt: skip
 
 
 def test_a_class_with_one_object_is_trained_but_not_left_out(small):
@@ -90,40 +77,27 @@ def test_a_class_with_one_object_is_trained_but_not_left_out(small):
     assert list(planned.members["objects"]) == ["animal", "chair"]
     assert ({"split": "objects"}, "class vase has one object alone: it cannot be left out") in planned.notes
     assert {trial.split for trial in planned.trials} == {"random", "objects"}
-
-
-def test_without_a_class_to_spare_an_object_touches_are_still_drawn(small):
     planned = plan({"chair": ["stool"], "vase": ["urn"]}, ENOUGH, small.settings())
     assert {trial.split for trial in planned.trials} == {"random"}
     assert "fewer than two classes have a second object" in planned.notes[-1][1]
 
 
-def test_objects_with_too_few_vertices_and_empty_classes_are_named(small):
+def test_what_is_left_out_is_named(small, weights):
     planned = plan(CLASSES | {"cup": []}, ENOUGH | {"cow": 7, "urn": 3}, small.settings())
-    said = [note for _, note in planned.notes]
+    notes = [note for _, note in planned.notes]
     assert planned.members["random"] == {"animal": ["dog", "horse"], "chair": ["stool", "bench"]}
-    assert "class animal: cow left out, 7 vertices can be touched, not 8" in said
-    assert {"class vase left out: no object of it is left", "class cup left out: no object of it is left"} <= set(said)
-
-
-def test_one_class_alone_gives_a_note_and_no_training(small):
+    assert "class animal: cow left out, 7 vertices can be touched, not 8" in notes
+    assert {"class vase left out: no object of it is left", "class cup left out: no object of it is left"} <= set(notes)
     planned = plan({"animal": CLASSES["animal"]}, ENOUGH, small.settings())
     assert planned.trials == []
     assert planned.notes == [({}, "two classes or more are needed, got animal: add some to meshes.classes")]
-
-
-def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
-    planned = plan(
-        CLASSES,
-        ENOUGH,
-        small.settings(weights=["imagenet"], networks={"googlenet": ["frozen"], "mobilenet_v2": ["frozen"]}),
-    )
-    about = {"method": "googlenet"}, "googlenet left out, no weights: no registry has it"
-    assert about in planned.notes and planned.pretrained == {"mobilenet_v2": "complete"}
+    networks = {"googlenet": ["frozen"], "mobilenet_v2": ["frozen"]}
+    planned = plan(CLASSES, ENOUGH, small.settings(weights=["imagenet"], networks=networks))
+    assert ({"method": "googlenet"}, "googlenet left out, no weights: no registry has it") in planned.notes
+    assert planned.pretrained == {"mobilenet_v2": "complete"}
     assert {trial.network for trial in planned.trials} == {"mobilenet_v2"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
@@ -142,9 +116,76 @@ def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
         ({"new_object_touches": [1, 8]}, "less than transfer.touches"),
         ({"new_object_touches": []}, "less than transfer.touches"),
         ({"severities": {"rain": [1.0]}}, "transfer.severities: rain not known"),
+        ({"passes": ["all"]}, "transfer.passes: all not known, choose from printed, converged"),
+        ({"patience": 0}, "patience and most_epochs must be 1 or more"),
     ],
 )
 def test_settings_that_cannot_be_run_are_named(small, change, reason):
     with pytest.raises(ValueError, match=reason):
         check(small.settings(**change))
-    check(small.settings())
+
+
+def test_every_class_is_split_by_the_share_and_by_the_seed():
+    labels = np.repeat([0, 1, 2], [40, 20, 8])
+    first, second = stratified_split(labels, 0.75, rng())
+    assert sorted([*first, *second]) == list(range(len(labels)))
+    assert np.bincount(labels[first]).tolist() == [30, 15, 6]
+    again, other = (stratified_split(labels, 0.75, rng(seed))[0] for seed in (3, 4))
+    assert np.array_equal(first, again) and not np.array_equal(first, other)
+    small = stratified_split(np.array([0, 0, 1, 1]), 0.99, rng())
+    assert [len(part) for part in small] == [2, 2]  # small classes lie on both sides
+
+
+@pytest.mark.parametrize(
+    ("labels", "share", "reason"),
+    [([0, 0, 1], 0.5, "one touch alone"), ([0, 0], 1.0, "between 0 and 1"), ([0.5, 0.5], 0.5, "integers")],
+)
+def test_what_cannot_be_split_is_refused(labels, share, reason):
+    with pytest.raises(ValueError, match=reason):
+        stratified_split(labels, share, rng())
+
+
+def check_parts(split):
+    """Train and test are disjoint and hold all, and validation lies within train."""
+    assert sorted([*split.train, *split.test]) == list(range(len(LABELS)))
+    assert sorted([*split.fit, *split.validation]) == list(split.train)
+    assert set(split.validation) < set(split.train)
+
+
+def test_touches_of_every_object_lie_on_both_sides():
+    objects = LABELS * 4 + RANKS
+    split = by_touches(objects, 0.8, 0.25, rng())
+    check_parts(split)
+    for part, count in ((split.train, 8), (split.test, 2), (split.validation, 2)):
+        assert set(np.bincount(objects[part])) <= {0, count}
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_an_object_left_out_is_in_no_other_part(number):
+    split = by_objects(LABELS, RANKS, number, 0.2, rng())
+    check_parts(split)
+    for label, count in enumerate((3, 4)):
+        parts = [set(RANKS[part[LABELS[part] == label]]) for part in (split.test, split.validation, split.fit)]
+        assert parts[0] == {number % count} and parts[1] == {(number + 1) % count}
+        assert not parts[2] & (parts[0] | parts[1]) and len(parts[2]) == count - 2
+
+
+def test_of_two_objects_the_check_is_a_share_of_the_touches_that_train_and_one_cannot_be_left_out():
+    two = RANKS < 2
+    labels, ranks = LABELS[two], RANKS[two]
+    split = by_objects(labels, ranks, 1, 0.2, rng())
+    assert set(ranks[split.test]) == {1} and set(ranks[split.train]) == {0}
+    assert np.bincount(labels[split.validation]).tolist() == [2, 2]
+    with pytest.raises(ValueError, match="class 1 has one object alone"):
+        by_objects(np.array([0, 0, 1]), np.array([0, 1, 0]), 0, 0.2, rng())
+
+
+def test_salient_points_come_first_and_blind_ones_fill_up():
+    x, y = np.divmod(np.arange(36), 6)  # a flat grid
+    corner = np.flatnonzero((x < 5) & (y < 5))
+    faces = np.r_[np.c_[corner, corner + 6, corner + 7], np.c_[corner, corner + 7, corner + 1]]
+    grid = Mesh(np.c_[x, y, 0 * x] / 6, faces)
+    chosen = choose_vertices(grid, np.array([7, 3]), 20, rng())
+    assert chosen[:2].tolist() == [7, 3] and len(set(chosen.tolist())) == 20
+    with pytest.raises(ValueError, match="only 36 vertices"):
+        choose_vertices(grid, np.array([7, 3]), 37, rng())
