@@ -13,8 +13,10 @@ from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.weights.svm import fit_svm
 from haptic_glance.look.weights.weights import write_models
 from haptic_glance.mesh.mesh import Mesh
+from stages.engine import statistics
 from stages.engine.settings import Workspace
-from stages.report import Params
+from stages.report import Params, items
+from stages.report.drawing import save
 from stages.report.results import Results
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
@@ -249,12 +251,21 @@ def make_root(root):
     return root
 
 
+@pytest.fixture(scope="session", autouse=True)
+def few_pixels_and_resamples():
+    """Most of the time of a report goes to the pixels of its pictures and to the resamples of its intervals."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(items, "save", lambda figure, path, dpi: save(figure, path, dpi // 3))
+        patch.setattr(statistics, "RESAMPLES", 400)
+        yield
+
+
 @pytest.fixture(scope="session")
 def small():
     """What tests make their own small runs of."""
     return SimpleNamespace(
         settings=settings, results=read_results, ball=ball, classification=classification, write=write_measurements,
-        write_set=write_set, root=make_root,
+        write_set=write_set, root=make_root, bare=make_bare,
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
         agreed_marks=agreed_marks,
     )  # fmt: skip
@@ -264,6 +275,12 @@ def small():
 def bare(tmp_path):
     """A root with nothing measured."""
     return make_bare(tmp_path)
+
+
+@pytest.fixture
+def bare_results(bare):
+    """The results of such a root, where tests write rows of their own."""
+    return read_results(bare)
 
 
 @pytest.fixture
@@ -288,3 +305,13 @@ def browser():
         opened = driver.chromium.launch(executable_path=found, args=SOFTWARE_GL)
         yield opened
         opened.close()
+
+
+@pytest.fixture
+def tab(browser):
+    """A page of the browser that fails the test where a script does."""
+    opened, faults = browser.new_page(viewport={"width": 1280, "height": 800}), []
+    opened.on("pageerror", lambda error: faults.append(str(error)))
+    yield opened
+    opened.close()
+    assert not faults

@@ -28,7 +28,7 @@ def choice_rows(rung, number, options, accuracy, seconds, role=None):
 
 
 @pytest.fixture
-def measured(root, results, small):
+def measured(bare, bare_results, small):
     rows = choice_rows("confirmation", 5, LOOKING, 0.55, 1.0, "default")
     rows += choice_rows("confirmation", 0, BLIND, 0.5, 0.01, "smallest")
     rows += choice_rows("confirmation", 1, OTHERS[0], 0.45, 0.005)
@@ -37,8 +37,8 @@ def measured(root, results, small):
     rows += choice_rows("one_choice", 1, OTHERS[0], 0.4, 0.005) + choice_rows("one_choice", 7, OTHERS[1], 0.52, 0.02)
     frame = pd.DataFrame(rows)
     for dataset, split in (("test", "regions"), ("classes", "objects")):
-        small.write(root, "front", frame[frame["split"] == split], dataset)
-    return results
+        small.write(bare, "front", frame[frame["split"] == split], dataset)
+    return bare_results
 
 
 def test_confirmed_choices_stand_beside_what_the_search_found(measured):
@@ -87,7 +87,7 @@ def test_the_chart_draws_the_front_and_keeps_its_numbers(measured):
     assert figure.frame is not None and set(figure.frame["rung"]) == {"last", "confirmation"}
 
 
-def test_without_a_search_nothing_is_shown(results):
+def test_without_a_search_nothing_is_shown(bare_results):
     for kind, name in (("tables", "front"), ("tables", "front_changed"), ("tradeoff", "front")):
         with pytest.raises(NotRun, match="no measurements of front"):
-            build_one(chain, kind, name, results)
+            build_one(chain, kind, name, bare_results)

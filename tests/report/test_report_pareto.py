@@ -12,22 +12,14 @@ from stages.report.pareto import OFF, ON, PERHAPS, pareto_chart, pareto_front, p
 from stages.report.results import NotRun
 
 
-def test_front_of_a_known_set():
-    cost = [1, 2, 3, 4, 2]
-    accuracy = [0.5, 0.7, 0.6, 0.9, 0.4]
-    assert pareto_front(cost, accuracy).tolist() == [True, True, False, True, False]
-
-
-def test_front_of_errors_takes_the_low_ones():
-    assert pareto_front([1, 2, 3], [0.3, 0.1, 0.2], better="low").tolist() == [True, True, False]
-
-
-def test_equal_choices_stand_together():
-    assert pareto_front([1, 1, 2], [0.5, 0.5, 0.5]).tolist() == [True, True, False]
-
-
-def test_unmeasured_choice_is_never_on_the_front():
-    assert pareto_front([1, np.nan, 2], [0.1, 0.9, np.nan]).tolist() == [True, False, False]
+@pytest.mark.parametrize(("cost", "accuracy", "better", "front"), [
+    ([1, 2, 3, 4, 2], [0.5, 0.7, 0.6, 0.9, 0.4], "high", [True, True, False, True, False]),
+    ([1, 2, 3], [0.3, 0.1, 0.2], "low", [True, True, False]),
+    ([1, 1, 2], [0.5, 0.5, 0.5], "high", [True, True, False]),  # equal choices stand together
+    ([1, np.nan, 2], [0.1, 0.9, np.nan], "high", [True, False, False]),  # what was not measured
+])  # fmt: skip
+def test_front_of_a_known_set(cost, accuracy, better, front):
+    assert pareto_front(cost, accuracy, better=better).tolist() == front
 
 
 def test_front_does_not_depend_on_order_or_unit():
@@ -53,11 +45,6 @@ def test_bad_input_is_refused(arguments):
         pareto_front(*arguments)
 
 
-def frame():
-    rows = {"name": ["slow", "fast", "poor"], "seconds": [4.0, 2.0, 8.0], "mean": [0.9, 0.5, 0.4]}
-    return pd.DataFrame(rows | {"low": [0.8, 0.4, np.nan], "high": [1.0, 0.6, np.nan]})
-
-
 def choices(accuracy, spread, seconds=(1.0, 2.0)):
     """Two choices with intervals of a half-width."""
     mean = np.array(accuracy)
@@ -65,22 +52,21 @@ def choices(accuracy, spread, seconds=(1.0, 2.0)):
     return pd.DataFrame({"name": ["cheap", "dear"], "seconds": seconds, "mean": mean, **ends})
 
 
-def test_a_choice_is_on_the_front_where_resamples_agree():
-    assert placed(choices([0.5, 0.9], 0.1), "seconds", "mean")["on_front"].tolist() == [ON, ON]
-    assert placed(choices([0.9, 0.5], 0.1), "seconds", "mean")["on_front"].tolist() == [ON, OFF]
+EQUAL = (1.0, 1.0)  # seconds: with noise either of two choices is cheaper half of the time
 
 
-def test_a_choice_whose_gain_is_within_chance_is_perhaps_on_the_front():
-    found = placed(choices([0.5, 0.51], 0.1), "seconds", "mean")
-    assert found["on_front"].tolist() == [ON, PERHAPS]
-    assert found["front_share"].iloc[1] == pytest.approx(0.56, abs=0.05)  # half, and a little for the 0.01
-
-
-def test_equal_costs_are_told_apart_by_no_noise_alone():
-    """With noise either of two choices is cheaper half of the time; without it only the better one is on the front."""
-    equal = choices([0.5, 0.6], 0.01, seconds=(1.0, 1.0))
-    assert placed(equal, "seconds", "mean", noise=0.0)["on_front"].tolist() == [OFF, ON]
-    assert placed(equal, "seconds", "mean", noise=0.25)["on_front"].tolist() == [PERHAPS, ON]
+@pytest.mark.parametrize(("accuracy", "spread", "options", "words"), [
+    ([0.5, 0.9], 0.1, {}, [ON, ON]), ([0.9, 0.5], 0.1, {}, [ON, OFF]), ([0.5, 0.51], 0.1, {}, [ON, PERHAPS]),
+    ([0.5, 0.6], 0.01, {"seconds": EQUAL, "noise": 0.0}, [OFF, ON]),
+    ([0.5, 0.6], 0.01, {"seconds": EQUAL, "noise": 0.25}, [PERHAPS, ON]),
+    ([0.5, 0.9], 0.01, {"better": "low"}, [ON, OFF]),
+])  # fmt: skip
+def test_a_choice_is_on_the_front_where_resamples_agree(accuracy, spread, options, words):
+    frame = choices(accuracy, spread, options.pop("seconds", (1.0, 2.0)))
+    found = placed(frame, "seconds", "mean", **options)
+    assert found["on_front"].tolist() == words
+    if accuracy[1] == 0.51:
+        assert found["front_share"].iloc[1] == pytest.approx(0.56, abs=0.05)  # half, and a little for the 0.01
 
 
 def test_units_drawn_together_tell_a_small_gain_from_chance():
@@ -92,12 +78,7 @@ def test_units_drawn_together_tell_a_small_gain_from_chance():
     assert placed(frame, "seconds", "mean", units=units)["on_front"].tolist() == [ON, ON]
 
 
-def test_errors_are_better_where_they_are_low():
-    assert placed(choices([0.5, 0.9], 0.01), "seconds", "mean", "low")["on_front"].tolist() == [ON, OFF]
-
-
-@pytest.mark.slow
-def test_the_cost_axis_has_seconds_of_a_named_clock(tmp_path):
+def test_the_cost_axis_has_seconds_of_a_named_clock():
     figure = pareto_chart(
         frame(), "mean", title="T", reference="fast", quality_label="accuracy", clock="processor, Model X"
     )
@@ -108,6 +89,17 @@ def test_the_cost_axis_has_seconds_of_a_named_clock(tmp_path):
     assert above.get_xlim() == pytest.approx((2 * low, 2 * high))  # the reference takes two seconds
 
 
+def test_long_front_is_told_by_its_ends():
+    frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
+    caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q", clock="").words["caption"]
+    assert "12, from n0 to n11" in caption and "n5" not in caption
+
+
+def frame():
+    rows = {"name": ["slow", "fast", "poor"], "seconds": [4.0, 2.0, 8.0], "mean": [0.9, 0.5, 0.4]}
+    return pd.DataFrame(rows | {"low": [0.8, 0.4, np.nan], "high": [1.0, 0.6, np.nan]})
+
+
 def chart(folder, reference="fast"):
     figure = pareto_chart(frame(), "mean", title="Title", reference=reference, quality_label="accuracy")
     figure.name = "chart"
@@ -115,7 +107,7 @@ def chart(folder, reference="fast"):
     return figure
 
 
-@pytest.mark.parametrize("span", [1.05, 1.4, 2.9, 3.1, 7, 50, 99, 1e4])
+@pytest.mark.parametrize("span", [1.05, 2.9, 3.1, 50, 1e4])
 def test_the_axis_of_costs_has_numbers_however_narrow_it_is(span):
     figure, axes = plt.subplots()
     axes.set_xscale("log")
@@ -126,20 +118,16 @@ def test_the_axis_of_costs_has_numbers_however_narrow_it_is(span):
     plt.close(figure)
 
 
-@pytest.mark.slow
-def test_cost_is_a_ratio_to_the_named_reference(tmp_path):
+def test_cost_is_a_ratio_to_the_named_reference_and_equal_charts_have_equal_bytes(tmp_path):
     figure = chart(tmp_path)
     table = pd.read_csv(tmp_path / "chart.csv").set_index("name")
     assert table["cost_ratio"].to_dict() == {"slow": 2.0, "fast": 1.0, "poor": 4.0}
     assert table["on_front"].to_dict() == {"slow": ON, "fast": ON, "poor": OFF}
     assert "fast" in figure.words["alt"] and "poor" not in figure.words["alt"]
-
-
-@pytest.mark.slow
-def test_equal_charts_have_equal_bytes(tmp_path):
-    chart(tmp_path / "a")
-    chart(tmp_path / "b")
-    assert (tmp_path / "a/chart.png").read_bytes() == (tmp_path / "b/chart.png").read_bytes()
+    chart(tmp_path / "again")
+    assert (tmp_path / "chart.png").read_bytes() == (tmp_path / "again/chart.png").read_bytes()
+    with pytest.raises(NotRun, match="nobody"):
+        chart(tmp_path, reference="nobody")
 
 
 def crowded():
@@ -171,8 +159,3 @@ def test_name_without_room_is_left_out():
     figure, axes, names, points = crowded()
     assert place_names(axes, [("word " * 60, (1, 0.5))], points, []) == []
     plt.close(figure)
-
-
-def test_unknown_reference_is_refused_by_name(tmp_path):
-    with pytest.raises(NotRun, match="nobody"):
-        chart(tmp_path, reference="nobody")

@@ -1,4 +1,4 @@
-"""Titles, notes and captions: each item has its section of prose.md, and each section its item."""
+"""The words of the report: titles, notes, captions and findings, and the figures in them, which come from tables."""
 
 import re
 from pathlib import Path
@@ -8,10 +8,22 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Drawing
 
+from haptic_glance.base.files import read_json, write_table
 from stages.report import topics
-from stages.report.claims_page import add_words
+from stages.report.cells import CLAIMS, PLACE, filled
+from stages.report.claims_page import add_words, findings
 from stages.report.items import Figure, Table
+from stages.report.records import write_headlines
+from stages.report.site import topic_main
 
+REPORTS = Path(__file__).parents[2] / "reports"
+LONGEST = 200  # letters of a table's sentence
+SETTINGS = (  # the numbers that a finding may have of its own
+    r"\b\d+ x \d+\b", r"\b(?:19|20)\d\d\b", r"\bT\d+(?:\.\d+)*", r"\bSection \d+(?:\.\d+)*", r"\b\d+ degrees\b",
+    r"\b[Ll]ayers \d+ to \d+\b", r"\bnoise of [\d.]+ % of the diagonal", r"\b(?:VGG|ResNet|MobileNetV)\d+\b",
+)  # fmt: skip
+MADE = {f"{kind}/{name}" for topic in topics.TOPICS for kind in ("tables", "tradeoff")
+        for name in getattr(topic, topics.KINDS[kind])}  # fmt: skip
 PROSE = """# tables/one: One of {count}
 
 - The first note
@@ -26,34 +38,47 @@ shows.
 
 The caption of {count}.
 """
+FOUND = "Without a figure,\nit stays.\n\nIt has {tables/t method=one: mean}.\n\nIt has {tables/t method=two:\nmean}.\n"
+
+
+class Anything(dict):
+    """Words for any prose."""
+
+    def __missing__(self, key):
+        return 0
+
+
+def typed(text):
+    """The numbers of a text that are neither places nor settings."""
+    return re.findall(r"\d+", re.sub("|".join(SETTINGS), "", PLACE.sub("", text)))
 
 
 @pytest.fixture
 def topic(tmp_path, monkeypatch):
-    """A topic with two items."""
-    package = tmp_path / "a_topic_with_prose"
+    """A topic with two items, which found three things, one of them in a table of one row."""
+    package = tmp_path / "a_topic"
     package.mkdir()
     (package / "__init__.py").touch()
     (package / "prose.md").write_text(PROSE)
+    (package / "findings.md").write_text(FOUND)
     monkeypatch.syspath_prepend(tmp_path)
-    return ModuleType(package.name)
+    write_table(tmp_path / "tables/t.csv", pd.DataFrame({"method": ["one"], "mean": [2.5]}))
+    module = ModuleType(package.name)
+    module.__dict__["CLAIMS"] = []
+    return module
 
 
 def table(**words):
     return Table(pd.DataFrame(), words={"count": 1200, "more": "second\nthird", "nothing": ""} | words)
 
 
-def test_notes_are_joined_filled_split_and_left_out_when_empty(topic):
-    item = table()
+def test_prose_is_joined_filled_split_and_left_out_when_empty(topic):
+    item, figure = table(), Figure(Drawing(), {"count": 3})
     add_words(item, topic, "tables", "one")
     assert (item.name, item.title) == ("one", "One of 1200")
     assert item.notes == ["The first note goes on. 1,200 in all.", "second", "third"]
-
-
-def test_a_figure_has_alt_and_caption(topic):
-    item = Figure(Drawing(), {"count": 3})
-    add_words(item, topic, "figures", "one")
-    assert (item.title, item.alt, item.caption) == ("A picture", "What it shows.", "The caption of 3.")
+    add_words(figure, topic, "figures", "one")
+    assert (figure.title, figure.alt, figure.caption) == ("A picture", "What it shows.", "The caption of 3.")
 
 
 def test_a_word_or_section_that_is_missing_is_an_error(topic):
@@ -69,4 +94,64 @@ def test_each_item_has_its_section_and_each_section_its_item(topic):
     items = {f"{kind}/{name}" for kind, attribute in topics.KINDS.items() for name in getattr(topic, attribute)}
     sections = [name for name in re.findall(r"^# (\S+):", text, re.MULTILINE) if not name.startswith("shared/")]
     assert sorted(sections) == sorted(items)
-    assert len((Path(topic.__file__).parent / "findings.md").read_text()) > 100
+
+
+def test_every_topic_is_in_the_reading_order_and_an_output_belongs_to_one():
+    folders = sorted(path.parent.name for path in Path(topics.__file__).parent.glob("*/__init__.py"))
+    assert sorted(topic.__name__.rpartition(".")[2] for topic in topics.TOPICS) == folders
+    for kind in topics.KINDS.values():
+        names = [name for topic in topics.TOPICS for name in getattr(topic, kind)]
+        assert len(names) == len(set(names)) > 0
+
+
+@pytest.mark.parametrize("topic", topics.TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+def test_each_table_has_a_sentence_with_a_figure_of_its_own(topic):
+    for name in topic.TABLES:
+        item = Table(pd.DataFrame(), words=Anything())
+        add_words(item, topic, "tables", name)
+        if not (REPORTS / f"tables/{name}.csv").exists():
+            continue  # it is still to be written
+        text, sources = filled(item.summary, REPORTS)
+        assert f"tables/{name}" in [source for source, _ in sources]
+        assert len(text) <= LONGEST and text[0].isupper() and text.endswith(".") and re.search(r"\d", text)
+        assert not re.search(r"\d \.|\{|\}|\bnan\b|_", text), text
+
+
+@pytest.mark.parametrize(("method", "said"), [("one", "It is 1."), ("two", "")])
+def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, method, said):
+    frame, summary = pd.DataFrame({"method": ["one"], "mean": [1.0]}), f"It is {{tables/t method={method}: mean}}."
+    item = Table(frame, name="t", title="T", notes=["a note"], summary=summary)
+    item.write(tmp_path / "tables")
+    text = (tmp_path / "tables/t.md").read_text()
+    assert item.summary == said and ("# T\n\nIt is 1.\n\n| method" in text) == bool(said)
+    assert "<details><summary>How to read it</summary>\n\n- a note\n\n</details>" in text
+
+
+@pytest.mark.parametrize("topic", topics.TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
+    """A row that is gone would leave the paragraph out without a word."""
+    assert typed("It is 3 times faster, by {tables/t : rows} %.")
+    for text in (Path(topic.__file__).parent / "findings.md").read_text().strip().split("\n\n"):
+        text = " ".join(text.split())
+        if not all((REPORTS / f"{name}.csv").exists() for name, _, _ in PLACE.findall(text)):
+            continue  # a table is still to be written
+        said, sources = filled(text, REPORTS)
+        assert not typed(text) and not re.search(r"\{|\}|\bnan\b|_", said), said
+        assert all(name in MADE or name == CLAIMS or name.startswith("bench/") for name, _ in sources)
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(topic, tmp_path, own):
+    assert findings(topic, tmp_path) == ["Without a figure, it stays.", "It has 2.50."]
+    parts = {"claims": pd.DataFrame({"key": []}), "sets": ["household"], "own": own}
+    text = topic_main(topic, parts, [Table(pd.DataFrame(), title="T", paths=[Path("tables/t.csv")])], tmp_path)
+    assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not own)
+
+
+def test_headlines_on_a_folder_of_meshes_count_no_claims(tmp_path):
+    for verdicts, names in (
+        ({"supported": 2}, {"claims_supported", "claims_contradicted", "claims_open"}),
+        (None, set()),
+    ):
+        write_headlines(tmp_path, verdicts)
+        assert read_json(tmp_path / "headlines.json").keys() == names

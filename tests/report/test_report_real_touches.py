@@ -1,21 +1,26 @@
-"""Real touches in the report: table 4.4's twin, grasps, simulation beside real touches, the claims."""
+"""Real touches in the report: table 4.4's twin, grasps, simulation beside real touches, touch events, the claims."""
 
 import re
+from itertools import product
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from stages.report import recorded as topic
+from stages.report.recorded.claims import SERIES
 from stages.report.recorded.claims import TOUCHES as CLAIMS
 from stages.report.recorded.grasps import CLASSES, TASKS
 from stages.report.recorded.networks import PANELS
+from stages.report.recorded.touch_events import PUBLISHED
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge
+from tests.report.frames import has_ink
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
 GAIN = {"all": 0.0, "selected": 0.05, "selected_control": 0.0, "selected_training": -0.05}
+EVENTS = {"discriminant": 0.96, "linear_svm": 0.9, "knn": 0.6}
 LOSS = {"random": 0.0, "blocks": 0.1, "folds": 0.02}
 
 
@@ -84,21 +89,61 @@ def transferred(help=0.1):
     return pd.DataFrame(rows)
 
 
+def event_rows(levels=EVENTS):
+    """Ten objects that differ alike in all methods, and the accuracies of EVENTS."""
+    rows = []
+    for group, (method, level), k in product(("objects", "containers"), levels.items(), range(10)):
+        common = {"dataset": "touch_events", "group": group, "method": method, "item": f"{k:02}", "metric": "accuracy"}
+        common |= {"bins": 10, "parameter": 0.1, "heard": 1.0, "cells": 39, "value": level + 0.004 * (k - 4.5)}
+        rows.append(common | {"part": "test"})
+        folded = common | {"part": "training", "split": "folds"}
+        rows += [folded | {"heard": heard, "value": common["value"] * heard} for heard in (0.25, 1.0)]
+        rows += [folded | {"cells": 20, "value": common["value"] - 0.01 - 0.001 * k}]
+        rows += [folded | {"disturbance": "jitter", "severity": 5.0, "value": common["value"] / 2}]
+        if k == 0:
+            about = common | {"item": None, "part": "test"}
+            rows += [about | {"metric": metric, "value": 2.0} for metric in ("milliseconds", "training_seconds")]
+            rows.append(about | {"metric": "cross_validated", "value": level, "part": "training", "split": "folds"})
+    return pd.DataFrame(rows)
+
+
+def grasp_rows():
+    """Twenty grasps, of which the discriminant knows all but one and kNN every other; of the list all and none."""
+    found = []
+    for method, k in product(("discriminant", "knn"), range(20)):
+        right = float(k > 0 if method == "discriminant" else k % 2)
+        row = {"dataset": "schunk", "group": "grasps", "method": method, "item": f"cup/{k}", "metric": "accuracy"}
+        found.append(row | {"part": "training", "split": "objects", "value": right})
+        if k < 5:
+            found.append(row | {"part": "test", "split": "objects", "value": float(method == "discriminant")})
+    return pd.DataFrame(found)
+
+
 PLACES = {  # name of the rows -> their stage and set
     "real": ("recorded", "pressure_images"), "grasps": ("recorded", "biotac_grasps"),
-    "simulated_to_real": ("simulated_to_real", "pressure_images"),
+    "simulated_to_real": ("simulated_to_real", "pressure_images"), "events": ("recorded", "touch_events"),
+    "series": ("recorded", "schunk"),
 }  # fmt: skip
+
+
+def write(root, small, **frames):
+    """The results of a root with these rows, by the names of PLACES."""
+    for name, rows in frames.items():
+        stage, dataset = PLACES[name]
+        small.write(root, stage, rows, dataset)
+    return small.results(root)
 
 
 @pytest.fixture
 def measured(bare, small):
-    def write(**frames):
-        for name, rows in frames.items():
-            stage, dataset = PLACES[name]
-            small.write(bare, stage, rows, dataset)
-        return small.results(bare)
+    return lambda **frames: write(bare, small, **frames)
 
-    return write
+
+@pytest.fixture(scope="module")
+def every(tmp_path_factory, small):
+    """The results of a root with rows of all kinds."""
+    frames = {"real": recorded(), "grasps": grasped(), "simulated_to_real": transferred(), "events": event_rows()}
+    return write(small.bare(tmp_path_factory.mktemp("every")), small, **frames, series=grasp_rows())
 
 
 def table(name, results):
@@ -109,8 +154,8 @@ def judged(results):
     return judge(CLAIMS, results).set_index("key")
 
 
-def test_table_4_4_stands_beside_the_thesis(measured):
-    made = table("table_4_4", measured(real=recorded()))
+def test_table_4_4_stands_beside_the_thesis(every):
+    made = table("table_4_4", every)
     rows = made.frame.set_index(["set", "selection", "classifier"])
     assert rows.loc[("six", "selected", "knn"), "accuracy"] == pytest.approx(0.75, abs=0.01)
     assert rows.loc[("six", "selected", "knn"), "thesis"] == 0.59 and rows.loc[("four", "all", "svm"), "thesis"] == 0.48
@@ -135,32 +180,20 @@ def test_table_4_4_has_the_readings_of_the_scale_behind(measured):
     assert shown.loc[("all 22 classes", "no selection"), "SVM, %"].startswith("40 [")
 
 
-@pytest.mark.slow
-def test_a_set_without_a_selection_is_not_run_in_its_cells(measured):
-    rows = recorded()
-    rows = rows[~((rows["group"] == "six") & (rows["method"] == "selected"))]
-    shown = table("table_4_4", measured(real=rows)).shown
-    cell = shown[(shown["set"] == "first six classes") & (shown["selection"] == "selection")]
-    assert cell["SVM, %"].item().startswith("not run")
-
-
-def test_grasps_are_told_by_task_with_their_drift(measured):
-    made = table("grasps", measured(grasps=grasped()))
+def test_grasps_are_told_by_task_with_their_drift(every):
+    made = table("grasps", every)
     shown = made.shown[made.shown["palm"] == "all"]
     assert shown["task"].tolist() == list(TASKS.values())
     assert made.frame.loc[made.frame["palm"] == "all", "accuracy"].to_numpy() == pytest.approx(0.8, abs=0.02)
     assert shown["values"].tolist() == ["12 components", "electrodes"] * 2
-    assert any("palm 45 0.5, palm down 3.0" in note for note in made.notes)
-
-
-def test_the_note_on_drift_says_no_more_than_the_rows(measured):
-    notes = " ".join(table("grasps", measured(grasps=grasped())).notes)
+    notes = " ".join(made.notes)
+    assert "palm 45 0.5, palm down 3.0" in notes
     assert "drawn at random, by palm 45 0.4, palm down 1.2 at most" in notes
     assert "by palm and scale: palm down, each part by its own 1 of 2." in notes
 
 
-def test_simulation_is_compared_by_the_number_of_real_touches(measured):
-    made = table("simulated_to_real", measured(simulated_to_real=transferred()))
+def test_simulation_is_compared_by_the_number_of_real_touches(every):
+    made = table("simulated_to_real", every)
     assert made.shown["simulated imprints"].iloc[0] == "none"
     assert made.shown.iloc[0, 1] == "–" and made.shown.iloc[1, 1].startswith("30 [")
     rows = made.frame.set_index(["training", "touches", "classifier"])
@@ -169,32 +202,70 @@ def test_simulation_is_compared_by_the_number_of_real_touches(measured):
 
 
 @pytest.mark.slow
-def test_the_picture_of_simulated_and_real_touches_is_drawn(measured):
-    figure = build_one(topic, "figures", "real_touches", measured(simulated_to_real=transferred()))
-    assert figure.paths[0].stat().st_size > 10_000
+def test_the_picture_of_simulated_and_real_touches_is_drawn(every):
+    figure = build_one(topic, "figures", "real_touches", every)
+    assert has_ink(figure)
 
 
-@pytest.mark.parametrize("help, word", [(0.1, "supported"), (-0.1, "contradicted")])
-def test_whether_simulation_helps_is_judged(measured, help, word):
-    found = judged(measured(simulated_to_real=transferred(help)))
-    assert found.loc["simulation_helps_5", "verdict"] == word
-    assert found.loc["simulation_helps_5", "effect"] == pytest.approx(100 * help, abs=0.5)
+def test_simulation_that_does_not_help_contradicts_its_claim(measured):
+    found = judged(measured(simulated_to_real=transferred(-0.1))).loc["simulation_helps_5"]
+    assert found["verdict"] == "contradicted" and found["effect"] == pytest.approx(-10, abs=0.5)
 
 
-def test_selection_and_the_best_classifier_are_judged_on_real_touches(measured):
-    found = judged(measured(real=recorded()))
+def test_selection_and_the_best_classifier_are_judged_on_real_touches(every):
+    found = judged(every)
+    assert found.loc["simulation_helps_5", "verdict"] == "supported"
     assert found.loc["real_selection_six_alike", "effect"] == pytest.approx(5, abs=0.3)
     assert found.loc["real_selection_training", "verdict"] == "contradicted"
     assert found.loc["real_knn_best_all", "effect"] == pytest.approx(5, abs=0.5)
     assert found.loc["real_blocked", "verdict"] == "supported"
 
 
-@pytest.mark.parametrize("name", ["table_4_4", "grasps", "simulated_to_real", "real_touches"])
-def test_without_recorded_touches_nothing_is_run_and_the_remedy_is_told(name, measured):
-    with pytest.raises(NotRun, match="no measurements of"):
-        (topic.TABLES | topic.FIGURES)[name](measured())
-
-
-def test_claims_without_recorded_touches_are_open(measured):
+def test_without_recorded_touches_nothing_is_run_and_the_remedy_is_told(measured):
+    for name in ("table_4_4", "grasps", "simulated_to_real", "real_touches"):
+        with pytest.raises(NotRun, match="no measurements of"):
+            (topic.TABLES | topic.FIGURES)[name](measured())
     found = judged(measured())
     assert (found["verdict"] == "open").all() and found["tested_on"].str.startswith("not run: no measurements of").all()
+
+
+def test_methods_stand_beside_the_published_ones_with_what_they_take(every):
+    made = table("touch_events", every)
+    lines = made.text.set_index("method")
+    assert lines.loc["linear discriminant", "36 objects"].startswith("96.00 [")
+    assert lines.loc["kNN", "linear discriminant − it, objects"].startswith("+36.0")
+    assert lines.loc["published: TactileSGNet, spiking graph network (Gu and others 2020)", "20 containers"] == "64.17"
+    assert len(lines) == len(EVENTS) + len(PUBLISHED)
+    assert "36 objects linear discriminant, 96.0" in "\n".join(made.notes)
+
+
+def test_what_it_takes_has_a_row_a_condition(every):
+    made = table("touch_events_conditions", every)
+    levels = made.text.groupby("condition")["level"].apply(list).to_dict()
+    assert levels == {
+        "share of the touch heard": ["0.250", "1"], "taxels": ["20", "39"],
+        "deviation of an event's time, steps": ["5"],
+    }  # fmt: skip
+
+
+def test_the_chart_has_a_line_a_method_and_the_network(every):
+    chart = build_one(topic, "tradeoff", "touch_events_heard", every)
+    assert set(chart.frame["method"]) == set(EVENTS) and set(chart.frame["heard"]) == {0.25, 1.0}
+
+
+def test_grasps_are_counted_one_by_one(every):
+    made = table("grasp_series", every)
+    assert made.text["published test list"].tolist() == ["5 of 5", "0 of 5"]
+    assert made.text["grasps left out in turn, %"].str.split(" ").str[0].tolist() == ["95", "50"]
+    (claim,) = [one for one in SERIES if one.key == "grasp_series_over_components"]
+    assert judge([claim], every).loc[0, "effect"] == pytest.approx(45)
+
+
+def test_claims_on_events_turn_with_the_rows(every, measured):
+    events = [one for one in SERIES if one.dataset == "touch_events"]
+    words = judge(events, every).set_index("key")["verdict"]
+    assert words["events_discriminant_over_network_objects"] == "supported"
+    assert words["events_linear_svm_over_network_containers"] == "supported"
+    assert words["events_quarter_enough"] == "contradicted" and words["events_half_the_taxels_objects"] == "supported"
+    words = judge(events, measured(events=event_rows(dict.fromkeys(EVENTS, 0.5)))).set_index("key")["verdict"]
+    assert words["events_discriminant_over_network_objects"] == "contradicted"

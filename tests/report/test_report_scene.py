@@ -1,14 +1,17 @@
-"""The tables of scenes: what was measured, and what it leaves open."""
+"""The tables of scenes, of scenes drawn at random, and of the faces that an object needs by task."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_table
 from stages.report import scene as topic
+from stages.report.effects import differences
 from stages.report.results import NotRun
 from stages.report.scene import scene as scenes
-from stages.report.scene.random import left_of
+from stages.report.scene.random import CLAIMS, left_of, planning, plans, saving
 from stages.report.topics import build_one
+from stages.report.verdict import judge
 
 VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000, "online": 1040}
 
@@ -33,13 +36,19 @@ def scene(name, saved=0.4, held=1.0, **changes):
     return [common | changes | row for row in rows]
 
 
-def table(root, results, *groups):
-    write_table(root / "reports/bench/scenes.csv", pd.DataFrame([row for group in groups for row in group]))
+def table(bare, results, *groups):
+    write_table(bare / "reports/bench/scenes.csv", pd.DataFrame([row for group in groups for row in group]))
     return build_one(topic, "tables", "scenes", results)
 
 
-def test_every_scene_has_a_line_a_way(root, results):
-    found = table(root, results, scene("shelf"), scene("hall"), scene("hall", kind="ssim", tolerance=0.05)).shown
+def test_every_scene_has_a_line_a_way(bare, bare_results):
+    hall = scene("hall", saved=0.29)
+    made = table(bare, bare_results, scene("shelf"), hall, scene("hall", kind="ssim", tolerance=0.05))
+    found, notes = made.shown, made.notes
+    assert "8 objects (5 different), 24 frames" in notes[0]
+    assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:2]] == [2, 2]
+    assert notes[0].count("saves 40 [30, 50] % at an equal mean error") == 2
+    assert notes[1].count("saves 29 [19, 39] % at an equal mean error") == 2
     assert len(found) == 3 * len(scenes.WAYS)
     assert found["tolerance"].unique().tolist() == ["1 pixel", "0.05 1 − SSIM"]
     lines = found[found["scene"] == "shelf"].set_index("levels chosen by")
@@ -47,14 +56,6 @@ def test_every_scene_has_a_line_a_way(root, results):
     assert lines.loc["ours", "faces a frame"] == "1,000" and lines.loc["ours", "frames within, %"] == "100"
     assert lines.loc["ours, limited", "frame error, mean"] == "1.50"
     assert lines.loc["ours, the limit shared equally", "frame error, mean"] == "2.50"
-
-
-def test_what_is_saved_is_said_of_each_scene(root, results):
-    notes = table(root, results, scene("shelf"), scene("table", saved=0.29)).notes
-    assert "8 objects (5 different), 24 frames" in notes[0]
-    assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:2]] == [2, 2]
-    assert notes[0].count("saves 40 [30, 50] % at an equal mean error") == 2
-    assert notes[1].count("saves 29 [19, 39] % at an equal mean error") == 2
 
 
 @pytest.mark.parametrize(
@@ -70,20 +71,11 @@ def test_what_the_matching_leaves_open_is_said_with_figures(spread, said):
     assert left_of(saved[saved["matched"] == "error"]) == left_of(saved[:0]) == ""
 
 
-def test_both_tables_say_what_they_leave_open(root, results):
-    every, notes = table(root, results, scene("shelf")).notes, staged(root, results).notes
-    planned, factor, resampled = (note for note in notes if note in every)
-    assert planned.startswith("The error made equal") and "most of the saving vanishes: 7 % instead of 40 %" in planned
-    assert factor.startswith("Each rival has one number") and resampled.startswith("The intervals resample the objects")
-    pair = "7 [-10, 20] % against uniform levels by {} (mean displacement)"
-    assert pair.format("distance") in notes[0] and pair.format("size on the screen") in notes[0]
-
-
-def staged(root, results, *more):
+def staged(bare, results, *more):
     """The table of the scene that the stage did."""
     common = {"dataset": "test", "frame": "all", "factor": 1.0, "item": None, "seconds": 1.0, "note": None}
     rows = pd.DataFrame([common | row for row in (*scene("shelf"), *more)]).rename(columns={"scene": "group"})
-    write_table(root / "reports/measurements/test/scene.csv.gz", rows)
+    write_table(bare / "reports/measurements/test/scene.csv.gz", rows)
     return build_one(topic, "tables", "scene", results)
 
 
@@ -91,21 +83,138 @@ ABSENT = {"scene": "shelf", "kind": "pixels", "tolerance": 1.0, "method": "netwo
           "metric": "faces", "value": None, "note": "no object to learn from"}  # fmt: skip
 
 
-def test_both_tables_say_why_there_is_no_network(root, results):
+def test_both_tables_say_why_there_is_no_network(bare, bare_results):
     rows = [row for row in scene("shelf") if row["method"] != "network"]
-    found = table(root, results, [*rows, ABSENT], scene("hall"))
+    found = table(bare, bare_results, [*rows, ABSENT], scene("hall"))
     assert found.notes[0].endswith(" The thesis's network: no object to learn from.")
     assert "no object" not in "".join(found.notes[1:]) and "network" not in set(found.frame["method"][:6])
-    assert "the thesis's network: no object to learn from." in staged(root, results, ABSENT).notes
+    assert "the thesis's network: no object to learn from." in staged(bare, bare_results, ABSENT).notes
 
 
-def test_a_way_that_was_not_asked_has_no_line(root, results):
+def test_a_way_that_was_not_asked_has_no_line(bare, bare_results):
     rows = [row for row in scene("shelf") if row["method"] != "network"]
     rows.append({"scene": "shelf", "kind": "pixels", "tolerance": None, "method": "network", "metric": "faces"})
-    found = table(root, results, rows).shown
+    found = table(bare, bare_results, rows).shown
     assert len(found) == len(scenes.WAYS) - 1 and "the thesis's network" not in set(found["levels chosen by"])
 
 
-def test_without_the_benchmark_it_is_not_run(results):
+def test_without_scenes_nothing_is_run(bare_results):
     with pytest.raises(NotRun, match="bench/scenes"):
-        scenes.scenes(results)
+        scenes.scenes(bare_results)
+    for kind, name in (("tables", "random_scenes"), ("figures", "faces_by_task")):
+        with pytest.raises(NotRun):
+            build_one(topic, kind, name, bare_results)
+
+
+BY_KEY = {claim.key: claim for claim in CLAIMS}
+
+
+def rows_of(group, faces):
+    """Rows of a scene; faces: {(method, matched): faces}."""
+    common = {"dataset": "household_scenes", "group": group, "frame": "all", "factor": 1.0, "item": None, "seed": 0}
+    common |= {"kind": "pixels", "tolerance": 1.0, "note": None}
+    found = []
+    for (method, matched), count in faces.items():
+        values = {"faces": count, "displacement_mean": 0.2, "error": 0.9, "held": 1.0, "switches_per_object": 3.0}
+        values |= {"step_worst": 1.0, "planning_ms": 20.0}
+        found += [common | {"method": method, "matched": matched or None, "metric": name, "value": value}
+                  for name, value in values.items()]  # fmt: skip
+    return found
+
+
+@pytest.fixture
+def measured(bare, bare_results):
+    """A function of {plan: a function of the scene's number to faces} to the results of twelve scenes."""
+
+    def make(**faces):
+        ways = {("ours", ""): lambda k: 1000 + 10 * k, ("full", ""): lambda k: 50_000}
+        ways |= {tuple(name.split("__")) if "__" in name else (name, ""): way for name, way in faces.items()}
+        rows = [
+            row for k in range(12) for row in rows_of(f"random_{k:02d}", {key: way(k) for key, way in ways.items()})
+        ]
+        write_table(bare / "reports/measurements/household_scenes/scene.csv.gz", pd.DataFrame(rows))
+        return bare_results
+
+    return make
+
+
+def test_a_plan_against_itself_saves_nothing_in_any_scene(measured):
+    results = measured(uniform__displacement=lambda k: 1000 + 10 * k)
+    assert (saving(plans(results)[0], ("uniform", "displacement")) == 0).all()
+    assert (differences(results, BY_KEY["saves_uniform_displacement"]) == 0).all()
+
+
+def test_the_saving_is_the_mean_of_the_scenes_with_an_interval_over_them(measured):
+    spread = np.linspace(-0.1, 0.1, 12)
+    results = measured(uniform__displacement=lambda k: (1000 + 10 * k) / (0.7 + spread[k]))
+    table = build_one(topic, "tables", "random_scenes", results)
+    line = table.frame.set_index(["method", "matched"]).loc[("uniform", "displacement")]
+    assert line["saved"] == pytest.approx(0.3, abs=1e-5) and 0.2 < line["saved_low"] < 0.3 < line["saved_high"] < 0.4
+    claims = judge([BY_KEY["saves_uniform_displacement"]], results).iloc[0]
+    assert (claims["verdict"], claims["pairs"], claims["over"]) == ("supported", 12, "scenes")
+    assert claims["effect"] == pytest.approx(30, abs=1e-3) and "30 random scenes" in claims["tested_on"]
+
+
+@pytest.mark.parametrize(("more", "verdict"), [(0.02, "supported"), (0.09, "contradicted")])
+def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verdict):
+    results = measured(online=lambda k: (1000 + 10 * k) * (1 + more + 0.001 * (k % 3)))
+    assert judge([BY_KEY["online_faces"]], results).iloc[0]["verdict"] == verdict
+    notes = " ".join(build_one(topic, "tables", "random_scenes", results).notes)
+    assert f"Without a frame ahead: {100 * more + 0.1:.1f} [" in notes
+
+
+def test_the_time_of_drawing_stands_beside_the_faces(bare, measured):
+    rivals = [f"{name}__{matched}" for name in ("uniform", "uniform_size") for matched in ("displacement", "error")]
+    ways = {"online": lambda k: 1000, "online_unrendered": lambda k: 1800 + k}
+    ways |= {"beforehand__displacement": lambda k: 1195 + k, "every_level__displacement": lambda k: 900 + 10 * k}
+    results = measured(**ways, **dict.fromkeys(rivals, lambda k: 1500))
+    ways = {"full": (50_000, 1.0), "ours": (1000, 0.25), "uniform": (1500, 0.3), "online": (1000, 0.25)}
+    ways["beforehand"] = (1200, 0.275)
+    bench = [{"scene": f"random_{k:02d}", "method": name, "rows": 270, "faces": faces, "ms": 40 * ratio + 0.1 * k,
+              "ratio": ratio + 0.001 * k, "device": "llvmpipe (LLVM 15)"}
+             for k in range(12) for name, (faces, ratio) in ways.items()]  # fmt: skip
+    write_table(bare / "reports/bench/frame_times.csv", pd.DataFrame(bench))
+    table = build_one(topic, "tables", "random_scenes", results)
+    less = table.frame.set_index("method")["less"]
+    assert less["beforehand"] == pytest.approx(0.2, abs=0.001) and 0.3 < less["every_level"] < 0.4
+    assert less["full"] != less["full"]  # not at an equal displacement
+    assert "take 20 [20, 20] % fewer faces than uniform levels, and planning takes 20.00 ms" in table.summary
+    shown = table.shown.set_index("levels chosen by")["drawing time / full"]
+    assert shown["ours"].startswith("0.26 [") and shown["full models"] == "–"
+    assert any("llvmpipe, a software rasteriser" in note for note in table.notes)
+    said = planning(results)  # 40 ms times 0.3 - 0.25 are saved by 20 ms of planning
+    assert said in table.notes and "costs 20 ms a frame, and drawing them is 2.0 ms faster" in said
+    assert "beforehand costs 20 ms, and drawing these levels is 1.0 ms faster" in said
+    assert "renders nothing costs 20 ms and saves -20 [" in said
+    build_one(topic, "figures", "random_scenes", results)
+
+
+@pytest.fixture
+def needs(bare, bare_results):
+    """Results of nine objects that need 100 faces to be seen, 1,000 to be felt and 300 to be recognised, about."""
+    ways = {("full", None): 5000, ("seen", 0.5): 200, ("seen", 1.0): 100, ("felt", 0.05): 1000, ("felt", 0.02): 3000,
+            ("recognised", 0.02): 300}  # fmt: skip
+    common = {"dataset": "household_scenes", "seed": 0}
+    faces = common | {"metric": "faces"}
+    rows = [faces | {"item": f"object {k}", "task": task, "condition": condition, "value": count + k}
+            for k in range(9) for (task, condition), count in ways.items()]  # fmt: skip
+    rows += [common | {"item": f"object {k}", "task": "recognised", "metric": "accuracy", "value": 0.7 + 0.01 * k}
+             for k in range(9)]  # fmt: skip
+    rows.append(
+        common | {"item": None, "task": "recognised", "condition": 0.02, "metric": "faces_together", "value": 250}
+    )
+    write_table(bare / "reports/measurements/household_scenes/face_needs.csv.gz", pd.DataFrame(rows))
+    return bare_results
+
+
+def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
+    table = build_one(topic, "tables", "faces_by_task", needs)
+    assert table.frame["median"].tolist() == [104, 204, 1004, 3004, 304]
+    assert table.shown["task"].tolist() == [
+        "seen from 1 m", "seen from 0.5 m", "felt, within 5 % of full scale", "felt, within 2 % of full scale",
+        "recognised by touch, within 2 points",
+    ]  # fmt: skip
+    assert "9 household objects" in table.notes[0] and "74" in table.notes[2]
+    build_one(topic, "figures", "faces_by_task", needs)
+    found = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
+    assert found["verdict"].tolist() == ["supported", "supported"] and (found["pairs"] == 9).all()

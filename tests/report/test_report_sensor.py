@@ -32,17 +32,11 @@ def pressed():
 
 
 @pytest.fixture
-def sensed(root, results, small):
-    again = {
-        "dataset": "furniture",
-        "classifier": "knn",
-        "cells": 32,
-        "pitch": 0.01,
-        "metric": "smallest_chosen_again",
-        "value": 0.46,
-    }
-    small.write(root, "sensor_size", pd.concat([pressed(), pd.DataFrame([again])]))
-    return results
+def sensed(bare, small):
+    again = {"dataset": "furniture", "classifier": "knn", "cells": 32, "pitch": 0.01, "value": 0.46}
+    again = pd.DataFrame([again | {"metric": "smallest_chosen_again"}])
+    small.write(bare, "sensor_size", pd.concat([pressed(), again]))
+    return small.results(bare)
 
 
 def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_again(sensed):
@@ -65,43 +59,36 @@ def test_the_chart_shows_milliseconds_with_intervals(sensed):
     assert low < drawn[0][0] < high
 
 
-def test_a_cost_has_the_interval_of_its_objects(sensed, root, small):
+def test_a_cost_has_the_interval_of_its_objects(bare, small):
     rows = pressed()
     timed = rows[rows["metric"] == "seconds_a_touch"]
     objects = [timed.assign(item=f"o{k}", value=timed["value"] * factor) for k, factor in enumerate((0.9, 1.0, 1.1))]
-    small.write(root, "sensor_size", pd.concat([rows[rows["metric"] != "seconds_a_touch"], *objects]))
-    axes = build_one(sensor, "tradeoff", "sensor_size", small.results(root)).drawing.axes[-1]
+    small.write(bare, "sensor_size", pd.concat([rows[rows["metric"] != "seconds_a_touch"], *objects]))
+    axes = build_one(sensor, "tradeoff", "sensor_size", small.results(bare)).drawing.axes[-1]
     low, high = axes.collections[-1].get_segments()[0][:, 1]
     mean, *ends = interval([0.09, 0.1, 0.11])
     assert [low, high] == pytest.approx(ends)
 
 
-def test_claims_know_the_truth_of_the_rows(root, sensed, small):
-    small.write(root, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
+def test_claims_know_the_truth_of_the_rows(bare, sensed, small):
+    small.write(bare, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
     judged = judge(arrays.CLAIMS, sensed).set_index("key")
     words = judged["verdict"]
-    better = [
-        "more_cells_help_all",
-        "more_cells_help_more",
-        "larger_pitch_helps_16",
-        "larger_pitch_helps_32",
-        "more_cells_help",
-        "knn_best_sensor",
-        "known_objects_easier",
-    ]
+    better = ["more_cells_help_all", "more_cells_help_more", "larger_pitch_helps_16", "larger_pitch_helps_32",
+              "more_cells_help", "knn_best_sensor", "known_objects_easier"]  # fmt: skip
     assert (words[better] == "supported").all() and words["finer_sensor_enough"] == "contradicted"
     assert judged.loc["known_objects_easier", "effect"] == pytest.approx(20, abs=1)
     assert judged.loc["knn_best_sensor", "effect"] == pytest.approx(5, abs=1)
 
 
-def test_nothing_pressed_is_said_and_not_crashed_on(results):
-    assert set(judge(arrays.CLAIMS, results)["verdict"]) == {"open"}
+def test_nothing_pressed_is_said_and_not_crashed_on(bare_results):
+    assert set(judge(arrays.CLAIMS, bare_results)["verdict"]) == {"open"}
     for kind, name in (("tables", "figure_4_11"), ("tradeoff", "sensor_size")):
         with pytest.raises(NotRun):
-            build_one(sensor, kind, name, results)
+            build_one(sensor, kind, name, bare_results)
 
 
-def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(root, results, small):
+def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(bare, bare_results, small):
     rows = pressed().query("cells == 16 and pitch == 0.02 and metric == 'accuracy'")
     kinds = [
         ({"fine": "12-0.005"}, 0.2),
@@ -110,9 +97,9 @@ def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(root, re
         ({"cells": 20}, 0.0),
     ]
     several = [rows.assign(**kind, value=rows["value"] + more, dataset=arrays.HANDS[0]) for kind, more in kinds]
-    small.write(root, "sensor_size", pd.concat([*several, pressed().assign(dataset=arrays.HANDS[0])]), arrays.HANDS[0])
-    shown = build_one(sensor, "tables", "figure_4_11", results).shown
+    small.write(bare, "sensor_size", pd.concat([*several, pressed().assign(dataset=arrays.HANDS[0])]), arrays.HANDS[0])
+    shown = build_one(sensor, "tables", "figure_4_11", bare_results).shown
     said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
     assert set(said) < set(shown["cells"])
-    judged = judge(arrays.CLAIMS, results).set_index("key")
+    judged = judge(arrays.CLAIMS, bare_results).set_index("key")
     assert judged.loc["wide_hand_over_coarse", "effect"] == pytest.approx(20, abs=0.5)

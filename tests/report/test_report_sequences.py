@@ -1,5 +1,7 @@
 """Table 4.9, figure 4.19, the layers, the chart and the claims of whole contours."""
 
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,17 +12,11 @@ from stages.report.sequences.contours import SHOWN
 from stages.report.sequences.tables import MORE, PRINTED_SET, SAID, SPLITS
 from stages.report.topics import build_one
 from stages.report.verdict import judge
+from tests.report.frames import only
 
 CLASSES = ("car", "chair", "vase")
-MEANS = {
-    "cnn": 0.9,
-    "cnn_images": 0.8,
-    "cnn_normals": 0.4,
-    "knn": 0.6,
-    "svm": 0.7,
-    "knn_no_som": 0.65,
-    "svm_no_som": 0.75,
-}
+MEANS = {"cnn": 0.9, "cnn_images": 0.8, "cnn_normals": 0.4, "knn": 0.6, "svm": 0.7, "knn_no_som": 0.65,
+         "svm_no_som": 0.75}  # fmt: skip
 SECONDS = {"cnn": 60.0, "cnn_images": 58.0, "cnn_normals": 2.0}
 
 
@@ -38,88 +34,57 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), datase
                     for number in range(folds):
                         each = level + 0.005 * random.normal(size=len(CLASSES))
                         seconds = SECONDS.get(name, 5.0) * frames / 25
-                        one = common | {
-                            "repetition": number,
-                            "metric": "accuracy",
-                            "value": each.mean(),
-                            "seconds": seconds,
-                        }
-                        found.append(one | {"group": None, "note": None})
+                        one = common | {"repetition": number, "metric": "accuracy", "group": None}
+                        found.append(one | {"value": each.mean(), "seconds": seconds})
                         if split == "objects":
-                            found += [
-                                common
-                                | {"repetition": number, "metric": "accuracy_object", "group": label, "value": value}
-                                for label, value in zip(CLASSES, each, strict=True)
-                            ]
-    return pd.DataFrame(found).assign(seed=0)
+                            found += [one | {"metric": "accuracy_object", "group": label, "value": value}
+                                      for label, value in zip(CLASSES, each, strict=True)]  # fmt: skip
+    return pd.DataFrame(found).assign(seed=0, note=None)
 
 
-@pytest.fixture
-def run(bare, small):
+@pytest.fixture(scope="module")
+def run(tmp_path_factory, small):
     """Results of a run that has measured the sequences."""
-    small.write(bare, "sequences", rows())
-    return small.results(bare)
+    root = small.bare(tmp_path_factory.mktemp("run"))
+    small.write(root, "sequences", rows())
+    return small.results(root)
 
 
 def table_4_9(results):
     return build_one(sequences, "tables", "table_4_9", results)
 
 
-def cell(frame, **where):
-    """The one row of a frame."""
-    for column, value in where.items():
-        frame = frame[frame[column] == value]
-    assert len(frame) == 1
-    return frame.iloc[0]
-
-
 def test_twin_stands_beside_the_thesis_s_figures(run):
     table = table_4_9(run)
-    row = cell(table.frame, split="random", classifier="cnn", strategy="thesis_ssim")
+    row = only(table.frame, split="random", classifier="cnn", strategy="thesis_ssim")
     assert row["accuracy"] == pytest.approx(0.98, abs=0.01) and row["thesis"] == 0.9897
-    assert cell(table.frame, split="random", classifier="svm", strategy="random")["thesis"] == 0.7721
-    assert np.isnan(cell(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
-    assert np.isnan(cell(table.frame, split="random", classifier="cnn", strategy="glance")["thesis"])
-    line = cell(table.shown, objects="the thesis", split="sequences drawn at random", classifier="CNNs")
+    assert only(table.frame, split="random", classifier="svm", strategy="random")["thesis"] == 0.7721
+    assert np.isnan(only(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
+    assert np.isnan(only(table.frame, split="random", classifier="cnn", strategy="glance")["thesis"])
+    line = only(table.shown, objects="the thesis", split="sequences drawn at random", classifier="CNNs")
     assert line["thesis, SSIM, %"] == "99.0" and line["glance, %"] == "–"
     assert "Guessing: furniture 33.3 %." in " ".join(table.notes)
+    counts = [only(table.frame, split=split, classifier="cnn", strategy="random")["values"] for split in SPLITS]
+    assert dict(zip(SPLITS, counts, strict=True)) == {"random": 3, "objects": 9}  # of unseen objects over these
+    assert len(table.frame) == 2 * 3 * len(MEANS)  # without smaller films
 
 
-def test_interval_of_unseen_objects_is_over_the_objects(run):
-    frame = table_4_9(run).frame
-    assert cell(frame, split="objects", classifier="cnn", strategy="random")["values"] == 9
-    assert cell(frame, split="random", classifier="cnn", strategy="random")["values"] == 3
-
-
-def test_smaller_films_are_not_in_the_table(run):
-    assert len(table_4_9(run).frame) == 2 * 3 * len(MEANS)
-
-
-@pytest.mark.slow
 def test_larger_run_stands_below_where_there_is_one(bare, small):
-    small.write(bare, "sequences", rows())
+    note = {"dataset": "furniture", "metric": "accuracy", "note": "class far: no sequences of away"}
+    small.write(bare, "sequences", pd.concat([rows(splits=("random",)), pd.DataFrame([note])], ignore_index=True))
+    table = table_4_9(small.results(bare))
+    assert set(table.frame["split"]) == {"random"}  # one half, without objects left out
+    assert "Not run: class far: no sequences of away." in table.notes
     small.write(bare, "sequences", rows(dataset="princeton_eight"))
     table = table_4_9(small.results(bare))
     assert list(dict.fromkeys(table.frame["objects"])) == ["furniture", "princeton_eight"]
     assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes", "the thesis"]
 
 
-def test_what_was_left_out_is_a_note(bare, small):
-    note = {"dataset": "furniture", "metric": "accuracy", "value": None, "note": "class far: no sequences of away"}
-    small.write(bare, "sequences", pd.concat([rows(), pd.DataFrame([note])], ignore_index=True))
-    assert "Not run: class far: no sequences of away." in table_4_9(small.results(bare)).notes
-
-
-def test_without_objects_left_out_the_table_has_one_half(bare, small):
-    small.write(bare, "sequences", rows(splits=("random",)))
-    frame = table_4_9(small.results(bare)).frame
-    assert set(frame["split"]) == {"random"}
-
-
-@pytest.mark.parametrize("build", [*sequences.TABLES.values(), *sequences.FIGURES.values(), *sequences.CHARTS.values()])
-def test_unmeasured_is_not_run(bare, small, build):
-    with pytest.raises(NotRun):
-        build(small.results(bare))
+def test_unmeasured_is_not_run(bare, small):
+    for build in (*sequences.TABLES.values(), *sequences.FIGURES.values(), *sequences.CHARTS.values()):
+        with pytest.raises(NotRun):
+            build(small.results(bare))
 
 
 @pytest.mark.slow
@@ -135,21 +100,11 @@ def test_chart_charges_each_choice_its_seconds(run):
 @pytest.mark.slow
 def test_confusions_are_drawn_for_every_strategy_of_the_thesis(bare, small):
     found = [
-        {
-            "method": method,
-            "split": split,
-            "classifier": name,
-            "group": one,
-            "predicted": other,
-            "metric": "confusion",
-            "value": 9 * (one == other) + 1,
-        }
-        for method in ("random", "thesis_ssim", "glance")
-        for split in SPLITS
-        for name in MEANS
-        for one in CLASSES
-        for other in CLASSES
-    ]
+        {"method": method, "split": split, "classifier": name, "group": one, "predicted": other, "metric": "confusion",
+         "value": 9 * (one == other) + 1}
+        for method, split, name in product(("random", "thesis_ssim", "glance"), SPLITS, MEANS)
+        for one, other in product(CLASSES, CLASSES)
+    ]  # fmt: skip
     small.write(bare, "sequences", pd.DataFrame(found), "furniture")
     figure = build_one(sequences, "figures", "figure_4_19", small.results(bare))
     assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
@@ -186,18 +141,13 @@ def test_claims_that_hold_are_supported(bare, small):
     assert found.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
 
 
-def test_claims_that_do_not_hold_are_contradicted(bare, small):
-    words, _ = verdicts(bare, small, rows(guided=-0.05, unseen=0.05))
+def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is_another_reading(bare, small):
+    frame = rows(guided=-0.05, unseen=0.05)
+    frame.loc[frame["classifier"] == "knn_no_som", "value"] = 1.2
+    words, _ = verdicts(bare, small, frame)
     for key in ("contours_guided_random", "contours_guided_unseen", "contours_random_flatters"):
         assert words[key] == "contradicted"
-
-
-def test_a_rival_without_the_map_is_another_reading(bare, small):
-    frame = rows()
-    frame.loc[frame["classifier"] == "knn_no_som", "value"] = 0.95
-    words, found = verdicts(bare, small, frame)
     assert words["contours_cnn_best_unseen"] == "depends on the reading"
-    assert found.loc["contours_cnn_best_unseen", "effect"] == pytest.approx(20, abs=1)
 
 
 @pytest.mark.slow
@@ -206,8 +156,3 @@ def test_claims_without_their_strategy_are_open_and_say_so(bare, small):
     words, found = verdicts(bare, small, frame[frame["method"] != "glance"])
     assert words["contours_glance_unseen"] == "open" and "glance" in found.loc["contours_glance_unseen", "tested_on"]
     assert words["contours_guided_unseen"] == "supported"
-
-
-def test_keys_of_claims_differ():
-    keys = [claim.key for claim in sequences.CLAIMS]
-    assert len(keys) == len(set(keys))

@@ -1,43 +1,25 @@
-"""The site in a browser: tables sort and filter, charts can be read, claims open; and what axe-core says."""
+"""Parts of the pages: tables and charts with their numbers, findings and questions; some of them in a browser."""
 
-import os
+import base64
+import io
 import re
-from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Drawing
+from PIL import Image
 
-from stages.compose import compose
-from stages.report.__main__ import write_report
-from stages.report.claims_page import sets_read
-from stages.report.items import Figure, Table
-from stages.report.page import frame_html, item_html
-from stages.report.records import command
-from stages.report.site import page
+from stages.report.cells import CLAIMS as OF_CLAIMS
+from stages.report.items import Built, Figure, Table
+from stages.report.page import frame_html, item_html, prose, small_picture
+from stages.report.site import FINDINGS, findings_html, front_main, page, questions, questions_html
 from stages.report.tables import Ranking
-from stages.report.topics import CLAIMS
+from stages.report.topics import CLAIMS, KINDS, TOPICS
 
-CONF = Path(__file__).parents[2] / "conf"
-SERIOUS = ("serious", "critical")
-
-
-def axe():
-    """The file of axe-core, or None."""
-    places = [os.environ.get("NODE_PATH"), "node_modules", str(Path.home() / "node_modules")]
-    found = (Path(place) / "axe-core/axe.min.js" for place in places if place)
-    return next((path for path in found if path.exists()), None)
-
-
-@pytest.fixture
-def tab(browser):
-    """A page of the browser that fails the test where a script does."""
-    opened, faults = browser.new_page(viewport={"width": 1280, "height": 800}), []
-    opened.on("pageerror", lambda error: faults.append(str(error)))
-    yield opened
-    opened.close()
-    assert not faults
+REPORTS = Path(__file__).parents[2] / "reports"
+ASKED = 10
 
 
 def show(tab, tmp_path, main):
@@ -131,60 +113,73 @@ def test_a_chart_tells_its_values_to_pointer_and_keyboard(tab, tmp_path):
     assert tab.locator("#tip").is_hidden()
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory, small):
-    """The reports of a small run."""
-    root = small.root(tmp_path_factory.mktemp("site"))
-    small.write(root, "lod", small.lod())
-    write_report(small.results(root))
-    return root / "reports"
+def test_a_picture_of_many_colours_is_shrunk(tmp_path):
+    noise = np.random.default_rng(0).integers(0, 255, (400, 1200, 3), dtype=np.uint8)
+    Image.fromarray(noise).save(tmp_path / "noise.png")
+    shown = Image.open(io.BytesIO(base64.b64decode(small_picture(tmp_path / "noise.png"))))
+    assert shown.size == (900, 300)
 
 
-@pytest.mark.slow
-def test_claims_filter_and_open_to_their_pairs(tab, site):
-    claims = pd.read_csv(site / "claims.csv")
-    differences = pd.read_csv(site / "claims/differences.csv.gz")
-    tab.goto((site / "site/claims.html").as_uri())
-    shown = tab.locator("#list > li:visible")
-    assert shown.count() == len(claims)
-    tab.get_by_label("Verdict").select_option("supported")
-    assert shown.count() == (claims["verdict"] == "supported").sum() > 0
-    tab.get_by_label("Chapter").select_option("ours")
-    both = claims[(claims["verdict"] == "supported") & (claims["section"] == "ours")]
-    assert shown.count() == len(both) > 0
-    assert f"{len(both)} of {len(claims)} claims" in tab.locator("#found").inner_text()
-    key = both["key"].iloc[0]
-    tab.goto("about:blank")
-    tab.goto(f"{(site / 'site/claims.html').as_uri()}#{key}")
-    assert tab.locator(f"#{key} tbody tr").count() == (differences["key"] == key).sum() > 0
-    said = tab.locator(f"#{key} dl").inner_text()
-    assert "dvc repro" in said and f"python -m stages.claim {key}" in said
+def test_code_in_notes_is_marked_up_and_not_shown_with_its_backticks():
+    assert prose("`a<b` and ` alone") == "<code>a&lt;b</code> and ` alone"
+    table = Table(pd.DataFrame({"x": [1]}), notes=["see `stages.compose`"], paths=[Path("tables/t.csv")])
+    assert "<li>see <code>stages.compose</code></li>" in item_html(table)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
-def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, site, width, scheme):
-    if axe() is None:
-        pytest.skip("no axe-core: `npm install axe-core@4.10.3`")
-    for path in [site / "index.html", *sorted((site / "site").glob("*.html"))]:
-        tab = browser.new_page(viewport={"width": width, "height": 800}, color_scheme=scheme)
-        tab.goto(path.as_uri())
-        assert tab.evaluate("document.documentElement.scrollWidth") <= width, path.name
-        tab.evaluate(axe().read_text(encoding="utf-8"))
-        found = tab.evaluate("axe.run()")["violations"]
-        bad = [(one["id"], one["nodes"][0]["html"]) for one in found if one["impact"] in SERIOUS]
-        tab.close()
-        assert not bad, path.name
+@pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
+def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole):
+    table = Table(pd.DataFrame({"x": [cell]}), name="gaps", topic="none", paths=[Path("tables/t.csv")])
+    parts = {kind: Built() for kind in ("figures", "tradeoff")} | {"tables": Built([table]), "claims": pd.DataFrame()}
+    parts |= {"first": [], "not_run": {}, "meshes": None, "own": True, "dataset": ""}
+    page = front_main(parts, {}, {}, Path("reports"))
+    assert ("Everything that this report knows was measured" in page) == whole
+    assert ("<code>tables/gaps</code>: in part" in page) != whole
 
 
-@pytest.mark.slow
-def test_the_command_of_a_claim_switches_its_stage_on(small):
-    results = small.results(Path(__file__).parents[2])
-    asked = {(claim.stage, tuple(sets_read(claim, results))) for claim in CLAIMS}
-    assert len(asked) > 10
-    graphs = cache(lambda override: compose([override] if override else [])["graph"])
-    for stage, sets in asked:
-        steps = re.findall(r"python -m stages\.compose ?'?([^' ]*)'? && dvc repro ([^&]+)", command(CONF, stage, sets))
-        found = [name for override, repeated in steps for name in repeated.split() if name != "report"
-                 if name.partition("@")[2] in graphs(override)[stage]]  # fmt: skip
-        assert sorted(found) == sorted(f"{stage}@{name}" for name in sets), (stage, sets)
+def of_claim(one, effect=10.0, low=5.0, high=15.0):
+    """(claims, differences) of a single finding with its verdict."""
+    verdict = "supported" if low > 0 else "contradicted" if high < 0 else "open"
+    row = {"key": one.key, "claim": "The sentence.", "verdict": verdict, "effect": effect, "low": low, "high": high}
+    pairs = pd.DataFrame({"key": one.key, "pair": ["a<b", "c", "other set"], "difference": [low, high, 1.0]})
+    row |= {"pairs": 2, "over": "objects", "section": "ours", "of": ""}
+    return pd.DataFrame([row]), pairs.assign(judged=[True, True, False])
+
+
+def test_findings_are_claims_of_their_topics_with_the_stored_verdicts_and_two_of_them_fail():
+    of_topic = {claim.key: topic.__name__.rpartition(".")[2] for topic in TOPICS for claim in topic.CLAIMS}
+    stored = pd.read_csv(REPORTS / "claims.csv").set_index("key")["verdict"]
+    assert [(of_topic[one.key], stored[one.key]) for one in FINDINGS] == [(one.topic, one.verdict) for one in FINDINGS]
+    assert sum(one.verdict != "supported" for one in FINDINGS) >= 2
+
+
+def test_a_card_has_its_figure_its_chart_and_its_pairs():
+    text = findings_html(*of_claim(FINDINGS[0], 1.0, 0.5, 1.5))
+    assert FINDINGS[0].title in text and "+1.00 [0.50, 1.50]" in text
+    assert re.findall(r"<title>(.*?) · ", text) == ["a&lt;b", "c", "mean"]
+    assert f'href="site/claims.html#{FINDINGS[0].key}"' in text
+
+
+def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
+    text = findings_html(*of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
+    assert FINDINGS[0].title not in text and "The sentence. (open)" in text
+    kept = next(one for one in FINDINGS if one.shown == "times:")  # whose ends are ordered after they are turned
+    assert "3.00 [1.00, 4.00]" in findings_html(*of_claim(kept, -100.0, -120.0, 0.0))
+    assert findings_html(pd.DataFrame(columns=["key", "low", "verdict"]), pd.DataFrame()) == ""
+
+
+def test_ten_questions_are_answered_from_what_the_repository_holds():
+    names = {f"{kind}/{name}" for topic in TOPICS for kind, held in KINDS.items() for name in getattr(topic, held)}
+    keys = {f"key={claim.key}" for claim in CLAIMS}
+
+    def link(source, where):
+        assert source in names or (source == OF_CLAIMS and where in keys)
+        return source
+
+    found = questions(REPORTS, link)
+    assert len(found) == ASKED
+    assert all(re.search(r"\d", answer) and "{" not in answer for _, answer, _ in found)
+    assert questions_html(found).count("<h3>") == ASKED
+
+
+def test_questions_without_measurements_are_left_out(tmp_path):
+    assert questions(tmp_path, lambda *_: "") == [] and questions_html([]) == ""

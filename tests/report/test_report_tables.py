@@ -1,14 +1,27 @@
-"""Tables: beside the thesis's, and how they are written."""
+"""Tables: beside the thesis's, how they are written, their best row, and figures in sentences that come from them."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import write_table
 from stages.report import touch
+from stages.report.cells import filled
 from stages.report.items import Table
 from stages.report.meshes.tables import paired_cells
 from stages.report.results import NotRun
-from stages.report.tables import as_text, blocks, grid, is_numeric, markdown_table, means, number, with_interval
+from stages.report.tables import (
+    Ranking,
+    as_text,
+    blocks,
+    grid,
+    is_numeric,
+    leading,
+    means,
+    number,
+    signed,
+    with_interval,
+)
 from stages.report.topics import build_all, build_one
 from stages.report.touch.imprints import METHODS, SSIM
 
@@ -31,7 +44,7 @@ def test_table_holds_every_cell_of_the_thesis(results):
         assert row.thesis == thesis.loc[row.sampling, row.classifier]
 
 
-def test_table_maps_the_methods_and_says_what_was_not_run(results):
+def test_table_maps_the_methods_and_says_what_was_not_run(root, results, small):
     table = table_4_1(results)
     cell = table.frame.set_index(["sampling", "classifier"])
     assert cell.loc[("thesis_ssim", "knn"), "accuracy"] == pytest.approx(0.8, abs=0.02)
@@ -40,13 +53,9 @@ def test_table_maps_the_methods_and_says_what_was_not_run(results):
     assert np.isnan(cell.loc[("heat_kernel", "knn"), "accuracy"])
     shown = table.shown.set_index("sampling")
     ours, printed = (cells for _, cells in shown.loc["heat kernel signature"].iterrows())
-    assert (
-        (ours.drop("protocol") == "not run").all() and printed["protocol"] == "the thesis" and printed["kNN, %"] == "59"
-    )
-
-
-def test_title_tells_the_objects_that_the_group_held(root, results, small):
-    assert table_4_1(results).title.startswith("Table 4.1: recognising six objects by")
+    assert (ours.drop("protocol") == "not run").all()
+    assert printed["protocol"] == "the thesis" and printed["kNN, %"] == "59"
+    assert table.title.startswith("Table 4.1: recognising six objects by")
     small.write_set(root, "six", 4)
     assert table_4_1(results).title.startswith("Table 4.1: recognising 4 objects (group six) by")
 
@@ -61,23 +70,11 @@ def test_left_out_sampling_is_a_note_of_its_table(root, small):
     assert built.not_run["table_4_2"] == "no cup"
 
 
-def test_paired_cells_are_those_that_every_method_reaches(results):
-    found = paired_cells(results, ["metro_mean"], ["qem", "glance"])
-    assert set(found.loc[found["target"] == "25%", "item"]) == {"ball"}
-    assert set(found.loc[found["target"] == "50%", "item"]) == {"ball", "cube"}
-
-
 def test_lod_seconds_are_those_of_the_simplification(root, results, small):
     frame = results.rows("lod").copy()
     frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
     small.write(root, "lod", frame)
     assert (paired_cells(small.results(root), ["metro_mean"], ["qem", "glance"])["seconds"] == 0.1).all()
-
-
-def test_without_measurements_every_table_is_not_run_or_made(bare, small):
-    built = build_all("tables", small.results(bare))
-    assert "table_4_1" in built.not_run
-    assert "dvc repro classification" in built.not_run["table_4_1"]
 
 
 def test_missing_column_is_not_run(results):
@@ -86,15 +83,11 @@ def test_missing_column_is_not_run(results):
 
 
 def test_table_is_written_as_numbers_and_as_text(tmp_path):
-    table = Table(pd.DataFrame({"a|b": [0.123456, np.nan]}), name="t", title="Title", notes=["a note"])
+    table = Table(pd.DataFrame({"a|b": [0.123456, np.nan], "c": "x|y"}), name="t", title="Title", notes=["a note"])
     table.write(tmp_path)
     text = (tmp_path / "t.md").read_text()
-    assert "0.123" in text and "–" in text and "- a note" in text
+    assert "0.123" in text and "–" in text and "- a note" in text and r"x\|y" in text
     assert pd.read_csv(tmp_path / "t.csv")["a|b"][0] == 0.123456
-
-
-def test_markdown_keeps_a_bar_in_a_cell():
-    assert r"x\|y" in markdown_table(pd.DataFrame({"a": ["x|y"]}))
 
 
 @pytest.mark.parametrize(
@@ -110,6 +103,8 @@ def test_interval_reads_well():
     assert with_interval(0.512, 0.41, 0.61, 100, 0) == "51 [41, 61]"
     assert with_interval(0.5, np.nan, np.nan, 100, 0) == "50"
     assert with_interval(np.nan, np.nan, np.nan) == "not run"
+    assert signed(-0.001, -0.004, 0.002) == "+0.00 [0.00, 0.00]"  # zero has no minus
+    assert signed(0.126, np.nan, np.nan) == "+0.13"
 
 
 def test_column_of_words_is_not_numeric():
@@ -132,9 +127,6 @@ def test_grid_keeps_the_order_of_the_cells_and_says_what_is_absent():
     assert shown.to_dict("list") == {
         "sampling": ["B", "A"], "knn, %": ["50 [40, 60]", "10 [0, 20]"], "svm, %": ["70", "not run"],
     }  # fmt: skip
-
-
-def test_grid_may_go_down_by_several_columns():
     shown = grid(cells().assign(of="x"), ["of", "sampling"], "classifier", places=1)
     assert shown.columns.tolist() == ["of", "sampling", "knn", "svm"]
     assert shown["svm"].tolist() == ["70.0", "not run"] and shown["knn"][1] == "10.0 [0.0, 20.0]"
@@ -157,3 +149,94 @@ def test_means_cut_the_interval_at_what_is_possible():
     one, other = means(frame, ["method"], top=1.0)
     assert one["method"] == "x" and one["high"] == 1.0 and one["seconds"] == 1.0 and one["values"] == 3
     assert other["low"] == 0.0
+
+
+SHOWN = pd.DataFrame({
+    "set": ["a", "a", "a", "b", "b", "b"],
+    "method": ["truth", "x", "y", "x", "y", "z"],
+    "NSS": ["9.00", "1.10 [1.00, 1.20]", "+1.20 [1.00, 1.40]", "not run", "0.50", "0.50 [0.40, 0.60]"],
+    "seconds": ["–", "1,000", "900", "3", "2", "4"],
+})  # fmt: skip
+
+
+@pytest.mark.parametrize(("best", "rows"), [
+    (Ranking("NSS"), [0]), (Ranking("NSS", exempt=["truth"]), [2]), (Ranking("seconds", lowest=True), [4]),
+    (Ranking("NSS", among=["set"], exempt=["truth"]), [2, 4, 5]), (Ranking("gone"), []),
+])  # fmt: skip
+def test_the_best_rows_are_by_what_is_shown_and_a_truth_takes_no_part(best, rows):
+    shown = pd.concat([SHOWN, SHOWN.tail(1).assign(NSS="0.40")], ignore_index=True)
+    assert np.flatnonzero(best.best(shown)).tolist() == rows
+
+
+def test_the_best_of_one_is_none_and_so_is_that_of_equals():
+    assert not Ranking("NSS").best(SHOWN.head(1)).any()
+    assert not Ranking("NSS").best(SHOWN.tail(2)).any()  # both are shown as 0.50
+
+
+@pytest.mark.parametrize(
+    ("cell", "number"), [("−0.13 [−0.28, 0.01]", -0.13), ("1.2e-05", 1.2e-5), ("< 0.1", 0.1), ("12,345", 12345)]
+)
+def test_the_number_of_a_cell_is_read(cell, number):
+    assert leading(cell) == number
+    assert np.isnan(leading("not run")) and np.isnan(leading("–"))
+
+
+def test_the_bold_moves_with_the_numbers(tmp_path):
+    frame = pd.DataFrame({"method": ["x", "y"], "NSS": [1.0, 2.0], "note": ["", "n"]})
+
+    def bold(frame):
+        table = Table(frame, name="t", title="T", best=Ranking("NSS"))
+        table.write(tmp_path)
+        return [line for line in (tmp_path / "t.md").read_text().splitlines() if "**" in line]
+
+    assert bold(frame) == ["| **y** | **2** | **n** |"]
+    assert bold(frame.assign(NSS=[3.0, 2.0])) == ["| **x** | **3** |  |"]
+
+
+@pytest.fixture
+def reports(tmp_path):
+    """A folder with one table and the claims."""
+    frame = pd.DataFrame({"method": ["one", "two", "two"], "note": ["", "", "x"], "mean": [1234.5, 0.5, None]})
+    write_table(tmp_path / "tables/rates.csv", frame.assign(low=[1000.0, 0.25, 0], high=[2000.0, 0.75, 1]))
+    claims = {"key": ["kept", "read", "untested"], "effect": -100.0, "low": -120.0, "high": 0.0}
+    claims["verdict"] = ["contradicted", "depends on the reading", "not testable"]
+    write_table(tmp_path / "claims.csv", pd.DataFrame(claims))
+    signs = {"kind": ["none of both", "open"], "mean": [1, 1], "low": [-2, None], "high": [4, 2]}
+    write_table(tmp_path / "tables/signs.csv", pd.DataFrame(signs))
+    return tmp_path
+
+
+@pytest.mark.parametrize(("place", "said"), [
+    ("tables/rates method=one: mean", "1,234"),
+    ("tables/rates method=one: mean low high", "1,234 [1,000, 2,000]"),
+    ("tables/rates method=two note=: 100*mean 100*low 100*high .0f", "50 [25, 75]"),
+    ("tables/rates method=two note=: 1/mean 1/low 1/high", "2 [1.33, 4]"),
+    ("tables/rates method=two note=: 1-mean", "0.500"),
+    ("claims key=kept: times:effect times:low times:high .2f", "3.00 [1.00, 4.00]"),
+    ("claims key=kept: -effect", "100"),
+    ("claims key=read: effect low high", "-100 [-120, 0] (depends on the reading)"),
+    ("claims key=untested: effect low high more|less .0f",
+     "neither more nor less beyond chance (-100 [-120, 0]) (not testable)"),
+    ("tables/rates method=o*: mean", "1,234"),
+    ("tables/rates note=x method!=one: rows", "1"),
+    ("tables/rates : rows", "3"),
+    ("tables/signs kind=open: mean low high", "1"),
+    ("tables/rates highest=low: method", "one"),
+    ("tables/rates method=two lowest=mean: mean low high NSS higher|NSS lower .2f", "0.50 [0.25, 0.75] NSS higher"),
+    ("tables/rates method=two note=: -mean -low -high higher|lower .1f", "0.5 [0.2, 0.8] lower"),
+    ("tables/signs kind=none of both: mean low high points higher|points lower .0f",
+     "neither points higher nor points lower beyond chance (1 [-2, 4])"),
+])  # fmt: skip
+def test_a_place_becomes_what_its_cell_holds(reports, place, said):
+    assert filled(f"It is {{{place}}}.", reports) == (f"It is {said}.", [tuple(place.split(":")[0].split(" ", 1))])
+
+
+@pytest.mark.parametrize("place", [
+    "tables/none method=one: mean", "tables/rates method=three: mean", "tables/rates method=two: mean",
+    "tables/rates method=two note=x: mean", "tables/rates gone=1: mean", "tables/rates method=one: gone",
+    "tables/signs kind=open: mean low high more|less",
+    "tables/rates highest=gone: mean", "tables/rates method=two note=x highest=mean: mean", "tables/none : rows",
+])  # fmt: skip
+def test_what_was_not_measured_or_is_not_one_row_is_an_error(reports, place):
+    with pytest.raises(LookupError):
+        filled(f"{{{place}}}", reports)

@@ -1,15 +1,116 @@
-"""Rows that are no evidence: a method that found, kept or learned nothing is left out before a verdict."""
+"""Rows that are no evidence: units without kept points, and what is left out before a verdict.
+
+Also the table of points and rings, which counts such units.
+"""
 
 from dataclasses import replace
+from time import process_time
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from stages.report import meshes
 from stages.report.claims import Claim
 from stages.report.effects import GUESSING, ONE_CLASS, SAME, UNTRAINED, causes, differences, invalid
-from stages.report.pareto import NO_POINT, NO_RING
+from stages.report.meshes import tables
+from stages.report.pareto import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units
+from stages.report.results import SECTION_3_1
+from stages.report.topics import build_one
 from stages.report.verdict import judge
+
+ERRORS = ("metro_mean", "ssim_error")
+
+
+def unit(item, method, target="1500", points=10, kept=10, rings=3.0, errors=(0.2, 0.3), shrunk=None):
+    """The rows of one mesh: the number of faces and two errors."""
+    common = {"item": item, "method": method, "target": target, "points": points, "kept": kept, "rings": rings}
+    common |= {"shrunk": points > 0 and rings < 3 if shrunk is None else shrunk, "infeasible": False, "note": ""}
+    values = {"faces": int(target)} | dict(zip(ERRORS, errors, strict=True))
+    return [common | {"metric": metric, "value": value} for metric, value in values.items()]
+
+
+PLAIN: dict[str, Any] = {"points": 0, "kept": 0, "rings": np.nan, "errors": (0.1, 0.15)}
+QEM = unit("a", "qem", **PLAIN) + unit("a", "qslim", **PLAIN)
+
+
+def cause(method, **fields):
+    """The cause for which one unit beside plain QEM is invalid, None for a valid one."""
+    found = invalid_units(pd.DataFrame(QEM + unit("a", method, **fields)))
+    assert set(found.index) <= {("a", method, fields.get("target", "1500"))}
+    return found.get(("a", method, "1500"))
+
+
+@pytest.mark.parametrize(("method", "fields", "word"), [
+    ("itti", {}, None),
+    ("SymRad", {"points": 0, "kept": 0, "rings": np.nan}, NO_POINT), ("SymRad", PLAIN, NO_POINT),
+    ("glance-soft", {"points": 0, "kept": 0, "rings": np.nan}, None),  # weights keep nothing by design
+    ("itti", {"errors": PLAIN["errors"]}, AS_PLAIN), ("itti", {"errors": (PLAIN["errors"][0], 0.2)}, None),
+    ("glance-soft", PLAIN, AS_PLAIN),
+    ("harris", {"rings": 0.9}, NO_RING), ("harris", {"rings": 1.0}, None),
+    ("harris", {"kept": 0, "rings": np.nan}, NO_RING),
+])  # fmt: skip
+def test_a_unit_without_points_or_rings_or_with_the_mesh_of_plain_is_invalid(method, fields, word):
+    assert cause(method, **fields) == word
+
+
+def test_a_unit_is_compared_with_plain_of_its_object_and_needs_a_mesh():
+    other = unit("b", "qem", **PLAIN | {"errors": (0.5, 0.6)}) + unit("b", "itti", errors=(0.1, 0.15))
+    gone = unit("a", "SymRad", points=0, rings=np.nan, errors=(np.nan, np.nan))
+    rows = pd.DataFrame(QEM + other + gone)
+    rows.loc[rows["method"] == "SymRad", "value"] = np.nan
+    assert not len(invalid_units(rows))
+
+
+def test_causes_of_a_set_of_many_objects_take_a_moment():
+    base = pd.DataFrame(QEM + [row for k in range(30) for row in unit("a", f"m{k}", rings=k / 10)])
+    rows = pd.concat([base.assign(item=f"o{k}") for k in range(500)], ignore_index=True)
+    begin = process_time()
+    found = invalid_units(rows)
+    assert process_time() - begin < 2 and found.eq(NO_RING).sum() == len(found) == 500 * 10
+
+
+@pytest.fixture
+def made():
+    """Four objects: SymRad finds a point on one, harris keeps 0 to 1.5 rings, itti three on all but one."""
+    rows = []
+    for k, item in enumerate("abcd"):
+        for target in ("3000", "1500"):
+            rows += unit(item, "qem", target, **PLAIN)
+            radial = {"points": 4, "kept": 4} if k == 0 else PLAIN
+            rows += unit(item, "SymRad", target, **radial)
+            rows += unit(item, "harris", target, points=100, kept=50, rings=k / 2 if target == "1500" else 2.5)
+            rows += unit(item, "itti", target, points=20 + k, rings=2.0 if k == 3 else 3.0)
+            rows += unit(item, "itti-area", target, points=20, rings=7.0)
+    return pd.DataFrame(rows)
+
+
+def test_the_numbers_of_points_and_rings(made):
+    causes = invalid_units(made)
+    assert causes.index.names == UNIT and causes.index.is_unique
+    assert causes.value_counts().to_dict() == {NO_POINT: 6, NO_RING: 2}
+    found = tables.counted(made).set_index(["method", "target"])
+    assert list(dict.fromkeys(found.index.get_level_values("method"))) == ["harris", "itti", "SymRad"]
+    assert found.loc[("SymRad", "1500")].to_dict() == {
+        "objects": 4, "points": 0.0, "rings": 3.0, "without_points": 0.75, "three_rings": 0.25, "as_plain": 0.75,
+    }  # fmt: skip
+    assert found.loc[("harris", "1500"), ["points", "rings", "three_rings", "as_plain"]].tolist() == [100, 0.75, 0, 0]
+    assert found.loc[("harris", "3000"), "rings"] == 2.5
+    assert found.loc[("itti", "1500"), ["points", "rings", "three_rings"]].tolist() == [21.5, 3, 0.75]
+
+
+def test_the_table_shows_the_printed_set_and_holds_all(made, bare, small):
+    for name in ("test", "a", SECTION_3_1):
+        small.write(bare, "lod", made.assign(dataset=name, asked=1, faces=1, seconds=np.nan))
+    table = build_one(meshes, "tables", "lod_points", small.results(bare))
+    assert list(table.frame["data"].unique()) == ["household as in T3.1", "test", "a"]
+    shown = table.shown.set_index("kept points")
+    assert list(shown.index) == ["3DH", "VisAtt", "SymRad"]
+    assert float(shown.loc["SymRad", "without a point, %"]) == 75
+    assert float(shown.loc["3DH", "rings, 3,000 faces"]) == 2.5 and shown.loc["3DH", "rings, 1,500 faces"] == "0.8"
+    assert float(shown.loc["SymRad", "as plain, %, 1,500 faces"]) == 75
+
 
 OVER = Claim(
     key="one", section="T9", sentence="Sentence.", stage="lod", dataset="test", over=("item",), within=("target",),
@@ -18,113 +119,110 @@ OVER = Claim(
 COUNT = 12  # objects, each at two targets: a fifth of 24 pairs is 4.8
 
 
-def simplified(root, small, without_points=0, without_rings=0, value=2.0):
+def simplified(bare, small, without_points=0, without_rings=0, value=2.0):
     """Results of method x beside plain: the first pairs of x found no point, the next ones kept less than a ring."""
     x = pd.DataFrame({"item": np.repeat([f"o{k:02}" for k in range(COUNT)], 2), "target": ["1500", "3000"] * COUNT})
     x = x.assign(method="x", points=9, rings=3.0, value=value + np.linspace(0, 0.1, 2 * COUNT))
     x.loc[x.index[:without_points], ["points", "value"]] = 0, 100.0
     x.loc[x.index[without_points : without_points + without_rings], ["rings", "value"]] = 0.9, 100.0
     plain = x.assign(method="qem", points=0, rings=np.nan, value=1.0)
-    small.write(root, "lod", pd.concat([x, plain]).assign(dataset="test", metric="error"))
-    return small.results(root)
+    small.write(bare, "lod", pd.concat([x, plain]).assign(dataset="test", metric="error"))
+    return small.results(bare)
 
 
-def test_plain_simplification_and_whole_rings_are_valid(root, small):
-    results = simplified(root, small)
+def test_plain_simplification_and_whole_rings_are_valid(bare, small):
+    results = simplified(bare, small)
     assert set(causes(results, "lod", "test", results.rows("lod"))) == {""}
     assert invalid(results, OVER)[1] == 2 * COUNT and judge([OVER], results)["validity"].iloc[0] == ""
 
 
-def test_a_few_invalid_pairs_are_left_out_and_counted(root, small):
-    row = judge([OVER], simplified(root, small, without_points=1, without_rings=3)).iloc[0]
+def test_a_few_invalid_pairs_are_left_out_and_counted(bare, small):
+    row = judge([OVER], simplified(bare, small, without_points=1, without_rings=3)).iloc[0]
     assert row["verdict"] == "supported" and row["effect"] == pytest.approx(1.05, abs=0.05)
     assert row["units"] == COUNT - 2  # of two objects both targets are invalid
     assert row["validity"] == f"test: 4 of 24 pairs invalid: {NO_RING} (3), {NO_POINT} (1)"
 
 
-def test_an_object_keeps_its_valid_target(root, small):
-    results = simplified(root, small, without_points=1)
+def test_an_object_keeps_its_valid_target(bare, small):
+    results = simplified(bare, small, without_points=1)
     assert len(differences(results, OVER)) == COUNT
     assert differences(results, OVER)["o00"] == pytest.approx(1.0, abs=0.05)
     assert differences(results, replace(OVER, checked=False))["o00"] > 40
 
 
-def test_more_than_a_fifth_cannot_be_tested_and_says_why(root, small):
-    row = judge([OVER], simplified(root, small, without_points=5)).iloc[0]
+def test_more_than_a_fifth_cannot_be_tested_unless_the_claim_is_about_all_rows(bare, small):
+    results = simplified(bare, small, without_points=5)
+    row, every = (judge([one], results).iloc[0] for one in (OVER, replace(OVER, checked=False)))
     assert row["verdict"] == "not testable" and row["holds"] == "" and row["effect"] > 10  # of all pairs
     assert row["validity"] == f"test: 5 of 24 pairs invalid: {NO_POINT} (5)"
+    assert every["verdict"] != "not testable" and every["validity"] == "" and every["pairs"] == COUNT
 
 
-def test_a_claim_about_all_rows_leaves_none_out(root, small):
-    row = judge([replace(OVER, checked=False)], simplified(root, small, without_points=5)).iloc[0]
-    assert row["verdict"] != "not testable" and row["validity"] == "" and row["pairs"] == COUNT
-
-
-def test_a_mean_over_methods_needs_each_of_them(root, small):
-    results = simplified(root, small, without_points=2)
+def test_a_mean_over_methods_needs_each_of_them(bare, small):
+    results = simplified(bare, small, without_points=2)
     rows = results.rows("lod")
     other = rows[rows["method"] == "x"].assign(method="y", points=9, value=2.0)
-    small.write(root, "lod", pd.concat([rows, other]))
-    found = differences(small.results(root), replace(OVER, first={"method": ("x", "y")}))
+    small.write(bare, "lod", pd.concat([rows, other]))
+    found = differences(small.results(bare), replace(OVER, first={"method": ("x", "y")}))
     assert len(found) == COUNT - 1 and found.max() < 2
 
 
-def test_two_sides_with_the_same_mesh_are_no_evidence(root, small):
-    rows = simplified(root, small).rows("lod")
+def test_two_sides_with_the_same_mesh_are_no_evidence(bare, small):
+    rows = simplified(bare, small).rows("lod")
     other = rows[rows["method"] == "x"].assign(method="y")
     other.loc[other["item"] != "o00", "value"] = 1.5
     zero = rows.assign(value=rows["value"].where(rows["item"] != "o01", 0.0))  # two exact meshes
     other.loc[other["item"] == "o01", "value"] = 0.0
-    small.write(root, "lod", pd.concat([zero.assign(value=zero["value"] + 9 * (zero["method"] == "qem")), other]))
+    small.write(bare, "lod", pd.concat([zero.assign(value=zero["value"] + 9 * (zero["method"] == "qem")), other]))
     one = replace(OVER, second={"method": "y"})
-    row = judge([one], small.results(root)).iloc[0]
+    row = judge([one], small.results(bare)).iloc[0]
     assert row["validity"] == f"test: 2 of 24 pairs invalid: {SAME} (2)" and row["units"] == COUNT - 1
-    assert differences(small.results(root), one)["o01"] == 0
+    assert differences(small.results(bare), one)["o01"] == 0
     same_as_plain = replace(OVER, first={"method": "y"}, second={"method": "qem"})
-    small.write(root, "lod", pd.concat([rows, other.assign(value=1.0)]))
-    assert judge([same_as_plain], small.results(root))["verdict"].iloc[0] == "not testable"
+    small.write(bare, "lod", pd.concat([rows, other.assign(value=1.0)]))
+    assert judge([same_as_plain], small.results(bare))["verdict"].iloc[0] == "not testable"
 
 
-def test_a_statistic_of_its_own_leaves_the_same_pairs_out(root, small):
-    results = simplified(root, small, without_points=2)
+def test_a_statistic_of_its_own_leaves_the_same_pairs_out(bare, small):
+    results = simplified(bare, small, without_points=2)
     falls = replace(OVER, statistic="falls_with_faces", second=None)
     rows = results.rows("lod")
-    small.write(root, "lod", rows.assign(faces=rows["target"].astype(int)))
-    assert len(differences(small.results(root), falls)) == COUNT - 1
-    assert invalid(small.results(root), falls)[0].index.tolist() == [("o00", "1500"), ("o00", "3000")]
+    small.write(bare, "lod", rows.assign(faces=rows["target"].astype(int)))
+    assert len(differences(small.results(bare), falls)) == COUNT - 1
+    assert invalid(small.results(bare), falls)[0].index.tolist() == [("o00", "1500"), ("o00", "3000")]
 
 
-def test_a_classifier_with_one_answer_for_nearly_all_is_invalid(root, small):
+def test_a_classifier_with_one_answer_for_nearly_all_is_invalid(bare, small):
     rows = pd.DataFrame({"dataset": "test", "method": "m", "classifier": ["svm", "knn"] * 2, "repetition": 0})
     rows = rows.assign(metric=["accuracy"] * 2 + ["commonest_share"] * 2, value=[0.3, 0.8, 0.4, 0.3])
     for group, words in (("six", [ONE_CLASS, ""]), ("four", ["", ""]), ("some", ["", ""])):
-        small.write(root, "classification", rows.assign(group=group))
-        small.write(root, "recorded", rows.assign(group=f"{group}_drawn"))
-        results = small.results(root)
+        small.write(bare, "classification", rows.assign(group=group))
+        small.write(bare, "recorded", rows.assign(group=f"{group}_drawn"))
+        results = small.results(bare)
         for stage in ("classification", "recorded"):
             accuracy = results.rows(stage, metric="accuracy")
             assert causes(results, stage, "test", accuracy).tolist() == words
 
 
-def test_a_kind_of_trial_that_is_less_accurate_than_guessing_is_invalid(root, small):
+def test_a_kind_of_trial_that_is_less_accurate_than_guessing_is_invalid(bare, small):
     rows = pd.DataFrame({"dataset": "test", "group": "six", "metric": "accuracy", "repetition": [0, 1] * 2})
     rows = rows.assign(classifier=["svm", "svm", "knn", "knn"], value=[0.18, 0.12, 0.1, 0.9])
-    small.write(root, "classification", rows)
-    results = small.results(root)
+    small.write(bare, "classification", rows)
+    results = small.results(bare)
     assert (
         causes(results, "classification", "test", results.rows("classification")).tolist() == [GUESSING] * 2 + [""] * 2
     )
 
 
 @pytest.mark.parametrize("stage", ["transfer", "recorded_networks"])
-def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopped_by_itself(root, small, stage):
+def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopped_by_itself(bare, small, stage):
     rows = pd.DataFrame({"dataset": "test", "metric": "accuracy", "value": 0.6, "repetition": range(4)})
     rows = rows.assign(mode=["finetuned", "finetuned", "frozen", "18:139"], passes=["printed"] * 3 + ["converged"])
     learned = rows.assign(metric="train_accuracy", value=[0.77, 0.97, 0.1, 0.5])
-    small.write(root, stage, pd.concat([rows, learned]))
-    results = small.results(root)
+    small.write(bare, stage, pd.concat([rows, learned]))
+    results = small.results(bare)
     accuracy = results.rows(stage, metric="accuracy")
     assert causes(results, stage, "test", accuracy).tolist() == [UNTRAINED, "", "", ""]
-    small.write(root, stage, rows.drop(columns="passes"))  # nobody knows how far these were trained
-    results = small.results(root)
+    small.write(bare, stage, rows.drop(columns="passes"))  # nobody knows how far these were trained
+    results = small.results(bare)
     assert causes(results, stage, "test", results.rows(stage)).tolist() == [UNTRAINED, UNTRAINED, "", UNTRAINED]

@@ -1,12 +1,13 @@
-"""Imprint rates: what the table and the chart say of a bench with a known truth, and the picture of one mesh."""
+"""Benchmarks in the report: rates of imprints with a known truth, and the chart of kernels over commits."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_table
-from stages.report import touch
+from stages.report import stability, touch
 from stages.report.results import NotRun
+from stages.report.stability import score
 from stages.report.topics import build_one
 
 RATES = {"ours": 4000.0, "trimesh_embree": 2000.0, "depth_picture": 1000.0, "tacto_32x32": 50.0, "tacto_160x120": 20.0}
@@ -87,20 +88,14 @@ def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
     assert chart(results).paths[0].exists()
 
 
-@pytest.mark.slow
-def test_chart_puts_ours_alone_on_the_front(bench):
-    figure = chart(bench(benched()))
-    written = pd.read_csv(figure.paths[1])
-    assert written.loc[written["on_front"] == "yes", "method"].tolist() == ["ours"]
-    assert figure.paths[0].exists() and "TACTO" in figure.alt
-
-
-@pytest.mark.slow
-def test_chart_counts_rounding_as_equal(bench):
+@pytest.mark.parametrize(("rate", "best"), [(2000.0, "ours"), (9000.0, "trimesh_embree")])
+def test_chart_puts_the_fastest_alone_on_the_front_and_counts_rounding_as_equal(bench, rate, best):
     rows = benched()
-    rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = 9000.0
-    written = pd.read_csv(chart(bench(rows)).paths[1])
-    assert written.loc[written["on_front"] == "yes", "method"].tolist() == ["trimesh_embree"]
+    rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = rate
+    figure = chart(bench(rows))
+    written = pd.read_csv(figure.paths[1])
+    assert written.loc[written["on_front"] == "yes", "method"].tolist() == [best]
+    assert figure.paths[0].exists() and "TACTO" in figure.alt
 
 
 def test_without_a_bench_nothing_is_run(bare, small):
@@ -109,18 +104,54 @@ def test_without_a_bench_nothing_is_run(bare, small):
             build(small.results(bare))
 
 
-def test_half_a_bench_is_not_run(bench):
+def test_half_a_bench_or_one_without_a_rate_is_not_run(bench):
     rows = benched()
-    with pytest.raises(NotRun, match="not whole"):
-        table(bench(rows[rows["what"] == "rate"].drop(columns="to_mesh")))
-
-
-def test_bench_without_a_rate_is_not_run(bench):
-    with pytest.raises(NotRun, match="not whole"):
-        table(bench(benched().assign(value=np.nan)))
+    for broken in (rows[rows["what"] == "rate"].drop(columns="to_mesh"), rows.assign(value=np.nan)):
+        with pytest.raises(NotRun, match="not whole"):
+            table(bench(broken))
 
 
 @pytest.mark.slow
 def test_picture_of_one_mesh_is_of_the_hero(results):
     figure = build_one(touch, "figures", "touch_one_mesh", results)
     assert figure.paths[0].exists() and "ball" in figure.alt and "3 numbered places" in figure.alt
+
+
+def row(commit, hour, what, ratio, machine="here"):
+    """A row of the history; ratio None for the reference loop."""
+    ends = {} if ratio is None else {"low": 0.9 * ratio, "high": 1.1 * ratio, "limit": 1.5 * ratio}
+    date = f"2026-11-21T{hour:02}:00:00+00:00"
+    return {"commit": commit, "date": date, "what": what, "peer": f"peer of {what}", "ratio": ratio, **ends,
+            "machine": machine}  # fmt: skip
+
+
+def history(root, small, *rows):
+    write_table(root / "reports/bench/history.csv", pd.DataFrame(list(rows)))
+    return small.results(root)
+
+
+def test_lines_are_those_of_the_machine_that_measured_last_by_date(bare, small, monkeypatch):
+    drawn, draw = {}, score._draw
+
+    def noted(axes, rows, *looks):
+        drawn[rows["what"].iloc[0]] = rows
+        draw(axes, rows, *looks)
+
+    monkeypatch.setattr(score, "_draw", noted)
+    rows = [row("b", 2, "maps", 0.2), row("a", 1, "maps", 0.1), row("a", 1, "old", 5.0, "elsewhere")]
+    words = score.kernels(history(bare, small, *rows, row("b", 2, "loop", None))).words
+    assert list(drawn) == ["maps"] and list(drawn["maps"]["ratio"]) == [0.1, 0.2]
+    assert list(drawn["maps"]["place"]) == [0, 1]
+    assert words == {"kernels": 1, "commits": 2, "machine": "here", "names": "maps (peer of maps)"}
+
+
+def test_one_commit_is_drawn_and_said(bare, small):
+    figure = build_one(
+        stability, "figures", "kernels", history(bare, small, row("a", 1, "maps", 0.1), row("a", 1, "press", 4.0))
+    )
+    assert figure.paths[0].exists() and "press (peer of press), maps (peer of maps)" in figure.alt
+
+
+def test_without_the_history_of_kernels_it_is_not_run(bare, small):
+    with pytest.raises(NotRun, match="make bench"):
+        score.kernels(small.results(bare))

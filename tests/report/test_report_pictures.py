@@ -1,0 +1,92 @@
+"""Pictures of meshes: light, colours, hidden points; and what makes pictures of one object differ."""
+
+import numpy as np
+import pytest
+
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.mesh.mesh import Mesh
+from stages.report.drawing import VIEWPOINT, colours, picture, visible, vivid
+from stages.report.meshes import pictures
+from stages.report.meshes.levels import METHODS
+from stages.report.meshes.pictures import against_the_mean, density, faces_an_area
+
+
+def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_left_out(small):
+    ball = small.ball()
+    mesh, values = Mesh(0.3 * ball.vertices, ball.faces), np.random.default_rng(0).random(len(ball.vertices))
+    wide = Mesh(np.vstack([mesh.vertices, [[0.4] * 3, [-0.4] * 3]]), mesh.faces)  # rays all round
+    for given in ({}, {"values": values}, {"wires": True}, {"viewpoint": Viewpoint(20, 50)}, {"smoothing": 1}, {}):
+        found = picture(mesh, rows=60, **given)
+        for other in (wide, Mesh(mesh.vertices, mesh.faces)):
+            assert np.array_equal(found, picture(other, rows=60, **given)), given
+
+
+def test_picture_is_white_off_the_object_only(small):
+    image = picture(small.ball(), rows=60)
+    off = np.hypot(*(np.mgrid[:60, :60] - 29.5)) > 30
+    assert (image[off] == 1).all()
+    assert (image[30, 30] < 1).all()
+
+
+def test_points_behind_the_object_are_hidden(small):
+    mesh = small.ball()
+    towards = mesh.vertices @ VIEWPOINT.axes[2]
+    down, across = visible(mesh, np.array([towards.argmax(), towards.argmin()]), rows=60)
+    assert len(down) == len(across) == 1
+    assert abs(down[0] - 29.5) < 6
+
+
+def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
+    values = np.r_[np.linspace(0, 0.1, 999), 1.0]
+    shown = vivid(values)
+    assert (np.diff(shown) >= 0).all() and shown.max() == 1
+    assert np.median(shown) > 0.4
+    assert vivid(np.zeros(5)).tolist() == [0] * 5
+    assert vivid(np.r_[np.zeros(999), 0.5])[-1] == 1
+    tints = colours(METHODS)  # of the chart of simplification
+    assert len(set(tints.values())) == len(tints) == 8
+
+
+def test_colours_of_the_error_are_those_of_the_distance(small):
+    inner = small.ball()
+    inner = type(inner)(0.9 * inner.vertices, inner.faces)
+    found = pictures.errors(small.ball(24), inner)
+    assert found.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
+
+
+@pytest.fixture
+def mesh(small):
+    return small.ball(16)
+
+
+def ends(mesh):
+    """The vertices at the two poles."""
+    return int(mesh.vertices[:, 2].argmax()), int(mesh.vertices[:, 2].argmin())
+
+
+def test_points_lie_dense_where_they_are_and_their_number_does_not_matter(mesh):
+    top, bottom = ends(mesh)
+    found = density(mesh, np.array([top]))
+    assert found.argmax() == top and found[bottom] == 0 and found.mean() == pytest.approx(1)
+    assert density(mesh, np.array([top, top])) == pytest.approx(found)
+    assert not density(mesh, np.array([], dtype=int)).any()
+
+
+def test_a_method_has_more_where_the_others_have_fewer(mesh):
+    top, bottom = ends(mesh)
+    points = {"up": np.array([top]), "down": np.array([bottom]), "none": np.array([], dtype=int)}
+    found = against_the_mean(mesh, points)
+    assert set(found) == {"up", "down"}
+    assert found["up"][top] > 0.9 and found["up"][bottom] < 0.1 and found["down"] == pytest.approx(1 - found["up"])
+    assert found["up"][np.abs(mesh.vertices[:, 2]) < 0.01] == pytest.approx(0.5)
+
+
+def test_equal_points_differ_nowhere(mesh):
+    same = np.array(ends(mesh))
+    assert all(values == pytest.approx(0.5) for values in against_the_mean(mesh, {"a": same, "b": same}).values())
+
+
+def test_faces_lie_dense_where_they_are_small():
+    vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [-1, 0, 0], [0, -1, 0], [-1, -1, 0.0]])
+    found = faces_an_area(Mesh(vertices, np.array([[0, 1, 2], [0, 3, 4], [3, 5, 4]])))
+    assert found[1] < 0.5 < found[5]
