@@ -31,7 +31,8 @@ def gaze_at_the_tip(mesh):
 
 
 @pytest.fixture
-def workspace(make_workspace):
+def workspace(make_workspace, monkeypatch):
+    monkeypatch.setattr("haptic_glance.look.points.find.VIEW_SIZE", (225, 300))
     workspace = make_workspace({"attention_checks": {"views": ["four"]}})
     for name, height in (("low", 0.5), ("middle", 0.6), ("high", 0.7)):
         mesh = shape(height)
