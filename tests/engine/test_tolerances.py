@@ -69,9 +69,9 @@ def test_a_pair_with_a_star_is_held_for_each_text_that_fits():
 
 
 def test_the_widest_move_of_each_metric_is_allowed():
-    runs = [{**BASELINE, "lod.error": 0.0011}, {**BASELINE, "lod.error": 0.0008, "lod.meshes": 13}]
+    runs = [{**BASELINE, "lod.error": 0.0011}, {**BASELINE, "lod.error": 0.00079996, "lod.meshes": 13.004}]
     moves = widest_moves(runs, BASELINE)
-    assert moves == {"lod.error": pytest.approx(0.0002), "lod.meshes": 1}
+    assert moves == {"lod.error": pytest.approx(0.0002, rel=0.01), "lod.meshes": pytest.approx(1, rel=0.015)}
     assert widest_moves([{**BASELINE, "lod.meshes": 12 + 6 * DIGITS}], BASELINE) == {}  # of the digits that are kept
     rules = Tolerances([], {}, moves)
     assert all(compare(run, BASELINE, rules) == [] for run in runs)
