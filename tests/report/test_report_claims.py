@@ -10,7 +10,8 @@ import pytest
 from stages.engine.statistics import interval, p_value
 from stages.report import effects, topics
 from stages.report.__main__ import write_claims
-from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading, tested_on
+from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
+from stages.report.claims import tested_on as words_on
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.effects import STATISTICS, differences
 from stages.report.results import SECTION_3_1, NotRun
@@ -169,7 +170,7 @@ def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, smal
 def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(bare, small):
     results = small.results(bare)
     for one in CLAIMS:
-        said = tested_on(one, results, [name for name in one.sets if name] or ["household"])
+        said = words_on(one, results, [name for name in one.sets if name] or ["household"])
         assert not re.search(r", ?,|  |,$|minus$", said), (one.key, said)
 
 
