@@ -95,13 +95,13 @@ def check_common(values: dict[str, Any]) -> None:
     """Checks the names of the sections and the settings that all stages share."""
     if "graph" not in values or "sets" not in values:
         raise ParamsError(f"{FILE} lacks the section graph or sets: run `python -m stages.compose` to make it anew")
-    _check_keys("", values, [*COMMON, *values["sets"]])
     for key, kind in COMMON.items():
         if key in values and not isinstance(values[key], kind):
             remedy = {list: f"write {key}=[{values[key]}]", int: REMEDIES["Integer"]}.get(
                 kind, f"give a {kind.__name__}"
             )
             raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}: {remedy}")
+    _check_keys("", values, [*COMMON, *values["sets"]])
     if values.get("seed", 0) < 0:
         raise ParamsError(f"seed: {values['seed']} is negative")
 
