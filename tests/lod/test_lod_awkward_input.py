@@ -24,7 +24,6 @@ from haptic_glance.mesh.mesh import Mesh
 from tests.lod.shapes import sheet
 
 SMALL = trimesh.creation.icosphere(subdivisions=2, radius=0.5)
-
 RING = trimesh.creation.torus(0.35, 0.12, major_sections=20, minor_sections=10)
 SPIKE = [[0.0, 0.0, 0.9]]
 

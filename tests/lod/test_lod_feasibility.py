@@ -12,8 +12,6 @@ from haptic_glance.mesh.mesh import Mesh
 from tests.lod.shapes import ball
 
 LARGE = ball()
-
-
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 TORUS = trimesh.creation.torus(0.35, 0.15, major_sections=24, minor_sections=12)
 
