@@ -19,7 +19,7 @@ SIZE = (120, 160)
 MILD = {
     "noise": 0.002, "decimation": 0.5, "remeshing": 0.05, "missing_faces": 0.1, "vertex_order": 1.0, "winding": 0.3,
     "turn": 20.0, "tilt": 20.0, "scale": 100.0, "light": 30.0, "background": 1.0, "background_left_in": 1.0,
-    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5, "scan": 360.0,
+    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5, "scan": 180.0,
 }  # fmt: skip
 INVALID = {
     "noise": -0.1, "decimation": 1.5, "remeshing": 0.0, "missing_faces": 1.0, "vertex_order": 2.0, "winding": -0.5,
