@@ -250,8 +250,7 @@ def _extremes(rows: pd.DataFrame) -> str:
     passes = rows[(rows["metric"] == "found") & (rows["method"] == "passes")].set_index("item")["value"]
     if passes.empty:
         return ""
-    low = str(passes.idxmin())
     return (
-        f"The passes agree least on {low} ({100 * passes[low]:.0f} %); on {(passes == 1).sum()} of {len(passes)} "
-        "objects each mark was found again by every other pass."
+        f"The passes agree least on {passes.idxmin()} ({100 * passes.min():.0f} %); on {(passes == 1).sum()} of "
+        f"{len(passes)} objects each mark was found again by every other pass."
     )
