@@ -45,10 +45,11 @@ COLUMN = re.compile(
 def filled(text: str, reports: Path) -> tuple[str, list[tuple[str, str]]]:
     """(the text with its figures, [(KIND/NAME or claims, which row)] of each); LookupError where one is missing.
 
-    Which row: `column=value column!=value`, with `*` for any part of a value; of those left, `highest=column` or
-    `lowest=column` picks one. What: `rows` for their number; one column, a number or a name; or three: a mean and the
-    ends of its interval. Then, where wanted, `higher|lower`: the words for a difference above and below zero; and the
-    format, `.0f`, or `+.0f` with the sign of the mean.
+    `{KIND/NAME WHICH ROW: COLUMNS WORDS FORMAT}` asks for a figure. The row is chosen by `column=value column!=value`,
+    with `*` for any part of a value; `highest=column` or `lowest=column` picks one of the remaining rows. The columns
+    are `rows` (their number), one column (a number or a name), or three (a mean and the ends of its interval).
+    `higher|lower` are optional words for a difference above and below zero. The format is `.0f`, or `+.0f` with the
+    sign of the mean.
     """
     sources = [(name, where) for name, where, _ in PLACE.findall(text)]
     return PLACE.sub(lambda found: _figure(reports, *found.groups()), text), sources

@@ -31,7 +31,7 @@ def library(shapes):
 
 @pytest.fixture(scope="module")
 def blind(shapes):
-    """What is known without the places: its likelihood asks what was felt, not where."""
+    """A library without places: its likelihood depends on the imprint alone."""
     return learn(shapes, placed=False)
 
 

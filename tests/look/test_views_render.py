@@ -1,4 +1,4 @@
-"""What every renderer must draw: known depths, limbs, brightness and highlights, the nearest face, the whole object."""
+"""Every renderer draws known depths, limbs, brightness and highlights, the nearest face, the whole object."""
 
 import numpy as np
 import pytest

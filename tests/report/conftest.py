@@ -278,6 +278,17 @@ def bare(tmp_path):
 
 
 @pytest.fixture
+def benched_results(bare, small):
+    """A function (name, rows) that writes the rows of a benchmark and returns the results with them."""
+
+    def written(name, rows):
+        write_table(bare / f"reports/bench/{name}.csv", rows)
+        return small.results(bare)
+
+    return written
+
+
+@pytest.fixture
 def bare_results(bare):
     """The results of such a root, where tests write rows of their own."""
     return read_results(bare)

@@ -1,5 +1,7 @@
 """The backends of simplify beside each other: paired cells, refusals, growth and the chart."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -34,12 +36,8 @@ def benched(power=1.0, noise=0.0):
 
 
 @pytest.fixture
-def bench(bare, small):
-    def written(rows):
-        write_table(bare / "reports/bench/simplification.csv", rows)
-        return small.results(bare)
-
-    return written
+def bench(benched_results):
+    return partial(benched_results, "simplification")
 
 
 def table(results):

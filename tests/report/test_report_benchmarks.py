@@ -1,5 +1,7 @@
 """Benchmarks in the report: rates of imprints with a known truth, and the chart of kernels over commits."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -46,12 +48,8 @@ def chart(results):
 
 
 @pytest.fixture
-def bench(bare, small):
-    def written(rows):
-        write_table(bare / "reports/bench/imprints.csv", rows)
-        return small.results(bare)
-
-    return written
+def bench(benched_results):
+    return partial(benched_results, "imprints")
 
 
 def test_rates_ratios_and_errors_are_those_of_the_bench(bench):

@@ -137,7 +137,7 @@ def test_verdicts_are_counted_beside_the_claims(run):
 
 
 def readable(html):
-    """What a reader of a page sees of its HTML, without code and names of files, and what a blind reader hears."""
+    """The visible text of a page's HTML, without code and names of files, and the text that a screen reader speaks."""
     text = re.sub(r"<(code|a|style|script|option)\b.*?</\1>", " ", html, flags=re.DOTALL)
     heard = re.findall(r'(?:aria-label|alt)="([^"]*)"', text)
     return " | ".join([re.sub(r"<[^>]*>", " | ", text), *heard])

@@ -17,7 +17,7 @@ from stages.report.site import page
 
 
 class Reader:
-    """What page/viewer.js does to read an object."""
+    """Reads an object as page/viewer.js does."""
 
     def __init__(self, text):
         self.store = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8).astype(np.int64)

@@ -1,4 +1,4 @@
-"""What is trained, on which split, and what has to be left out."""
+"""The plan of trainings: networks, splits, and trainings that are left out."""
 
 import numpy as np
 import pytest

@@ -65,7 +65,7 @@ class KnowPanel(Panel):
         return self.guess.specimen if self.guess is not None else super().target()
 
     def on_mesh(self) -> None:
-        """What was touched is not drawn yet."""
+        """Hides the plots until the object is touched."""
         self.bars.visible = self.grid.visible = False
         self.about.content = ASK
         self.window.scene.clear(DRAWN)

@@ -1,4 +1,4 @@
-"""What disturbances cost people's agreement (gaze) and uses of the points, and what two at once cost."""
+"""The cost of disturbances, one or two at once, for agreement with people's gaze and for uses of the points."""
 
 import numpy as np
 import pandas as pd
