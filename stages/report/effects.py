@@ -90,24 +90,24 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     """
     if not claim.checked or claim.stage not in CHECKS:
         return pd.Series(dtype=object), 0
-    keys, found, count = [*claim.over, *claim.within], [], 0
+    keys, count = [*claim.over, *claim.within], 0
+    found: list[pd.Series] = []
     if claim.statistic != "difference":
         keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
     sides = [side for side in (claim.first, claim.second) if isinstance(side, Mapping)]
     for extra in claim.contrast or ({},):
         parts = [_side_rows(results, claim, own, sides[1 - k] if len(sides) > 1 else None, extra)[0]
                  for k, own in enumerate(sides)]  # fmt: skip
-        pairs = [set(zip(*(part[key] for key in keys), strict=True)) for part in parts]
-        common = set.intersection(*pairs)
+        common = set.intersection(*(set(part.set_index(keys).index) for part in parts))
         count += len(common)
         bad = pd.concat([invalid_pairs(results, claim, part, keys) for part in parts])
         if len(parts) > 1 and claim.statistic == "difference":
-            means = [part.groupby(keys, sort=False)["value"].mean() for part in parts]
-            both = pd.concat(dict(zip(("first", "second"), means, strict=True)), axis=1, join="inner")
+            first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
+            both = pd.concat({"first": first, "second": second}, axis=1, join="inner")
             same = both.index[_same_mesh(claim, both)]
             bad = pd.concat([bad, pd.Series(SAME, index=same, dtype=object)])
         bad = bad[~bad.index.duplicated()]
-        found.append(bad[[pair in common for pair in (bad.index if len(keys) > 1 else zip(bad.index, strict=True))]])
+        found.append(bad[[pair in common for pair in bad.index]])
     return pd.concat(found), count
 
 

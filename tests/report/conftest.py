@@ -251,7 +251,7 @@ def make_root(root):
     return root
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def few_pixels_and_resamples():
     """Most of the time of a report goes to the pixels of its pictures and to the resamples of its intervals."""
     with pytest.MonkeyPatch.context() as patch:
