@@ -1,7 +1,8 @@
-"""How far metrics may move: rules by name, the values that they are held against, and what left its bounds.
+"""Tolerances of metrics: rules by name, and the metrics that left their bounds about the baseline.
 
-A file of rules is YAML. `rules`: the first whose pattern fits a metric holds it; without a rule it is held exactly.
-`pairs`: differences of two metrics, held as `pairs.NAME`; where both have a `*`, one for each text that fits:
+A file of rules is YAML. Under `rules`, the first rule whose pattern fits a metric holds the metric; a metric without a
+rule is held exactly. Under `pairs`, a difference of two metrics is held as `pairs.NAME`; two patterns with a `*` give
+one difference for each text that fits both:
 
     rules:
       - {metric: "*.accuracy", direction: more, abs: 0.02}

@@ -1,16 +1,10 @@
-"""The files of the report, and the parts to regenerate.
+"""Files of the report beside tables and figures: sources of each item, headline numbers, and a page of own meshes.
 
-The data behind every table, figure and chart: KIND/records.json, one line an item.
-
-An item's record has its data sets, the files of rows that it read, the methods, sizes and number of objects in them,
-and how many rows it shows. `files` has of each file of rows its hash, its commit where git knows it unchanged, and the
-clock of its seconds.
-
-The few numbers that `dvc metrics show` and `dvc exp show` list: headlines.json.
-
-The command that measures the rows of a claim again.
-
-The front page of a run on a folder of one's own: the page of `haptic-glance gallery`, from the pipeline's data.
+KIND/records.json has a line for each table, figure or chart: its data sets, files of rows, methods, sizes, number of
+objects and number of rows. Its part `files` has the hash of each file of rows, the commit of a file that git knows
+unchanged, and the clock of its seconds. headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
+`command` is the shell command that measures the rows of a claim again. `write_own_page` writes the page of
+`haptic-glance gallery` from the pipeline's data, as the front page of a run on a person's own folder.
 """
 
 import json

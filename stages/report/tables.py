@@ -1,10 +1,7 @@
-"""Tables: grids of cells, the best row, and their Markdown.
+"""Tables of the report: rows of measurements become cells, grids with the thesis's numbers, and Markdown.
 
-From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures.
-
-Frames as text: numbers rounded for a reader, and Markdown tables.
-
-Which row of a table is the best.
+A cell is `mean [low, high]`, rounded for a reader; a cell without a measurement says "not run". `Ranking` finds the
+best row by the numbers that are shown, so that rows shown as equal are equally good.
 """
 
 import math

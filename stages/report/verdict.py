@@ -1,8 +1,8 @@
-"""The verdict on a claim, and counts of verdicts.
+"""Verdicts on claims: the word that the measured differences give each claim, and the number of claims per word.
 
-The one word that a measurement says to each claim, with the differences that it rests on.
-
-How many verdicts and sentences there are of each word, and why those that are open are.
+An interval above 0 supports a claim, one below 0 contradicts it. An interval within NEGLIGIBLE shows no difference;
+other intervals leave the claim open, with one of CAUSES. Data sets that disagree make a claim mixed, and readings that
+disagree make it depend on the reading. `holding` corrects for the claims of a chapter (Benjamini and Hochberg).
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,8 +1,8 @@
-"""Predicted counts of faces, and frames.
+"""Faces of a scene's objects: counts that models predict (T3.1.3), and rendered frames at the chosen levels.
 
-T3.1.3: how many faces an object needs, told by networks, by less and by more; where they fail, and their cost.
-
-Frames of the scene: full, uniform and our levels side by side, where they differ, and all frames of the path.
+The thesis's networks, two simpler models and a lookup of the object's own curve predict the count. The table and the
+figure show their waste, their failures and their cost. `frames` draws full, uniform and our levels side by side, with
+the displacement from the full levels, above charts of all frames of the path; it reads data/scene/pictures.npz.
 """
 
 import numpy as np

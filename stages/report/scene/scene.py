@@ -1,8 +1,7 @@
-"""Tables of scenes.
+"""Scenes along camera paths: faces and errors of each way to choose the levels of the objects (T3.1.3).
 
-A scene along a camera path: faces and errors of every way to choose the levels of its objects.
-
-All scenes of conf/scene: do the fewest faces hold in each, beside the other ways to choose levels?
+`scene_table` is about one scene, `chart` about the random scenes or else that scene, and `scenes` about all scenes of
+conf/scene. Each rival is compared with ours at an equal error, displacement or limit of faces.
 """
 
 import pandas as pd

@@ -1,8 +1,7 @@
-"""Arrays of sensors: table and claims.
+"""Arrays of pressure sensors: accuracy by number of cells and distance of cells, and the claims on both (T4.3.2).
 
-T figure 4.11: accuracy of the classifiers for each size of the pressure array, as a table and a chart.
-
-Claims of T4.3.2: what the pressure array's size and its sensels' distance do to recognition.
+T figure 4.11 is a table and a chart here. The claims of T6.3 are about coarse and fine cells on one hand, and about
+touches around a salient point.
 """
 
 from dataclasses import replace

@@ -1,10 +1,8 @@
-"""Contours: tables and claims.
+"""Recognition by contours: layers of the networks, accuracies and claims (T4.4; T tables 4.7, 4.8 and 4.9).
 
-T tables 4.7 and 4.8: the layers of the two networks; T table 4.9: which class of objects is it, by contours.
-
-Accuracies of whole sequences, for table 4.9, figure 4.19, their chart and their claims.
-
-Claims of T4.4: what a whole contour tells, guided or blind, to networks and to conventional classifiers.
+`table_4_7` has the layers of both networks, of T tables 4.7 and 4.8. `accuracy` is shared by table 4.9 and the chart.
+The claims compare guided with blind contours, and networks with conventional classifiers, on sequences with all frames
+and cells.
 """
 
 from collections.abc import Iterable, Iterator

@@ -1,15 +1,10 @@
-"""The score of stability, the leaderboard, and time spent.
+"""Scores of methods by stability (mean corruption error), and charts and tables of seconds.
 
-One number a method: its mean corruption error (mCE), as Hendrycks and Dietterich have it for classifiers.
-
-Benchmarking neural network robustness to common corruptions and perturbations, ICLR 2019. The error here is the share
-of the points that are not found again, corrected for chance; the reference is Itti's attention.
-
-Which method is the most stable: the score of each, where it breaks, and its seconds and accuracy beside it.
-
-Time of each kernel as a ratio to its peer, over the commits that were measured.
-
-Where the time went, by stage and method.
+The mean corruption error (mCE) is a ratio to Itti's attention, the reference. The error is the share of the points that
+are not found again, corrected for chance; `of_gaze` takes 1 - AUC instead. The leaderboard has the score, breaking
+points, accuracy on gaze and seconds of each method. `kernels` draws the time of each kernel as a ratio to its peer over
+the measured commits; `time_spent` lists seconds by stage and method. Reference: Hendrycks and Dietterich, Benchmarking
+neural network robustness to common corruptions and perturbations, ICLR 2019.
 """
 
 from collections.abc import Sequence

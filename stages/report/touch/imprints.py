@@ -1,8 +1,7 @@
-"""Rates of imprints, and rows of touch.
+"""Imprints of touch: their rate and exactness beside camera-based simulators, and the rows of their classification.
 
-Imprints per second and how exact they are, beside camera-based simulators, timed in one run of `make bench`.
-
-The rows of the stage classification that this topic reads, by protocol, and how its samplings are called.
+`table` and `chart` read bench/imprints.csv, timed in one run of `make bench`. `protocols` has the rows of the stage
+classification, as printed in the thesis (T4.2) and in our protocol; `METHODS` maps the thesis's samplings to methods.
 """
 
 from collections.abc import Iterator

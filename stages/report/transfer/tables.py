@@ -1,10 +1,8 @@
-"""Tables of networks, claims, coarse imprints.
+"""Networks for photographs on imprints: T tables 5.3, 5.4 and 5.6, and claims on filters and layers (T5.4 to 5.6).
 
-T tables 5.3, 5.4 and 5.6: networks that learned by sight on imprints, whole or with some layers frozen.
-
-Claims of T5.4 to 5.6: what training on photographs is worth for touch, and which layers must learn.
-
-Why frozen filters are at chance on a 16 x 16 array in T table 5.3: one thing changed at a time.
+`networks` is T table 5.3 or 5.4, `frozen_layers` T table 5.6. The claims ask for the worth of training on photographs
+and for the layers that must learn. `build` changes one thing at a time to find the reason why frozen filters are at
+chance on a 16 x 16 array in T table 5.3.
 """
 
 from contextlib import suppress
