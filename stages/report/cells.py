@@ -1,8 +1,9 @@
-"""Cells of tables, asked for in prose, in the README, in the documentation and for the headlines: one language.
+"""Cells of the tables in reports/, quoted in prose by one query language.
 
     {tables/scenes scene=shelf method=uniform: 100*saved 100*saved_low 100*saved_high .0f}      12 [8, 17]
 
-A file below reports/ without .csv, which row, and what of it.
+A query names a CSV file below reports/ without its suffix, selects rows, and lists the columns with a format. The
+topics' prose, the README, the documentation and the headlines use the same language; `filled` explains the syntax.
 """
 
 import re

@@ -1,16 +1,11 @@
-"""The page of claims, and its prose.
-
-The claims as people read them: a frame for Markdown, and a page that filters and opens each to what it rests on.
-
-The words of the report: titles, notes and captions, kept as Markdown beside the code of each topic.
+"""Words of the report: the claims as a table and a page, the prose of each topic, and figures kept with their words.
 
 TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
 is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
-notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled in by the
-code. A note that comes out empty is left out, and one of several lines becomes as many notes. The findings of a topic
-stand in TOPIC/findings.md, with figures from any table or claim; a paragraph that lacks one is left out.
-
-Figures of data sets that the default run leaves out: drawn where their data is, and kept in the repository.
+notes. The section of a figure or chart is `Alt: text for a blind reader`, then the caption. The code fills in `{word}`.
+An empty note is left out, and a note of several lines becomes several notes. TOPIC/findings.md holds the findings of a
+topic, with figures from any table or claim; a paragraph with a missing figure is left out. A `Kept` figure of a data
+set outside the default run stays in the repository, with its words in NAME.json.
 """
 
 import re

@@ -1,12 +1,9 @@
-"""Drawing: style, scales, labels and pictures.
+"""Pictures of the report: one style, meshes drawn by rays, names beside points, and rows by the scale of samples.
 
-One style for all pictures: white page, quiet axes, colours that the colour-blind can tell apart.
-
-Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays.
-
-Rows by the scale of the samples, a reading of T4.2.4, and means over classifiers with and without the SVM.
-
-Names beside the points of a chart, where they cover neither each other nor a point.
+All pictures have a white page, quiet axes and colours that the colour-blind can tell apart. `picture` draws a mesh with
+lit surface, vertex colours, wires and points. `place_names` puts names on free places, without covering names or
+points. `scaled` selects rows by the scaling of the samples (T4.2.4), `with_means` adds means over classifiers with and
+without the SVM.
 """
 
 import io

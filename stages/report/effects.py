@@ -1,10 +1,9 @@
-"""Effects, paired differences, and their validity.
+"""Effects of claims: paired differences, their pooled effect over the data sets, and the validity of the rows.
 
-The paired differences of a claim, from its rows: one registry of statistics.
-
-The effect of a claim on each of its data sets, with its interval, and the pooled one.
-
-Checks of rows before a verdict: a method that found, kept or learned nothing is no evidence.
+`statistic` registers the functions that turn rows into paired differences. `Effect` holds the differences on one data
+set, `PooledEffect` the random-effects mean over several. `check` registers the checks of a stage's rows before a
+verdict: a method that found, kept or learned nothing is no evidence, and a claim whose share of invalid pairs exceeds
+TOO_MANY cannot be tested.
 """
 
 from collections import Counter

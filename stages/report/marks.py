@@ -1,8 +1,7 @@
-"""Charts as marks, and their vector graphics.
+"""Marks of a drawn chart (points, bars and intervals), read back from matplotlib for the table and the SVG.
 
-The points, bars and intervals of a drawn chart, read back from matplotlib: what one can hover, and its table.
-
-A chart as SVG inside a page: text is text, colours follow the page's light and dark, marks can be hovered.
+`table` lists the marks as strings. `vector` writes the chart as SVG inside a page: text stays text, the marks answer to
+a pointer, and the colours follow the page's light and dark style.
 """
 
 import io

@@ -1,8 +1,8 @@
-"""A page of the site, with viewers of meshes.
+"""HTML of a page's parts: tables to sort and filter, charts to hover, pictures, and meshes to turn.
 
-HTML of what the report is made of: tables that a script sorts and filters, charts that one can hover, pictures.
-
-The turnable meshes of the page: each object beside its simplified levels, coloured by saliency or by error.
+`item_html` writes a table or picture with its words and files. `pack_viewer` packs each object beside its simplified
+levels, coloured by saliency or by error, for the page's viewer. Templates, scripts and styles stand in page/ and in the
+viewer of the library's gallery.
 """
 
 import base64

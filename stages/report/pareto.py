@@ -1,10 +1,8 @@
-"""Charts of error against cost.
+"""Pareto charts of quality against cost for every stage, the cost of looking, and the validity of simplified meshes.
 
-Accuracy against cost: one chart for every stage, with the Pareto front drawn.
-
-The cost of finding an object's salient points, from the picture to the points.
-
-Which simplified meshes say something about the points that they keep.
+`placed` counts the resamples of cost and quality that leave a choice on the front; `pareto_chart` draws the front.
+`attention_seconds` sums the cost of an object's salient points, from the picture to the points. `invalid_units` finds
+the simplified meshes whose errors say nothing about the kept points.
 """
 
 from collections.abc import Mapping, Sequence

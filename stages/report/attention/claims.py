@@ -1,10 +1,8 @@
-"""Claims about attention, and tables of agreement.
+"""Agreement of attention models with human gaze and with marks: claims (T3.1.5, T3.2) and tables.
 
-How well methods agree with people: one row per method and metric, over objects that have ground truth.
-
-Claims of chapter 3 on where people look: weights, SVMs and models against human gaze.
-
-Every method against where people looked, and against the marks: two tables, and what their numbers say in words.
+`agreement` has one row per method and metric, over the objects that have ground truth. The claims compare weights, SVMs
+and models on human gaze. The tables (gaze on meshes, gaze on point clouds, marks) state the findings in words. The
+learned methods of the gaze tables leave out the judged object; only methods with a star have seen it.
 """
 
 from collections.abc import Iterator, Sequence

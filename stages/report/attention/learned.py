@@ -1,10 +1,8 @@
-"""Learned weights, nested fits and annotations.
+"""Attention learned from ground truth (T table 3.1, T3.2.3), and the quality of the marks that serve as truth.
 
-Weights learned from the ground truth, beside the thesis's: weights of channels (T table 3.1) and SVMs (T3.2.3).
-
-The share of the glance's lead that comes from features and a ridge chosen on the judged objects.
-
-How well the marks in data/annotations agree with each other, and with human gaze.
+`table_3_1` and `section_3_2_3` set learned channel weights and SVMs beside the thesis's. `nested` measures the share of
+the glance's lead that comes from choosing its features and its ridge on the judged objects. `annotations` compares the
+passes of marks in data/annotations with each other and with human gaze.
 """
 
 from collections import Counter

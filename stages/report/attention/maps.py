@@ -1,10 +1,8 @@
-"""Maps of attention and views.
+"""Figures and a chart of attention: maps of saliency, coverage by the views, and agreement with gaze against cost.
 
-Maps of a view beside its picture (T figures 3.3, 3.10, 3.13), and meshes coloured by saliency (T figure 3.12).
-
-How many views see an object: the share of the visible surface against the number of views (T3.2.4).
-
-Agreement with gaze against the seconds of looking, of every method.
+T figures 3.3, 3.10 and 3.13 show maps of one view beside the object's picture, T figure 3.12 shows meshes coloured by
+saliency. `build` draws the share of the visible surface against the number of views (T3.2.4). `by_method` draws the NSS
+on human gaze against the seconds of looking, for every method that has not seen the object.
 """
 
 from collections.abc import Iterable, Sequence

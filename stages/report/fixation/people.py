@@ -1,8 +1,7 @@
-"""People and quantiles.
+"""Comparison of detectors and tasks' maps with people, by correlation and by distance (T figures 3.32, 3.35, 3.36).
 
-T figures 3.32, 3.35 and 3.36: how much tasks' maps and detectors agree with people, and how far centres lie.
-
-Quartiles of two sides compared: the thesis tells distances by the box plot of all views (T figure 3.36).
+The distance is between centres of fixation. The thesis compares distances by a box plot over all views (T figure 3.36),
+so the claims compare quantiles: `median_below` and `upper_quartile_below`.
 """
 
 from collections.abc import Callable, Collection

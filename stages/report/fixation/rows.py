@@ -1,8 +1,8 @@
-"""Rows of fixation, and detectors.
+"""Detectors of T3.3 and their rows of scores: fused maps of networks, rival models and controls, beside people.
 
-The detectors of T3.3: fused maps of networks, rival models and controls, and how they are called.
-
-Rows of the tables and charts on T3.3: where networks look, beside people, rival models and controls.
+`Detector` and the constants name the detectors and their words for readers. `sources` selects the data sets by truth,
+human gaze before marks. `scores` makes one frame of a metric, objects by method and task, for the tables, figures and
+claims.
 """
 
 from collections.abc import Iterable, Sequence

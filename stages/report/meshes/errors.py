@@ -1,8 +1,8 @@
-"""Errors of simplification.
+"""Errors of simplified meshes by method, as figures, and the accuracy of the error measures by their cost, as charts.
 
-T figures 3.4, 3.5 and 3.23: errors of channels, detectors and the methods of T3.2, as rows of dots and boxes.
-
-Requirements and costs of the error measures: Metro's samples of the surface, and the pictures' viewpoints.
+T figures 3.4, 3.5 and 3.23 show channels, detectors and the methods of T3.2 as dots and boxes. `samples` draws the
+accuracy of Metro's mean error against time, a point for each number of samples of the surface. `views` draws the
+accuracy of the picture errors against the number of viewpoints.
 """
 
 from itertools import product

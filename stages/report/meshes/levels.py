@@ -1,10 +1,8 @@
-"""Levels of detail: claims, figure, growth of cost.
+"""Levels of detail: claims on simplified meshes, error against cost, and the growth of time with the number of faces.
 
-The claims on simplified meshes: their own statistics, and the table of all claims on every data set.
-
-Simplification: error against the seconds to find the points to keep and to simplify, at each share of the faces.
-
-How the time of a backend grows with the mesh: a power of n, or of n log n, with its interval.
+`lod_claims` is the table of the claims on every data set; the statistics of these claims stand below it.
+`simplification` draws error against the seconds to find the points and to simplify, with a front at each share of the
+faces. `growth` fits a backend's time by a power of n, or of n log n, with its interval.
 """
 
 from collections.abc import Callable

@@ -1,12 +1,8 @@
-"""Tables of points.
+"""Tables of the objects, the kept points and the errors of simplified meshes (T3.1.5, T table 3.2, T figure 3.6).
 
-How many points each detector found, and how much about them the simplified meshes kept.
-
-The errors of simplified meshes, compared on the same objects and targets only.
-
-The methods whose points the simplified meshes keep: groups, short names and order.
-
-Tables of the objects and of the errors by method: T3.1.5's combinations, every detector, and T table 3.2.
+Errors are compared on the same objects and targets only. `combinations`, `every_detector` and `table_3_2` show errors
+by method, `build` the number of points and the rings of faces kept about them. The constants hold the methods' groups,
+short names and the order of T figure 3.6.
 """
 
 from collections.abc import Iterable, Iterator
