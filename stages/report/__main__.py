@@ -24,14 +24,15 @@ from . import Params
 from .claims_page import claims_shown
 from .items import Built
 from .page import pack_viewer
-from .records import HEADLINES_FILE, write_headlines, write_own_page, write_records
+from .records import HEADLINES_FILE, PROVENANCE_FILE, write_headlines, write_own_page, write_records
 from .results import NotRun, Results
 from .site import write_site
 from .tables import as_text, markdown_table
 from .topics import CLAIMS, KINDS, TOPICS, build_all
 from .verdict import counted, counts, judged, open_by_cause
 
-OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html", HEADLINES_FILE)
+OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html", HEADLINES_FILE,
+           PROVENANCE_FILE)  # fmt: skip
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. The words:

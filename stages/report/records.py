@@ -1,19 +1,23 @@
 """Files of the report beside tables and figures: sources of each item, headline numbers, and a page of own meshes.
 
 KIND/records.json has a line for each table, figure or chart: its data sets, files of rows, methods, sizes, number of
-objects and number of rows. Its part `files` has the hash of each file of rows, the commit of a file that git knows
-unchanged, and the clock of its seconds. headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
+objects and number of rows. provenance.json has the hash of each file of rows, the commit of a file that git knows
+unchanged, and the clock of its seconds; constraints.txt of that commit pins the packages that measured the rows.
+headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
 `command` is the shell command that measures the rows of a claim again. `write_own_page` writes the page of
 `haptic-glance gallery` from the pipeline's data, as the front page of a run on a person's own folder.
 """
 
 import json
+import re
 import shutil
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
+from platform import python_version
 from typing import Any
 
 import numpy as np
@@ -38,6 +42,7 @@ from .items import Built, Figure, Table
 from .results import BENCH, NotRun, Results
 
 FILE = "records.json"
+PROVENANCE_FILE = "provenance.json"
 SIZES = ("target", "size", "touches", "cells", "pitch", "imprints", "frames", "image_rows", "tolerance")
 OBJECTS = ("item", "mesh", "scene", "group")  # columns of which the first that has values names the objects
 DIGITS = 12  # of a hash
@@ -72,16 +77,33 @@ def earlier(results: Results, kind: str) -> dict[str, Any]:
 
 
 def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
-    """Writes OUT/KIND/records.json of each kind."""
+    """Writes OUT/KIND/records.json of each kind, and OUT/provenance.json of the files of rows that they name."""
+    files: set[str] = set()
     for kind, found in built.items():
         records = {item.name: item.record for item in found.items}
-        files = {name for record in records.values() for name in record.get("files", ())}
-        parts = {"files": {name: _file(results, name) for name in files}, "items": records}
-        lines = (f' "{name}": {{\n{_lines(part)}\n }}' for name, part in parts.items())
-        write_text(out / kind / FILE, "{\n" + ",\n".join(lines) + "\n}")
+        files |= {name for record in records.values() for name in record.get("files", ())}
+        _write_parts(out / kind / FILE, {"items": records})
+    rows = {name: _file(results, name) for name in files}
+    _write_parts(out / PROVENANCE_FILE, {"packages": versions(), "files": rows})
 
 
-def _lines(part: dict[str, Any]) -> str:
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that the project asks for, as far as they are installed."""
+    found = {"python": python_version()}
+    for requirement in requires("haptic-glance") or ():
+        name = re.split(r"[^\w.-]", requirement)[0].lower()
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
+
+
+def _write_parts(path: Path, parts: Mapping[str, Mapping[str, Any]]) -> None:
+    """Writes JSON with a line for each name of a part, so that a difference of two runs is short."""
+    lines = (f' "{name}": {{\n{_lines(part)}\n }}' for name, part in parts.items())
+    write_text(path, "{\n" + ",\n".join(lines) + "\n}")
+
+
+def _lines(part: Mapping[str, Any]) -> str:
     """A line for each name, in order."""
     return ",\n".join(
         f"  {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}" for name, value in sorted(part.items())

@@ -15,7 +15,7 @@ from stages.report import records, touch
 from stages.report.claims_page import as_printed
 from stages.report.drawing import plt
 from stages.report.items import Built, Figure, Table
-from stages.report.records import DIGITS, FILE, record_of, write_records
+from stages.report.records import DIGITS, FILE, PROVENANCE_FILE, record_of, write_records
 from stages.report.results import NotRun
 from stages.report.topics import KINDS, build_one
 
@@ -40,14 +40,21 @@ def test_the_row_of_the_thesis_names_a_set_that_its_twin_shows():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_each_published_file_has_a_record_of_the_rows_that_are_committed(kind):
+def test_each_published_file_has_a_record(kind):
     written = {path.stem for path in (ROOT / "reports" / kind).iterdir() if path.name != FILE}
     assert written == set(KNOWN[kind]["items"])
-    for name, known in KNOWN[kind]["files"].items():
+
+
+def test_the_provenance_is_that_of_the_rows_that_are_committed():
+    provenance = read_json(ROOT / "reports" / PROVENANCE_FILE)
+    items = [one for known in KNOWN.values() for one in known["items"].values()]
+    assert provenance["files"].keys() == {name for one in items for name in one.get("files", ())}
+    assert {"python", "numpy", "dvc", "torch"} <= provenance["packages"].keys()
+    for name, known in provenance["files"].items():
         dataset, _, stage = name.partition("/")
         folder = ROOT / "reports" / ("" if dataset == "bench" else "measurements") / dataset
         (path,) = (path for path in folder.glob(f"{stage}.csv*") if path.name in (f"{stage}.csv", f"{stage}.csv.gz"))
-        assert sha256(path)[:DIGITS] == known["sha256"], f"{name} was changed after {kind} that show it"
+        assert sha256(path)[:DIGITS] == known["sha256"], f"{name} was changed after the report that shows it"
 
 
 @pytest.fixture
@@ -108,7 +115,7 @@ def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_pat
     def known():
         records.commit.cache_clear()
         write_records({"tables": Built([item])}, results, tmp_path / "out")
-        return read_json(tmp_path / "out/tables" / FILE)["files"]["test/lod"]
+        return read_json(tmp_path / "out" / PROVENANCE_FILE)["files"]["test/lod"]
 
     def git(*words):
         who = ("-c", "user.name=a", "-c", "user.email=a@b.c")
