@@ -14,6 +14,7 @@ import os
 import resource
 import sys
 import time
+from collections.abc import Callable
 from graphlib import TopologicalSorter
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -28,6 +29,7 @@ from stages.engine.run import alone
 from stages.engine.settings import check_clone
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
+ATTEMPTS = 3  # of a stage that meets a lock of DVC
 LOGS = Path("build/logs")
 REFRESH = 1.0  # seconds between two looks at the clock of what is running
 PLAIN = 60.0  # seconds between two lines of progress where stderr is no terminal; one comes with each start, too
@@ -89,13 +91,29 @@ def reproduce(root: Path, name: str, log: Path, send: Any) -> None:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
     logging.getLogger("dvc").setLevel(logging.WARNING)  # its advice on git, once a stage, hides what the stage says
-    try:
-        found = Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True)  # type: ignore[arg-type] (its decorators)
-    except Exception as error:
-        print(error, file=sys.stderr)
-        raise SystemExit(1) from error
+    found = patient(lambda: Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True))  # type: ignore[arg-type] (its decorators)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     send.send((bool(found), used.ru_utime + used.ru_stime))
+
+
+def patient(call: Callable[[], Any]) -> Any:
+    """Calls DVC, again where another stage held a lock too long; SystemExit once the error and its causes are printed.
+
+    DVC waits for its list of what runs for 3 seconds only, which a busy machine may exceed.
+    """
+    from dvc.lock import LockError
+
+    for left in reversed(range(ATTEMPTS)):
+        try:
+            return call()
+        except Exception as error:
+            causes: list[BaseException] = [error]
+            while causes[-1].__cause__:
+                causes.append(causes[-1].__cause__)
+            if left and any(isinstance(cause, LockError) for cause in causes):
+                continue
+            print(": ".join(map(str, causes)), file=sys.stderr)
+            raise SystemExit(1) from error
 
 
 def run(root: Path) -> list[str]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from stages.repro import Schedule
+from stages.repro import Schedule, patient
 
 NEEDS = {"a": set(), "b": {"a"}, "c": {"a"}, "d": {"b", "c"}}
 GRAPH = """stages:
@@ -42,6 +42,24 @@ def test_a_failure_leaves_out_what_needs_it_and_nothing_else():
     assert schedule.take() == "b"
     assert schedule.fail("b") == ["d"] and schedule.waiting == ["c", "e"]
     assert schedule.take() == "c"
+
+
+def test_a_stage_that_meets_a_lock_tries_again_and_other_errors_tell_their_cause(capsys):
+    from dvc.lock import LockError
+
+    calls = []
+
+    def call(error):
+        calls.append(error)
+        if len(calls) < 3:
+            raise ValueError("failed to reproduce") from error
+        return "done"
+
+    assert patient(lambda: call(LockError("busy"))) == "done" and len(calls) == 3
+    calls.clear()
+    with pytest.raises(SystemExit):
+        patient(lambda: call(KeyError("no such file")))
+    assert len(calls) == 1 and "failed to reproduce: 'no such file'" in capsys.readouterr().err
 
 
 def repro(folder: Path) -> subprocess.CompletedProcess[str]:

@@ -98,8 +98,8 @@ class Hand:
 
     def click(self, right=0, down=0):
         """Clicks the canvas, so many pixels beside its middle."""
-        for message in reversed(self.page.locator("[class*=Notification-closeButton]").all()):
-            message.click()  # it would catch the click
+        close = "document.querySelectorAll('[class*=Notification-closeButton]').forEach(button => button.click())"
+        self.page.evaluate(close)  # a message would catch the click; it may go by itself at any time
         x, y = self.middle()
         self.page.mouse.click(x + right, y + down)
 
