@@ -28,16 +28,17 @@ from .cells import filled
 from .claims import Claim
 from .effects import sets_of
 from .items import Figure, Table
-from .page import WORDS, folded, part, prose, script_json
+from .page import WORDS, box, folded, part, prose, script_json
 from .records import command
 from .results import NotRun, Results, dataset_text, there
 from .tables import with_interval
-from .verdict import counted, open_by_cause
+from .verdict import counted, open_by_cause, sentences
 
 CHAPTERS = {  # start of a claim's section -> what it is about
     "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",
     "T6": "chapter 6: conclusions", "ours": "this project's own",
 }  # fmt: skip
+KINDS = {"sentence": "sentences, each once", "elsewhere": "a sentence tested elsewhere"}
 
 
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
@@ -97,11 +98,11 @@ def sets_read(claim: Claim, results: Results) -> list[str]:
 def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
     """The text of the page below its head. claims, differences: what `judged` found of the claims."""
     by_key = {claim.key: claim for claim in known}
-    items, values = [], {name: {} for name in ("chapter", "verdict", "set")}
+    items, values = [], {name: {} for name in ("chapter", "verdict", "set")} | {"kind": KINDS}
     for row in claims.itertuples():
         claim = by_key[str(row.key)]
         sets = sets_read(claim, results)
-        chapter = next((start for start in CHAPTERS if str(row.section).startswith(start)), str(row.section))
+        chapter = chapter_of(str(row.section))
         values["chapter"][chapter] = CHAPTERS.get(chapter, chapter)
         values["verdict"][str(row.verdict).replace(" ", "-")] = str(row.verdict)
         values["set"] |= {name: dataset_text(name) for name in sets}
@@ -112,6 +113,7 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         key: frame[["pair", "difference"]].to_numpy().tolist() for key, frame in differences.groupby("key", sort=False)
     }
     words = {
+        "holds": what_holds(sentences(claims)),
         "counted": escape(counted(claims)),
         "causes": escape(open_by_cause(claims)),
         **{f"{name}s": _options(found) for name, found in values.items()},
@@ -119,6 +121,33 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         "pairs": script_json(pairs),
     }
     return Template(part("claims.html")).substitute(words)
+
+
+def chapter_of(section: str) -> str:
+    """The key of CHAPTERS that a section belongs to, else the section."""
+    return next((start for start in CHAPTERS if section.startswith(start)), section)
+
+
+def what_holds(once: pd.DataFrame) -> str:
+    """A table of sentences by chapter and verdict, each number a link to its sentences. once: as `sentences`."""
+    chapters = once["section"].map(chapter_of)
+    words = [word for word in WORDS if (once["verdict"] == word).any()]
+    shown = {"sentences": once["verdict"].notna(), **{word: once["verdict"] == word for word in words}}
+
+    def cell(chapter: str, word: str) -> str:
+        count = ((chapters == chapter) & shown[word]).sum()
+        verdict = "" if word == "sentences" else f"&amp;verdict={word.replace(' ', '-')}"
+        link = f'<a href="#kind=sentence&amp;chapter={chapter}{verdict}">{count}</a>' if count else "0"
+        return f'<td class="number">{link}</td>'
+
+    head = "".join(f'<th scope="col" class="number">{word}</th>' for word in shown)
+    rows = "".join(
+        f'<tr><th scope="row">{escape(CHAPTERS.get(chapter, chapter))}</th>{"".join(cell(chapter, w) for w in shown)}</tr>'
+        for chapter in chapters.drop_duplicates()
+    )
+    title = "What holds of the thesis"
+    body = f'<table><thead><tr><th scope="col">chapter</th>{head}</tr></thead><tbody>{rows}</tbody></table>'
+    return f"<h2>{title}</h2>{box('scroll', title, body)}"
 
 
 def _claim_html(
@@ -147,6 +176,7 @@ def _claim_html(
     badge = f'<span class="word {WORDS[row.verdict]}">{row.verdict}</span>'
     summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}</small>"
     marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'
+    marks += f' data-kind="{"elsewhere" if row.of else "sentence"}"'
     return f'<li id="{row.key}" {marks}>{folded(summary, more)}</li>\n'
 
 

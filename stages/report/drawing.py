@@ -1,9 +1,8 @@
-"""Pictures of the report: one style, meshes drawn by rays, names beside points, and rows by the scale of samples.
+"""Pictures of the report: one style, meshes drawn by rays, and names beside points.
 
 All pictures have a white page, quiet axes and colours that the colour-blind can tell apart. `picture` draws a mesh with
 lit surface, vertex colours, wires and points. `place_names` puts names on free places, without covering names or
-points. `scaled` selects rows by the scaling of the samples (T4.2.4), `with_means` adds means over classifiers with and
-without the SVM.
+points.
 """
 
 import io
@@ -16,7 +15,6 @@ from typing import Any
 import matplotlib
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis  # noqa: E402
 from matplotlib.cm import ScalarMappable
@@ -28,7 +26,6 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from haptic_glance.base.files import whole_file
-from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, TRAINING, TWICE
 from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.rays import RayScene, barycentric
@@ -317,30 +314,6 @@ def name_panels(
     for axes, words in zip(grid[:, 0], beside, strict=False):
         axes.text(-away, 0.5, words, rotation=90, va="center", ha="right", fontsize=letters[1],
                   transform=axes.transAxes)  # fmt: skip
-
-
-READINGS = {  # beside ours, TRAINING
-    BEFOREHAND: "all data standardised beforehand (T4.2.4)", TWICE: "components standardised, too",
-    MIN_MAX: "all data from 0 to 1",
-}  # fmt: skip
-CLASSIFIERS = ("knn", "svm", "decision_tree", "naive_bayes", "deep_learning")  # the thesis's order, reversed
-MEANS = {"mean_of_all": CLASSIFIERS, "mean_without_svm": tuple(name for name in CLASSIFIERS if name != "svm")}
-
-
-def scaled(rows: pd.DataFrame, scaling: str = TRAINING) -> pd.DataFrame:
-    """The rows of one scaling; those that are about no classifier have none, and stay with TRAINING."""
-    return rows[rows["scaling"].fillna(TRAINING) == scaling]
-
-
-def with_means(rows: pd.DataFrame) -> pd.DataFrame:
-    """The rows, and behind them the means over the classifiers of MEANS where each of these was run."""
-    columns = ("dataset", "set", "repetition", "group", "method", "variant", "split", "metric", "scaling")
-    keys, found = [name for name in columns if name in rows], [rows]
-    for name, classifiers in MEANS.items():
-        own = rows[rows["classifier"].isin(classifiers)].groupby(keys, dropna=False, sort=False)
-        means = own.agg({"value": "mean", "classifier": "nunique"}).reset_index()
-        found.append(means[means["classifier"] == len(classifiers)].assign(classifier=name))
-    return pd.concat(found, ignore_index=True)
 
 
 SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1)]  # of the point, the best first

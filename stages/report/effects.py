@@ -1,9 +1,8 @@
-"""Effects of claims: paired differences, their pooled effect over the data sets, and the validity of the rows.
+"""Effects of claims: paired differences, and their pooled effect over the data sets.
 
 `statistic` registers the functions that turn rows into paired differences. `Effect` holds the differences on one data
-set, `PooledEffect` the random-effects mean over several. `check` registers the checks of a stage's rows before a
-verdict: a method that found, kept or learned nothing is no evidence, and a claim whose share of invalid pairs exceeds
-TOO_MANY cannot be tested.
+set, `PooledEffect` the random-effects mean over several. A claim whose share of invalid pairs exceeds TOO_MANY cannot
+be tested (stages.report.validity).
 """
 
 from collections import Counter
@@ -21,8 +20,8 @@ from stages.engine.rows import by_unit
 from stages.engine.statistics import Pooled, interval, needed, p_value, pool
 
 from .claims import Claim, Pick, Side
-from .pareto import UNIT, invalid_units
-from .results import NUMBERS, NotRun, Results, either, listed, some
+from .results import NotRun, Results, either, listed, some
+from .validity import CHECKS, SAME, causes
 
 STATISTICS: dict[str, Callable[[Results, Claim], pd.Series]] = {}
 
@@ -176,6 +175,7 @@ def _some(rows: pd.DataFrame, claim: Claim, what: str) -> pd.DataFrame:
     return some(rows, f"no {what} is among those that {claim.stage} measured", claim.stage, runnable=False)
 
 
+TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
 ALIKE = 0.05  # p-value of Cochran's Q below which sets differ
 
 
@@ -340,76 +340,3 @@ def effect_of(found: Sequence[Effect]) -> Effect | PooledEffect:
     """The pooled effect of all testable sets with an interval, or that of the only one."""
     known = [one for one in found if one.testable and np.isfinite(one.interval[1])]
     return PooledEffect(known) if len(known) > 1 else (known or found)[0]
-
-
-TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
-SATURATED = 0.95  # training accuracy of a network that has learned its training part
-ONE_ANSWER = 2.0  # times guessing: a share of the commonest answer that no classifier has that looks at the samples
-MOST = 0.5  # the same share where the number of classes is not known by the name of their group
-UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
-GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
-TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
-Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
-CHECKS: dict[str, Check] = {}
-
-
-def check(stage: str) -> Callable[[Check], Check]:
-    """Registers a check of the rows of a stage."""
-    return lambda function: CHECKS.setdefault(stage, function)
-
-
-def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
-    known = CHECKS.get(stage)
-    return known(results, stage, dataset, rows) if known else pd.Series("", index=rows.index)
-
-
-@check("lod")
-def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
-    if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
-        return pd.Series("", index=rows.index)
-    known = results.once(("invalid units", dataset), lambda: invalid_units(results.rows(stage, dataset)))
-    cells = pd.MultiIndex.from_frame(rows[UNIT])
-    return pd.Series(known.reindex(cells).fillna("").to_numpy(), index=rows.index, dtype=object)
-
-
-@check("classification")
-@check("recorded")
-def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
-    groups = rows["group"].astype(str).str.partition("_")[0] if "group" in rows else pd.Series("", index=rows.index)
-    guess = 1 / groups.map(NUMBERS)  # four of four_drawn
-    share = _beside(results, stage, dataset, rows, "commonest_share")
-    found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
-    found[_below(rows, guess)] = GUESSING
-    return found
-
-
-@check("transfer")
-@check("recorded_networks")
-def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of tuned networks whose training was stopped after some passes while it still improved."""
-    tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
-    converged = rows["passes"] == "converged" if "passes" in rows else False
-    learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
-    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
-
-
-def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
-    """(n,) whether the mean accuracy of a row's kind of trial is below guessing; False where guessing is unknown."""
-    kinds = [column for column in TRIAL if column in rows]
-    lead = (rows["value"] - guess).where(rows["metric"] == "accuracy")
-    return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
-
-
-def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
-    """(n,) another metric of the same trials, NaN where it was not measured."""
-    try:
-        other = results.measured(stage, dataset, metric=metric)
-    except NotRun:
-        return pd.Series(float("nan"), index=rows.index)
-    apart = {"metric", "value", "seconds", "note", "imprints", "clock"}
-    keys = [column for column in rows if column in other and column not in apart]
-    known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
-    return pd.Series(rows[keys].merge(known, on=keys, how="left")["_beside"].to_numpy(), index=rows.index)

@@ -1,8 +1,7 @@
-"""Pareto charts of quality against cost for every stage, the cost of looking, and the validity of simplified meshes.
+"""Pareto charts of quality against cost for every stage, and the cost of looking.
 
 `placed` counts the resamples of cost and quality that leave a choice on the front; `pareto_chart` draws the front.
-`attention_seconds` sums the cost of an object's salient points, from the picture to the points. `invalid_units` finds
-the simplified meshes whose errors say nothing about the kept points.
+`attention_seconds` sums the cost of an object's salient points, from the picture to the points.
 """
 
 from collections.abc import Mapping, Sequence
@@ -266,39 +265,3 @@ def _maps(method: str, views: float, channels: pd.Series) -> float:
     if missing:
         raise NotRun(f"no seconds of the channels {', '.join(missing)}", "conspicuity")
     return views + sum(channels[name] for name in read) if read else 0.0
-
-
-PLAIN, QSLIM = "qem", "qslim"  # plain simplification: with and without the fit of ours
-UNIT = ["item", "method", "target"]
-NO_POINT, AS_PLAIN, NO_RING = "no point found", "equal to plain simplification", "less than one ring kept"
-
-
-def invalid_units(rows: pd.DataFrame) -> pd.Series:
-    """The cause of each invalid unit, indexed by item, method and target: its error says nothing about its points.
-
-    rows: those of the lod stage on one set, plain QEM among them. A unit is invalid where its method found no point,
-    where all its errors equal plain QEM's, or where the kept points have less than one ring in the mean. Units without
-    a mesh, and those of plain simplification, are neither valid nor invalid.
-    """
-    made = rows[rows["value"].notna() & ~rows["method"].isin([PLAIN, QSLIM])]
-    units = made.drop_duplicates(UNIT).set_index(UNIT)
-    keeps = ~units.index.get_level_values("method").str.endswith("-soft")  # the others weigh the error
-    causes = {
-        NO_POINT: keeps & (units["points"] == 0),
-        AS_PLAIN: units.index.isin(as_plain(rows)),
-        NO_RING: keeps & (units["rings"].fillna(0) < 1),
-    }
-    found = pd.Series(pd.NA, units.index, dtype="object", name="cause")
-    for cause, invalid in causes.items():
-        found = found.mask(found.isna() & invalid, cause)
-    return found.dropna()
-
-
-def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
-    """The units, item, method and target, whose errors all equal plain QEM's."""
-    keys = ["item", "target", "metric"]
-    errors = rows[rows["value"].notna() & (rows["metric"] != "faces")]
-    plain = errors.loc[errors["method"] == PLAIN, [*keys, "value"]]
-    both = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
-    same = (both["value"] == both["value_plain"]).groupby([both[key] for key in UNIT]).all()
-    return pd.MultiIndex.from_frame(same.index[same].to_frame())

@@ -1,7 +1,8 @@
 """Tables of the report: rows of measurements become cells, grids with the thesis's numbers, and Markdown.
 
 A cell is `mean [low, high]`, rounded for a reader; a cell without a measurement says "not run". `Ranking` finds the
-best row by the numbers that are shown, so that rows shown as equal are equally good.
+best row by the numbers that are shown, so that rows shown as equal are equally good. `scaled` selects the rows of one
+scaling of the samples (T4.2.4), `with_means` adds means over the classifiers with and without the SVM.
 """
 
 import math
@@ -15,9 +16,17 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, TRAINING, TWICE
 from stages.engine.statistics import interval
 
 from .results import NotRun, Results
+
+READINGS = {  # beside ours, TRAINING
+    BEFOREHAND: "all data standardised beforehand (T4.2.4)", TWICE: "components standardised, too",
+    MIN_MAX: "all data from 0 to 1",
+}  # fmt: skip
+CLASSIFIERS = ("knn", "svm", "decision_tree", "naive_bayes", "deep_learning")  # the thesis's order, reversed
+MEANS = {"mean_of_all": CLASSIFIERS, "mean_without_svm": tuple(name for name in CLASSIFIERS if name != "svm")}
 
 
 def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: float = np.inf) -> list[dict]:
@@ -31,6 +40,22 @@ def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: floa
         numbers = (*within(over_items(rows), shared, top=top), len(rows), rows["seconds"].median())
         found.append(dict(zip(names, (*key, *numbers), strict=True)))
     return found
+
+
+def scaled(rows: pd.DataFrame, scaling: str = TRAINING) -> pd.DataFrame:
+    """The rows of one scaling; those that are about no classifier have none, and stay with TRAINING."""
+    return rows[rows["scaling"].fillna(TRAINING) == scaling]
+
+
+def with_means(rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows, and behind them the means over the classifiers of MEANS where each of these was run."""
+    columns = ("dataset", "set", "repetition", "group", "method", "variant", "split", "metric", "scaling")
+    keys, found = [name for name in columns if name in rows], [rows]
+    for name, classifiers in MEANS.items():
+        own = rows[rows["classifier"].isin(classifiers)].groupby(keys, dropna=False, sort=False)
+        means = own.agg({"value": "mean", "classifier": "nunique"}).reset_index()
+        found.append(means[means["classifier"] == len(classifiers)].assign(classifier=name))
+    return pd.concat(found, ignore_index=True)
 
 
 def over_items(rows: pd.DataFrame) -> pd.Series:

@@ -4,8 +4,10 @@ import json
 import os
 import re
 import sys
+from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
+from urllib.parse import parse_qsl
 
 import pandas as pd
 import pytest
@@ -115,7 +117,11 @@ def test_links_lead_to_files_and_places_and_every_page_to_every_other(run):
             name, _, place = link.partition("#")
             target = (path.parent / name).resolve() if name else path
             assert target.exists(), link
-            assert not place or f'id="{place}"' in target.read_text(), link
+            if "=" in place:  # filters of the claims
+                wanted = [value for _, value in parse_qsl(unescape(place))]
+                assert all(f'<option value="{value}"' in target.read_text() for value in wanted), link
+            else:
+                assert not place or f'id="{place}"' in target.read_text(), link
         nav = re.search(r'<nav aria-label="Pages">(.*?)</nav>', text)[1]
         assert {(path.parent / link).resolve() for link in re.findall(r'href="([^"]+)"', nav)} == set(run.pages)
         assert nav.count('aria-current="page"') == 1
@@ -229,6 +235,10 @@ def test_claims_filter_and_open_to_their_pairs(tab, run):
     both = claims[(claims["verdict"] == "supported") & (claims["section"] == "ours")]
     assert shown.count() == len(both) > 0
     assert f"{len(both)} of {len(claims)} claims" in tab.locator("#found").inner_text()
+    once = claims[claims["of"].isna() & claims["section"].str.startswith("T3") & (claims["verdict"] == "open")]
+    row = tab.locator("#claims tbody tr", has_text="chapter 3").first
+    row.get_by_role("link", name=str(len(once)), exact=True).last.click()
+    assert shown.count() == len(once) > 0
     key = both["key"].iloc[0]
     tab.goto("about:blank")
     tab.goto(f"{(site / 'site/claims.html').as_uri()}#{key}")

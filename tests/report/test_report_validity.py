@@ -13,11 +13,22 @@ import pytest
 
 from stages.report import meshes
 from stages.report.claims import Claim
-from stages.report.effects import GUESSING, ONE_CLASS, SAME, UNTRAINED, causes, differences, invalid
+from stages.report.effects import differences, invalid
 from stages.report.meshes import tables
-from stages.report.pareto import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units
 from stages.report.results import SECTION_3_1
 from stages.report.topics import build_one
+from stages.report.validity import (
+    AS_PLAIN,
+    GUESSING,
+    NO_POINT,
+    NO_RING,
+    ONE_CLASS,
+    SAME,
+    UNIT,
+    UNTRAINED,
+    causes,
+    invalid_units,
+)
 from stages.report.verdict import judge
 
 ERRORS = ("metro_mean", "ssim_error")

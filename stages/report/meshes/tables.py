@@ -17,9 +17,9 @@ from haptic_glance.look.weights.weights import GLANCE
 from stages.engine.statistics import interval
 from stages.report.drawing import WAYS, label
 from stages.report.items import Table
-from stages.report.pareto import UNIT, as_plain
 from stages.report.results import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, NotRun, Results, dataset_text, some
 from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
+from stages.report.validity import UNIT, as_plain
 
 SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
 

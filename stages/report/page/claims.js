@@ -53,7 +53,15 @@
   list.addEventListener("toggle", (event) => { if (event.target.open) show(event.target.closest("li")); }, true);
   for (const field of fields) field.addEventListener("input", filter);
   document.getElementById("filters").addEventListener("submit", (event) => event.preventDefault());
+  // A link such as #chapter=T3&verdict=open sets the filters, a link to a claim opens the claim.
   function jump() {
+    const wanted = new URLSearchParams(location.hash.slice(1));
+    if (location.hash.includes("=")) {
+      for (const field of fields) field.value = wanted.get(field.dataset.key) ?? "";
+      filter();
+      document.getElementById("filters").scrollIntoView();
+      return;
+    }
     const item = location.hash && document.getElementById(location.hash.slice(1));
     if (!item || !list.contains(item)) return;
     item.querySelector("details").open = true;

@@ -12,10 +12,22 @@ import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
 from stages.engine.statistics import interval
-from stages.report.drawing import MEANS, READINGS, label, scaled, with_means
+from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.results import Results
-from stages.report.tables import Ranking, blocks, grid, grouped, records, with_interval, within
+from stages.report.tables import (
+    MEANS,
+    READINGS,
+    Ranking,
+    blocks,
+    grid,
+    grouped,
+    records,
+    scaled,
+    with_interval,
+    with_means,
+    within,
+)
 
 BY = ["task", "split", "palm", "scaled", "components"]
 TASKS = {

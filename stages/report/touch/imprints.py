@@ -16,11 +16,11 @@ from haptic_glance.know.classifiers import TRAINING
 from haptic_glance.know.split import Split, shared_by
 from haptic_glance.look.weights.weights import GLANCE
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, INK, MARKERS, label, place_names, plain_logarithm, plt, scaled
+from stages.report.drawing import CYCLE, INK, MARKERS, label, place_names, plain_logarithm, plt
 from stages.report.items import Figure, Table
 from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import SECTION_4_2, SETS_4_2, NotRun, Results, some
-from stages.report.tables import Ranking, everywhere, records, with_interval, within
+from stages.report.tables import Ranking, everywhere, records, scaled, with_interval, within
 
 OURS, REFERENCE = "ours", "tacto_160x120"
 NAMES = {

@@ -11,10 +11,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from stages.report.claims_page import shared_notes
-from stages.report.drawing import CLASSIFIERS, INK, MEANS, READINGS, colours, label, plt, with_means
+from stages.report.drawing import INK, colours, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import SETS_4_2, NotRun, Results, some
-from stages.report.tables import Ranking, blocks, grid
+from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, with_means
 
 from .imprints import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 

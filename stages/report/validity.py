@@ -1,0 +1,116 @@
+"""Validity of rows before a verdict: a method that found, kept or learned nothing is no evidence.
+
+`check` registers the check of a stage's rows, `causes` tells why rows are invalid. `invalid_units` finds the simplified
+meshes whose errors say nothing about the kept points.
+"""
+
+from collections.abc import Callable
+
+import pandas as pd
+
+from .results import NUMBERS, NotRun, Results
+
+PLAIN, QSLIM = "qem", "qslim"  # plain simplification: with and without the fit of ours
+UNIT = ["item", "method", "target"]
+NO_POINT, AS_PLAIN, NO_RING = "no point found", "equal to plain simplification", "less than one ring kept"
+SATURATED = 0.95  # training accuracy of a network that has learned its training part
+ONE_ANSWER = 2.0  # times guessing: a share of the commonest answer that no classifier has that looks at the samples
+MOST = 0.5  # the same share where the number of classes is not known by the name of their group
+UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
+GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
+TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
+Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
+CHECKS: dict[str, Check] = {}
+
+
+def check(stage: str) -> Callable[[Check], Check]:
+    """Registers a check of the rows of a stage."""
+    return lambda function: CHECKS.setdefault(stage, function)
+
+
+def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
+    known = CHECKS.get(stage)
+    return known(results, stage, dataset, rows) if known else pd.Series("", index=rows.index)
+
+
+@check("lod")
+def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
+    if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
+        return pd.Series("", index=rows.index)
+    known = results.once(("invalid units", dataset), lambda: invalid_units(results.rows(stage, dataset)))
+    cells = pd.MultiIndex.from_frame(rows[UNIT])
+    return pd.Series(known.reindex(cells).fillna("").to_numpy(), index=rows.index, dtype=object)
+
+
+@check("classification")
+@check("recorded")
+def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
+    groups = rows["group"].astype(str).str.partition("_")[0] if "group" in rows else pd.Series("", index=rows.index)
+    guess = 1 / groups.map(NUMBERS)  # four of four_drawn
+    share = _beside(results, stage, dataset, rows, "commonest_share")
+    found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
+    found[_below(rows, guess)] = GUESSING
+    return found
+
+
+@check("transfer")
+@check("recorded_networks")
+def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of tuned networks whose training was stopped after some passes while it still improved."""
+    tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
+    converged = rows["passes"] == "converged" if "passes" in rows else False
+    learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
+    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+
+
+def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
+    """(n,) whether the mean accuracy of a row's kind of trial is below guessing; False where guessing is unknown."""
+    kinds = [column for column in TRIAL if column in rows]
+    lead = (rows["value"] - guess).where(rows["metric"] == "accuracy")
+    return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
+
+
+def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
+    """(n,) another metric of the same trials, NaN where it was not measured."""
+    try:
+        other = results.measured(stage, dataset, metric=metric)
+    except NotRun:
+        return pd.Series(float("nan"), index=rows.index)
+    apart = {"metric", "value", "seconds", "note", "imprints", "clock"}
+    keys = [column for column in rows if column in other and column not in apart]
+    known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
+    return pd.Series(rows[keys].merge(known, on=keys, how="left")["_beside"].to_numpy(), index=rows.index)
+
+
+def invalid_units(rows: pd.DataFrame) -> pd.Series:
+    """The cause of each invalid unit, indexed by item, method and target: its error says nothing about its points.
+
+    rows: those of the lod stage on one set, plain QEM among them. A unit is invalid where its method found no point,
+    where all its errors equal plain QEM's, or where the kept points have less than one ring in the mean. Units without
+    a mesh, and those of plain simplification, are neither valid nor invalid.
+    """
+    made = rows[rows["value"].notna() & ~rows["method"].isin([PLAIN, QSLIM])]
+    units = made.drop_duplicates(UNIT).set_index(UNIT)
+    keeps = ~units.index.get_level_values("method").str.endswith("-soft")  # the others weigh the error
+    causes = {
+        NO_POINT: keeps & (units["points"] == 0),
+        AS_PLAIN: units.index.isin(as_plain(rows)),
+        NO_RING: keeps & (units["rings"].fillna(0) < 1),
+    }
+    found = pd.Series(pd.NA, units.index, dtype="object", name="cause")
+    for cause, invalid in causes.items():
+        found = found.mask(found.isna() & invalid, cause)
+    return found.dropna()
+
+
+def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
+    """The units, item, method and target, whose errors all equal plain QEM's."""
+    keys = ["item", "target", "metric"]
+    errors = rows[rows["value"].notna() & (rows["metric"] != "faces")]
+    plain = errors.loc[errors["method"] == PLAIN, [*keys, "value"]]
+    both = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
+    same = (both["value"] == both["value_plain"]).groupby([both[key] for key in UNIT]).all()
+    return pd.MultiIndex.from_frame(same.index[same].to_frame())
