@@ -142,7 +142,8 @@ def what_holds(once: pd.DataFrame) -> str:
 
     head = "".join(f'<th scope="col" class="number">{word}</th>' for word in shown)
     rows = "".join(
-        f'<tr><th scope="row">{escape(CHAPTERS.get(chapter, chapter))}</th>{"".join(cell(chapter, w) for w in shown)}</tr>'
+        f'<tr><th scope="row">{escape(CHAPTERS.get(chapter, chapter))}</th>'
+        f"{''.join(cell(chapter, word) for word in shown)}</tr>"
         for chapter in chapters.drop_duplicates()
     )
     title = "What holds of the thesis"
