@@ -130,7 +130,7 @@ def chapter_of(section: str) -> str:
 
 def what_holds(once: pd.DataFrame) -> str:
     """A table of sentences by chapter and verdict, each number a link to its sentences. once: as `sentences`."""
-    chapters = once["section"].map(chapter_of)
+    chapters = pd.Series([chapter_of(str(section)) for section in once["section"]], dtype=object)
     words = [word for word in WORDS if (once["verdict"] == word).any()]
     shown = {"sentences": once["verdict"].notna(), **{word: once["verdict"] == word for word in words}}
 
@@ -144,7 +144,8 @@ def what_holds(once: pd.DataFrame) -> str:
     rows = "".join(
         f'<tr><th scope="row">{escape(CHAPTERS.get(chapter, chapter))}</th>'
         f"{''.join(cell(chapter, word) for word in shown)}</tr>"
-        for chapter in chapters.drop_duplicates()
+        for chapter in dict.fromkeys([*CHAPTERS, *chapters])
+        if (chapters == chapter).any()
     )
     title = "What holds of the thesis"
     body = f'<table><thead><tr><th scope="col">chapter</th>{head}</tr></thead><tbody>{rows}</tbody></table>'

@@ -168,7 +168,7 @@ def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) 
     if len(parts["claims"]):
         mains[CLAIMS] = claims_main(parts["known"], parts["claims"], parts["differences"], parts["results"])
     leads = {name_of(module): (module.__doc__ or "").strip() for module in modules}
-    leads[CLAIMS] = "What the thesis says, and this project of its own model, tested one by one."
+    leads[CLAIMS] = "Each sentence of the thesis, and of this project about its own model, has its verdict here."
     for name, main in mains.items():
         scripts = ["site.js", "claims.js"] if name == CLAIMS else ["site.js"]
         write_text(out / FOLDER / f"{name}.html", page(list(mains), name, leads[name], main, scripts))
