@@ -5,6 +5,7 @@ import ast
 import os
 import re
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
@@ -90,8 +91,13 @@ def run(command: str, argv: Sequence[str]) -> int:
     from haptic_glance.base.errors import errors_in_one_line
 
     errors_in_one_line(command)  # before the imports that take a second, in which a person may press Ctrl-C
+    from haptic_glance.base.progress import no_silence
+
+    # Pillow warns of large pictures in two lines; `materials` refuses those that are too large in one.
+    warnings.filterwarnings("ignore", message="Image size .* exceeds limit")
     work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
-    return work(argv) or 0
+    with no_silence():
+        return work(argv) or 0
 
 
 def listing() -> str:

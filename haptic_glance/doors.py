@@ -86,7 +86,10 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable
         diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
         for name in names:
             if given.arguments[name] is not None:
-                given.arguments[name] = in_units(name, given.arguments[name], diameter, unit)
+                value = given.arguments[name]
+                given.arguments[name] = converted = in_units(name, value, diameter, unit)
+                if name == "pitch" and isinstance(value, str) and "cells" in given.arguments:
+                    _warn_of_misfit(value, given.arguments["cells"], converted, diameter)
         return function(*given.args, **given.kwargs)
 
     return work
@@ -134,8 +137,20 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
     if not isinstance(found, Metres):
         return found * diameter
     if unit not in METRES:
-        raise ValueError(f"{name}={value!r} needs unit, what the coordinates of the mesh are in: {', '.join(METRES)}")
+        got = "" if unit is None else f", not {unit!r}"
+        named = ", ".join(METRES)
+        raise ValueError(f"{name}={value!r} needs unit, what the coordinates of the mesh are in: {named}{got}")
     return float(found) / METRES[unit]
+
+
+def _warn_of_misfit(asked: str, cells: Sequence[int], pitch: float, diameter: float) -> None:
+    """Warns where the array is far from the object's size: a normalised mesh, for one, is no longer in mm."""
+    from haptic_glance.touch.distances import check_array  # `press` has imported both, which take a while
+    from haptic_glance.touch.quasi_tangent import misfit
+
+    cells, pitch, _ = check_array(cells, pitch)
+    if wrong := misfit(cells, pitch / diameter):
+        warnings.warn(f"pitch={asked!r}: {wrong}", stacklevel=3)
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:

@@ -80,6 +80,19 @@ def test_lengths_are_shares_of_the_diameter_or_have_a_unit(body, scale):
         press(mesh, 7, pitch="1mm")
     with pytest.raises(ValueError, match="pitch='wide': give a share"):
         press(mesh, 7, pitch="wide")
+    with pytest.raises(ValueError, match="mm, cm, in, m, not 'yd'"):
+        press(mesh, 7, pitch="1mm", unit="yd")
+
+
+def test_a_length_that_does_not_fit_the_mesh_is_warned_of(body):
+    mesh = haptic_glance.normalise(Mesh(*body))  # 1 across, so no longer in mm
+    with pytest.warns(UserWarning, match="pitch='1mm': the array is .* is the unit of length right?"):
+        press(mesh, 7, pitch="1mm", unit="mm")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        press(Mesh(100 * mesh.vertices, mesh.faces), 7, pitch="1mm", unit="mm")
+    with pytest.raises(ValueError, match="cells must be two whole numbers"):
+        press(mesh, 7, cells=16, pitch="1mm", unit="mm")
 
 
 def test_forces_take_lengths_as_texts(body):

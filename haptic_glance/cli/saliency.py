@@ -13,7 +13,6 @@ examples:
 
 import argparse
 import json
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,6 +20,7 @@ import numpy as np
 import trimesh
 from scipy.spatial import KDTree
 
+from haptic_glance.base import progress
 from haptic_glance.base.extras import about
 from haptic_glance.base.files import existing, said_of, write_text
 from haptic_glance.base.timing import WallClock
@@ -110,7 +110,7 @@ def look_at(chosen: argparse.Namespace) -> None:
 
 def report(chosen: argparse.Namespace, text: str) -> None:
     """Prints progress to stderr, apart from the results."""
-    print(f"{chosen.name}: {text}", file=sys.stderr, flush=True)
+    progress.report(chosen.name, text)
 
 
 def check(chosen: argparse.Namespace) -> None:

@@ -20,7 +20,6 @@ import argparse
 import json
 import os
 import re
-import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from haptic_glance.base import progress
 from haptic_glance.base.extras import MissingExtra, about
 from haptic_glance.base.files import existing, said_of
 from haptic_glance.base.timing import WallClock
@@ -349,7 +349,7 @@ def plain(task: SimplificationTask, faces: int) -> Mesh | None:
 
 def report(text: str) -> None:
     """Prints progress to stderr, apart from the results."""
-    print(f"simplify: {text}", file=sys.stderr, flush=True)
+    progress.report("simplify", text)
 
 
 def summary(

@@ -24,7 +24,6 @@ import io
 import json
 import os
 import re
-import sys
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -32,6 +31,7 @@ from typing import Any
 
 import numpy as np
 
+from haptic_glance.base import progress
 from haptic_glance.base.extras import MissingExtra, about, from_extra
 from haptic_glance.base.files import existing, said_of, write_arrays, write_text
 from haptic_glance.look.points.find import HELP, check_name
@@ -60,7 +60,9 @@ def parser(description: str) -> argparse.ArgumentParser:
     help_cells = "size of the array (default: 16 16)"
     result.add_argument("--cells", metavar=("ROWS", "COLS"), nargs=2, type=int, default=[16, 16], help=help_cells)
     help_pitch = "distance of two cells: a length such as 1mm, or in units, of which the bounding sphere is 1 across"
-    result.add_argument("--pitch", metavar="LENGTH", type=length, default=0.01, help=f"{help_pitch} (default: 0.01)")
+    result.add_argument(
+        "--pitch", metavar="LENGTH", type=length_option, default=0.01, help=f"{help_pitch} (default: 0.01)"
+    )
     help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
     result.add_argument("--count", metavar="N", type=int, help=help_count)
     result.add_argument("--method", help=f"of the salient places: {HELP}")
@@ -69,11 +71,11 @@ def parser(description: str) -> argparse.ArgumentParser:
     help_depth = (
         "how deep the object's highest point goes into the skin, as --pitch (default: the relief of each imprint)"
     )
-    result.add_argument("--depth", metavar="LENGTH", type=length, help=help_depth)
+    result.add_argument("--depth", metavar="LENGTH", type=length_option, help=help_depth)
     help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {', '.join(names_of(Skin))}"
     result.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
     help_load = "also write the force on each cell, in newtons, at which the whole array bears this load"
-    result.add_argument("--load", metavar="NEWTONS", type=float, help=help_load)
+    result.add_argument("--load", metavar="NEWTONS", type=newtons, help=help_load)
     help_unit = "what the coordinates of the file are in; --load and lengths such as 1mm need it"
     result.add_argument("--unit", choices=list(METRES), help=help_unit)
     names = [f"{name} in {LAYER_UNITS[name]}" if name in LAYER_UNITS else name for name in names_of(Layer)]
@@ -103,6 +105,23 @@ def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
     options.out = options.out or Path(f"{options.mesh.stem}_imprints")
     check_folder(options.out)
     return options
+
+
+def length_option(text: str) -> float:
+    """A number of units, or Metres of a text such as 1mm; an error of argparse that says so."""
+    try:
+        return length(text)
+    except ValueError:
+        units = ", ".join(METRES)
+        raise argparse.ArgumentTypeError(f"{text!r}: give a number, or a length such as 1mm, in {units}") from None
+
+
+def newtons(text: str) -> float:
+    """Newtons of a text such as 5 or 5N; an error of argparse that says so."""
+    try:
+        return float(text.strip().removesuffix("N"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: give a number of newtons, such as 5") from None
 
 
 def lengths_in_units(options: argparse.Namespace, unit: float) -> None:
@@ -273,7 +292,8 @@ def press_load(user_mesh: UserMesh, positions: np.ndarray, axes: np.ndarray, opt
         return press_forces(user_mesh.surface, positions, axes, options.layer, cells, options.pitch, options.load,
                             unit=unit)  # fmt: skip
     except ValueError as error:
-        raise ValueError(f"--load {options.load:g}: {error}") from None
+        said = re.sub(r"^touch (\d+)", lambda match: f"place {int(match[1]) + 1}", str(error))  # as the table counts
+        raise ValueError(f"--load {options.load:g}: {said}") from None
 
 
 def draw_picture(
@@ -349,4 +369,4 @@ def summary(user_mesh: UserMesh, rows: Sequence[dict[str, Any]], options: argpar
 
 def report_progress(text: str) -> None:
     """Prints a line of progress to stderr, apart from the results."""
-    print(f"touch: {text}", file=sys.stderr, flush=True)
+    progress.report("touch", text)

@@ -15,12 +15,12 @@ examples:
 import argparse
 import json
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from haptic_glance.base.errors import DEBUG
 from haptic_glance.base.files import write_text
+from haptic_glance.base.progress import report
 from haptic_glance.base.timing import WallClock
 from haptic_glance.cli.touch import check_folder
 from haptic_glance.lod.export import levels
@@ -117,8 +117,3 @@ def listing(made: Sequence[Exhibit], out: Path) -> str:
         f"{one.folder}: {len(one.points)} places, {len(one.levels)} levels, {len(one.touches)} imprints" for one in made
     ]
     return "\n".join([*lines, f"open {out / PAGE}"])
-
-
-def report(name: str, text: str) -> None:
-    """Prints progress to stderr, apart from the results."""
-    print(f"{name}: {text}", file=sys.stderr, flush=True)

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 from PIL import Image
 
-from haptic_glance.cli.touch import POINT, run
+from haptic_glance.cli.touch import POINT, parser, run
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import pictures, press_many
@@ -238,13 +238,31 @@ def test_place_behind_another_part_is_out_of_sight():
         (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 1.5.* is larger than the object"),
         (["--at", "0", "--depth", "0mm", "--unit", "mm"], "--depth 0: give a positive length"),
         (["--at", "0", "--load", "1", "--unit", "m", "--layer", "modulus=0"], "layer: modulus must be above 0"),
-        (["--at", "0", "--load", "9e9", "--unit", "mm"], "--load 9e.09: touch 0 needs more than the layer's"),
+        (["--at", "0", "--load", "9e9", "--unit", "mm"], "--load 9e.09: place 1 needs more than the layer's"),
     ],
 )
 def test_what_a_person_gets_wrong_is_named_with_its_remedy(options, words, file, tmp_path):
     with pytest.raises(ValueError, match=words):
         run([str(file), *options, "--out", str(tmp_path / "out")])
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (["--pitch", "2foo"], "argument --pitch: '2foo': give a number, or a length such as 1mm, in mm, cm, in, m"),
+        (["--load", "much"], "argument --load: 'much': give a number of newtons, such as 5"),
+    ],
+)
+def test_a_quantity_that_is_none_is_named_with_its_remedy(options, words, file, capsys):
+    with pytest.raises(SystemExit):
+        run([str(file), *options])
+    assert words in capsys.readouterr().err
+
+
+def test_a_load_may_have_its_unit():
+    options = ["mesh.stl", "--unit", "mm", "--load"]
+    assert parser("").parse_args([*options, "5N"]).load == parser("").parse_args([*options, "5"]).load == 5
 
 
 @pytest.mark.parametrize(
