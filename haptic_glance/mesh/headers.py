@@ -1,10 +1,14 @@
 """Refuses a mesh file whose header states more than the file holds, before a parser allocates what it states."""
 
+import io
 import json
 import re
 import struct
 
+from PIL import Image
+
 MOST_PRIMITIVES = 20_000  # of a GLB, counted at each node that shows them: the parser needs milliseconds for each
+MAX_TEXTURE = 8192  # pixels, of a square texture
 DENSEST = 100  # bytes that one compressed byte of a PCD can hold: LZF writes three bytes for 264
 
 
@@ -38,6 +42,34 @@ def _glb(content):
         raise MeshError(
             f"{primitives:,} primitives are more than {MOST_PRIMITIVES:,}: join its parts in the program that wrote it"
         )
+    for picture in _colour_pictures(tree):
+        _check_picture(tree, picture, content[20 + chunk + 8 :])
+
+
+def _colour_pictures(tree):
+    """The indices of the pictures that colour a material of a GLB; what is malformed is left to the parser."""
+    found = set()
+    for material in tree.get("materials", []):
+        try:
+            found.add(int(tree["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]))
+        except (LookupError, TypeError, ValueError):
+            continue
+    return found
+
+
+def _check_picture(tree, picture, binary):
+    """Raises MeshError for a picture that would fill the memory: the parser decodes it, or drops it without a word."""
+    limit = f"larger than {MAX_TEXTURE:,} x {MAX_TEXTURE:,}"
+    try:
+        view = tree["bufferViews"][tree["images"][picture]["bufferView"]]
+        start = view.get("byteOffset", 0)
+        width, height = Image.open(io.BytesIO(binary[start : start + view["byteLength"]])).size
+    except Image.DecompressionBombError:  # Pillow has a limit of its own, above this one
+        raise MeshError(f"a texture is {limit} pixels: scale it down") from None
+    except (LookupError, TypeError, ValueError, AttributeError, OSError):
+        return
+    if width * height > MAX_TEXTURE**2:
+        raise MeshError(f"a texture of {width:,} x {height:,} pixels is {limit}: scale it down")
 
 
 def _stl(content):

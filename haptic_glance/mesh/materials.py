@@ -17,10 +17,9 @@ from trimesh.visual import ColorVisuals, TextureVisuals
 from trimesh.visual.color import to_rgba
 from trimesh.visual.material import PBRMaterial, color_image
 
-from .headers import MeshError
+from .headers import MAX_TEXTURE, MeshError
 from .mesh import Mesh, Texture, content_of
 
-MAX_TEXTURE = 8192  # pixels, of a square texture
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
 
 FACTORS = (

@@ -82,13 +82,37 @@ def test_a_glb_of_too_many_primitives_is_refused_at_once(tmp_path):
         load(path)
 
 
-def test_a_texture_that_would_fill_the_memory_is_refused_by_its_header(tmp_path):
-    side = 13_000
-    rows = zlib.compress(b"\0" * (side * (side // 8 + 1)), 9)  # one bit a pixel
+def png_of(side):
+    """A square picture, black, one bit a pixel."""
+    rows = zlib.compress(b"\0" * (side * (side // 8 + 1)), 9)
     parts = (b"IHDR", struct.pack(">IIBBBBB", side, side, 1, 0, 0, 0, 0)), (b"IDAT", rows), (b"IEND", b"")
-    png = b"\x89PNG\r\n\x1a\n" + b"".join(
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts
     )
+
+
+@pytest.mark.parametrize("side, said", [(13_000, "of 13,000 x 13,000 pixels is larger"), (14_000, "is larger")])
+def test_a_glb_with_a_texture_that_would_fill_the_memory_is_refused_before_it_is_parsed(
+    tmp_path, monkeypatch, side, said
+):
+    """Pillow refuses 14,000 x 14,000 pixels itself, and trimesh then reads the mesh without its texture."""
+    png, path = png_of(side), tmp_path / "big.glb"
+    tree = {
+        "asset": {"version": "2.0"},
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "textures": [{"source": 0}],
+        "images": [{"mimeType": "image/png", "bufferView": 0}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(png)}],
+    }
+    path.write_bytes(glb_of(tree, png))
+    monkeypatch.setattr(trimesh, "load", None)
+    with pytest.raises(MeshError, match=f"a texture {said} than 8,192 x 8,192"):
+        load(path)
+
+
+def test_a_texture_that_would_fill_the_memory_is_refused_by_its_header(tmp_path):
+    side = 13_000
+    png = png_of(side)
     folder = tmp_path / "big"
     folder.mkdir()
     (folder / "big.png").write_bytes(png)
