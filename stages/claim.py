@@ -133,11 +133,25 @@ def as_text(found: dict[str, Any]) -> str:
     if "effect" in found:
         interval = f" [{found['low']:.3g}, {found['high']:.3g}]" if "low" in found else ""
         lines[1] += f": {found['effect']:+.3g}{interval} {found['unit']}, {found['texts']['over']}"
+        lines += as_share(found)
     lines.append(f"  tested on: {found['tested_on']}")
     lines += [f"  {name}: {text}" for name, text in found["texts"].items() if name != "over"]
     lines += [f"    {pair:32} {value:+.4g}" for pair, value in found["differences"].items()]
     lines += [f"  rows: {file}" for file in found["rows"]]
     return "\n".join([*lines, f"  measure anew: {found['command']}", ""])
+
+
+def as_share(found: dict[str, Any]) -> list[str]:
+    """A line with an effect in % of the mean of both as README.md and the pages state it: % less, or times as much."""
+    if not found["unit"].startswith("% of the mean of both") or "low" not in found:
+        return []
+    from stages.report.cells import PREFIXES
+
+    less = found["effect"] > 0
+    share = PREFIXES["less:" if less else "times:"]
+    low, high = sorted((share(found["low"]), share(found["high"])))
+    words = "% less than the first" if less else "times the first"
+    return [f"  as a share: the second is {share(found['effect']):.3g} [{low:.3g}, {high:.3g}] {words}"]
 
 
 def measure(workspace: Workspace, rows: Sequence[str]) -> None:

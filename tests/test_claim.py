@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from stages.claim import run
+from stages.claim import as_share, run
 from stages.engine.settings import Workspace
+from stages.report.cells import rows_of
 
 ROOT = Path(__file__).parents[1]
 KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]
@@ -63,6 +64,18 @@ def test_rows_that_are_missing_are_named(clone, capsys):
     said = capsys.readouterr().err
     assert "contradicted (-31.4, 14 units), in reports/claims.csv contradicted (-70.9, 17 units)" in said
     assert f"{file} is missing; `git checkout {file}`" in said
+
+
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [("glance_soft_gaze", "7.17 [5.2, 9.11] % less than the first"), ("keep_metro", "2.1 [1.93, 2.24] times the first")],
+)
+def test_an_effect_in_percent_of_both_is_also_a_share_as_the_readme_states_it(key, text):
+    """README.md has 7.2 [5.2, 9.1] % and 2.10 [1.93, 2.24] times for the two."""
+    row = rows_of(ROOT / "reports/claims.csv").set_index("key").loc[key]
+    found = {"unit": row["unit"]} | {name: float(row[name]) for name in ("effect", "low", "high")}
+    assert as_share(found) == [f"  as a share: the second is {text}"]
+    assert as_share(found | {"unit": "NSS"}) == []
 
 
 def test_a_key_without_a_claim_is_answered_by_its_neighbour():

@@ -36,6 +36,17 @@ def test_every_figure_is_that_of_its_table(line):
     assert list(texts) == [shown(number, text) for number, text in zip(numbers, texts, strict=True)]
 
 
+COUNTED = re.compile(r"(\d+) (?:meshes|point clouds|random sets)")
+COUNTS = [line for line in WITH_FIGURES if COUNTED.search(line) and "claims.csv" in line]
+
+
+@pytest.mark.parametrize("line", COUNTS, ids=lambda line: line.strip("| ")[:40])
+def test_the_objects_that_a_claim_was_tested_on_are_as_many_as_its_units(line):
+    ((path, title),) = [link for link in LINK.findall(line) if link[1]]
+    units = number_of(rows_of(ROOT / path, title.partition(": ")[0]), "units")
+    assert sum(map(int, COUNTED.findall(line))) == units
+
+
 def test_every_link_leads_to_a_file():
     assert not [path for path, _ in LINK.findall(TEXT) if not (ROOT / path).exists()]
 
