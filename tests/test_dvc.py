@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 
 from stages.report.records import HEADLINES, write_headlines
 
@@ -33,6 +34,12 @@ def test_every_plot_has_rows():
     assert not shown.get("errors")
     charts = [chart for plots in shown["data"].values() for chart in plots]
     assert len(charts) == 5 and all("seconds" in json.dumps(chart) for chart in charts)
+
+
+def test_plots_are_those_of_the_run_like_its_metrics():
+    plots = yaml.safe_load((ROOT / "dvc.yaml").read_text())["plots"]
+    files = [file for plot in plots for chart in plot.values() for axis in "xy" for file in chart[axis]]
+    assert len(files) == 10 and all(file.startswith("${out}/tradeoff/") for file in files)
 
 
 def test_a_chart_that_is_not_there_is_left_out(tmp_path):
