@@ -194,7 +194,9 @@ def _explain(overrides: Sequence[str], error: Exception) -> str:
             if parent in OPEN:
                 return f"{parent} has no {name.rpartition('.')[2]} yet: to add it, write +{override}"
             return f"unknown setting {name}: {_near(name, keys)}"
-    return str(error).splitlines()[0]
+    message = str(error).splitlines()[0]
+    section = next((name for name in OPEN if f"'{name}'" in message), None)  # with a name that it does not have
+    return message + (f" To add a name, write +{section}.NAME=..." if section else "")
 
 
 def _near(name: str, known: Sequence[str]) -> str:

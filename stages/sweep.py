@@ -13,7 +13,7 @@ runs/sweeps/recognition.csv (a repeated job replaces its rows), and a table of t
 import re
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -53,17 +53,39 @@ def recognise(config: dict[str, Any], data: Path) -> list[dict[str, Any]]:
     chosen = {name: check_section(schema_of(name), config[name]) for name in SECTIONS}
     rows = []
     touched = {}
-    for objects in chosen["classification"].sets.values():
+    sets = sets_there(chosen["classification"].sets, data)
+    for objects in sets.values():
         for name in objects:
             if name not in touched:
                 touched[name] = _touch(name, config, chosen, data)
-    for set_name, objects in chosen["classification"].sets.items():
+    for set_name, objects in sets.items():
         for method in chosen["imprints"].methods:
             images = {name: touched[name][method] for name in objects}
             for classifier in chosen["classification"].classifiers:
                 found = evaluate(images, classifier, chosen["classification"].repetitions, config["seed"])
                 rows += [{"group": set_name, "method": method, **row, "seed": config["seed"]} for row in found]
     return rows
+
+
+def sets_there(sets: Mapping[str, Sequence[str]], data: Path) -> dict[str, Sequence[str]]:
+    """The sets of objects that all lie in data; ParamsError with the names that lie there, where there is no such set.
+
+    All sets where data has no mesh at all: its stages have not run.
+    """
+    there = sorted(path.stem for path in (data / "meshes").glob("*.npz"))
+    if not there:
+        return dict(sets)
+    absent = {name: [each for each in objects if each not in there] for name, objects in sets.items()}
+    whole = {name: objects for name, objects in sets.items() if not absent[name]}
+    left_out = "; ".join(f"{name} ({', '.join(missing)})" for name, missing in absent.items() if missing)
+    if not whole:
+        raise ParamsError(
+            f"{data.name} does not have all objects of any set of classification.sets: {left_out}; "
+            f"name some of these in +classification.sets.NAME=[...]: {', '.join(there)}"
+        )
+    if left_out:
+        print(f"sweep: sets with objects that {data.name} does not have are left out: {left_out}", file=sys.stderr)
+    return whole
 
 
 def _touch(name: str, config: dict[str, Any], chosen: dict[str, Any], data: Path) -> dict[str, np.ndarray]:
@@ -117,11 +139,12 @@ def prepare(argv: Sequence[str]) -> None:
             composed([f"{key}={value}"])
     params, bases = load_params(), {}
     for dataset in split_values(chosen.get("data", "household")):
-        if dataset in params.get("sets", []) and all(name in params[dataset] for name in SECTIONS):
+        if dataset in params.get("sets", []):
             conf = composed([f"data={dataset}"])
+            sections = [name for name in SECTIONS if name in params[dataset]]  # a folder is not classified
             bases[dataset] = {
                 "params": params[dataset] | {"seed": params["seed"]},
-                "conf": {name: conf[name] for name in (*SECTIONS, "seed")},
+                "conf": {name: conf[name] for name in (*sections, "seed")},
             }
         missing = [f"{stage}@{dataset}" for stage in NEEDED if not any(Path("data", dataset, stage).glob("*"))]
         if missing:

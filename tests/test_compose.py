@@ -113,6 +113,7 @@ def test_results_go_to_reports_for_the_published_configuration_alone():
         ("profiel=smoke", "did you mean profile"),
         ("classifier=knn,svm", "stages.sweep -m"),
         ("classification.sets.mine=[a,b]", "+classification.sets.mine"),
+        ("classification.sets={mine:[a,b]}", "write +classification.sets.NAME="),
         ("views.material.speculr=1", "did you mean views.material.specular"),
         ("views.size=big", "views.size"),
         ("salient_points.methods=[glanse]", "salient_points.methods: unknown method 'glanse' (did you mean glance?)"),

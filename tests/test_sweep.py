@@ -68,6 +68,29 @@ def test_jobs_begin_with_the_settings_of_params_yaml_and_missing_results_are_nam
         sweep.recognise(values, root / "data/toys")
 
 
+def test_sets_of_objects_that_are_not_there_are_left_out_and_names_that_are_there_are_told(tmp_path, capsys):
+    data = tmp_path / "folder"
+    assert sweep.sets_there({"six": ["cup"]}, data) == {"six": ["cup"]}  # its stages have not run: _touch says so
+    for name in ("ball", "ring"):
+        write_json(data / f"meshes/{name}.npz", {})
+    sets = {"six": ["cup", "ring"], "mine": ["ball", "ring"]}
+    assert sweep.sets_there(sets, data) == {"mine": ["ball", "ring"]}
+    assert "six (cup)" in capsys.readouterr().err
+    with pytest.raises(ParamsError, match=r"six \(cup\); name some .*\+classification.sets.NAME=.*: ball, ring$"):
+        sweep.sets_there({"six": ["cup", "ring"]}, data)
+
+
+@pytest.mark.slow
+def test_a_set_without_a_section_begins_with_its_other_settings(root):
+    values = OmegaConf.to_container(OmegaConf.load("params.yaml"))
+    del values["household_four"]["classification"]
+    values["household_four"]["salient_points"]["radius"] = 0.07
+    (root / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
+    sweep.prepare(["-m", "data=household_four"])
+    found = sweep.based(compose.composed(["data=household_four"]), "household_four")
+    assert found["salient_points"]["radius"] == 0.07 and found["classification"]["repetitions"] == 20
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("override", "hint"),
