@@ -3,11 +3,13 @@
 examples:
   python -m stages.sweep -m channels=itti,all classifier=knn,svm
   python -m stages.sweep -m sensor=fsr_16,fsr_32 classifier=knn hydra/launcher=joblib
+  python -m stages.sweep -m data=folder '+classification.sets.mine=[cup,spoon]' classifier=knn,svm
 
 Every job finds the points, presses the array and recognises the objects of classification.sets, on the meshes and
 conspicuity maps of data/SET; SET is household, or `data=SET`. Where these are not there, `dvc repro` makes them first.
-Settings are those of params.yaml, where it has the set, but for what the command line says. Rows are appended to
-runs/sweeps/recognition.csv (a repeated job replaces its rows), and a table of the jobs ends the sweep.
+A group of classification.sets with objects that SET does not have is left out. Settings are those of params.yaml,
+where it has the set, but for what the command line says. Rows are appended to runs/sweeps/recognition.csv (a repeated
+job replaces its rows), and a table of the jobs ends the sweep.
 """
 
 import re

@@ -68,7 +68,10 @@ def test_rows_that_are_missing_are_named(clone, capsys):
 
 @pytest.mark.parametrize(
     ("key", "text"),
-    [("glance_soft_gaze", "7.17 [5.2, 9.11] % less than the first"), ("keep_metro", "2.1 [1.93, 2.24] times the first")],
+    [
+        ("glance_soft_gaze", "7.17 [5.2, 9.11] % less than the first"),
+        ("keep_metro", "2.1 [1.93, 2.24] times the first"),
+    ],
 )
 def test_an_effect_in_percent_of_both_is_also_a_share_as_the_readme_states_it(key, text):
     """README.md has 7.2 [5.2, 9.1] % and 2.10 [1.93, 2.24] times for the two."""
