@@ -3,8 +3,8 @@
 Examples: `python -m stages.compose profile=smoke`, `python -m stages.compose sets=[folder] meshes.folder=~/scans`,
 `python -m stages.compose sets=[household,gaze] gaze.lod.rings=2`. A setting holds for every set; with a set's name
 before it, for that set alone. The pipeline reads params.yaml alone. Without arguments the published configuration comes
-back, whose results lie in reports/. Every other choice writes to a folder of its own below runs/, which git ignores;
-out=FOLDER names another one.
+back, whose results lie in reports/. Every other choice writes to a folder of its own below runs/, of which git ignores
+all but headlines.json; out=FOLDER names another one.
 """
 
 import argparse

@@ -104,6 +104,12 @@ def test_results_go_to_reports_for_the_published_configuration_alone():
     assert ignored.splitlines() == paths
 
 
+def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_them():
+    paths = ["runs/folder/headlines.json", "runs/folder/metrics/report.json"]
+    ignored = subprocess.run(["git", "check-ignore", *paths], cwd=ROOT, capture_output=True, text=True).stdout
+    assert ignored.splitlines() == paths[1:]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("override", "hint"),
