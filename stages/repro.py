@@ -194,6 +194,7 @@ def main() -> None:
     failed = run_alone(Path("."))
     if failed:
         sys.exit(f"repro: {', '.join(failed)} failed, see {LOGS}")
+    print("repro: all stages are up to date", file=sys.stderr)
 
 
 if __name__ == "__main__":

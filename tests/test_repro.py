@@ -85,6 +85,7 @@ def test_independent_stages_overlap_and_dvc_sees_nothing_left_to_do(repository: 
     assert (repository / "d").read_text() == "oneone"
     status = subprocess.run([sys.executable, "-m", "dvc", "status"], cwd=repository, capture_output=True, text=True)
     assert "up to date" in status.stdout
+    assert found.stderr.endswith("repro: all stages are up to date\n")
 
 
 @pytest.mark.slow
