@@ -57,7 +57,8 @@ def load_as_stated(path: str | Path) -> Mesh:
 def load_unnamed(path: Path) -> Mesh:
     """As `load_as_stated`; the message of a MeshError is the reason alone, for a caller that names the file itself."""
     if not path.is_file():
-        raise MeshError("is a folder, not a mesh" if path.is_dir() else "no such file")
+        folder = "is a folder, not a mesh: `haptic-glance gallery` shows all meshes of a folder"
+        raise MeshError(folder if path.is_dir() else "no such file")
     return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
 
 

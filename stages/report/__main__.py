@@ -127,8 +127,11 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     if own:
         write_own_page(results, pages, out)
     made = {kind: len(found.items) for kind, found in built.items()}
+    reasons: dict[str, list[str]] = {}
     for name, why in not_run.items():
-        print(f"report: {name} not run, {why}")
+        reasons.setdefault(why, []).append(name)
+    for why, names in reasons.items():
+        print(f"report: not run, {why}: {', '.join(names)}")
     print(
         f"report: {made['tables']} tables, {made['figures']} figures, {made['tradeoff']} charts; claims: "
         f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}"
