@@ -187,8 +187,10 @@ def test_what_was_measured_on_sets_that_are_off_is_set_apart(run):
 def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     write_report(small.results(bare))
     said = capsys.readouterr().out
-    lines = [line for line in said.splitlines() if "dvc repro classification" in line]
-    assert len(lines) == 1 and "not run, " in lines[0] and "tables/table_4_1, " in lines[0]
+    lines = [
+        line for line in said.splitlines() if line.startswith("report: not run, no measurements of classification")
+    ]
+    assert len(lines) == 1 and "`dvc repro classification`: tables/table_4_1, " in lines[0]
     text = (bare / "reports/index.html").read_text()
     assert "<p>not run: no data/SET/salient_points" in text and "no data/SET/meshes" in text
 

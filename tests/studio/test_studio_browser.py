@@ -2,6 +2,7 @@
 
 import io
 import shutil
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -136,9 +137,13 @@ class Hand:
         self.page.locator("input[type=file]").first.set_input_files(path)
 
     def saved(self, button):
-        with self.page.expect_download(timeout=PATIENCE) as caught:
-            self.page.get_by_role("button", name=button, exact=True).click()
-        return caught.value
+        """The file that a button saves; clicks again where a page that is still drawing misses the click."""
+        for _ in range(PATIENCE // 20_000):
+            with suppress(playwright.TimeoutError):
+                with self.page.expect_download(timeout=20_000) as caught:
+                    self.page.get_by_role("button", name=button, exact=True).click()
+                return caught.value
+        raise AssertionError(f"{button} saved no file")
 
 
 @pytest.fixture
