@@ -153,7 +153,6 @@ PLANS = [
     ("beforehand", "displacement"), ("every_level", "displacement"), (OURS, ""), ("online", ""),
     ("online_unrendered", ""), ("uniform", "error"), ("uniform_size", "error"),
 ]  # fmt: skip
-BY_DISPLACEMENT = ("beforehand", "every_level")
 UNIFORM_LEVELS = "uniform", "displacement"
 EQUAL = {"": "", "displacement": "mean displacement", "error": "worst object's error"}
 SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error, mean", 1, 2),
