@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy import special, stats
 
 from .rows import by_unit
 
@@ -36,18 +36,32 @@ def interval(
     say, in the mean's place. Raises ValueError for values of another shape.
     """
     values = of_units(values)
-    n = len(values)
-    if n == 0:
+    if len(values) == 0:
         return np.nan, np.nan, np.nan
     mean = float(statistic(values, axis=0))
-    if n == 1 or np.ptp(values) <= ROUNDED * np.abs(values).max():
+    if not _varied(values):
         return mean, np.nan, np.nan
-    picks = np.random.default_rng(seed).integers(n, size=(RESAMPLES, n))
+    return mean, *_ends(mean, _resampled(values, seed, statistic), len(values), shared, level)
+
+
+def _varied(values: np.ndarray) -> bool:
+    """Whether there are two values or more (k,), and not all equal."""
+    return len(values) > 1 and bool(np.ptp(values) > ROUNDED * np.abs(values).max())
+
+
+def _resampled(values: np.ndarray, seed: int, statistic: Statistic) -> np.ndarray:
+    """(RESAMPLES,) the statistic of resamples of the values (k,)."""
+    picks = np.random.default_rng(seed).integers(len(values), size=(RESAMPLES, len(values)))
+    return np.asarray(statistic(values[picks], axis=1))
+
+
+def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: float) -> tuple[float, float]:
+    """The ends of the `interval` of n values, from their mean and the means (r,) of their resamples."""
     tail = (1 + level) / 2
-    low, high = np.quantile(statistic(values[picks], axis=1), [1 - tail, tail])
-    few = stats.t.ppf(tail, n - 1) / stats.norm.ppf(tail) * np.sqrt(n / (n - 1))
+    low, high = np.quantile(resampled, [1 - tail, tail])
+    few = special.stdtrit(n - 1, tail) / special.ndtri(tail) * np.sqrt(n / (n - 1))
     widen = few * np.sqrt(1 + n * shared)
-    return mean, float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
+    return float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
 
 
 def of_units(values: ArrayLike) -> np.ndarray:
@@ -67,11 +81,12 @@ def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
     Not below SMALLEST, which is what RESAMPLES draws can tell.
     """
     values = of_units(values)
-    levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
-    if not np.isfinite(interval(values, shared, seed)[1]):
+    if not _varied(values):
         return np.nan
+    mean, resampled = float(np.mean(values, axis=0)), _resampled(values, seed, np.mean)
+    levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
     while np.ptp(levels) > SMALLEST:
-        low, high = interval(values, shared, seed, level=float(levels.mean()))[1:]
+        low, high = _ends(mean, resampled, len(values), shared, float(levels.mean()))
         levels[0 if low > 0 or high < 0 else 1] = levels.mean()
     return float(1 - levels.mean())
 

@@ -1,6 +1,6 @@
 """Measurements, set by set, beside the thesis's; a missing measurement is NotRun, never a crash."""
 
-from collections.abc import Callable, Hashable, Iterable, Sequence, Sized
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence, Sized
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -94,6 +94,8 @@ class ByMethod(dict):
         found = [method for method in methods if method in self]
         return found or [self[method] for method in methods]
 
+RECENT = 32  # answers that are kept: the two sides of a claim are asked for again and again
+
 
 class Results:
     """Everything that the report reads: rows of measurements, and what the stages left in data/.
@@ -111,6 +113,7 @@ class Results:
         self.sources: dict[str, list[pd.DataFrame]] = {}  # SET/STAGE or bench/NAME -> rows that were read since then
         self._tables: dict[Path, pd.DataFrame] = {}
         self._known: dict[Hashable, Any] = {}
+        self._recent: dict[Hashable, pd.DataFrame] = {}  # the answers to the last queries, oldest first
 
     def forget(self) -> None:
         """Begins anew to note what is read."""
@@ -144,11 +147,24 @@ class Results:
         none is left; with the stage's own note on why it left them out, where there is one.
         """
         dataset = self._first(stage, dataset)
+        query = stage, dataset, *((column, *listed(wanted)) for column, wanted in where.items())
+        if query not in self._recent:
+            self._recent[query] = self._filtered(stage, dataset, where)
+            if len(self._recent) > RECENT:
+                del self._recent[next(iter(self._recent))]
+        frame = self._recent[query].copy(deep=False)
+        self.read.add(dataset)
+        self.sources.setdefault(f"{dataset}/{stage}", []).append(frame)
+        return frame
+
+    def _filtered(self, stage: str, dataset: str, where: Mapping[str, object]) -> pd.DataFrame:
+        """The rows of `rows`; each column's values are compared one time, not its cells."""
         frame = self._read(stage, dataset)
+        chosen = np.ones(len(frame), dtype=bool)
         for column, wanted in where.items():
             if column in frame:
-                frame = frame[_accepted(frame[column], wanted)]
-                if not frame.empty:
+                chosen = chosen & self._accepted(stage, dataset, column, wanted)
+                if chosen.any():
                     continue
             notes = self.notes(stage, dataset, **where)
             if notes:
@@ -156,9 +172,7 @@ class Results:
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
             raise NotRun(f"{column} {either(wanted)} is not among those that {stage} measured", stage, runnable=False)
-        self.read.add(dataset)
-        self.sources.setdefault(f"{dataset}/{stage}", []).append(frame)
-        return frame
+        return frame[chosen] if where else frame
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
         """As `rows`, only those that have a value; NotRun where there is none."""
@@ -175,18 +189,28 @@ class Results:
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""
+        dataset = self._first(stage, dataset)
         frame = self._read(stage, dataset)
         if "note" not in frame or "value" not in frame:
             return []
-        frame = frame[frame["value"].isna() & frame["note"].notna()]
+        noted = (frame["value"].isna() & frame["note"].notna()).to_numpy()
         for column, wanted in where.items():
             if column in frame:
-                frame = frame[_accepted(frame[column], wanted) | frame[column].isna()]
-        return list(dict.fromkeys(frame["note"]))
+                empty = self._accepted(stage, dataset, column, None)
+                noted = noted & (self._accepted(stage, dataset, column, wanted) | empty)
+        return list(dict.fromkeys(frame.loc[noted, "note"]))
 
     def left_out(self, stage: str, dataset: str | None = None, **where: object) -> str:
         """`notes` as sentences for a table's prose, a line each."""
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
+
+    def _accepted(self, stage: str, dataset: str, column: str, wanted: object) -> np.ndarray:
+        """(n,) bool: which rows of a stage on one set have a wanted value in a column; compares each value one time."""
+        codes, values = self.once(
+            ("values", stage, dataset, column), lambda: pd.factorize(self._read(stage, dataset)[column])
+        )
+        known = np.zeros(len(values), dtype=bool) if wanted is None else values.isin(listed(wanted))
+        return np.append(known, wanted is None)[codes]  # the code of an empty cell is -1
 
     def _first(self, stage: str, dataset: str | None) -> str:
         return dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
@@ -361,7 +385,3 @@ def listed(wanted: object) -> list:
 def either(wanted: object) -> str:
     """One value or several, in words: `knn or svm`."""
     return " or ".join(map(str, listed(wanted)))
-
-
-def _accepted(column: pd.Series, wanted: object) -> pd.Series:
-    return column.isna() if wanted is None else column.isin(listed(wanted))

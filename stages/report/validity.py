@@ -39,9 +39,13 @@ def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.Dat
     """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
     if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
         return pd.Series("", index=rows.index)
-    known = results.once(("invalid units", dataset), lambda: invalid_units(results.rows(stage, dataset)))
-    cells = pd.MultiIndex.from_frame(rows[UNIT])
-    return pd.Series(known.reindex(cells).fillna("").to_numpy(), index=rows.index, dtype=object)
+
+    def of_all() -> pd.Series:
+        every = results.rows(stage, dataset)
+        found = invalid_units(every).reindex(pd.MultiIndex.from_frame(every[UNIT])).fillna("")
+        return pd.Series(found.to_numpy(), index=every.index, dtype=object)
+
+    return results.once(("invalid units", dataset), of_all)[rows.index]
 
 
 @check("classification")
@@ -79,10 +83,15 @@ def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metr
         other = results.measured(stage, dataset, metric=metric)
     except NotRun:
         return pd.Series(float("nan"), index=rows.index)
+
+    def of_all() -> pd.Series:
+        known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
+        every = results.rows(stage, dataset)[keys]
+        return pd.Series(every.merge(known, on=keys, how="left")["_beside"].to_numpy(), index=every.index)
+
     apart = {"metric", "value", "seconds", "note", "imprints", "clock"}
     keys = [column for column in rows if column in other and column not in apart]
-    known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
-    return pd.Series(rows[keys].merge(known, on=keys, how="left")["_beside"].to_numpy(), index=rows.index)
+    return results.once(("beside", stage, dataset, metric, *keys), of_all)[rows.index]
 
 
 def invalid_units(rows: pd.DataFrame) -> pd.Series:
