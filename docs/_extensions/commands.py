@@ -12,7 +12,7 @@ from stages.engine.rows import SUFFIX
 from stages.report.cells import number_of, rows_of
 from stages.report.claims import Claim
 from stages.report.records import COMPOSE, switch
-from stages.report.stability.score import SEEN, TIME_KEYS
+from stages.report.stability.costs import SEEN, TIME_KEYS
 from stages.report.topics import CLAIMS
 
 from .measured import REPORTS

@@ -23,8 +23,9 @@ from stages.engine.settings import workspace_of_arguments
 from . import Params
 from .claims_page import claims_shown
 from .items import Built
+from .own_page import write_own_page
 from .page import pack_viewer
-from .records import HEADLINES_FILE, PROVENANCE_FILE, write_headlines, write_own_page, write_records
+from .records import HEADLINES_FILE, PROVENANCE_FILE, write_headlines, write_records
 from .results import NotRun, Results
 from .site import write_site
 from .tables import as_text, markdown_table

@@ -1,36 +1,21 @@
-"""Words of the report: the claims as a table and a page, the prose of each topic, and figures kept with their words.
+"""The claims of the report as a table and as a page.
 
-TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
-is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
-notes. The section of a figure or chart is `Alt: text for a blind reader`, then the caption. The code fills in `{word}`.
-An empty note is left out, and a note of several lines becomes several notes. TOPIC/findings.md holds the findings of a
-topic, with figures from any table or claim; a paragraph with a missing figure is left out. A `Kept` figure of a data
-set outside the default run stays in the repository, with its words in NAME.json.
+The page begins with the verdicts by chapter; each number is a link to its sentences. Below, each sentence has its
+verdict, effect, data sets and command.
 """
 
-import re
-from collections.abc import Callable, Sequence
-from contextlib import suppress
-from functools import cache
+from collections.abc import Sequence
 from html import escape
-from importlib import resources
-from pathlib import Path
 from string import Template
-from types import ModuleType
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure as Drawing
 
-from haptic_glance.base.files import read_json, write_json
-
-from .cells import filled
 from .claims import Claim
 from .effects import sets_of
-from .items import Figure, Table
 from .page import WORDS, box, folded, part, prose, script_json
 from .records import command
-from .results import NotRun, Results, dataset_text, there
+from .results import Results, dataset_text
 from .tables import with_interval
 from .verdict import counted, open_by_cause, sentences
 
@@ -184,85 +169,3 @@ def _claim_html(
 
 def _options(found: dict[str, str]) -> str:
     return "".join(f'<option value="{escape(value)}">{escape(text)}</option>' for value, text in found.items())
-
-
-def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
-    """Fills in name, title, summary (not yet its figures), notes of a table; name, title, alt, caption of a figure.
-
-    Raises KeyError where prose.md lacks the section or the item lacks a word.
-    """
-    title, text = _sections(topic.__name__)[f"{kind}/{name}"]
-    item.name, item.title = name, title.format_map(item.words)
-    if isinstance(item, Table):
-        summary, *listed = re.split(r"^- ", text, flags=re.MULTILINE)
-        item.summary = _joined(summary).replace("{this ", f"{{{kind}/{name} ")
-        notes = (_joined(note).format_map(item.words) for note in listed)
-        item.notes = [line for note in notes for line in note.splitlines() if line]
-    else:
-        alt, _, caption = text.removeprefix("Alt: ").partition("\n\n")
-        item.alt, item.caption = (_joined(part).format_map(item.words) for part in (alt, caption))
-
-
-def shared_notes(package: str | None, name: str) -> str:
-    """Notes that several tables of a topic share, a line each, to be a word of theirs: the section `# shared/NAME`."""
-    _, text = _sections(package or "")[f"shared/{name}"]
-    return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
-
-
-def findings(topic: ModuleType, reports: Path) -> list[str]:
-    """The paragraphs of TOPIC/findings.md, in Markdown, with their figures; without those that lack a figure."""
-    text = resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
-    found = []
-    for paragraph in text.strip().split("\n\n"):
-        with suppress(LookupError):
-            found.append(filled(_joined(paragraph), reports)[0])
-    return found
-
-
-@cache
-def _sections(package: str) -> dict[str, tuple[str, str]]:
-    """{KIND/NAME: (title, text below it)} of a topic's prose.md."""
-    text = resources.files(package).joinpath("prose.md").read_text(encoding="utf-8")
-    parts = re.split(r"^# (\S+): (.+)$", text, flags=re.MULTILINE)
-    return {name: (title, text.strip()) for name, title, text in zip(*(parts[k::3] for k in (1, 2, 3)), strict=True)}
-
-
-def _joined(lines: str) -> str:
-    return " ".join(lines.split())
-
-
-class Kept(Figure):
-    """A figure whose words stand beside it in NAME.json, so that both outlast the data; drawing empty: they did."""
-
-    def write(self, folder: Path) -> None:
-        """Writes NAME.png and NAME.json, where there is something new."""
-        words = folder / f"{self.name}.json"
-        if self.drawing.axes:
-            super().write(folder)
-            write_json(words, self.words)
-        self.paths = [words.with_suffix(".png"), words]
-
-
-def last_drawn(results: Results, name: str, stage: str) -> Kept:
-    """The figure as it was drawn last time; NotRun where it never was."""
-    here = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
-    words = here / f"figures/{name}.json"
-    why = f"no figures/{name}.png: run the stage {stage} on its data set"
-    there(words.with_suffix(".png"), why, stage, runnable=False)
-    return Kept(Drawing(), read_json(there(words, why, stage, runnable=False)))
-
-
-def as_printed(build: Callable[[Results], Figure], dataset: str, results: Results, stage: str = "lod") -> Figure:
-    """The figure on the set of a protocol as printed, where that set is the first; else as it was drawn there.
-
-    Where it never was, or of one's own meshes, it is of the first set. `build` has the figure's name.
-    """
-    if results.sets[:1] == [dataset]:
-        figure = build(results)
-        return Kept(figure.drawing, figure.words, dpi=figure.dpi)
-    if not results.own_meshes:
-        with suppress(NotRun):
-            found = last_drawn(results, build.__name__, stage)
-            results.read.add(dataset)
-            return found
-    return build(results)

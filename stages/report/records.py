@@ -1,18 +1,16 @@
-"""Files of the report beside tables and figures: sources of each item, headline numbers, and a page of own meshes.
+"""Files of the report beside tables and figures: sources of each item, headline numbers, and commands.
 
 KIND/records.json has a line for each table, figure or chart: its data sets, files of rows, methods, sizes, number of
 objects and number of rows. provenance.json has the hash of each file of rows, the commit of a file that git knows
 unchanged, and the clock of its seconds; constraints.txt of that commit pins the packages that measured the rows.
 headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
-`command` is the shell command that measures the rows of a claim again. `write_own_page` writes the page of
-`haptic-glance gallery` from the pipeline's data, as the front page of a run on a person's own folder.
+`command` is the shell command that measures the rows of a claim again.
 """
 
 import json
 import re
-import shutil
 import subprocess
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from importlib.metadata import PackageNotFoundError, requires, version
@@ -20,26 +18,15 @@ from pathlib import Path
 from platform import python_version
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import yaml
 
 from haptic_glance.base.files import read_json, sha256, write_json, write_text
-from haptic_glance.cli.saliency import as_csv, points_of
-from haptic_glance.gallery.exhibit import Exhibit, Level
-from haptic_glance.gallery.page import build_page
-from haptic_glance.lod import vertex_errors
-from haptic_glance.lod.export import write_any
-from haptic_glance.lod.pictures import coloured, look
-from haptic_glance.look.points import Detection
-from haptic_glance.look.points.find import scores_of
-from haptic_glance.touch.places import UserMesh
 from stages.engine.rows import SUFFIX
-from stages.imprints.imprints import read_imprints
 
 from .cells import rows_of
 from .items import Built, Figure, Table
-from .results import BENCH, NotRun, Results
+from .results import BENCH, Results
 
 FILE = "records.json"
 PROVENANCE_FILE = "provenance.json"
@@ -202,62 +189,3 @@ def command(conf: Path, stage: str, sets: Iterable[str]) -> str:
 
 def _read(path: Path) -> dict:
     return yaml.safe_load(path.read_text(encoding="utf-8")) or {} if path.is_file() else {}
-
-
-MODEL, COUNT = "glance", 6  # whose places and levels are shown, else those of the first method; and how many places
-UNITS = "units of the object's diameter"
-
-
-def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
-    """Writes OUT/index.html and a folder of files a mesh below OUT/site; pages: the names of the site's other pages."""
-    for path in filter(Path.is_dir, (out / "site").iterdir()):
-        shutil.rmtree(path)
-    made, missing = [], dict(_refused(results))
-    for name in results.objects:
-        try:
-            made.append(exhibit_of(results, name, out / "site" / name))
-        except NotRun as error:
-            missing[name] = str(error)
-    links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
-    more = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
-    folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
-    text = build_page("Your meshes", made, missing, [f"haptic-glance gallery {folder}"], out, more)
-    write_text(out / "index.html", text)
-
-
-def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
-    """The findings of the pipeline on one object; its files are written into a folder. NotRun where it has no places.
-
-    Levels and imprints that were not made are named among the missing.
-    """
-    mesh, found = results.mesh(name), results.saliency(name)
-    model = MODEL if MODEL in found else found.those_of(list(found))[0]
-    saliency, vertices = found[model], results.points(name)[model][:COUNT]
-    points = points_of(mesh, Detection(vertices, None, saliency, scores_of(mesh, vertices, saliency)))
-    folder.mkdir(parents=True)
-    write_any(folder / "saliency.ply", coloured(mesh, saliency))
-    write_text(folder / "points.csv", as_csv(points))
-    levels, touches, images, missing = [], [], [], {}
-    try:
-        for target, level in results.lods(name, f"{model}-soft"):
-            path = folder / f"{name}_{target.replace('%', 'pct')}.ply"
-            write_any(path, level)
-            levels.append(Level(level, 100 * vertex_errors(level, mesh) / mesh.diagonal, path))
-    except NotRun as error:
-        missing["levels"] = str(error)
-    with suppress(NotRun, KeyError):
-        touched = read_imprints(results.folder("imprints") / f"{name}.npz")[model]
-        felt = dict(zip(touched.vertices.tolist(), touched.images, strict=True))
-        ranks = [rank for rank, vertex in enumerate(vertices.tolist(), 1) if vertex in felt]
-        touches, images = [{"index": rank} for rank in ranks], [felt[vertices[rank - 1]] for rank in ranks]
-    return Exhibit(
-        name, folder, folder, UserMesh(mesh, name), "z is up", saliency, points, levels, missing, touches,
-        np.array(images), look(mesh, saliency, vertices), UNITS,
-    )  # fmt: skip
-
-
-def _refused(results):
-    """(file, why) of each file that the stage meshes refused."""
-    with suppress(NotRun):
-        for row in results.table("meshes", "refused.csv").itertuples():
-            yield str(row.file), str(row.reason)

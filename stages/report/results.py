@@ -94,6 +94,7 @@ class ByMethod(dict):
         found = [method for method in methods if method in self]
         return found or [self[method] for method in methods]
 
+
 RECENT = 32  # answers that are kept: the two sides of a claim are asked for again and again
 
 

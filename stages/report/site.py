@@ -16,7 +16,7 @@ from matplotlib.figure import Figure as Drawing
 from haptic_glance.base.files import write_text
 
 from .cells import CLAIMS, PREFIXES, filled
-from .claims_page import claims_main, findings
+from .claims_page import claims_main
 from .drawing import CYCLE, INK, SETTINGS, plt
 from .items import Figure, Table
 from .marks import vector
@@ -24,6 +24,7 @@ from .page import box, folded, image, lacks_cells, part, prose, script_json
 from .results import dataset_text
 from .tables import with_interval
 from .verdict import DEPENDS, UNTESTABLE, counts, sentences
+from .words import findings
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
 

@@ -19,12 +19,12 @@ from . import (
     touch,
     transfer,
 )
-from .claims_page import add_words
 from .drawing import SETTINGS, plt
 from .items import Built, Figure, Table
 from .page import item_html
 from .records import record_of
 from .results import NotRun, Results
+from .words import add_words
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,

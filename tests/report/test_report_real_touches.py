@@ -10,8 +10,9 @@ import pytest
 from stages.report import recorded as topic
 from stages.report.recorded.claims import SERIES
 from stages.report.recorded.claims import TOUCHES as CLAIMS
-from stages.report.recorded.grasps import CLASSES, TASKS
+from stages.report.recorded.grasps import TASKS
 from stages.report.recorded.networks import PANELS
+from stages.report.recorded.table_4_4 import CLASSES
 from stages.report.recorded.touch_events import PUBLISHED
 from stages.report.results import NotRun
 from stages.report.topics import build_one

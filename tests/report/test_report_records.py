@@ -12,12 +12,12 @@ import pytest
 from haptic_glance.base.files import read_json, sha256
 from haptic_glance.base.timing import WALL, clock
 from stages.report import records, touch
-from stages.report.claims_page import as_printed
 from stages.report.drawing import plt
 from stages.report.items import Built, Figure, Table
 from stages.report.records import DIGITS, FILE, PROVENANCE_FILE, record_of, write_records
 from stages.report.results import NotRun
 from stages.report.topics import KINDS, build_one
+from stages.report.words import as_printed
 
 ROOT = Path(__file__).parents[2]
 ROWS = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")

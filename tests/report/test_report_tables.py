@@ -23,7 +23,7 @@ from stages.report.tables import (
     with_interval,
 )
 from stages.report.topics import build_all, build_one
-from stages.report.touch.imprints import METHODS, SSIM
+from stages.report.touch.rows import METHODS, SSIM
 
 
 def table_4_1(results):

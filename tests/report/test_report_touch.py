@@ -10,7 +10,7 @@ from stages.report import touch
 from stages.report.results import SECTION_4_2, SETS_4_2, NotRun
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, touches
-from stages.report.touch.imprints import PRINTED
+from stages.report.touch.rows import PRINTED
 from stages.report.verdict import judge
 from tests.report.frames import has_ink
 

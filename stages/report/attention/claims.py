@@ -14,12 +14,12 @@ import pandas as pd
 from stages.bench import PER_OBJECT, has_seen
 from stages.engine.statistics import BROKEN, interval
 from stages.report.claims import POINTS, Claim, Pick, highest_of, reading
-from stages.report.claims_page import shared_notes
 from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.pareto import attention_seconds
 from stages.report.results import COLOURED, GAZED, MENDED_3_2, ON_BLACK, SECTION_3_2, NotRun, Results, some
 from stages.report.tables import Ranking, number, records, signed, with_interval
+from stages.report.words import shared_notes
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"

@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
 from stages.engine.statistics import interval
-from stages.report.claims_page import shared_notes
 from stages.report.drawing import GREY, INK, Spot, colours, label, place_names, plain_logarithm, plt
 from stages.report.items import Figure, Table
 from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
 from stages.report.tables import percent, with_interval
+from stages.report.words import shared_notes
 
 from .levels import FITTED, Growth, growth
 

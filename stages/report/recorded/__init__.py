@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from . import claims, grasps, networks, touch_events
+from . import claims, grasps, networks, table_4_4, touch_events
 
 TABLES = {
-    "table_4_4": grasps.table_4_4,
+    "table_4_4": table_4_4.table_4_4,
     "grasps": grasps.grasps_table,
     "touch_events": touch_events.build,
     "touch_events_conditions": touch_events.conditions,

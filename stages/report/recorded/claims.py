@@ -12,9 +12,9 @@ from stages.report.effects import side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED
 from stages.report.results import Results
 
-from .grasps import CLASSES, SELECTIONS
 from .networks import SIMULATIONS as KINDS
 from .rows import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
+from .table_4_4 import CLASSES, SELECTIONS
 from .touch_events import GROUPS, OURS, SET, SPIKING
 
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen

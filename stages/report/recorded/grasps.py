@@ -1,13 +1,5 @@
-"""Tables of classifiers on recorded touches: grasps by BioTac SP fingertips, and pressure images (T table 4.4).
+"""Table of classifiers on grasps by three BioTac SP fingertips: slip or hold, and one of 51 objects."""
 
-Grasps by three BioTac SP fingertips tell slip from hold, and one of 51 objects from the others. T table 4.4 recognises
-four and six objects by real touches, with and without the selection of dissimilar touches (T4.2.4). A control removes
-as many touches at random.
-"""
-
-from itertools import product
-
-import numpy as np
 import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
@@ -16,17 +8,10 @@ from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.results import Results
 from stages.report.tables import (
-    MEANS,
-    READINGS,
     Ranking,
-    blocks,
     grid,
     grouped,
     records,
-    scaled,
-    with_interval,
-    with_means,
-    within,
 )
 
 BY = ["task", "split", "palm", "scaled", "components"]
@@ -74,75 +59,3 @@ def _better(frame: pd.DataFrame) -> str:
     counts = (others["low"] > common.reindex(others.index)).groupby(["palm", "scaled"]).agg(["sum", "size"])
     said = [f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in counts.to_records()]
     return "; ".join(said)
-
-
-CLASSES = {
-    "four": "first four classes", "four_drawn": "four classes at random", "four_alike": "four most alike",
-    "six": "first six classes", "six_drawn": "six classes at random", "six_alike": "six most alike",
-    "all": "all 22 classes",
-}  # fmt: skip
-SELECTIONS = {
-    "all": "no selection", "selected": "selection", "selected_control": "as many left out at random",
-    "selected_training": "selection in training alone",
-}  # fmt: skip
-PRINTED = {name: f"the thesis, {name} toys" for name in ("four", "six")}
-COLUMNS = {"group": "set", "method": "selection"}
-KEYS = ["set", "selection", "classifier"]
-VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_blocks"]
-
-
-def table_4_4(results: Results) -> Table:
-    """Accuracy by set of classes, selection and classifier, beside the thesis's where it has one."""
-    every = results.rows("recorded", "pressure_images")
-    thesis = results.thesis("table_4_4_imprint_selection_real").set_index("classifier")
-    means = pd.DataFrame({name: thesis.loc[list(several)].mean() for name, several in MEANS.items()})
-    thesis = pd.concat([thesis, means.T])
-    rows = scaled(every).rename(columns=COLUMNS)
-    scores = _scores(scaled(every))
-    frame = pd.DataFrame(
-        [_line(scores, thesis, *key) for key in product(CLASSES, SELECTIONS, thesis.index)] + _readings(every, thesis),
-        columns=[*KEYS, *VALUES],
-    )
-    names = {"set": lambda name: CLASSES.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
-    cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
-    shown = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
-    by_metric = dict(list(rows.groupby("metric")))
-    removed = by_metric["share_similar"].groupby("set")["value"].mean()
-    chosen = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
-    near, far = (interval(by_metric[f"{kind}_correlation"]["value"]) for kind in ("neighbour", "pair"))
-    whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
-    lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
-    words = {
-        "removed": ", ".join(f"{said} {100 * removed.get(name, np.nan):.1f} %" for name, said in CLASSES.items()),
-        "four": chosen.get("four_alike", ""), "six": chosen.get("six_alike", ""),
-        "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
-        "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
-    }  # fmt: skip
-    return Table(frame, shown, words, Ranking("kNN, %", among=["set"], exempt=PRINTED.values()))
-
-
-def _scores(rows: pd.DataFrame) -> dict[tuple, pd.Series]:
-    """{(set, selection, classifier, split): accuracies}, with the means over classifiers."""
-    rows = with_means(rows[rows["metric"] == "accuracy"]).rename(columns=COLUMNS)
-    return {key: own["value"] for key, own in rows.groupby([*KEYS, "split"])}
-
-
-def _readings(rows: pd.DataFrame, thesis: pd.DataFrame) -> list[tuple]:
-    """Lines of all touches of the sets that were scaled otherwise, their selection said as that reading."""
-    lines = []
-    for scaling, said in READINGS.items():
-        scores = _scores(scaled(rows, scaling))
-        sets = [name for name in CLASSES if any(key[:2] == (name, "all") for key in scores)]
-        found = [_line(scores, thesis, name, "all", classifier) for name in sets for classifier in thesis.index]
-        lines += [(line[0], f"no selection: {said}", *line[2:6], np.nan, *line[7:]) for line in found]
-    return lines
-
-
-def _line(scores: dict[tuple, pd.Series], thesis: pd.DataFrame, *key: str) -> tuple:
-    """Values of one set, selection and classifier, in the order of the columns."""
-    name, selection, classifier = key
-    shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
-    accuracies = within(scores.get((*key, Split.RANDOM), []), shared)
-    column = f"{name}_{selection}"
-    printed = thesis.loc[classifier, column] if column in thesis else np.nan
-    return (*key, *accuracies, printed, *(interval(scores.get((*key, split), []))[0] for split in ("folds", "blocks")))

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from stages.report.claims_page import as_printed
+from stages.report.words import as_printed
 
 from . import contours, tables
 

@@ -1,6 +1,6 @@
 """The stability of methods: the perturbation under which each breaks, and how much of it; and the use of time."""
 
-from . import claims, people, points, score, simplification, touch, transfer
+from . import claims, costs, people, points, score, simplification, touch, transfer
 
 TABLES = {
     "stability_score": score.table,
@@ -13,7 +13,7 @@ TABLES = {
     "touch_stability": touch.table,
     "touch_denoised": touch.denoised,
     "transfer_stability": transfer.table,
-    "time_spent": score.time_spent,
+    "time_spent": costs.time_spent,
 }
 FIGURES = {
     "stability": points.figure,
@@ -22,7 +22,7 @@ FIGURES = {
     "touch_stability": touch.figure,
     "touch_stability_imprints": touch.build,
     "transfer_stability": transfer.figure,
-    "kernels": score.kernels,
+    "kernels": costs.kernels,
 }
 CHARTS = {"stability": score.chart}
 CLAIMS = claims.CLAIMS

@@ -18,7 +18,7 @@ from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import SETS_4_2, Results
 from stages.report.tables import means
 
-from .imprints import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE
+from .rows import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE
 
 EVERY: dict[str, Any] = {"group": "six", "metric": "accuracy", "split": Split.RANDOM} | SCALE  # mean of all classifiers
 SIX: dict[str, Any] = {"classifier": "knn"} | EVERY

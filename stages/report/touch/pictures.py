@@ -12,7 +12,7 @@ from stages.report.drawing import GREY, INK, PALE, label, plt, show, vivid
 from stages.report.items import Figure
 from stages.report.results import NotRun, Results
 
-from .imprints import MODEL, STAGE
+from .rows import MODEL, STAGE
 from .touches import draw_bars, table_4_1, table_4_2
 
 STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]

@@ -13,7 +13,7 @@ from stages.report.items import Figure, Table
 from stages.report.results import Results, dataset_text, some
 from stages.report.tables import Ranking, blocks, grid
 
-from .imprints import EQUAL, PRINTED, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .rows import EQUAL, PRINTED, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 THESIS = "the thesis"
 WAYS = {

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.report.claims_page import shared_notes
 from stages.report.drawing import INK, colours, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import SETS_4_2, NotRun, Results, some
 from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, with_means
+from stages.report.words import shared_notes
 
-from .imprints import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .rows import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 DRAWN = ("random", "itti", EQUAL, SSIM, MODEL)  # samplings
 FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV

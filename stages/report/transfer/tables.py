@@ -17,7 +17,6 @@ from scipy.stats import spearmanr
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
 from stages.report.claims import Claim, reading
-from stages.report.claims_page import shared_notes
 from stages.report.drawing import label
 from stages.report.effects import statistic
 from stages.report.items import Table
@@ -44,6 +43,7 @@ from stages.report.networks import (
 )  # fmt: skip
 from stages.report.results import NotRun, Results, dataset_text
 from stages.report.tables import Ranking, cell_texts, grid, grouped, percent, signed
+from stages.report.words import shared_notes
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6

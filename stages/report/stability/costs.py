@@ -1,0 +1,64 @@
+"""Charts and tables of seconds: the time of each kernel as a ratio to its peer, and seconds by stage and method."""
+
+from contextlib import suppress
+from itertools import product
+
+import numpy as np
+import pandas as pd
+
+from stages.report.drawing import CYCLE, MARKERS, label, plain_logarithm, plt
+from stages.report.items import Figure, Table
+from stages.report.results import NotRun, Results, some
+
+
+def kernels(results: Results) -> Figure:
+    """A line a kernel of the machine that measured last, shaded up to its limit; the commits go from old to new."""
+    rows = results.bench("history").dropna(subset=["ratio"]).sort_values("date", kind="stable")
+    rows = rows[rows["machine"] == rows["machine"].iloc[-1]]
+    commits = list(dict.fromkeys(rows["commit"]))
+    rows = rows.assign(place=rows["commit"].map(commits.index))
+    drawing, axes = plt.subplots(figsize=(7.2, 4.8))
+    last = rows.groupby("what")["ratio"].last().sort_values(ascending=False)
+    for k, what in enumerate(last.index):
+        form = MARKERS[(k + k // len(CYCLE)) % len(MARKERS)]  # another where the colours start again
+        _draw(axes, rows[rows["what"] == what], CYCLE[k % len(CYCLE)], form)
+    axes.axhline(1, color="black", lw=0.8, ls=":")
+    axes.set_yscale("log")
+    plain_logarithm(axes.yaxis)
+    axes.set_xticks(range(len(commits)), commits, rotation=30, ha="right", fontsize=8)
+    axes.set(xlim=(-0.5, len(commits) - 0.5), ylabel="time, as a ratio to the peer's")
+    axes.grid(axis="y")
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
+    named = rows.drop_duplicates("what").set_index("what")["peer"]
+    words = {"kernels": len(last), "commits": len(commits), "machine": rows["machine"].iloc[-1]}
+    return Figure(drawing, words | {"names": ", ".join(f"{what} ({named[what]})" for what in last.index)})
+
+
+def _draw(axes, rows: pd.DataFrame, tint: str, form: str) -> None:
+    middle, ends = rows["ratio"].to_numpy(), rows[["low", "high"]].to_numpy().T
+    axes.errorbar(rows["place"], middle, np.abs(ends - middle), fmt=f"{form}-", color=tint, ms=5, mec="white", lw=1.4,
+                  label=f"{rows['what'].iloc[0]} / {rows['peer'].iloc[-1]}")  # fmt: skip
+    beside = np.array([-0.12, 0.12])[:, None] + rows["place"].to_numpy()  # a single commit has a width, too
+    places, low, high = beside.T.ravel(), rows["ratio"].repeat(2), rows["limit"].repeat(2)
+    axes.fill_between(places, low, high, color=tint, alpha=0.12, lw=0)
+
+
+TIME_KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
+SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
+
+
+def time_spent(results: Results) -> Table:
+    """Seconds of all pieces of work of the sets that are switched on, the most first."""
+    parts = []
+    for stage, dataset in product(results.stages, results.sets):
+        with suppress(NotRun):
+            rows = results.rows(stage, dataset).dropna(subset=["seconds"])
+            rows = rows.loc[~((rows["metric"] == SEEN) & (rows.get("views") != 1))]
+            parts.append(rows.drop(columns=TIME_KEYS, errors="ignore").drop_duplicates().assign(stage=stage))
+    timed = pd.concat(some([part for part in parts if len(part)], "nothing was timed", "meshes"))
+    said = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
+    frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**said).reset_index()
+    frame["share, %"] = 100 * frame["seconds"] / frame["seconds"].sum()
+    frame = frame.sort_values("seconds", ascending=False, kind="stable")
+    said = {name: frame[name].map(label) for name in ("stage", "method")}
+    return Table(frame, frame.assign(**said), words={"sets": ", ".join(results.sets)})

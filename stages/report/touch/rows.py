@@ -1,0 +1,92 @@
+"""Rows of the stage classification, as printed in the thesis (T4.2) and in our protocol, and their accuracies.
+
+`METHODS` maps the thesis's samplings to methods.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from haptic_glance.know.classifiers import TRAINING
+from haptic_glance.know.split import Split, shared_by
+from haptic_glance.look.weights.weights import GLANCE
+from stages.report.drawing import label
+from stages.report.results import SECTION_4_2, SETS_4_2, Results, some
+from stages.report.tables import everywhere, scaled, within
+
+STAGE = "classification"
+PRINTED = SECTION_4_2
+EQUAL, SSIM = "VisAttAll", "thesis_ssim"  # the thesis's models of T3.1, and of T3.2 with its SSIM weights
+MODEL = GLANCE  # this project's model of gaze
+METHODS = {  # sampling of the thesis: its method; enhanced visual attention is SSIM in our protocol
+    "blind_touch": "random", "hks": "heat_kernel", "salient_points": "salient_points",
+    "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": EQUAL,
+}  # fmt: skip
+BLIND = ("random", *(f"random_{draw}" for draw in range(2, 6)))  # draws of blind touch
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """Rows of one set: of T4.2's own sensor, views and model, or of ours.
+
+    dataset: its name, that of the first of several. rows: what was measured. name: as the tables call it. best: the
+    model whose points are looked at closer.
+    """
+
+    dataset: str
+    rows: pd.DataFrame
+    name: str
+    best: str
+
+    @property
+    def samplings(self) -> dict[str, str]:
+        """{sampling of the thesis: method}."""
+        return METHODS | ({} if self.best == EQUAL else {"enhanced_visual_attention": SSIM})
+
+
+def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, **where: Any) -> Iterator[Protocol]:
+    """The protocol as printed, where it was run, then ours on the first other set; NotRun where neither has rows.
+
+    on_sets: also that as printed on random sets of objects. scaling: of the samples; rows about no classifier
+    have none.
+    """
+    found = everywhere(results, STAGE, **where)
+    found = {name: own for name, rows in found.items() if not (own := scaled(rows, scaling)).empty}
+    some(found, f"no rows of the scaling {scaling}", STAGE)
+    if PRINTED in found:
+        yield Protocol(PRINTED, found.pop(PRINTED), "as printed", EQUAL)
+    if (drawn := {name: found.pop(name) for name in SETS_4_2 if name in found}) and on_sets:
+        rows = pd.concat(drawn.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
+        count = len(rows[["dataset", "set"]].drop_duplicates())
+        yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", EQUAL)
+    for dataset, rows in list(found.items())[:1]:
+        yield Protocol(dataset, rows, "ours", MODEL)
+
+
+def accuracies(rows: pd.DataFrame) -> dict[str, float]:
+    """accuracy, low, high, repetitions at random, and mean accuracy on the other splits; NaN where not measured.
+
+    The interval is over repeated splits of the same objects, or over random sets of objects.
+    """
+    measured = rows[rows["metric"] == "accuracy"].dropna(subset=["value"])
+    values = measured.set_index("split")["value"]
+    at_random, share = values[values.index == Split.RANDOM], shared_by(Split.RANDOM)
+    if "set" in measured and measured["set"].notna().any():
+        at_random, share = measured[measured["split"] == Split.RANDOM].groupby(["dataset", "set"])["value"].mean(), 0.0
+    ends = zip(("accuracy", "low", "high"), within(at_random, share), strict=True)
+    others = (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)
+    means = {f"accuracy_{one}": values[values.index == one].mean() for one in others}
+    return {**dict(ends), "repetitions": len(at_random), **means}
+
+
+def fifteen(variant: str) -> str:
+    """The variant of the stage that has only the first 15 imprints of each object, as the thesis had."""
+    return "first_15" if variant == "plain" else f"first_15_{variant}"
+
+
+def sampling_text(name: str) -> str:
+    """A sampling in words; `, 15 imprints` stays behind it."""
+    base, comma, few = name.partition(", ")
+    return label(base) + comma + few
