@@ -139,9 +139,10 @@ def pairs_table(results: Results) -> Table:
     pairs = [name for name in dict.fromkeys(lost["perturbation"]) if AND in name]
     pairs = some(pairs, "no pairs of disturbances: stability.pairs is empty", STAGE, runnable=False)
     methods = [method for method in dict.fromkeys(lost["method"]) if method != "random"]
+    middle = middle_of(rows)
     frame = pd.DataFrame([
         {"pair": " and ".join(map(label, pair.split(AND))), "method": method}
-        | compared(lost[lost["method"] == method], pair, middle_of(rows))
+        | compared(lost[lost["method"] == method], pair, middle)
         for pair in pairs
         for method in methods
     ])  # fmt: skip

@@ -70,7 +70,8 @@ def accuracies(rows: pd.DataFrame) -> dict[str, float]:
 
     The interval is over repeated splits of the same objects, or over random sets of objects.
     """
-    measured = rows[rows["metric"] == "accuracy"].dropna(subset=["value"])
+    columns = [column for column in ("dataset", "set", "split", "value") if column in rows]  # of some forty
+    measured = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
     values = measured.set_index("split")["value"]
     at_random, share = values[values.index == Split.RANDOM], shared_by(Split.RANDOM)
     if "set" in measured and measured["set"].notna().any():

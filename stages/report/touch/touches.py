@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from stages.report.drawing import INK, colours, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import SETS_4_2, NotRun, Results, some
-from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, with_means
+from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, grouped, with_means
 from stages.report.words import shared_notes
 
 from .rows import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
@@ -75,11 +75,11 @@ def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool 
     rows, thesis = with_means(protocol.rows), thesis.rename(index=protocol.samplings)
     run = set(rows["method"])
     names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
-    thesis = thesis.reindex(names)
+    thesis, groups = thesis.reindex(names), dict(list(grouped(rows, ["method", "classifier"])))
     return pd.DataFrame(
         [
             {"protocol": protocol.name, "sampling": f"{sampling}{few}", "classifier": classifier}
-            | accuracies(rows[(rows["method"] == sampling) & (rows["classifier"] == classifier)])
+            | accuracies(groups.get((sampling, classifier), rows[:0]))
             | {"thesis": thesis.loc[sampling, classifier]}
             for sampling in names
             for classifier in thesis.columns
