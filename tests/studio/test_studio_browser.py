@@ -173,6 +173,7 @@ def test_a_mesh_is_looked_at_clicked_simplified_and_saved(window, studio, tmp_pa
     hand = window()
     hand.reads("bulges out")
     hand.wait_for_drawing()
+    assert np.allclose(newest(studio).client.camera.look_at, 0)  # the panel is beside the picture, not over it
     hand.click()
     hand.reads("For it:")
     hand.pick("Method", "height")
@@ -214,6 +215,7 @@ def test_points_are_marked_removed_and_kept_from_two_windows(window, studio):
     hand.wait_for_drawing(drawn=False)  # it is grey: no saliency suggests a place
     hand.click()
     hand.reads("Write your name first")
+    playwright.expect(hand.page.get_by_role("textbox", name="Your name")).to_be_visible(timeout=PATIENCE)
     hand.control("Your name").fill("ann")
     hand.reads("0 points")
     hand.click()
