@@ -9,7 +9,7 @@ newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
 .DEFAULT_GOAL := help
-.PHONY: help repro studio test quick smoke lint docs bench clean lock
+.PHONY: help repro studio test quick foreign smoke lint docs bench clean lock
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -29,6 +29,9 @@ test: $(VENV)/ready ## unit and property tests, and beside them the whole pipeli
 
 quick: $(VENV)/ready ## the tests that are not marked slow, in a minute
 	pytest -n auto --dist worksteal -m "not slow"
+
+foreign: $(VENV)/ready ## 370 mesh files of other people: each is simplified, or refused in one line (ten minutes)
+	pytest tests/slow
 
 smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy, held against its baseline
 	rm -rf $(SMOKE) && mkdir -p $(SMOKE)

@@ -8,6 +8,9 @@ travels to the worker, and its files and rows come back.
 
 This page is not run when it is built, since it needs a cluster. The tests check that its code is valid and that the
 settings exist.
+
+Needs a clone and ``pip install '.[cluster]'``; its code runs without a network. The pipeline fetches its meshes:
+``python -m stages.meshes household`` does so beforehand.
 """
 
 import os

@@ -5,6 +5,9 @@ Add a saliency method and see it judged
 A method needs one function: from a mesh to a value at each vertex. This tutorial writes one, gives it a name, and
 judges it in two ways: by marks on one mesh, and by how well its points come back under noise. The verdict that counts
 is human gaze on many meshes; the last section says how to get it.
+
+Needs a clone and ``pip install '.[pipeline]'``; runs without a network. For the commands of the last section, get the
+gaze data beforehand: ``conf/data/gaze.yaml`` says where.
 """
 
 import matplotlib.pyplot as plt

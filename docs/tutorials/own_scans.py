@@ -5,6 +5,8 @@ Your own scans, from look to touch
 A scan is rarely clean: it has noise, it lies in any place and scale, and its file does not say which axis points up.
 This tutorial makes such a scan of the sample mesh, so that it runs everywhere. Put the path of your own file in its
 place.
+
+Needs ``pip install 'haptic-glance[pictures]'``; runs without a network.
 """
 
 import tempfile

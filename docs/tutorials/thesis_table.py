@@ -5,6 +5,9 @@ Reproduce a table of the thesis
 Table 4.1 of the thesis recognises six objects by one touch, with five classifiers and touches at places that
 different methods chose. The rows of our measurement are part of the repository, so that the table can be made again
 in a second, and the claim behind it be tested, without a run. The last section says how to measure the rows anew.
+
+Needs a clone and ``pip install '.[pipeline]'``; runs without a network. For the command of the last section, fetch the
+meshes beforehand: ``python -m stages.meshes household``.
 """
 
 import matplotlib.pyplot as plt

@@ -8,6 +8,8 @@ load is to 1 N: to follow the surface with a steady touch earns most.
 
 The class below is an environment of `Gymnasium <https://gymnasium.farama.org>`_ where that is installed (``pip
 install gymnasium``; it is no dependency). Without it the class has no spaces, and the loop is the same.
+
+Needs ``pip install 'haptic-glance[pictures]'``; runs without a network.
 """
 
 import matplotlib.pyplot as plt

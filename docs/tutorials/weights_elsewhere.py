@@ -5,6 +5,8 @@ Saliency as weights in other tools
 Many tools simplify a mesh with weights per vertex that a person paints by hand. Haptic Glance predicts these weights.
 This tutorial writes them for Blender, glTF, OpenUSD and meshoptimizer. On the command line, the same is
 ``haptic-glance saliency MESH --weights FILE`` with a file that ends in ``.ply``, ``.glb``, ``.usda`` or ``.npz``.
+
+Needs ``pip install 'haptic-glance[pictures]'``; runs without a network.
 """
 
 import json

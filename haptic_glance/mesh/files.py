@@ -1,6 +1,7 @@
 """Reads files of meshes, one or a folder: STL, OBJ, PLY, GLB by trimesh, OFF by our own reader, scans by `clouds`."""
 
 import io
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,6 +31,7 @@ MeshLike = (
     | clouds.Cloud
     | tuple[ArrayLike, ArrayLike]
 )
+CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -39,10 +41,10 @@ def load(path: str | Path) -> Mesh:
     Vertices keep the order of the file, since ground truth refers to them by index. STL and GLB repeat vertices at
     face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. The parts of a GLB
     scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
-    become the texture of the mesh. Of a point cloud (PLY without faces, XYZ, PTS, PCD, LAS), with or without normals,
-    the vertices are those of the surface that haptic_glance.mesh.clouds makes of it; so they are of a depth image,
-    which a .depth file names together with its camera. A GLB is y up, a .depth file z up. The other formats do not
-    say, but in a comment of ours: `up` is then y or z, whichever the shape suggests (haptic_glance.mesh.upright).
+    become the texture of the mesh. Of a point cloud (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without
+    normals, the vertices are those of the surface that haptic_glance.mesh.clouds makes of it; so they are of a depth
+    image, which a .depth file names together with its camera. A GLB is y up, a .depth file z up. The other formats do
+    not say, but in a comment of ours: `up` is then y or z, whichever the shape suggests (haptic_glance.mesh.upright).
     Raises MeshError with the file and the reason when it holds no usable mesh.
     """
     return settled(load_as_stated(path))
@@ -101,24 +103,34 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture.
     """
     if suffix not in FORMATS:
-        raise MeshError(f"cannot read {suffix or 'a file without suffix'}: the formats are {', '.join(FORMATS)}")
+        remedy = f"the formats are {', '.join(FORMATS)}; {CONVERT}"
+        raise MeshError(f"cannot read {suffix or 'a file without suffix'}: {remedy}")
     if not content:
         raise MeshError("the file is empty")
     check_header(content, suffix)
     try:
-        mesh = _parsed(content, suffix, resolver, every_colour)
+        with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
+            warnings.simplefilter("ignore", RuntimeWarning)
+            mesh = _parsed(content, suffix, resolver, every_colour)
         return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated_up(content) or AUTO)
     except (MeshError, MissingExtra):
         raise
     except MemoryError:
         raise MeshError("its header claims more data than fits in memory") from None
     except Exception as error:  # the parsers raise many types; each means that the file is unreadable
-        raise MeshError(f"unreadable as {suffix[1:].upper()} ({type(error).__name__}: {_brief(error)})") from None
+        if isinstance(error, IndexError) and "out of bounds" in str(error):
+            raise MeshError(f"faces name vertices that do not exist ({_brief(error)}); {CONVERT}") from None
+        reason = f"{type(error).__name__}: {_brief(error)}"
+        raise MeshError(f"unreadable as {suffix[1:].upper()} ({reason}); {CONVERT}") from None
 
 
 def _parsed(content, suffix, resolver, every_colour):
     if suffix == ".off":
-        return _checked(*read_off(content))
+        vertices, faces, colors = read_off(content)
+        if len(faces):
+            return _checked(vertices, faces, colors)
+        with about("has no faces, so it is read as a point cloud", MeshError):
+            return clouds.surface_of(clouds.Cloud(vertices, colors=colors))
     if suffix == clouds.DEPTH:
         return clouds.surface_of(clouds.read_depth(content, resolver and resolver.get))
     if suffix in clouds.FORMATS:

@@ -9,6 +9,8 @@ from PIL import Image
 
 MOST_PRIMITIVES = 20_000  # of a GLB, counted at each node that shows them: the parser needs milliseconds for each
 MAX_TEXTURE = 8192  # pixels, of a square texture
+PLY_BYTES = {b"short": 2, b"ushort": 2, b"int": 4, b"uint": 4, b"float": 4, b"double": 8}
+PLY_BYTES |= {b"int16": 2, b"uint16": 2, b"int32": 4, b"uint32": 4, b"float32": 4, b"float64": 8}
 DENSEST = 100  # bytes that one compressed byte of a PCD can hold: LZF writes three bytes for 264
 
 
@@ -86,9 +88,17 @@ def _stl(content):
 
 def _ply(content):
     header, _, body = content.partition(b"end_header")
-    stated = sum(int(count) for count in re.findall(rb"^\s*element\s+\S+\s+(\d{1,18})\s*$", header, re.M))
-    if stated > len(body):
-        raise MeshError(f"truncated: its header states {stated} vertices and faces, {len(body)} bytes follow")
+    binary = b"format binary" in header
+    stated = count = least = 0  # rows of all elements, of this one, and the bytes that they need
+    for words in map(bytes.split, header.splitlines()):
+        if words[:1] == [b"element"] and len(words) == 3 and words[2].isdigit():
+            count = int(words[2][:18])
+            stated += count
+        elif binary and words[:1] == [b"property"] and len(words) > 2:
+            least += count * PLY_BYTES.get(words[2 if words[1] == b"list" else 1], 1)  # a list may be empty
+    if max(stated, least) > len(body):
+        needed = f", {least} bytes or more" if least else ""
+        raise MeshError(f"truncated: its header states {stated} vertices and faces{needed}, {len(body)} bytes follow")
 
 
 def _obj(content):

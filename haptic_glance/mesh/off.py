@@ -10,6 +10,7 @@ import numpy as np
 from .headers import MeshError
 
 KEYWORD = re.compile(rb"\s*(?:#[^\n]*\s+)*(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s#])([ \t]+BINARY[^\n]*\n)?")
+COUNTS = re.compile(rb"\s*(?:#[^\n]*\s+)*\d+[ \t]+\d+(?:[ \t]+\d+)?[ \t]*(?:#[^\n]*)?\r?\n")
 
 
 def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
@@ -19,6 +20,8 @@ def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]
     line, is left out. Fourth coordinates divide the others. Colours of faces are not read. Raises MeshError with the
     reason for any other file, before it allocates more than the file fills.
     """
+    if COUNTS.match(content):  # a plain file may leave the word out
+        content = b"OFF\n" + content
     header = KEYWORD.match(content)
     if not header:
         raise MeshError("unreadable as OFF: it does not begin with the word OFF")

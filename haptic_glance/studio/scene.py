@@ -17,6 +17,7 @@ EYE = np.array([1.05, -1.4, 0.6])  # where the camera starts, from the middle of
 BESIDE = np.array([0.8, 0.6, 0.0]) * 1.15  # where a second object stands, to the right of the first
 AMBIENT = 1.5  # a full one is pi: the rest shows the shape
 LIGHTS = (((1.0, -1.4, 1.6), 1.9), ((-1.4, 1.0, 0.8), 1.2), ((0.3, 0.6, -1.0), 0.6))  # where from, how bright
+LEAST_ASPECT = 0.85  # of the picture, in which the object fits from there
 FIELD = 0.62  # radians from the lower to the upper edge of the picture
 MARKER = 0.011  # radius, in diameters of the object
 RED = (216, 27, 27)
@@ -27,6 +28,7 @@ class Scene:
 
     def __init__(self, client: viser.ClientHandle) -> None:
         self.client, self.api = client, client.scene
+        self.covered = client.camera.aspect < 1  # a telephone, whose lower half the panel covers
         self.api.set_up_direction("+z")
         self._light()
 
@@ -41,9 +43,11 @@ class Scene:
     def aim(self, wide: bool = False) -> None:
         """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
         middle, away = (BESIDE / 2, 1.7) if wide else (MIDDLE, 1.0)
-        if self.client.camera.aspect < 1:  # a telephone, whose lower half the panel covers
+        if self.covered:
             away *= 0.8 / self.client.camera.aspect
             middle = middle - (0, 0, 0.33 * away)
+        else:  # beside the panel little room may be left
+            away *= max(1, LEAST_ASPECT / self.client.camera.aspect)
         self.turn(middle + EYE * away, middle)
 
     def turn(self, position: np.ndarray, middle: np.ndarray) -> None:

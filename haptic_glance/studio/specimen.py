@@ -1,5 +1,6 @@
 """One mesh on the table, and everything that was found on it, computed when it is first asked for."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -101,12 +102,19 @@ class Specimen:
         nearest = np.linalg.norm(self.mesh.vertices[corners] - place, axis=1).argmin()
         return Hit(face, int(corners[nearest]), place, self.mesh.face_normals[face])
 
-    def look(self, method: str = "glance", count: int | None = None) -> Look:
-        """The Look of a method of METHODS; count: of points, None for those past the method's own threshold."""
+    def look(
+        self, method: str = "glance", count: int | None = None, still_wanted: Callable[[], object] = lambda: None
+    ) -> Look:
+        """The Look of a method of METHODS; count: of points, None for those past the method's own threshold.
+
+        still_wanted() is called before the look is computed, when others have ended, and may raise: a slider that moves
+        asks for many looks, of which the last one counts.
+        """
         if (method, count) in self._looks:  # without the lock: a click does not wait while another method looks
             return self._looks[method, count]
         with self.lock:
             if (method, count) not in self._looks:
+                still_wanted()
                 self._looks[method, count] = self._look(method, count)
             return self._looks[method, count]
 

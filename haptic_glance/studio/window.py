@@ -32,7 +32,7 @@ class Window:
         self.ready = False  # whether events are answered
         self.jobs: dict[str, Job] = {}
         self.scene = Scene(client)
-        if client.camera.aspect > 1:
+        if not self.scene.covered:
             self.gui.main_panel.dock_right()
         bound_uploads(self.gui, self.refuse)
         self.scene.on_click(self.clicked)

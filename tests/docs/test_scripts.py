@@ -3,9 +3,13 @@
 import ast
 import re
 import runpy
+import socket
 from pathlib import Path
 
 import pytest
+
+from haptic_glance.base import fetch
+from haptic_glance.base.extras import EXTRAS
 
 plt = pytest.importorskip("matplotlib.pyplot")
 
@@ -28,9 +32,21 @@ def code_lines(path):
     return [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
 
 
+@pytest.fixture
+def without_network(monkeypatch):
+    """An error where a script asks another machine, or fetches a file through pip, npm or apt-get."""
+
+    def refuse(*asked, **_options):
+        raise AssertionError(f"the network was asked: {asked}")
+
+    monkeypatch.setattr(socket.socket, "connect", refuse)
+    monkeypatch.setattr(socket, "getaddrinfo", refuse)
+    monkeypatch.setattr(fetch, "_fetch", refuse)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("path", RUN, ids=name)
-def test_it_runs_and_draws(path, monkeypatch, tmp_path):
+def test_it_runs_and_draws(path, without_network, monkeypatch, tmp_path):
     drawn = []
     monkeypatch.setattr(plt, "show", lambda: drawn.extend(plt.get_fignums()) or plt.close("all"))
     monkeypatch.chdir(tmp_path)
@@ -54,3 +70,15 @@ def test_the_cluster_page_names_settings_that_exist():
     assert settings and all((DOCS.parent / "conf" / group / f"{option}.yaml").is_file() for group, option in settings)
     conf = (DOCS / "conf.py").read_text(encoding="utf-8")
     assert f"(?!{SHOWN_ONLY})" in conf
+
+
+@pytest.mark.parametrize("path", TUTORIALS, ids=name)
+def test_a_tutorial_says_what_it_needs(path):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    names += [alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names]
+    tops = {each.partition(".")[0] for each in names if each}
+    needed = {EXTRAS[top] for top in tops if top in EXTRAS} | ({"pipeline"} if "stages" in tops else set())
+    most = next(extra for extra in ("cluster", "pipeline", "pictures") if extra in needed)  # each includes the next
+    said = ast.get_docstring(tree) or ""
+    assert f"[{most}]'``" in said and ("Needs a clone" in said) == (most != "pictures") and "without a network" in said

@@ -9,6 +9,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh import MeshError, clean, load
+from haptic_glance.mesh.files import load_as_stated
 
 CUBE = trimesh.creation.box()
 
@@ -27,6 +28,7 @@ def ply(vertices, faces, count=None):
 
 
 TRIANGLE = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+FLAT = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 STL, GLB, PLY = (CUBE.export(file_type=kind) for kind in ("stl", "glb", "ply"))
 REFUSED = {
     "empty.stl": (b"", "empty"),
@@ -34,6 +36,7 @@ REFUSED = {
     "truncated.stl": (STL[: len(STL) // 2], "truncated"),
     "truncated.glb": (GLB[: len(GLB) // 2], "truncated"),
     "truncated.ply": (PLY[: len(PLY) - 20], "unreadable|faces name|truncated"),
+    "short.ply": (trimesh.PointCloud(CUBE.vertices).export(file_type="ply")[:-8], "truncated: .* 8 vertices"),
     "truncated.off": (off(CUBE.vertices, CUBE.faces)[:-40], "truncated"),
     "truncated_ascii.stl": (CUBE.export(file_type="stl_ascii").encode()[:900], "truncated"),
     "nan.off": (off([(0, 0, 0), (1, 0, 0), ("nan", 1, 0)], [(0, 1, 2)]), "NaN"),
@@ -42,8 +45,10 @@ REFUSED = {
     "one_point.off": (off([(1, 1, 1)] * 3, [(0, 1, 2)]), "no area"),
     "degenerate.off": (off(TRIANGLE, [(0, 1, 1)]), "three different"),
     "cloud.ply": (ply(TRIANGLE, []), "a point cloud of 3 points, 3 of them usable: a surface needs 50"),
-    "cloud.off": (off(TRIANGLE, []), "no faces"),
+    "cloud.off": (off(TRIANGLE, []), "no faces, so it is read as a point cloud: a point cloud of 3 points"),
     "missing_vertex.off": (off(TRIANGLE, [(0, 1, 7)]), "do not exist"),
+    "missing_vertex.obj": ((FLAT + "f 1 2 12\n").encode(), "do not exist .*export it as .glb"),
+    "scene.gltf": (b"{}", "cannot read .gltf: .*export it as .glb"),
     "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist"),
     "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "truncated: its header states"),
     "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),
@@ -62,6 +67,20 @@ def test_bad_file_is_refused_with_its_reason(tmp_path, name):
         clean(load(path))
     with pytest.raises(MeshError, match="absent.stl"):
         load(tmp_path / "absent.stl")
+
+
+@pytest.mark.filterwarnings("error")
+def test_no_warning_of_numpy_comes_with_a_foreign_file(tmp_path):
+    (tmp_path / "spare.obj").write_text(FLAT + "v 2 2 2\nv 0 0 1\nvt 0 0\nvt 1 0\nf 1/1 2/2 5/1\nf 1/1 5/1 3/2\n")
+    assert load_as_stated(tmp_path / "spare.obj").faces.tolist() == [[0, 1, 4], [0, 4, 2]]
+    shape = trimesh.Scene(trimesh.creation.box())
+    shape.graph.update(
+        frame_to="turned", matrix=trimesh.transformations.rotation_matrix(1, [1, 1, 0]), geometry="geometry_0"
+    )
+    content = shape.export(file_type="glb").replace(struct.pack("<f", 0.5), struct.pack("<f", np.inf))
+    (tmp_path / "infinite.glb").write_bytes(content)
+    with pytest.raises(MeshError, match="infinite.glb: .*NaN or infinite"):
+        load_as_stated(tmp_path / "infinite.glb")
 
 
 def glb_of(tree, binary=b""):

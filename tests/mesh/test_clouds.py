@@ -71,7 +71,12 @@ def test_every_format_gives_its_points_colours_and_normals(name):
 PLY = trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply")
 
 
-@pytest.mark.parametrize(("name", "content"), [("bare.xyz", text(BALL)), ("cloud.ply", PLY), ("air.las", las())])
+OFF = b"COFF\n1200 0 0\n" + text(np.hstack([BALL, COLORS]))
+
+
+@pytest.mark.parametrize(
+    ("name", "content"), [("bare.xyz", text(BALL)), ("cloud.ply", PLY), ("cloud.off", OFF), ("air.las", las())]
+)
 def test_a_ball_of_points_becomes_a_ball(name, content, tmp_path):
     (tmp_path / name).write_bytes(content)
     mesh, notes = clean(load(tmp_path / name))

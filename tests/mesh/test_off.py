@@ -27,6 +27,7 @@ def binary(keyword, extra, faces):
 
 VALID = {  # name: (content, faces)
     "plain": ("OFF\n4 2 0\n" + SQUARE + TRIANGLES, 2),
+    "no keyword": ("# a pencil\n4 2 0 # counts\n" + SQUARE + TRIANGLES, 2),
     "no count of edges": ("OFF\n4 2\n" + SQUARE + TRIANGLES, 2),
     "counts on the first line": ("OFF 4 2 0\n" + SQUARE + TRIANGLES, 2),
     "comments": (f"# a scanner\n#OFF\nOFF # kind\n# counts\n4 2 0 # two\n{SQUARE}# faces\n{TRIANGLES}", 2),

@@ -2,7 +2,6 @@
 
 import io
 import shutil
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -137,13 +136,21 @@ class Hand:
         self.page.locator("input[type=file]").first.set_input_files(path)
 
     def saved(self, button):
-        """The file that a button saves; clicks again where a page that is still drawing misses the click."""
-        for _ in range(PATIENCE // 20_000):
-            with suppress(playwright.TimeoutError):
-                with self.page.expect_download(timeout=20_000) as caught:
-                    self.page.get_by_role("button", name=button, exact=True).click()
-                return caught.value
-        raise AssertionError(f"{button} saved no file")
+        """The file that a button saves, once the button rests.
+
+        While its folder opens it moves: a pointer that went down on it may come up on another one, which is no click.
+        """
+        found, places = self.page.get_by_role("button", name=button, exact=True), []
+
+        def rests():
+            found.scroll_into_view_if_needed()
+            places.append(found.bounding_box())
+            return len(places) > 3 and all(place == places[-1] for place in places[-4:])
+
+        assert self.until(rests)
+        with self.page.expect_download(timeout=PATIENCE) as caught:
+            found.click()
+        return caught.value
 
 
 @pytest.fixture
@@ -166,6 +173,7 @@ def test_a_mesh_is_looked_at_clicked_simplified_and_saved(window, studio, tmp_pa
     hand = window()
     hand.reads("bulges out")
     hand.wait_for_drawing()
+    assert np.allclose(newest(studio).client.camera.look_at, 0)  # the panel is beside the picture, not over it
     hand.click()
     hand.reads("For it:")
     hand.pick("Method", "height")
@@ -207,6 +215,7 @@ def test_points_are_marked_removed_and_kept_from_two_windows(window, studio):
     hand.wait_for_drawing(drawn=False)  # it is grey: no saliency suggests a place
     hand.click()
     hand.reads("Write your name first")
+    playwright.expect(hand.page.get_by_role("textbox", name="Your name")).to_be_visible(timeout=PATIENCE)
     hand.control("Your name").fill("ann")
     hand.reads("0 points")
     hand.click()

@@ -13,7 +13,7 @@ from haptic_glance.base.files import write_mesh
 from haptic_glance.look.points import detect
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.studio.jobs import Job
+from haptic_glance.studio.jobs import Job, Stopped
 from haptic_glance.studio.levels import HARD, SOFT, Levels
 from haptic_glance.studio.panels.look import views_of
 from haptic_glance.studio.session import Session
@@ -44,6 +44,19 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert all(look is looks[0] for look in looks)
     found = detect(load(knob_file), "glance", 3)
     assert np.array_equal(looks[0].saliency, found.saliency) and set(looks[0].vertices) == set(found.points)
+
+
+def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
+    specimen = Specimen(mesh, "ball")
+    known = specimen.look("height", 3)
+
+    def stop():
+        raise Stopped
+
+    with pytest.raises(Stopped):
+        specimen.look("height", 4, stop)
+    assert specimen.look("height", 3, stop) is known
+    assert specimen._looks.keys() == {("height", 3)}
 
 
 def test_a_mesh_of_long_edges_is_drawn_on_a_finer_copy(mesh):

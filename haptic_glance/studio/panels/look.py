@@ -1,6 +1,7 @@
 """Shows where people look: the mesh coloured by a method, its points with their reasons, another method beside it."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import viser
@@ -83,8 +84,9 @@ class LookPanel(Panel):
         def work(report: Report) -> list[Look]:
             found = []
             for number, name in enumerate(names):
-                report(number / len(names), name)
-                found.append(specimen.look(name, count))
+                tell = partial(report, number / len(names), name)
+                tell()
+                found.append(specimen.look(name, count, tell))
             return found
 
         self.window.work(f"Looking at {specimen.name}", work, self.draw, slot=self.title)
