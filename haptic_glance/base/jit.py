@@ -14,7 +14,7 @@ import numpy as np
 from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
 
-from .kept import claim, kept_in, marker
+from .kept import beside, claim, is_kept, kept_in, marker
 
 # Where a kernel is kept: by what its folder holds, or, if that is not writable, where numba itself would.
 LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
@@ -169,6 +169,28 @@ class UntilWorthCompiling:
             kept = any(self._folder.rglob(f"*.{self._kernel.__name__}-*.nbc"))
             self._left = 0 if kept else self._left - work
         return self._kernel if self._left <= 0 else interpreted(self._kernel)
+
+
+class UntilCompiledBeside:
+    """A kernel that is interpreted while another process compiles it for this one, see `haptic_glance.first_run`.
+
+    For what takes less time on a mesh of ten thousand faces than to compile it here, `most` elements of the first
+    argument. Both give the same numbers, bit for bit.
+    """
+
+    def __init__(self, kernel: Any, most: int) -> None:
+        self.kernel, self._most, self._waits = kernel, most, True
+
+    def __call__(self, *arguments: Any) -> Any:
+        if self._waits:
+            file = inspect.getfile(getattr(self.kernel, "py_func", self.kernel))
+            self._waits = beside.is_set() and not is_kept(file, self.kernel.__name__)
+        small = self._waits and len(arguments[0]) <= self._most
+        return (interpreted(self.kernel) if small else self.kernel)(*arguments)
+
+    def compile(self, types: Any) -> None:
+        """Compiles it, for such types."""
+        self.kernel.compile(types)
 
 
 @functools.cache

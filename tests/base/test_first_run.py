@@ -170,7 +170,7 @@ def test_the_kernels_of_a_list_are_just_those_of_its_command(command, tmp_path):
 
 @pytest.mark.slow
 def test_a_helper_compiles_what_is_missing(tmp_path):
-    file, name, types = next(kernel for kernel in first_run.LEVELS if kernel[0] == "mesh/kernels/planes")
+    file, name, types = next(kernel for kernel in first_run.LIGHT if kernel[0] == "mesh/kernels/planes")
     code = f"first_run.COMMANDS = {{'demo': [{(file, name, types)!r}]}}; first_run.compile_all('demo')"
     code = f"from haptic_glance import first_run; {code}"
     for _ in range(2):  # the second finds it
