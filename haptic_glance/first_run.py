@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
@@ -68,7 +69,8 @@ LIGHT = [  # interpreted meanwhile, so these come last: see `haptic_glance.base.
 ]  # fmt: skip
 LONGEST = "_decimate"  # to compile
 DEMO = LIGHT + LOOK + LEVELS
-COMMANDS = {"demo": DEMO, "gallery": DEMO, "simplify": DEMO + ERRORS, "touch": LOOK}
+PICTURES = LOOK if find_spec("matplotlib") else []  # of imprints; without them `touch` compiles too little to share
+COMMANDS = {"demo": DEMO, "gallery": DEMO, "simplify": DEMO + ERRORS, "touch": PICTURES}
 
 
 def start(command: str) -> None:
