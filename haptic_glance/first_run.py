@@ -1,7 +1,7 @@
 """The first run on a machine, which compiles kernels: in two processes at once, or more.
 
-The command compiles a kernel when it comes to it; other processes go through the same list from its end. A kernel that
-one of them compiles, the others leave alone or wait for: see `haptic_glance.base.jit`.
+The command compiles a kernel when it comes to it; other processes begin with the longest and then go through the same
+list from its end. A kernel that one of them compiles, the others leave alone or wait for: see `haptic_glance.base.jit`.
 """
 
 import atexit
@@ -9,17 +9,17 @@ import os
 import subprocess
 import sys
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
-from .base.kept import cache_folder, claim, fcntl, is_kept, kept_in, marker
+from .base.kept import beside, cache_folder, claim, fcntl, is_kept, kept_in, marker
 
-COMMANDS = ("demo", "gallery", "simplify")
 MOST = 3  # helpers: more of them would wait for the longest kernel
 PACKAGE = Path(__file__).parent
 SURFACE = "HalfEdgeMesh"
-# The kernels in the order in which the demo comes to them: file, name, types of the arguments as numba spells them.
-KERNELS = [
+# Kernels in the order in which the demo comes to them: file, name, types of the arguments as numba spells them.
+LOOK = [
     ("look/glance/cells", "_cut", "f8[:,:,::1], i8, f8[:,::1], i8, f8[:,:,::1], i8[::1], i8[::1]"),
     (
         "look/glance/cells", "_seen",
@@ -32,18 +32,14 @@ KERNELS = [
         "f8[::1,:], i8[:,::1], f8[:,::1], i8[:,::1], f8[:,::1], u1[:,::1], f8, f8[::1], f8[::1], i8, i8, i4[:,:],"
         "u1[:,:,:]",
     ),
-    ("lod/kernels/mesh", "_closed", "i4[::1], i4[::1], i4[::1], i4[::1], i4[::1]"),
-    ("lod/kernels/mesh", "_fill_split_fans", "i4[::1], i4[::1], i4[::1]"),
-    ("lod/kernels/mesh", "_fill_components", "i4[::1], i4[::1], i4[::1]"),
+]  # fmt: skip
+LEVELS = [
     ("lod/kernels/mesh", "_fill_fans", "i4[::1], i4[::1], i4[::1], i4[::1], i4[::1], b1[::1]"),
     ("lod/kernels/quadrics", "_add_planes", "f8[:,::1], i4[::1], f8[::1], f8[:,::1]"),
     (
         "lod/kernels/collapse", "_decimate",
         f"{SURFACE}, none, i4[::1], i4[::1], i8[::1], i4[::1], i8[::1], i8, f8, f8, f8",
     ),
-    ("lod/kernels/mesh", "_name_corners", "i4[::1], b1[::1], i4[::1], i8, i8[::1], i8[::1], i8[::1]"),
-    ("lod/kernels/mesh", "_count", "f8[:,::1], i4[::1], i4[::1], f8, f8, f8[:,::1]"),
-    ("lod/kernels/mesh", "_add_volumes", "f8[:,::1], i4[::1], i4[::1], i4[::1], i4[::1], f8[::1], b1[::1]"),
     ("mesh/kernels/nearest", "_fill_planes", "f8[:,::1], i8[:,::1], f8[::1], f8[:,::1], f8[::1]"),
     ("mesh/kernels/nearest", "_fill_boxes", "f8[:,::1], i8[:,::1], f8[::1], f8, i8[::1], i4[:,::1]"),
     ("mesh/kernels/nearest", "_sort_into_cells", "i4[:,::1], i8[::1], i4[::1], i4[::1]"),
@@ -51,14 +47,36 @@ KERNELS = [
         "mesh/kernels/nearest", "_search",
         "f8[:,::1], f8[:,::1], i8[:,::1], i4[::1], i4[::1], f8[::1], f8, i8[::1], f8[:,::1], f8, f8[::1], i8[::1]",
     ),
-    ("mesh/kernels/planes", "_weigh", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1], f8[:,::1]"),
     ("lod/kernels/refit", "_refit", f"{SURFACE}, f8[:,::1], i4[::1], f8[::1], i8, f8, f8[:,::1], i4[::1]"),
 ]  # fmt: skip
+ERRORS = [  # of simplify alone
+    ("mesh/sampling", "_faces_at", "f8[::1], f8[::1]"),
+    ("mesh/sampling", "_points", "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"),
+    (
+        "mesh/kernels/nearest", "_farthest",
+        "f8[:,::1], i8[:,::1], f8[:,::1], i8[:,::1], i4[::1], i4[::1], f8[::1], f8, i8[::1], f8[:,::1], f8, f8,"
+        "b1[::1], i8[::1]",
+    ),
+]  # fmt: skip
+LIGHT = [  # interpreted meanwhile, so these come last: see `haptic_glance.base.jit.UntilCompiledBeside`
+    ("lod/kernels/mesh", "_closed", "i4[::1], i4[::1], i4[::1], i4[::1], i4[::1]"),
+    ("lod/kernels/mesh", "_fill_split_fans", "i4[::1], i4[::1], i4[::1]"),
+    ("lod/kernels/mesh", "_fill_components", "i4[::1], i4[::1], i4[::1]"),
+    ("lod/kernels/mesh", "_name_corners", "i4[::1], b1[::1], i4[::1], i8, i8[::1], i8[::1], i8[::1]"),
+    ("lod/kernels/mesh", "_count", "f8[:,::1], i4[::1], i4[::1], f8, f8, f8[:,::1]"),
+    ("lod/kernels/mesh", "_add_volumes", "f8[:,::1], i4[::1], i4[::1], i4[::1], i4[::1], f8[::1], b1[::1]"),
+    ("mesh/kernels/planes", "_weigh", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1], f8[:,::1]"),
+]  # fmt: skip
+LONGEST = "_decimate"  # to compile
+DEMO = LIGHT + LOOK + LEVELS
+PICTURES = LOOK if find_spec("matplotlib") else []  # of imprints; without them `touch` compiles too little to share
+COMMANDS = {"demo": DEMO, "gallery": DEMO, "simplify": DEMO + ERRORS, "touch": PICTURES}
 
 
 def start(command: str) -> None:
     """Starts what compiles the kernels of a command beside it, before it imports anything; says so on stderr."""
-    missing = sum(not is_kept(PACKAGE / f"{file}.py", name) for file, name, _ in KERNELS)
+    kernels = COMMANDS[command]
+    missing = sum(not is_kept(PACKAGE / f"{file}.py", name) for file, name, _ in kernels)
     if not missing:
         return
     try:
@@ -70,16 +88,17 @@ def start(command: str) -> None:
         remedy = "set HAPTIC_GLANCE_CACHE to a folder that can be written to, or the next run may compile them again"
         print(f"{command}: compiled kernels cannot be kept in {cache_folder()}: {remedy}", file=sys.stderr, flush=True)
         return
-    print(f"{command}: compiling {missing} of {len(KERNELS)} kernels, once", file=sys.stderr, flush=True)
+    print(f"{command}: compiling {missing} of {len(kernels)} kernels, once", file=sys.stderr, flush=True)
     path = os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
     # Without colours: numba words the errors of each overload that it tries, and colours them.
     environment = os.environ | {"PYTHONPATH": path, "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
     quiet = subprocess.DEVNULL
-    line = [sys.executable, "-P", "-c", f"from {__name__} import compile_all; compile_all()"]
+    line = [sys.executable, "-P", "-c", f"from {__name__} import compile_all; compile_all({command!r})"]
     for _ in range(min(_cores() - 1, MOST) if fcntl else 0):  # without locks they would compile everything twice
         helper = subprocess.Popen(line, stdin=quiet, stdout=quiet, stderr=quiet, env=environment)
         atexit.register(helper.wait)
         atexit.register(helper.kill)  # before it is waited for
+        beside.set()
 
 
 def _cores() -> int:
@@ -87,15 +106,19 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def compile_all() -> None:
-    """Compiles the kernels from the last one to the first, except those that another process compiles or has kept."""
+def compile_all(command: str) -> None:
+    """Compiles the longest kernel of a command, then the others from the last one to the first.
+
+    Leaves out those that another process compiles or has kept.
+    """
     import numba
 
     # numba would look for BLAS there, which no kernel needs, and the import takes as long as a kernel.
     sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
-    for package in {str(Path(file).parent) for file, _, _ in KERNELS}:
+    kernels = COMMANDS[command]
+    for package in {str(Path(file).parent) for file, _, _ in kernels}:
         _without_imports(package)
-    for file, name, types in reversed(KERNELS):
+    for file, name, types in sorted(reversed(kernels), key=lambda kernel: kernel[1] != LONGEST):
         path = PACKAGE / f"{file}.py"
         free = None if is_kept(path, name) else claim(marker(path, name, kept_in(path)), patience=0)
         if free is not None:

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import threading
 import time
 from pathlib import Path
 from typing import IO
@@ -11,6 +12,7 @@ try:
 except ImportError:  # Windows: each process compiles for itself
     fcntl = None
 
+beside = threading.Event()  # set where other processes compile for this one
 PATIENCE = 60.0  # seconds: no kernel takes a tenth of that, so a process that holds one for longer hangs
 
 

@@ -1,18 +1,20 @@
 """Points on the surface of a mesh, uniform by area, compiled by numba."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from haptic_glance.base.jit import kernel_of
 
-from .mesh import Mesh
+if TYPE_CHECKING:
+    from .mesh import Mesh
 
 kernel = kernel_of(__file__)
 
 
 def sample_surface(
-    mesh: Mesh, shares: np.ndarray, draws: np.ndarray, areas: np.ndarray | None = None
+    mesh: "Mesh", shares: np.ndarray, draws: np.ndarray, areas: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(points (k, 3), faces (k,) i8, barycentric weights (k, 3)) of one point at each share of the surface.
 
@@ -29,7 +31,7 @@ def sample_surface(
     return points, faces, weights
 
 
-def points_in_faces(mesh: Mesh, faces: np.ndarray, draws: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def points_in_faces(mesh: "Mesh", faces: np.ndarray, draws: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(points (k, 3), barycentric weights (k, 3)), uniform in faces (k,) for uniform draws (2, k) in 0..1.
 
     Source: Osada, Funkhouser, Chazelle and Dobkin, Shape distributions, ACM TOG 21(4), 2002, eq. 1.

@@ -11,6 +11,7 @@ import pytest
 
 from haptic_glance import first_run
 from haptic_glance.base.kept import cache_folder, claim, is_kept, kept_in, marker
+from haptic_glance.gallery.demo import sample
 
 fcntl = pytest.importorskip("fcntl")
 
@@ -85,9 +86,9 @@ def test_helpers_are_started_only_where_kernels_are_missing(tmp_path, monkeypatc
     monkeypatch.setattr(first_run, "_cores", lambda: 2)
     monkeypatch.setattr(first_run.subprocess, "Popen", lambda *line, **_: started.append(line) or Dead)
     first_run.start("demo")
-    every = len(first_run.KERNELS)
+    every = len(first_run.COMMANDS["demo"])
     assert len(started) == 1 and capsys.readouterr().err == f"demo: compiling {every} of {every} kernels, once\n"
-    for file, name, _ in first_run.KERNELS:
+    for file, name, _ in first_run.COMMANDS["demo"]:
         folder = kept_in(first_run.PACKAGE / f"{file}.py")
         folder.mkdir(parents=True, exist_ok=True)
         (folder / f"{Path(file).name}.{name}-1.py311.1.nbc").touch()
@@ -122,52 +123,58 @@ def test_help_and_other_commands_start_nothing(monkeypatch):
     with pytest.raises(SystemExit):
         run("demo", ["--help"])
     with pytest.raises(SystemExit):
-        run("touch", ["--help"])
+        run("points", ["--help"])
 
 
-DEMO = """
+ASKED = """
 import sys
 import numba
-from haptic_glance import first_run
+from haptic_glance import __main__, first_run
 from haptic_glance.base.jit import Shared
-from haptic_glance.gallery import demo
 
+# `similarity` needs OpenCV, which only an extra installs.
 asked, real = set(), Shared.load_overload
 def load(self, types, context):
     asked.add((self._py_func.__module__, self._py_func.__qualname__, types))
     return real(self, types, context)
 Shared.load_overload = load
-demo.run(["--out", sys.argv[1]])
+first_run.start = lambda command: None
+__main__.run(sys.argv[1], sys.argv[2:])
 known = vars(numba.types) | {first_run.SURFACE: first_run._surface()}
 listed = {
     ("haptic_glance." + file.replace("/", "."), name, eval(f"({types})", known))
-    for file, name, types in first_run.KERNELS
+    for file, name, types in first_run.COMMANDS[sys.argv[1]]
 }
-print(asked ^ listed)
+print({kernel for kernel in asked ^ listed if kernel[0] != "haptic_glance.base.similarity"})
 """
 
 
 @pytest.mark.slow
-def test_the_kernels_of_the_list_are_just_those_of_the_demo(tmp_path):
+@pytest.mark.parametrize("command", ["demo", "simplify", "touch"])
+def test_the_kernels_of_a_list_are_just_those_of_its_command(command, tmp_path):
     """In a cache that has only these, as far as the machine has them; a full one makes the demo use others."""
-    for file, name, _ in first_run.KERNELS:
+    if command == "touch":
+        pytest.importorskip("matplotlib")
+    for file, name, _ in first_run.COMMANDS[command]:
         there = kept_in(first_run.PACKAGE / f"{file}.py")
         copy = tmp_path / there.relative_to(cache_folder())
         copy.mkdir(parents=True, exist_ok=True)
         for kept in there.glob(f"{Path(file).name}.{name}-*"):
             shutil.copy(kept, copy)
-    done = in_process(DEMO, tmp_path, str(tmp_path / "out"))
+    mesh = [] if command == "demo" else [str(sample())]
+    levels = ["--levels", "50%,10%"] if command == "simplify" else []
+    done = in_process(ASKED, tmp_path, command, *mesh, *levels, "--out", str(tmp_path / "out"))
     assert done.splitlines()[-1] == "set()"
-    assert "6 places, 3 levels, 6 imprints" in done and done.count("  haptic-glance ") == 3
-    assert (tmp_path / "out/dromedary/dromedary_10pct.glb").is_file()
+    if command == "demo":
+        assert "6 places, 3 levels, 6 imprints" in done and done.count("  haptic-glance ") == 3
+        assert (tmp_path / "out/dromedary/dromedary_10pct.glb").is_file()
 
 
 @pytest.mark.slow
 def test_a_helper_compiles_what_is_missing(tmp_path):
-    file, name, types = next(kernel for kernel in first_run.KERNELS if kernel[0] == "mesh/kernels/planes")
-    code = (
-        f"from haptic_glance import first_run; first_run.KERNELS = [{(file, name, types)!r}]; first_run.compile_all()"
-    )
+    file, name, types = next(kernel for kernel in first_run.LIGHT if kernel[0] == "mesh/kernels/planes")
+    code = f"first_run.COMMANDS = {{'demo': [{(file, name, types)!r}]}}; first_run.compile_all('demo')"
+    code = f"from haptic_glance import first_run; {code}"
     for _ in range(2):  # the second finds it
         in_process(code, tmp_path)
         assert [path.name.split("-")[0] for path in tmp_path.rglob("*.nbc")] == [f"{Path(file).name}.{name}"]

@@ -1,10 +1,13 @@
 """Compiled kernels on disk: found again by what their folder holds, wherever it lies."""
 
 import importlib.util
+import threading
 
+import numpy as np
 import pytest
 
-from haptic_glance.base.jit import UntilWorthCompiling
+from haptic_glance.base import jit, kept
+from haptic_glance.base.jit import UntilCompiledBeside, UntilWorthCompiling
 
 SOURCE = """from haptic_glance.base.jit import kernel_of
 
@@ -70,3 +73,19 @@ def test_little_work_is_interpreted_and_more_is_compiled(tmp_path, monkeypatch):
     ready = UntilWorthCompiling(double, str(tmp_path / "empty/kernels.py"), budget=10)
     ready.compile_always()
     assert ready.for_work(0) is double
+
+
+def test_a_kernel_is_interpreted_only_while_another_process_compiles_it_and_its_mesh_is_small(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(kept, "beside", threading.Event())
+    monkeypatch.setattr(jit, "beside", kept.beside)
+    length = double_in(tmp_path / "one", "len(x)")
+    kept.beside.set()
+    few = UntilCompiledBeside(length, most=3)
+    assert few(np.ones(3)) == 3 and not length.signatures
+    assert few(np.ones(4)) == 4 and length.signatures  # the mesh is large: compiled, and kept
+    ours = double_in(tmp_path / "one", "len(x)")
+    assert UntilCompiledBeside(ours, most=3)(np.ones(3)) == 3 and sum(ours.stats.cache_hits.values())
+    kept.beside.clear()
+    alone = double_in(tmp_path / "two", "len(x) + 0")
+    assert UntilCompiledBeside(alone, most=3)(np.ones(3)) == 3 and alone.signatures

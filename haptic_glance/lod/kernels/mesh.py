@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .jit import Id, allocating_kernel, between, cross, dot, helper, kernel, point
+from .jit import Id, allocating_kernel, between, cross, dot, helper, kernel, light_kernel, point
 
 MAX_EDGES = 64  # at a vertex, to vertices of higher ids: with more of them the linear search takes too long
 
@@ -68,7 +68,7 @@ def _of_any(faces, count, oriented):
     return other, non_manifold
 
 
-@kernel
+@light_kernel
 def _closed(faces, other, first, up, high):
     """Fills `other` for a closed manifold with consistent winding, else returns False.
 
@@ -243,7 +243,7 @@ def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: i
     return faces[:size].copy(), used[:ids].copy()
 
 
-@kernel
+@light_kernel
 def _name_corners(corner, locked, source, count, name, faces, used):
     """Fills what `compact` returns; returns the numbers of corners and of vertices. name: -1 for each key."""
     size = ids = 0
@@ -268,7 +268,7 @@ def split_fans(faces: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, int]:
     return fan, _fill_split_fans(faces, other, fan)
 
 
-@kernel
+@light_kernel
 def _fill_split_fans(faces, other, fan):
     """Fills the fans of `split_fans`, all -1 before; returns their number."""
     count = 0
@@ -296,7 +296,7 @@ def face_components(other: np.ndarray) -> tuple[np.ndarray, int]:
     return component, _fill_components(other, component, np.empty_like(component))
 
 
-@kernel
+@light_kernel
 def _fill_components(other, component, waiting):
     """Fills the components, all -1 before, and returns their number. waiting (m,): scratch."""
     count = 0
@@ -325,7 +325,7 @@ def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -
     return volume
 
 
-@kernel
+@light_kernel
 def _add_volumes(vertices, faces, other, component, origin, volume, boundary):
     """Adds the volume under each face to that of its component. origin: -1, then a vertex of each component."""
     for f in range(len(component)):
@@ -354,7 +354,7 @@ def count_faults(
     return _count(vertices, faces, other, thin, fold, np.zeros((len(faces) // 3, 3)))
 
 
-@kernel
+@light_kernel
 def _count(vertices, faces, other, thin, fold, normal):
     """`count_faults`; normal (m, 3): zeros."""
     degenerate = folded = 0
