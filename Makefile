@@ -43,7 +43,7 @@ lint: $(VENV)/ready ## ruff: rules and formatting; import-linter: imports run on
 	ruff check .
 	ruff format --check .
 	lint-imports
-	pyright
+	pyright --threads
 
 docs: $(VENV)/ready ## the documentation, to build/docs/index.html; a warning is an error (three minutes, then less)
 	python -m sphinx -E -W --keep-going --quiet docs build/docs # -E: numbers come from reports/, which may have changed

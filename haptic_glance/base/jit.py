@@ -30,48 +30,52 @@ HELPER: dict[str, Any] = {
 helper = numba.njit(**HELPER)
 
 
-class NoGarbageCollection(event.Listener):
-    """While numba compiles: the collector would go through its growing graphs again and again, a tenth of the time."""
-
-    def __init__(self) -> None:
-        self._before: list[bool] = []  # of each compilation under way: a kernel's holds those of what it calls
-
-    def on_start(self, event: event.Event) -> None:
-        """Stops the collector."""
-        self._before.append(gc.isenabled())
-        gc.disable()
-
-    def on_end(self, event: event.Event) -> None:
-        """Starts the collector, if it ran before."""
-        if self._before.pop():
-            gc.enable()
+ask = numba.types.Function.get_call_type
+known: dict[tuple, Any] = {}  # (operator, context, types of its arguments) -> signature
 
 
-event.register("numba:compile", NoGarbageCollection())
-
-
-def remember_signatures() -> None:
-    """Makes numba keep the signature that it has found for an operator and types of its arguments.
+def remembered_call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
+    """numba's `Function.get_call_type`, which keeps the signature that it has found for an operator and its types.
 
     numba asks dozens of templates anew for each `a + b` and `a[i]`, a fifth of the time to compile. Signatures of
     functions that numba itself compiles depend on more, such as fastmath, and are not kept.
     """
-    function, known = numba.types.Function, {}
-    ask = function.get_call_type
-
-    def get_call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
-        key = self, context, tuple(args)
-        if kws or key not in known:
-            signature = ask(self, context, args, kws)
-            if kws or signature is None or self.get_impl_key(signature) != self.typing_key:
-                return signature
-            known[key] = signature
-        return known[key]
-
-    function.get_call_type = get_call_type
+    key = self, context, tuple(args)
+    if kws or key not in known:
+        signature = ask(self, context, args, kws)
+        if kws or signature is None or self.get_impl_key(signature) != self.typing_key:
+            return signature
+        known[key] = signature
+    return known[key]
 
 
-remember_signatures()
+class FasterCompilation(event.Listener):
+    """While numba compiles a kernel of this package: no garbage collection, and remembered signatures.
+
+    The collector would go through the growing graphs again and again, a tenth of the time. Kernels of other packages
+    are compiled as numba does; numba's lock lets one thread compile at a time.
+    """
+
+    def __init__(self) -> None:
+        self._before: list[tuple[bool, Any]] = []  # of each compilation under way: a kernel's holds those that it calls
+
+    def on_start(self, event: event.Event) -> None:
+        """Stops the collector and changes how operators are looked up, for a kernel of this package."""
+        self._before.append((gc.isenabled(), numba.types.Function.get_call_type))
+        data: Any = event.data
+        kernel = data["dispatcher"].py_func
+        if kernel.__module__.partition(".")[0] == __name__.partition(".")[0]:
+            gc.disable()
+            numba.types.Function.get_call_type = remembered_call_type
+
+    def on_end(self, event: event.Event) -> None:
+        """Puts both back."""
+        enabled, numba.types.Function.get_call_type = self._before.pop()
+        if enabled:
+            gc.enable()
+
+
+event.register("numba:compile", FasterCompilation())
 
 
 class ByContent(UserProvidedCacheLocator):

@@ -3,6 +3,7 @@
 import importlib.util
 import threading
 
+import numba
 import numpy as np
 import pytest
 
@@ -89,3 +90,15 @@ def test_a_kernel_is_interpreted_only_while_another_process_compiles_it_and_its_
     kept.beside.clear()
     alone = double_in(tmp_path / "two", "len(x) + 0")
     assert UntilCompiledBeside(alone, most=3)(np.ones(3)) == 3 and alone.signatures
+
+
+@pytest.mark.parametrize("package", ["haptic_glance.lod", "somebody"])
+def test_signatures_are_remembered_for_kernels_of_this_package_alone(package):
+    def total(x, y):
+        return x + y
+
+    total.__module__, asked = f"{package}.kernels", numba.types.Function.get_call_type
+    before = len(jit.known)
+    value = numba.njit(total)(numba.types.float32(2), 3j)  # a pair of types that no other kernel adds
+    assert value == 2 + 3j and (len(jit.known) > before) == (package != "somebody")
+    assert numba.types.Function.get_call_type is asked
