@@ -92,13 +92,14 @@ def test_a_kernel_is_interpreted_only_while_another_process_compiles_it_and_its_
     assert UntilCompiledBeside(alone, most=3)(np.ones(3)) == 3 and alone.signatures
 
 
-@pytest.mark.parametrize("package", ["haptic_glance.lod", "somebody"])
-def test_signatures_are_remembered_for_kernels_of_this_package_alone(package):
-    def total(x, y):
-        return x + y
+def test_signatures_are_remembered_for_kernels_of_this_package_alone():
+    asked = numba.types.Function.get_call_type
+    for package in ("somebody", "haptic_glance"):
 
-    total.__module__, asked = f"{package}.kernels", numba.types.Function.get_call_type
-    before = len(jit.known)
-    value = numba.njit(total)(numba.types.float32(2), 3j)  # a pair of types that no other kernel adds
-    assert value == 2 + 3j and (len(jit.known) > before) == (package != "somebody")
-    assert numba.types.Function.get_call_type is asked
+        def total(x, y):
+            return x + y
+
+        total.__module__, before = f"{package}.kernels", len(jit.known)
+        assert numba.njit(total)(np.float32(2), 3j) == 2 + 3j  # a pair of types that no other kernel adds
+        assert (len(jit.known) > before) == (package == "haptic_glance")
+        assert numba.types.Function.get_call_type is asked
