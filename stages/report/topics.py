@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from types import ModuleType
 
+from matplotlib.figure import Figure as Drawing
+
 from . import (
     attention,
     chain,
@@ -46,7 +48,7 @@ def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS
                 continue
             item.html = item_html(item)
             if isinstance(item, Figure):
-                item.drawing.clear()  # its pictures would fill the memory, and travel between processes
+                item.drawing = Drawing()  # its pictures would fill the memory, and travel between processes
             built.items.append(item)
     return built
 
