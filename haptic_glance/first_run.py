@@ -69,7 +69,17 @@ LIGHT = [  # interpreted meanwhile, so these come last: see `haptic_glance.base.
 ]  # fmt: skip
 LONGEST = "_decimate"  # to compile
 DEMO = LIGHT + LOOK + LEVELS
-PICTURES = LOOK if find_spec("matplotlib") else []  # of imprints; without them `touch` compiles too little to share
+
+
+def _is_installed(name: str) -> bool:
+    """Whether a package could be imported; a finder that blocks the package may raise instead of finding nothing."""
+    try:
+        return find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+PICTURES = LOOK if _is_installed("matplotlib") else []  # of imprints; without them `touch` compiles too little to share
 COMMANDS = {"demo": DEMO, "gallery": DEMO, "simplify": DEMO + ERRORS, "touch": PICTURES}
 
 

@@ -9,7 +9,7 @@ import pytest
 from haptic_glance.base.files import write_table
 from stages.report import stability, touch
 from stages.report.results import NotRun
-from stages.report.stability import score
+from stages.report.stability import costs
 from stages.report.topics import build_one
 
 RATES = {"ours": 4000.0, "trimesh_embree": 2000.0, "depth_picture": 1000.0, "tacto_32x32": 50.0, "tacto_160x120": 20.0}
@@ -129,15 +129,15 @@ def history(root, small, *rows):
 
 
 def test_lines_are_those_of_the_machine_that_measured_last_by_date(bare, small, monkeypatch):
-    drawn, draw = {}, score._draw
+    drawn, draw = {}, costs._draw
 
     def noted(axes, rows, *looks):
         drawn[rows["what"].iloc[0]] = rows
         draw(axes, rows, *looks)
 
-    monkeypatch.setattr(score, "_draw", noted)
+    monkeypatch.setattr(costs, "_draw", noted)
     rows = [row("b", 2, "maps", 0.2), row("a", 1, "maps", 0.1), row("a", 1, "old", 5.0, "elsewhere")]
-    words = score.kernels(history(bare, small, *rows, row("b", 2, "loop", None))).words
+    words = costs.kernels(history(bare, small, *rows, row("b", 2, "loop", None))).words
     assert list(drawn) == ["maps"] and list(drawn["maps"]["ratio"]) == [0.1, 0.2]
     assert list(drawn["maps"]["place"]) == [0, 1]
     assert words == {"kernels": 1, "commits": 2, "machine": "here", "names": "maps (peer of maps)"}
@@ -152,4 +152,4 @@ def test_one_commit_is_drawn_and_said(bare, small):
 
 def test_without_the_history_of_kernels_it_is_not_run(bare, small):
     with pytest.raises(NotRun, match="make bench"):
-        score.kernels(small.results(bare))
+        costs.kernels(small.results(bare))
