@@ -43,6 +43,7 @@ def test_dvc_knows_the_code_the_data_and_the_settings_of_a_stage(stage):
     assert all(path.startswith(("${out}/", "data/${", "build/")) for path in written), "not the folder of the run"
 
 
+@pytest.mark.slow
 def test_every_stage_is_in_the_pipeline_and_every_setting_is_read():
     assert sorted(ORDER) == stage_names()
     texts = {path: path.read_text() for path in (ROOT / "stages").rglob("*.py")}

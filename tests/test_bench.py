@@ -89,6 +89,7 @@ def test_less_kl_is_better_in_order_and_lead():
     assert "KL (less is better)" in bench.as_text(found, "kl") and "  -1.60 [" in bench.as_text(found, "kl")
 
 
+@pytest.mark.slow
 def test_a_method_is_judged_beside_the_committed_rows(file, toys, capsys):
     found = listed(capsys, f"{file}:height")
     assert found["yours"]["objects"] == 3 and found["yours"]["nss"] > 0 and found["yours"]["auc"] > 0.8
@@ -99,6 +100,7 @@ def test_a_method_is_judged_beside_the_committed_rows(file, toys, capsys):
     assert found["svm_object"]["has_seen"] and not found["svm"]["has_seen"]
 
 
+@pytest.mark.slow
 def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(file, toys, capsys):
     bench.run([f"{file}:height"])
     assert "first" not in capsys.readouterr().out
@@ -111,6 +113,7 @@ def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(fi
     assert [*yours["values"]] == ["second"] and [*yours["failed"]] == ["first", "third"]
 
 
+@pytest.mark.slow
 def test_a_method_that_learns_never_gets_the_object_that_it_is_judged_on(file, toys, capsys):
     options = listed(capsys, f"{file}:counts", "--train"), listed(capsys, f"{file}:height")
     assert [found["yours"]["nss"] for found in options] == pytest.approx([options[1]["yours"]["nss"]] * 2)
@@ -123,6 +126,7 @@ def test_a_function_that_is_no_saliency_is_named(file, toys):
 
 
 @pytest.mark.parametrize(("code", "options"), zip(EXAMPLES, ([], ["--train"]), strict=True))
+@pytest.mark.slow
 def test_a_new_method_takes_few_lines(code, options, tmp_path, toys, capsys):
     (tmp_path / "my_method.py").write_text(code)
     (name,) = re.findall(r"my_method\.py:(\w+).*" + (options[0] if options else "$"), PAGE, re.M)[:1]

@@ -61,6 +61,7 @@ def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, caps
     assert [row[-1] for row in look.points] == found.scores.tolist()
 
 
+@pytest.mark.slow
 def test_an_array_stands_upright_on_the_axis_of_the_mesh(body):
     mesh = Mesh(*body)
     point = find_points(mesh, 1)[0]
@@ -176,6 +177,7 @@ def test_a_mesh_compares_by_content_and_keeps_its_arrays_to_itself(body):
     assert mesh.adjacency.nnz and len(pickle.dumps(mesh)) == small and pickle.loads(pickle.dumps(mesh)) == mesh
 
 
+@pytest.mark.slow
 def test_a_guess_of_the_axis_is_said_once_and_no_other(body, tmp_path):
     mesh = Mesh(*body)
     write_any(tmp_path / "body.ply", mesh)
@@ -196,6 +198,7 @@ def test_a_guess_of_the_axis_is_said_once_and_no_other(body, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:assuming")
+@pytest.mark.slow
 def test_a_file_its_arrays_and_its_command_have_one_axis(body, tmp_path, capsys):
     lying = body[0][:, [1, 2, 0]], body[1]  # y up
     trimesh.Trimesh(*lying, process=False).export(tmp_path / "lying.obj")

@@ -120,6 +120,7 @@ def test_a_baseline_holds_against_itself_and_every_rule_is_of_a_metric():
     ("stage", "method"),
     [("lod", r"\.metro_mean_(.+)"), ("salient_points", r"\.([^.]+)\.spread"), ("classification", r"\.([^.]+)\.knn\.")],
 )
+@pytest.mark.slow
 def test_two_methods_that_change_places_are_caught(profile, stage, method):
     baseline, rules = committed(profile)
     mine = {name: value for name, value in baseline.items() if name.split(".")[1] == stage}

@@ -193,6 +193,7 @@ def test_the_list_of_commands_imports_no_stage():
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
 
 
+@pytest.mark.slow
 def test_ctrl_c_during_imports_is_one_line(ball):
     stop = without(["numba"]).replace("raise ModuleNotFoundError", "raise KeyboardInterrupt  #")
     done = run_command("saliency", ball, before=stop)

@@ -42,6 +42,7 @@ def user(file, number=3):
     return subprocess.Popen(line, stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONPATH": path})
 
 
+@pytest.mark.slow
 def test_of_two_processes_that_need_a_kernel_at_once_one_compiles_it(kernels):
     held = claim(marker(kernels, "double", kept_in(kernels)))
     assert held is not None
@@ -67,6 +68,7 @@ def test_the_marker_of_a_process_that_was_killed_does_not_hold(kernels):
     assert path.exists() and claim(path, patience=0) is not None
 
 
+@pytest.mark.slow
 def test_a_kernel_that_does_not_compile_leaves_its_marker_to_the_next_call(kernels):
     import importlib.util
 

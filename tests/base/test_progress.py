@@ -16,6 +16,7 @@ def hasty(monkeypatch):
     monkeypatch.setattr(progress, "PAUSE", 0.05)
 
 
+@pytest.mark.slow
 def test_a_long_step_says_that_it_still_goes_on(hasty, capsys):
     with progress.no_silence():
         progress.report("touch", "reading")
@@ -34,6 +35,7 @@ def test_what_reports_nothing_stays_silent(hasty, capsys):
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_each_command_runs_with_such_lines(hasty, capsys, monkeypatch):
     def work(argv):
         progress.report("saliency", "looking at it")

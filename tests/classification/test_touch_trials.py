@@ -56,6 +56,7 @@ def test_selection_removes_before_the_split_or_from_training_alone_and_its_contr
         assert np.array_equal(kept.truth, control.truth) and not np.array_equal(kept.samples, control.samples)
 
 
+@pytest.mark.slow
 def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
     data = touched(bumps)
     few = MultiTouchTrials((2,), 1, True)

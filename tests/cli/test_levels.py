@@ -135,6 +135,7 @@ def named_heights(path):
 
 
 @pytest.mark.parametrize("painted", [True, False])
+@pytest.mark.slow
 def test_the_nodes_of_a_scene_keep_their_names_and_places(tmp_path, painted):
     scene(tmp_path / "two.glb", painted)
     run([str(tmp_path / "two.glb"), "--faces", "400", "--out", str(tmp_path / "small.glb")])
@@ -155,6 +156,7 @@ def test_faces_go_with_the_closest_face(file):
 
 
 @pytest.mark.parametrize("up", ["z", "y"])
+@pytest.mark.slow
 def test_a_glb_stands_as_the_format_has_it_and_other_formats_stay(file, tmp_path, capsys, up):
     for out in ("small.glb", "small.stl"):
         run([str(file), "--faces", "300", "--up", up, "--out", str(tmp_path / out)])

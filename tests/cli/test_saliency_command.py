@@ -27,6 +27,7 @@ def egg(tmp_path):
     return tmp_path / "egg.ply"
 
 
+@pytest.mark.slow
 def test_points_are_printed_in_the_files_coordinates(egg, capsys):
     run([str(egg)])
     shown = capsys.readouterr()
@@ -42,6 +43,7 @@ def test_points_are_printed_in_the_files_coordinates(egg, capsys):
     assert same.out == shown.out and same.err.startswith("points: reading egg.ply\npoints: looking at it\n")
 
 
+@pytest.mark.slow
 def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_path):
     out, table, picture = (tmp_path / name for name in ("look.ply", "points.csv", "look.png"))
     run([str(egg), "--count", "3", "--json", "--out", str(out), "--points", str(table), "--picture", str(picture)])
@@ -64,6 +66,7 @@ def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_pat
     assert table.read_text().splitlines() == lines
 
 
+@pytest.mark.slow
 def test_places_to_touch_are_those_of_the_method(egg, capsys):
     shown = []
     for options in (["--purpose", "touch"], ["--method", "touch"], []):

@@ -89,6 +89,7 @@ def test_format_without_colours_says_so(simplified, tmp_path):
     assert ".stl files have no colours" in said
 
 
+@pytest.mark.slow
 def test_picture_shows_before_and_after(simplified, tmp_path):
     simplified("--faces", 300, "--picture", tmp_path / "seen.png")
     image = np.asarray(Image.open(tmp_path / "seen.png").convert("RGB")).astype(int)
@@ -252,6 +253,7 @@ def test_small_units_keep_their_digits(tmp_path):
     assert np.abs(load(tmp_path / "tiny.obj").vertices - tiny.vertices).max() < 1e-8 * tiny.diagonal
 
 
+@pytest.mark.slow
 def test_a_free_boundary_is_simplified_and_what_forbids_it_is_named(tmp_path, capsys):
     side = np.linspace(0, 10, 21)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))

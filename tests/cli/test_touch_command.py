@@ -174,6 +174,7 @@ def test_every_format_is_touched(suffix, tmp_path, touched):
 
 
 @pytest.mark.parametrize("count", [1, 25])
+@pytest.mark.slow
 def test_picture_is_drawn_for_any_number(count, tmp_path, monkeypatch):
     monkeypatch.setattr(pictures, "ROWS", 60)
     mesh = normalise(bumpy())

@@ -171,6 +171,7 @@ def crops(size=32, each=4):
 
 
 @pytest.mark.parametrize("name", ["alexnet", "vgg16"])
+@pytest.mark.slow
 def test_convolutions_from_photographs_serve_a_linear_probe_better_than_random_ones(name):
     need(name)
     images, labels, test = crops()

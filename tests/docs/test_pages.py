@@ -101,6 +101,7 @@ def test_every_command_that_a_page_shows_exists():
     assert experiments and all((ROOT / "conf/experiment" / f"{each}.yaml").is_file() for each in experiments)
 
 
+@pytest.mark.slow
 def test_every_claim_has_a_command_and_a_command_has_minutes():
     found = commands()
     keys = [claim["key"] for command in found for claim in command.claims]

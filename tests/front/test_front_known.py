@@ -43,6 +43,7 @@ def accuracy(rows, split):
     return np.mean([row["value"] for row in rows if row["split"] == split])
 
 
+@pytest.mark.slow
 def test_what_feels_as_it_was_learned_is_known_and_there_is_a_row_an_object():
     rows = ask(Made())
     assert accuracy(rows, "regions") == accuracy(rows, "objects") == 1
@@ -60,6 +61,7 @@ def test_unseen_objects_are_never_learned():
     assert accuracy(rows, "regions") == 1 and accuracy(rows, "objects") < 0.9
 
 
+@pytest.mark.slow
 def test_several_touches_vote_and_the_same_seed_gives_the_same_answers():
     one, again, other, five = (
         ask(Made(noise=4), seed, touches=count) for seed, count in ((0, 1), (0, 1), (1, 1), (0, 5))
@@ -69,6 +71,7 @@ def test_several_touches_vote_and_the_same_seed_gives_the_same_answers():
     assert first == second != third
 
 
+@pytest.mark.slow
 def test_seconds_are_the_sum_of_their_parts_and_learning_stands_apart():
     for row in ask(Made(), touches=3):
         assert row["seconds"] == pytest.approx(sum(row[part] for part in PARTS))
@@ -77,6 +80,7 @@ def test_seconds_are_the_sum_of_their_parts_and_learning_stands_apart():
 
 
 @pytest.mark.parametrize(("made", "options"), [(Made(spread=0.1), {}), (Made(), {"points": 20, "touches": 6})])
+@pytest.mark.slow
 def test_where_no_region_is_left_the_row_says_so(made, options):
     for row in ask(made, **options):
         if row["split"] == "regions":

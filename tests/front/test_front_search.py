@@ -96,6 +96,7 @@ def of_rung(rows, rung):
     return [row for row in rows if row["rung"] == rung]
 
 
+@pytest.mark.slow
 def test_a_study_that_was_stopped_goes_on_like_one_that_was_not_and_the_seed_decides(asked, tmp_path, monkeypatch):
     whole = run(tmp_path / "whole")
     count = len(asked)

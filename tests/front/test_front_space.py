@@ -28,6 +28,7 @@ def test_every_option_is_one_of_its_stage():
     assert set(SPACE["classifier"]) <= {path.stem for path in (ROOT / "conf/classifier").glob("*.yaml")}
 
 
+@pytest.mark.slow
 def test_settings_are_those_of_the_choice():
     choice = replace(ITTI, viewpoints="four", image_rows=225, cells=8, level="500", touches=3, classifier="svm")
     settings = settings_of(choice)

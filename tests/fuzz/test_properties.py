@@ -25,6 +25,7 @@ def usable(mesh):
 
 @examples(20)
 @given(mesh=meshes())
+@pytest.mark.slow
 def test_a_normalised_mesh_fills_its_bounding_sphere(mesh):
     used = normalise(mesh).vertices[np.unique(mesh.faces)]
     assert np.linalg.norm(used, axis=1).max() == pytest.approx(0.5)

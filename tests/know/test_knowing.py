@@ -86,6 +86,7 @@ def test_a_pair_that_feels_the_same_stays_undecided(shapes):
     assert again.finish(1) == "" and len(again.images) == 1 and again.next_place() is not None
 
 
+@pytest.mark.slow
 def test_belief_is_as_right_as_it_says(library, shapes):
     """Calibrated within what 120 explorations of four touches can tell."""
     confidence, right = [], []

@@ -189,6 +189,7 @@ def test_located_samples_keep_the_place_behind_the_components():
         ({"cup": np.zeros((20, 4, 4))}, "knn", "at least 8 x 8"),
     ],
 )
+@pytest.mark.slow
 def test_what_cannot_be_classified_is_named(bumps, change, name, words):
     with pytest.raises(ValueError, match=words):
         evaluate({**bumps(), **change}, name)

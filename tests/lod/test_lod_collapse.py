@@ -71,6 +71,7 @@ LIMITS = [(0.2, 0.01, -0.9, np.inf), (0.05, 0.6, -2.0, np.inf), (0.01, 0.0, -0.3
 
 
 @pytest.mark.parametrize("limits", LIMITS, ids=["all", "slivers", "folds", "tips"])
+@pytest.mark.slow
 def test_a_move_is_refused_where_it_turns_or_folds_a_face_makes_a_sliver_or_cuts_a_tip(limits):
     random, answers, check = np.random.default_rng(1), [], interpreted(collapse.check_move)
     for seed in range(6):
@@ -114,6 +115,7 @@ def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
 
 
 @pytest.mark.parametrize("limits", LIMITS, ids=["all", "slivers", "folds", "tips"])
+@pytest.mark.slow
 def test_a_collapse_keeps_the_topology_and_spoils_no_face(limits):
     random, answers, may = np.random.default_rng(2), [], interpreted(collapse.may_collapse)
     for seed in range(3):
@@ -232,6 +234,7 @@ def test_the_nearest_point_is_that_of_trimesh(flat):
         assert (1 - second - third, second, third) == pytest.approx(shares, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_fit_moves_each_vertex_by_the_pull_of_the_targets_merged_into_it():
     mesh, random = rough_ball(5, subdivisions=2, noise=0.01), np.random.default_rng(6)
     surface = surface_of(mesh)
@@ -262,6 +265,7 @@ def test_the_fit_moves_each_vertex_by_the_pull_of_the_targets_merged_into_it():
     assert surface.position[moved] == pytest.approx(wanted[moved], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_edges_collapse_in_the_order_of_their_cost_until_the_faces_are_few_enough(monkeypatch):
     target, ball = 160, trimesh.creation.icosphere(2)
     surface = surface_of(Mesh(ball.vertices * [1, 0.8, 0.6], ball.faces))

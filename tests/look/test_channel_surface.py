@@ -84,6 +84,7 @@ def test_the_mirror_plane_is_found_however_the_shape_lies_and_shows_where_it_is_
     assert symmetric_points(mesh, ridge, np.array([1.0, 0.0, 0.0]))[0] < 0.05
 
 
+@pytest.mark.slow
 def test_a_lopsided_shape_has_no_symmetry_but_its_strongest_plane_and_axis_count_in_full():
     none = shape_symmetries(lopsided())
     assert not none.planes and not none.axes
@@ -98,6 +99,7 @@ def test_a_lopsided_shape_has_no_symmetry_but_its_strongest_plane_and_axis_count
     assert not symmetric_points(lopsided(), pierced, kinds=["radial"]).any()
 
 
+@pytest.mark.slow
 def test_a_box_has_three_planes_and_a_cone_and_a_cylinder_one_axis_in_either_setting_and_a_sphere_nothing():
     tin = as_mesh(trimesh.creation.cylinder(0.2, 1.0, sections=64))
     for strongest in (False, True):

@@ -71,6 +71,7 @@ def test_maps_are_the_same_when_object_and_camera_turn_together_in_any_order_and
 
 @pytest.mark.parametrize("name", ODD)
 @pytest.mark.filterwarnings("error")
+@pytest.mark.slow
 def test_odd_meshes_give_finite_maps(name):
     view = render(ODD[name], Viewpoint(40, 30), (180, 240), "raster")
     for channel, values in conspicuity(ODD[name], view).items():

@@ -51,6 +51,7 @@ def dense(few):
     return weight / weight.sum(axis=1, keepdims=True)
 
 
+@pytest.mark.slow
 def test_an_average_weighs_near_points_of_its_side_by_their_area(few, dense):
     assert few.average.toarray() == pytest.approx(dense, abs=1e-12)
     values, spacing = few.points, np.sqrt((few.areas**2).sum() / few.areas.sum())
@@ -70,6 +71,7 @@ def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, de
         assert found == pytest.approx(wanted, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_fullness_is_the_surface_in_a_gaussian_over_a_disc():
     samples = samples_of_mesh(as_mesh(bean()), 2000)
     local = (samples.points - samples.shares @ samples.points) @ AXES.T
@@ -115,6 +117,7 @@ def looked_at(samples):
     return seen / 112, side, above, below
 
 
+@pytest.mark.slow
 def test_visibility_is_that_of_pictures_drawn_point_by_point(few, monkeypatch):
     monkeypatch.setattr(cells, "_seen", interpreted(cells._seen))  # which minds the bounds of a picture
     for found, wanted in zip(visibility(few), looked_at(few), strict=True):
@@ -177,6 +180,7 @@ def test_each_feature_is_its_formula():
         assert found[name] == pytest.approx(values, abs=1e-12), name
 
 
+@pytest.mark.slow
 def test_a_feature_is_scaled_to_deviation_one_but_never_up_to_more_than_twice_a_typical_objects():
     for samples in (samples_of_mesh(as_mesh(trimesh.creation.icosphere(4, radius=0.5)), 2000),
                     samples_of_mesh(as_mesh(bean()), 2000)):  # fmt: skip

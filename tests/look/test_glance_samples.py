@@ -33,6 +33,7 @@ def test_samples_are_as_many_as_asked_for_even_and_on_the_surface(ball):
     assert ball.spacing == pytest.approx(SPACING, rel=0.25)
 
 
+@pytest.mark.slow
 def test_samples_hardly_depend_on_the_triangles_and_are_the_same_of_a_cloud_and_at_every_call(ball):
     coarse = samples_of_mesh(sphere(4))
     assert ball.tree.query(coarse.points)[0].max() < 2 * SPACING

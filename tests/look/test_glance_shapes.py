@@ -63,6 +63,7 @@ def unchanged(name, method):
         ("cylinder", "turned", "glance"),
     ],
 )
+@pytest.mark.slow
 def test_saliency_and_the_first_places_belong_to_the_surface(name, change, method):
     before, after = unchanged(name, method), detect(CHANGES[change](shape(name)), method, 5)
     assert np.corrcoef(before.saliency, after.saliency[: len(before.saliency)])[0, 1] > 0.995
@@ -70,6 +71,7 @@ def test_saliency_and_the_first_places_belong_to_the_surface(name, change, metho
         assert after.points.tolist() == before.points.tolist()
 
 
+@pytest.mark.slow
 def test_only_the_glance_for_any_pose_ignores_the_pose():
     head = trimesh.creation.icosphere(3, radius=0.15).apply_translation([0.3, 0, 0.3])
     body = trimesh.util.concatenate([trimesh.creation.box((0.7, 0.3, 0.4)).subdivide_to_size(0.05), head])
@@ -81,6 +83,7 @@ def test_only_the_glance_for_any_pose_ignores_the_pose():
     assert agreement["glance_any_pose"] > 0.85 and agreement["glance"] < 0.7, agreement  # samples are drawn anew
 
 
+@pytest.mark.slow
 def test_samples_do_not_depend_on_the_order_of_a_cloud_nor_on_the_triangles():
     points, ids = trimesh.sample.sample_surface(SHAPES["animal"], 4000, seed=0)
     normals, order = SHAPES["animal"].face_normals[ids], rng(0, "order").permutation(len(points))
@@ -94,6 +97,7 @@ def test_samples_do_not_depend_on_the_order_of_a_cloud_nor_on_the_triangles():
         assert ours.tree.query(theirs.points)[0].max() < 1e-6 and len(theirs.points) == len(ours.points)
 
 
+@pytest.mark.slow
 def test_equal_places_are_named_equivalent():
     corners = detect(as_mesh(trimesh.creation.box((0.8, 0.5, 0.3))), count=6)
     assert corners.ties[:4].tolist() == [0, 0, 0, 0] and corners.ties[4] > 0
@@ -107,6 +111,7 @@ def test_equal_places_are_named_equivalent():
 
 
 @pytest.mark.filterwarnings("error")
+@pytest.mark.slow
 def test_little_to_look_at_has_an_answer_without_a_warning():
     face = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
     for mesh in (face, as_mesh(trimesh.creation.box((1, 1, 0)))):
@@ -130,6 +135,7 @@ def nearest(mesh, place):
 
 
 @pytest.mark.parametrize("method", GLANCES)
+@pytest.mark.slow
 def test_the_parts_add_up_to_the_log_of_the_saliency(knob, method):
     some = np.arange(0, len(knob.vertices), 37)
     parts = contributions(knob, some, method)
@@ -149,6 +155,7 @@ def test_a_knob_is_found_for_its_shape_and_a_hollow_counts_against_a_place(knob)
     assert reasons({"below": np.array([-0.5])}, against=True) == [[("seen from below", -0.5)]]
 
 
+@pytest.mark.slow
 def test_the_axis_that_points_up_decides_what_is_high(knob):
     top = nearest(knob, (0, 0, 1.0))
     turned = Mesh(knob.vertices[:, [1, 2, 0]], knob.faces)  # what was z is y now

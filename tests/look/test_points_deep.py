@@ -58,6 +58,7 @@ def test_what_faces_the_views_is_bright_and_what_they_do_not_see_has_the_mean(br
     assert values[side & middle].std() < 0.15 * values[side & middle].mean()
 
 
+@pytest.mark.slow
 def test_neither_the_order_of_faces_nor_place_size_turn_or_mirror_nor_colours_change_the_maps(brightness):
     mesh = body()
     samples, values = first_map(mesh)
@@ -83,6 +84,7 @@ def test_a_map_that_hardly_varies_is_not_scaled_up(monkeypatch):
     assert samples.shares @ found[MAPS[0]] == pytest.approx(0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_the_method_is_the_density_of_both_kinds_of_features(brightness):
     mesh = body()
     samples = samples_of_mesh(mesh)

@@ -54,6 +54,7 @@ def bumpy(raised):
     return normalise(raised(tops / np.linalg.norm(tops, axis=1, keepdims=True), [0.15] * 5, [0.2] * 5, 4))
 
 
+@pytest.mark.slow
 def test_a_purpose_chooses_the_method(bumpy):
     assert (find_points(bumpy, 5, purpose="touch") == find_points(bumpy, "touch", 5)).all()
     looked = find_points(bumpy, "glance", 5)
@@ -64,6 +65,7 @@ def test_a_purpose_chooses_the_method(bumpy):
         detect(bumpy, "itti", 5, purpose="touch")
 
 
+@pytest.mark.slow
 def test_the_order_and_the_number_of_faces_change_no_place_to_touch(bumpy):
     places = bumpy.vertices[find_points(bumpy, 12, purpose="touch")]
     faces = np.roll(np.random.default_rng(0).permutation(bumpy.faces), 1, axis=1)
@@ -74,6 +76,7 @@ def test_the_order_and_the_number_of_faces_change_no_place_to_touch(bumpy):
     assert np.linalg.norm(places - again, axis=1).max() < edge
 
 
+@pytest.mark.slow
 def test_as_many_places_to_touch_as_asked_for_where_there_are_any(bumpy, sphere, grid):
     face = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
     for mesh, count in ((bumpy, 400), (sphere(3), 7), (Mesh(*grid(20, 30)), 7), (face, 3)):

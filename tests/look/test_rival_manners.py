@@ -73,6 +73,7 @@ def values(rival, bumpy, saliency_of):
     return saliency_of(rival, bumpy)
 
 
+@pytest.mark.slow
 def test_answers_in_the_agreed_form_and_does_not_depend_on_size_and_vertex_order(held, bumpy, values):
     points = held.rival.points(bumpy)
     assert values.shape == (len(bumpy.vertices),) and values.dtype == np.float64
@@ -87,6 +88,7 @@ def test_answers_in_the_agreed_form_and_does_not_depend_on_size_and_vertex_order
     assert np.array_equal(order[held.rival.points(shuffled, moved)], points)
 
 
+@pytest.mark.slow
 def test_does_not_depend_on_scale_turn_place_and_which_side_is_out(held, bumpy, values):
     turn = trimesh.transformations.rotation_matrix(1.0, [1, 2, 3])[:3, :3] if held.turns else np.eye(3)
     moved = Mesh(1e-5 * (bumpy.vertices @ turn.T + [3, -2, 1]), bumpy.faces[:, ::-1])
@@ -117,6 +119,7 @@ def bad_meshes(sphere, grid):
 
 
 @pytest.mark.filterwarnings("error")
+@pytest.mark.slow
 def test_bad_meshes_give_finite_values_and_points_on_the_surface(rival, bad_meshes):
     for name, (vertices, faces) in bad_meshes.items():
         mesh = Mesh(vertices, faces)
@@ -126,6 +129,7 @@ def test_bad_meshes_give_finite_values_and_points_on_the_surface(rival, bad_mesh
         assert points.dtype == np.int64 and np.isin(points, mesh.faces).all(), name
 
 
+@pytest.mark.slow
 def test_a_vertex_in_no_face_is_not_salient(rival, bumpy):
     """It lies in the tip of the highest bump."""
     top = bumpy.vertices[np.linalg.norm(bumpy.vertices, axis=1).argmax()]
@@ -141,6 +145,7 @@ def test_values_of_another_mesh_are_refused(rival, bumpy):
 
 
 @pytest.mark.parametrize("smooth", [mesh_saliency, salient_points, sift, tasse])
+@pytest.mark.slow
 def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(smooth, sphere, grid):
     for mesh in sphere(4), Mesh(*grid(9, 9)):
         values = smooth.saliency(mesh)

@@ -97,6 +97,7 @@ def test_the_heat_kernel_of_a_sphere_is_even_and_its_spectrum_the_known_one(sphe
     assert np.allclose(functions.T * areas @ functions, np.eye(heat_kernel.PAIRS), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_heat_points_of_a_starfish_are_its_tips_and_more_eigenpairs_change_nothing(raised, monkeypatch):
     angles = 2 * np.pi * np.arange(5) / 5 + 0.3
     tips = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
@@ -109,6 +110,7 @@ def test_the_heat_points_of_a_starfish_are_its_tips_and_more_eigenpairs_change_n
     assert np.allclose(values, heat_kernel.saliency(starfish), rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_each_piece_keeps_its_own_heat(sphere):
     """A small ball beside an ellipsoid is even and near one, wherever it lies, and adds no point."""
     ball, small = sphere(4), sphere(3, 0.1)
@@ -145,6 +147,7 @@ def test_spectral_saliency_is_the_sum_over_the_edges_of_the_filtered_laplacian()
     assert song.spectral_saliency(positions, graph) == pytest.approx(np.array(expected))
 
 
+@pytest.mark.slow
 def test_a_bump_has_spectral_saliency_a_ball_is_even_and_a_turn_changes_nothing(knob, raised, sphere, monkeypatch):
     values, plain = song.saliency(knob), song.saliency(sphere(4))
     on_it = knob.vertices[:, 0] / np.linalg.norm(knob.vertices, axis=1) > np.cos(0.3)

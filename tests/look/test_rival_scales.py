@@ -20,6 +20,7 @@ MESH = as_mesh(trimesh.creation.icosphere(subdivisions=3))
 
 
 @pytest.mark.parametrize(("rival", "swollen"), [(mesh_saliency, 0.1), (salient_points, 0.3), (sift, 0)])
+@pytest.mark.slow
 def test_a_bump_of_the_right_size_is_the_first_point_and_a_wide_swell_is_none(
     rival, swollen, bump_and_swell, sphere, saliency_of
 ):
@@ -33,6 +34,7 @@ def test_a_bump_of_the_right_size_is_the_first_point_and_a_wide_swell_is_none(
 
 
 @pytest.mark.parametrize("rival", [mesh_saliency, salient_points])
+@pytest.mark.slow
 def test_the_ends_of_an_ellipsoid_and_the_corners_of_a_cube_come_first(rival, sphere, cube):
     ellipsoid = Mesh(sphere(4).vertices * [1, 0.3, 0.3], sphere(4).faces)
     np.testing.assert_allclose(np.abs(ellipsoid.vertices[rival.points(ellipsoid)[:2]]), [X, X], atol=0.02)
@@ -136,6 +138,7 @@ def test_a_small_ball_is_a_keypoint_of_its_own_size(sphere):
     assert 2 ** (-1 / 3) < ratio < 2 ** (1 / 3)
 
 
+@pytest.mark.slow
 def test_sift_keeps_the_map_and_the_first_point_of_a_turned_mesh_within_a_voxel(bump_and_swell, saliency_of):
     turn = trimesh.transformations.euler_matrix(*np.radians([20, 30, 50]))[:3, :3]
     turned, values = Mesh(bump_and_swell.vertices @ turn.T, bump_and_swell.faces), saliency_of(sift, bump_and_swell)

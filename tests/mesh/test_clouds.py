@@ -77,6 +77,7 @@ OFF = b"COFF\n1200 0 0\n" + text(np.hstack([BALL, COLORS]))
 @pytest.mark.parametrize(
     ("name", "content"), [("bare.xyz", text(BALL)), ("cloud.ply", PLY), ("cloud.off", OFF), ("air.las", las())]
 )
+@pytest.mark.slow
 def test_a_ball_of_points_becomes_a_ball(name, content, tmp_path):
     (tmp_path / name).write_bytes(content)
     mesh, notes = clean(load(tmp_path / name))
@@ -86,6 +87,7 @@ def test_a_ball_of_points_becomes_a_ball(name, content, tmp_path):
     assert (mesh.colors is None) == (name == "bare.xyz") and (mesh.colors is None or (mesh.colors == COLORS[0]).all())
 
 
+@pytest.mark.slow
 def test_place_and_size_of_the_points_do_not_matter():
     near, far = surface_of(Cloud(BALL)), surface_of(Cloud(BALL * 1e3 + 1e6))
     assert len(near.faces) == pytest.approx(len(far.faces), rel=0.01)
@@ -98,6 +100,7 @@ def test_normals_point_outwards_even_where_the_shape_has_a_hole():
     assert (alike > 0.9).mean() > 0.99
 
 
+@pytest.mark.slow
 def test_what_was_not_seen_stays_a_hole():
     front = BALL[BALL[:, 2] > 0.1]
     mesh = surface_of(Cloud(front, sensor=np.array([0, 0, 5.0])))
@@ -105,11 +108,13 @@ def test_what_was_not_seen_stays_a_hole():
     assert (mesh.face_normals[:, 2] > 0).mean() > 0.95
 
 
+@pytest.mark.slow
 def test_a_sensor_within_a_hollow_sees_its_inside():
     mesh = surface_of(Cloud(BALL, sensor=np.zeros(3)))
     assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) < -0.9).mean() > 0.99
 
 
+@pytest.mark.slow
 def test_outliers_and_pixels_without_a_reading_change_nothing():
     holes = [np.full((50, 3), np.nan), np.zeros((50, 3)), RANDOM.uniform(-30, 30, (100, 3))]
     mesh = surface_of(Cloud(np.concatenate([BALL, *holes])))
@@ -171,6 +176,7 @@ def test_every_command_names_the_cloud_and_the_extra(work, tmp_path, monkeypatch
         work(["a.xyz", *options])
 
 
+@pytest.mark.slow
 def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):
     """A ball of radius 0.3 at distance 2, in millimetres."""
     v, u = np.mgrid[:240, :320]

@@ -216,6 +216,7 @@ def changes(shape):
 
 
 @pytest.mark.parametrize("name", OBJECTS)
+@pytest.mark.slow
 def test_the_choice_belongs_to_the_surface_not_to_its_triangles(name):
     expected = log_odds(laid(OBJECTS[name]))
     for what, vertices, faces, tolerance in changes(OBJECTS[name]):
@@ -275,6 +276,7 @@ def test_a_folder_of_the_pipeline_has_what_the_setting_a_file_or_the_shape_says(
         assert np.ptp(found["plain"][0].vertices, axis=0) == pytest.approx(np.ptp(own, axis=0))
 
 
+@pytest.mark.slow
 def test_a_tangle_of_large_faces_is_cut_into_as_few_pieces_as_fit():
     corners = np.random.default_rng(0).random((6000, 3))
     assert len(_pieces(corners.reshape(-1, 3, 3))[0]) < 4 * MOST

@@ -79,6 +79,7 @@ def shares(mesh, own, left):
 
 
 @pytest.mark.parametrize(("shape", "bottom"), [("blob", True), ("box", False), ("lying", True), ("goblet", False)])
+@pytest.mark.slow
 def test_a_smooth_scan_loses_its_table_and_nothing_else(shape, bottom):
     mesh, own = scan(shape, bottom=bottom)
     left = remove_plane(mesh)
@@ -171,6 +172,7 @@ SOLIDS = {
 
 
 @pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.slow
 def test_nearest_points_of_a_surface_are_those_of_point_cloud_utils(name):
     other = pytest.importorskip("point_cloud_utils")
     mesh = Mesh(SOLIDS[name].vertices, SOLIDS[name].faces)

@@ -43,6 +43,7 @@ def test_a_rotation_keeps_all_distances_on_fewer_axes():
     assert np.allclose(pdist(turned), pdist(features))
 
 
+@pytest.mark.slow
 def test_time_is_divided_where_it_tells_the_objects_apart():
     touches = series()
     choice = choose("discriminant", touches.values, touches.labels, 1, 0)
@@ -50,6 +51,7 @@ def test_time_is_divided_where_it_tells_the_objects_apart():
 
 
 @pytest.mark.parametrize("method", ["knn", "discriminant"])
+@pytest.mark.slow
 def test_the_test_part_changes_neither_the_choice_nor_what_is_measured_within_training(method, monkeypatch, tmp_path):
     monkeypatch.setattr(binned_module, "BINS", (4,))
     touches = series()
@@ -100,6 +102,7 @@ def test_each_grasp_is_left_out_one_time_with_one_of_each_object():
     assert all(set(touches.labels[out]) == {"00", "01", "02"} for _, out in rest)
 
 
+@pytest.mark.slow
 def test_a_grasp_is_a_row_that_says_whether_it_is_known(monkeypatch, tmp_path):
     monkeypatch.setattr(binned_module, "BINS", (4,))
     rows = pd.DataFrame(schunk.process("discriminant", tmp_path, series(count=10, classes=3), 1, 0))

@@ -104,6 +104,7 @@ def test_table_of_gaze_stands_without_our_method_or_the_ceiling(root, small):
     assert (table.shown["ours − it, NSS"] == "–").all()
 
 
+@pytest.mark.slow
 def test_marks_are_said_to_be_no_human_gaze_and_need_ground_truth(root, small):
     rows = small.judged()
     assert any("No human subjects" in note for note in table_of(small.results(root), "attention_marks").notes)

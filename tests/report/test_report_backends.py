@@ -48,6 +48,7 @@ def by_backend(results):
     return table(results).frame.set_index(["backend", "with_points"])
 
 
+@pytest.mark.slow
 def test_backends_are_compared_as_ratios(bench):
     rows = benched()
     rows.loc[(rows["backend"] == "poor") & (rows["mesh"] == "m4"), "kept"] = False
@@ -60,6 +61,7 @@ def test_backends_are_compared_as_ratios(bench):
 
 
 @pytest.mark.parametrize(("outcome", "points"), [("refused", 12), ("missed", 0)])
+@pytest.mark.slow
 def test_a_refusal_or_a_miss_is_counted_and_takes_its_cell_from_all(bench, outcome, points):
     rows = benched()
     cell = (rows["mesh"] == "m1") & (rows["kept_points"] == points) & (rows["share"] == 0.1)
@@ -101,6 +103,7 @@ def test_growth_is_fitted_without_and_with_points_apart(bench):
 
 
 @pytest.mark.parametrize("older", [True, False])
+@pytest.mark.slow
 def test_the_largest_mesh_is_named_and_rows_of_an_older_benchmark_are_said_to_be(bench, older):
     rows = benched()[lambda rows: rows["full"] <= 400_000]
     notes = table(bench(rows if older else rows.assign(metro_max=0.01))).notes

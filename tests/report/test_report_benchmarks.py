@@ -87,6 +87,7 @@ def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
 
 
 @pytest.mark.parametrize(("rate", "best"), [(2000.0, "ours"), (9000.0, "trimesh_embree")])
+@pytest.mark.slow
 def test_chart_puts_the_fastest_alone_on_the_front_and_counts_rounding_as_equal(bench, rate, best):
     rows = benched()
     rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = rate

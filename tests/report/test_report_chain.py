@@ -81,6 +81,7 @@ def test_each_changed_choice_has_its_paired_effect_and_its_cost(measured):
     assert frame.loc["classifier", "objects_low"] < 2 < frame.loc["classifier", "objects_high"]
 
 
+@pytest.mark.slow
 def test_the_chart_draws_the_front_and_keeps_its_numbers(measured):
     figure = build_one(chain, "tradeoff", "front", measured)
     assert all(path.exists() for path in figure.paths) and "takes 10 ms" in figure.caption

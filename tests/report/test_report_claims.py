@@ -399,6 +399,7 @@ def test_chance_calls_as_many_verdicts_as_is_said():
     assert (holding(frame) == "yes").sum() <= 2  # not one of them is an effect
 
 
+@pytest.mark.slow
 def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
     small.write(
         root, "test", pd.DataFrame({"dataset": "test", "item": list("abc"), "value": [0.1234567891, 0.2, -0.01]})

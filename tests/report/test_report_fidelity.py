@@ -43,6 +43,7 @@ def defined(path):
     return {node.name: node for node in ast.parse(path.read_text()).body if hasattr(node, "name")}
 
 
+@pytest.mark.slow
 def test_each_row_names_code_sets_and_twins_that_exist():
     known = cache(defined)
     for row in ROWS:

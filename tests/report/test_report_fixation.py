@@ -153,6 +153,7 @@ def test_truths_are_named_and_gaze_comes_first(gaze):
     assert list(_fixation.sources(gaze, "pcc_tasks")) == ["human gaze, 6 meshes", "household, 4 objects"]
 
 
+@pytest.mark.slow
 def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(written):
     frame = rows("furniture")
     results = written(frame[frame["metric"] != "pcc"])
@@ -161,6 +162,7 @@ def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(written)
         table(results)
 
 
+@pytest.mark.slow
 def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(made):
     row = only(made.frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="pcc")
     assert row["mean"] == pytest.approx(0.4, abs=0.01)

@@ -125,6 +125,7 @@ def two_middles(run, tmp_path_factory, small):
     return small.results(root)
 
 
+@pytest.mark.slow
 def test_networks_of_another_middle_change_no_claim_and_no_table_of_the_first(run, two_middles):
     claims = [one for one in hybrid.CLAIMS if one.key.endswith("_objects")]
     pd.testing.assert_frame_equal(judge(claims, two_middles), judge(claims, run))
@@ -194,6 +195,7 @@ TABLES = [(hybrid, "tables", "section_5_5"), (hybrid, "tables", "hybrid_senses")
           (stability, "tables", "transfer_stability")]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_confusions_of_each_split_and_sense_are_in_per_cent(run):
     made = build_one(hybrid, "figures", "figure_5_6", run)
     assert has_ink(made)

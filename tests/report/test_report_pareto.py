@@ -118,6 +118,7 @@ def test_the_axis_of_costs_has_numbers_however_narrow_it_is(span):
     plt.close(figure)
 
 
+@pytest.mark.slow
 def test_cost_is_a_ratio_to_the_named_reference_and_equal_charts_have_equal_bytes(tmp_path):
     figure = chart(tmp_path)
     table = pd.read_csv(tmp_path / "chart.csv").set_index("name")

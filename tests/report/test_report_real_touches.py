@@ -213,6 +213,7 @@ def test_simulation_that_does_not_help_contradicts_its_claim(measured):
     assert found["verdict"] == "contradicted" and found["effect"] == pytest.approx(-10, abs=0.5)
 
 
+@pytest.mark.slow
 def test_selection_and_the_best_classifier_are_judged_on_real_touches(every):
     found = judged(every)
     assert found.loc["simulation_helps_5", "verdict"] == "supported"

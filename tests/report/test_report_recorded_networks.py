@@ -197,6 +197,7 @@ WORDS = {
 }
 
 
+@pytest.mark.slow
 def test_claims_say_what_the_rows_hold_in_every_setting(judged):
     for key, word in WORDS.items():
         mine = judged[judged.index.str.startswith(f"recorded_{key}")]

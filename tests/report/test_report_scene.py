@@ -163,6 +163,7 @@ def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verd
     assert f"Without a frame ahead: {100 * more + 0.1:.1f} [" in notes
 
 
+@pytest.mark.slow
 def test_the_time_of_drawing_stands_beside_the_faces(bare, measured):
     rivals = [f"{name}__{matched}" for name in ("uniform", "uniform_size") for matched in ("displacement", "error")]
     ways = {"online": lambda k: 1000, "online_unrendered": lambda k: 1800 + k}

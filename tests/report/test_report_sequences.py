@@ -141,6 +141,7 @@ def test_claims_that_hold_are_supported(bare, small):
     assert found.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
 
 
+@pytest.mark.slow
 def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is_another_reading(bare, small):
     frame = rows(guided=-0.05, unseen=0.05)
     frame.loc[frame["classifier"] == "knn_no_som", "value"] = 1.2

@@ -91,6 +91,7 @@ def table(name, results):
     return build_one(touch, "tables", name, results)
 
 
+@pytest.mark.slow
 def test_twin_shows_the_regions_and_the_first_fifteen(glance):
     shown = table("table_4_1", glance).shown
     protocols = ["as printed", "as printed, 12 random sets", "ours"]
@@ -103,6 +104,7 @@ def test_twin_shows_the_regions_and_the_first_fifteen(glance):
     assert ("the thesis", "blind touch, 15 imprints") not in knn and knn.index.is_unique
 
 
+@pytest.mark.slow
 def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
     built = table("table_4_5", glance)
     cells = built.frame.set_index(["protocol", "sampling", "classifier"])
@@ -111,6 +113,7 @@ def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
     assert cell["accuracy_regions"] == pytest.approx(0.7, abs=0.01) and "one side" in built.notes[1]
 
 
+@pytest.mark.slow
 def test_selection_has_a_column_for_each_group_and_way(glance):
     built = table("table_4_3", glance)
     cells = built.frame.set_index(["protocol", "classifier", "objects", "selection"]).loc["as printed"]
@@ -142,6 +145,7 @@ def test_shares_stand_beside_those_of_the_thesis_by_sampling_and_by_object(glanc
     assert frame.loc["duck", "thesis"] == 0.4 and frame.loc["duck", "all"] == pytest.approx(0.36)
 
 
+@pytest.mark.slow
 def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
     built = table("table_4_6", glance)
     cells = built.frame.set_index(["protocol", "sampling", "way", "classifier", "touches"]).loc["as printed"]
@@ -155,6 +159,7 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
     assert "kNN, combinations drawn before the split, blind touch" in shown.index
 
 
+@pytest.mark.slow
 def test_readings_stand_below_with_means_that_leave_out_the_svm(root, small):
     rows_by = [scaled("training", 0.0), scaled("min_max", 0.1)]
     small.write(root, "classification", pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates(), SETS_4_2[0])
@@ -182,6 +187,7 @@ VERDICTS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_claims_follow_the_measurements(glance):
     found = judge([one for one in claims.CLAIMS if one.key in VERDICTS], glance).set_index("key")
     assert found["verdict"].to_dict() == VERDICTS

@@ -174,6 +174,7 @@ def test_figures_are_drawn(run, figure):
     assert (mean in made.caption) == (figure == "figure_5_4")
 
 
+@pytest.mark.slow
 def test_chart_costs_are_seconds_of_training(run):
     build_one(transfer, "tradeoff", "networks", run)
     frame = pd.read_csv(run.out / "tradeoff/networks.csv").set_index("name")
@@ -241,6 +242,7 @@ def test_one_object_of_five_says_more_than_one_of_three():
     assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
 
 
+@pytest.mark.slow
 def test_other_networks_on_the_thesis_s_classes_stand_beside_and_change_no_claim(bare, small):
     one, other = rows("princeton_six"), rows("princeton_six", frozen=0.9).assign(method="resnet50")
     frame, effects = pd.concat([one, other[other["mode"] == "frozen"]], ignore_index=True), []
@@ -289,6 +291,7 @@ def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
     assert shown["accuracy, %"][0].startswith("61.0 [")
 
 
+@pytest.mark.slow
 def test_the_smallest_network_that_is_enough_is_named(bare, small):
     found = [
         {"data": "pressure", "item": None, "method": name, "weights": "imagenet", "mode": "frozen", "split": "blocks"}

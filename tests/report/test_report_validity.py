@@ -74,6 +74,7 @@ def test_a_unit_is_compared_with_plain_of_its_object_and_needs_a_mesh():
     assert not len(invalid_units(rows))
 
 
+@pytest.mark.slow
 def test_causes_of_a_set_of_many_objects_take_a_moment():
     base = pd.DataFrame(QEM + [row for k in range(30) for row in unit("a", f"m{k}", rings=k / 10)])
     rows = pd.concat([base.assign(item=f"o{k}") for k in range(500)], ignore_index=True)

@@ -187,6 +187,7 @@ def test_original_and_level_stand_side_by_side_and_turn_together(shown):
     assert not shown.faults
 
 
+@pytest.mark.slow
 def test_slider_leads_from_the_original_to_more_and_more_error(shown):
     redness = []
     for step in (0, 1, 2):
@@ -200,6 +201,7 @@ def test_slider_leads_from_the_original_to_more_and_more_error(shown):
     assert not shown.faults
 
 
+@pytest.mark.slow
 def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
     for found in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, 1400):
         assert found.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
@@ -207,6 +209,7 @@ def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, l
         assert found.caption().startswith("simplified: 120 faces (23 %)")
 
 
+@pytest.mark.slow
 def test_one_can_look_at_saliency_and_shading_instead(shown):
     shown.page.locator("#points").select_option("")
     seen = [shown.canvas()]

@@ -51,6 +51,7 @@ def box(make_maps):
 
 
 @pytest.mark.parametrize("method", RUNS)
+@pytest.mark.slow
 def test_count_is_honoured_without_duplicates_and_a_peak_on_the_maps_gives_the_vertex_there(
     method, sight, ball, spot, box
 ):
@@ -160,6 +161,7 @@ def test_points_and_saliency_from_a_bare_mesh_do_not_depend_on_its_place_and_siz
 
 
 @pytest.mark.parametrize("method", ["glance", "height"])
+@pytest.mark.slow
 def test_the_axis_that_points_up_may_be_named(method):
     shape = trimesh.creation.revolve([[0, -0.4], [0.3, -0.3], [0.1, 0.4], [0, 0.45]], sections=24)
     upright, lying = (Mesh(vertices, shape.faces) for vertices in (shape.vertices, shape.vertices[:, [1, 2, 0]]))

@@ -52,6 +52,7 @@ def test_one_object_more_costs_one_object(workspace, monkeypatch):
     assert set(rows["item"]) == set(made) and set(rows["dataset"]) == {"toys"}
 
 
+@pytest.mark.slow
 def test_stage_writes_the_contract_the_same_bytes_twice_and_measures_every_method(workspace, tmp_path, ball):
     rows = stage.process("ball", tmp_path / "out", data=workspace.data, settings=SETTINGS, seed=0)
     stage.process("ball", tmp_path / "again", data=workspace.data, settings=SETTINGS, seed=0)

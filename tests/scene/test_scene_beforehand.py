@@ -17,6 +17,7 @@ def ball(radius, subdivisions=4):
     return Level(Mesh(made.vertices, made.faces), {})
 
 
+@pytest.mark.slow
 def test_two_balls_are_apart_by_the_difference_of_their_radii_in_both_pictures():
     radius = 0.4
     found = profile([ball(0.5), ball(radius, 3)], rows=100)
@@ -39,6 +40,7 @@ def alone(make_scene, frames_of, chains):
     return frames, (chains["one"],), rendered_sums(frames, (chains["one"],)), [profile(chains["one"])]
 
 
+@pytest.mark.slow
 def test_a_look_up_foretells_what_frames_show(alone):
     frames, own, (sums,), profiles = alone
     for price in (0.01, 0.1, 1.0):

@@ -169,6 +169,7 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
     assert done[0] == "loaded" and done.count("touched") == 4
 
 
+@pytest.mark.slow
 def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
     settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"], "classifiers": ["knn"]}

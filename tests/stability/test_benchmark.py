@@ -64,6 +64,7 @@ class Refuses:
 
 
 @pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"remeshing"}))
+@pytest.mark.slow
 def test_only_what_draws_has_several_draws(pear, name):
     severity = {"scale": 2.0, "scan": 360.0, "decimation": 0.5}.get(name, 0.9)
     mesh = Mesh(pear.vertices, pear.faces, np.full(pear.vertices.shape, 90, dtype=np.uint8))

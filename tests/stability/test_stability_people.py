@@ -37,6 +37,7 @@ def agreement(rows, perturbation, metric="nss", method="height"):
     return found[0]
 
 
+@pytest.mark.slow
 def test_a_height_agrees_with_who_looks_at_the_top_until_it_is_tilted(rows, disturbed):
     assert agreement(rows, "none") > 1
     assert agreement(rows, "noise") == pytest.approx(agreement(rows, "none"), abs=0.05)

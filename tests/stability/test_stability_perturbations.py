@@ -47,6 +47,7 @@ def pear():
 
 
 @pytest.mark.parametrize("name", PERTURBATIONS)
+@pytest.mark.slow
 def test_the_original_stays_equal_generators_give_the_same_and_places_lie_on_it(name, pear):
     before = pear.vertices.copy(), pear.faces.copy()
     one, other = apply(name, pear, MILD[name]), apply(name, pear, MILD[name])
@@ -96,6 +97,7 @@ def test_harsher_of_the_same_kind_goes_farther(name, pear):
     assert measure(harsh) > measure(mild)
 
 
+@pytest.mark.slow
 def test_one_depth_camera_sees_one_side(pear):
     one, four = (apply("scan", pear, severity).mesh for severity in (360, 90))
     total = pear.face_areas.sum()

@@ -33,6 +33,7 @@ def test_everything_that_was_opened_is_known(tmp_path, shapes):
     assert len(found["ball"].faces) == len(shapes["torus"].faces)
 
 
+@pytest.mark.slow
 def test_a_hidden_object_is_one_of_the_known_by_lot(library, shapes):
     drawn = {guess(library, shapes, None, seed).name for seed in range(20)}
     assert len(drawn) > 3 and drawn <= set(shapes)
@@ -43,6 +44,7 @@ def test_a_hidden_object_is_one_of_the_known_by_lot(library, shapes):
     assert not shown.hidden and shown.name == "cone"
 
 
+@pytest.mark.slow
 def test_an_object_that_may_lie_anywhere_hides_in_another_pose(shapes):
     anywhere, _ = study(shapes, placed=False)
     drawn = [guess(anywhere, shapes, None, seed) for seed in range(10)]

@@ -37,6 +37,7 @@ def test_sessions_share_nothing_and_another_mesh_leaves_nothing_of_the_last_one(
     assert session.kept == {} and session.on_table.name == "two"
 
 
+@pytest.mark.slow
 def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     specimen = open_file(knob_file)
     with ThreadPoolExecutor(4) as pool:
@@ -59,6 +60,7 @@ def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
     assert specimen._looks.keys() == {("height", 3)}
 
 
+@pytest.mark.slow
 def test_a_mesh_of_long_edges_is_drawn_on_a_finer_copy(mesh):
     box = trimesh.creation.box((1.0, 2.0, 0.5))
     look = Specimen(Mesh(box.vertices, box.faces), "box").look()
@@ -69,6 +71,7 @@ def test_a_mesh_of_long_edges_is_drawn_on_a_finer_copy(mesh):
     assert round_one.look().drawn[0] is round_one.mesh
 
 
+@pytest.mark.slow
 def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypatch):
     specimen, begun, go = Specimen(mesh, "ball"), Event(), Event()
     specimen.look()
@@ -152,6 +155,7 @@ def test_meshes_of_the_pipeline_are_opened(tmp_path, mesh):
         files_at(tmp_path / "empty")
 
 
+@pytest.mark.slow
 def test_levels_have_the_faces_asked_for_and_larger_errors_with_fewer(mesh):
     specimen = Specimen(mesh, "ball")
     levels = Levels(specimen, specimen.look("glance", 3))
@@ -175,6 +179,7 @@ def test_hard_levels_keep_the_points_and_a_level_that_cannot_be_names_what_can(m
 
 
 @pytest.mark.parametrize("suffix", [".glb", ".ply"])
+@pytest.mark.slow
 def test_a_level_comes_back_in_the_units_of_the_file(tmp_path, mesh, suffix):
     far = type(mesh)(mesh.vertices * 30 + 100, mesh.faces, up="z")
     specimen = Specimen(far, "ball")

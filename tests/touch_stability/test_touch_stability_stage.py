@@ -86,6 +86,7 @@ def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessin
     assert np.isnan(lead_left([0.1, 0.3], 0.3, 0.4)).all() and np.isnan(lead_left([0.1], 0.4, 0.4)).all()
 
 
+@pytest.mark.slow
 def test_a_severity_that_cannot_be_had_is_a_note_and_the_others_are_measured(run):
     rows = run(severities={"coarse_model": [1.0], "noise": [0.05]})
     assert rows["note"].dropna().str.startswith("coarse_model 1 left out").all() and rows["note"].notna().any()

@@ -70,6 +70,7 @@ def test_marks_belong_to_the_mesh_that_they_fit_whatever_it_is_called(tmp_path):
     assert list(files_of(["ball", "cube"], "household", tmp_path)) == ["ball"]
 
 
+@pytest.mark.slow
 def test_gaze_on_a_cloud_counts_where_its_surface_is_nearest(tmp_path):
     ball = trimesh.creation.icosphere(3)
     seconds = np.where(ball.vertices[:, 1] > 0.9, 1.0, 0.0)  # +y is up

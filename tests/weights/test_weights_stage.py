@@ -145,6 +145,7 @@ def test_without_ground_truth_only_the_published_weights_are_written(add_object,
 
 
 @pytest.mark.parametrize(("trained_on", "prefix"), [("object", ""), ("picture", "image_")])
+@pytest.mark.slow
 def test_svms_of_an_object_learn_from_its_own_pixels_or_from_all_of_the_picture(tmp_path, trained_on, prefix):
     generator, arrays = np.random.default_rng(0), {"distances": np.zeros((2, 3))}
     for kind, shift in (("", 0.0), ("image_", 5.0)):
