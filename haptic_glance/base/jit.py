@@ -30,8 +30,8 @@ HELPER: dict[str, Any] = {
 helper = numba.njit(**HELPER)
 
 
-ask = numba.types.Function.get_call_type
-known: dict[tuple, Any] = {}  # (operator, context, types of its arguments) -> signature
+call_type_of_numba = numba.types.Function.get_call_type
+signatures: dict[tuple, Any] = {}  # (operator, context, types of its arguments) -> signature
 
 
 def remembered_call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
@@ -41,12 +41,12 @@ def remembered_call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
     functions that numba itself compiles depend on more, such as fastmath, and are not kept.
     """
     key = self, context, tuple(args)
-    if kws or key not in known:
-        signature = ask(self, context, args, kws)
+    if kws or key not in signatures:
+        signature = call_type_of_numba(self, context, args, kws)
         if kws or signature is None or self.get_impl_key(signature) != self.typing_key:
             return signature
-        known[key] = signature
-    return known[key]
+        signatures[key] = signature
+    return signatures[key]
 
 
 class FasterCompilation(event.Listener):
@@ -178,8 +178,8 @@ class UntilWorthCompiling:
 class UntilCompiledBeside:
     """A kernel that is interpreted while another process compiles it for this one, see `haptic_glance.first_run`.
 
-    For what takes less time on a mesh of ten thousand faces than to compile it here, `most` elements of the first
-    argument. Both give the same numbers, bit for bit.
+    This pays where the interpretation of a small mesh takes less time than the compilation. most: the number of
+    elements of the first argument up to which the kernel is interpreted. Both give the same numbers, bit for bit.
     """
 
     def __init__(self, kernel: Any, most: int) -> None:

@@ -148,7 +148,7 @@ class Results:
         none is left; with the stage's own note on why it left them out, where there is one.
         """
         dataset = self._first(stage, dataset)
-        query = stage, dataset, *((column, *listed(wanted)) for column, wanted in where.items())
+        query = stage, dataset, *((column, wanted is None, *listed(wanted)) for column, wanted in where.items())
         if query not in self._recent:
             self._recent[query] = self._filtered(stage, dataset, where)
             if len(self._recent) > RECENT:

@@ -17,7 +17,7 @@ CLOSED, OPEN = PARTS.faces, np.delete(PARTS.faces, [3, 40, 41], axis=0)
 
 
 def answers(faces):
-    """What the kernels find on the mesh with such faces."""
+    """The results of all light kernels on the mesh with such faces."""
     corners = faces.astype(np.int32).ravel()
     other, count = kernels.opposites(corners, len(VERTICES), oriented=True)
     fan, fans = kernels.split_fans(corners, other)

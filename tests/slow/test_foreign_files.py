@@ -92,7 +92,7 @@ def attempted(command, arguments, log):
 
 
 def faults(path, status, seconds, memory, text):
-    """What a person should not meet."""
+    """Names the faults of a command on a file: a crash, a passed limit, a warning, a refusal without the name."""
     last = (text.strip().splitlines() or [""])[-1]
     found = {
         f"ended by signal {status & 127}": status & 127,

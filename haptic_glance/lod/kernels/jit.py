@@ -28,7 +28,7 @@ def kernel(function: Callable[..., Result]) -> Callable[..., Result]:
 
 
 def light_kernel(function: Callable[..., Result]) -> Callable[..., Result]:
-    """The same for one that takes less time on a small mesh, interpreted, than to compile."""
+    """Makes a kernel of a function whose interpretation takes less time on a small mesh than its compilation."""
     return jit.UntilCompiledBeside(_compiled(function), SMALL)
 
 
