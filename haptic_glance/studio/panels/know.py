@@ -154,9 +154,7 @@ class KnowPanel(Panel):
     def touch_planned(self, place: Places | None) -> None:
         """Marks the chosen place and touches it."""
         if place is None:
-            self.window.say(
-                "No touch would help", "the likeliest objects feel the same wherever it was not touched yet"
-            )
+            self.no_touch_helps()
             return
         self.touch(place, by_hand=False)
         assert self.guess is not None
@@ -165,22 +163,32 @@ class KnowPanel(Panel):
         self.window.scene.markers(f"{TOUCHED}/{number - 1}", place.positions, place.normals, words, BLUE)
         self.window.scene.face(place.positions[0], place.normals[0])
 
+    def no_touch_helps(self) -> None:
+        """Says why the planner stops."""
+        self.window.say("No touch would help", "the likeliest objects feel the same wherever it was not touched yet")
+
     def touch_on(self) -> None:
         """Lets the planner touch until the object is known."""
         if not self.touchable() or self.guess is None:
             return
         one, before = self.guess, self.guess.touches
 
-        def work(report: Report) -> None:
+        def work(report: Report) -> bool:
             exploration = one.exploration
             while not exploration.belief.known and one.touches < before + 30:
                 report((one.touches - before) / 30, f"touch {one.touches + 1}")
                 place = exploration.next_place()
                 if place is None:
-                    break
+                    return False
                 self.window.run(self.title, lambda place=place: self.touch(place, by_hand=False))
+            return True
 
-        self.window.work("Touching", work, lambda _: self.report())
+        def ended(helpful: bool) -> None:
+            self.report()
+            if not helpful:
+                self.no_touch_helps()
+
+        self.window.work("Touching", work, ended)
 
     def report(self) -> None:
         """The bars, and what is known by now."""
