@@ -51,11 +51,14 @@ def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_w
         ]  # fmt: skip
 
 
-def test_initial_statistics_are_refused_in_half_precision(small, monkeypatch):
+def test_initial_statistics_are_left_out_on_a_card_with_a_note(small, weights, monkeypatch):
     monkeypatch.setattr(planning, "choose_device", lambda name: torch.device("cuda"))
-    check(small.settings())
-    with pytest.raises(ValueError, match="too small for a card's half precision"):
-        check(small.settings(weights=["random_initial"]))
+    settings = small.settings(weights=["random", "random_initial"])
+    check(settings)
+    planned = plan(CLASSES, ENOUGH, settings)
+    assert {trial.weights for trial in planned.trials} == {"random"}
+    [note] = [note for about, note in planned.notes if about == {"weights": "random_initial"}]
+    assert "transfer.device=cpu" in note
 
 
 def test_controls_and_ranges_are_trained_on_the_fine_array_alone_and_of_some_networks(small, weights):
