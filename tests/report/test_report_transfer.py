@@ -125,7 +125,7 @@ def test_a_note_says_what_the_networks_of_a_column_saw(bare, small, table):
     assert "furniture, touches at random: 28 touches an object at 128 px; furniture, unseen obj" in notes
     assert "furniture, unseen objects: 20 touches an object at 80 px." in notes
     assert ("Guessing: furniture 16.7 %." in notes) == (table == "table_5_4")
-    assert ("MobileNetV2 computed in float16." in made.notes) == (table == "table_5_4")
+    assert ("On furniture, MobileNetV2 computed in float16." in made.notes) == (table == "table_5_4")
 
 
 def test_tables_hold_the_coarse_array_alone_and_frozen_layers_by_the_thesis_s_numbers(run):

@@ -133,10 +133,13 @@ def _both_passes(
 
 
 def _precisions(frame: pd.DataFrame) -> str:
-    """The networks that computed in other numbers than float32, in a sentence; empty for none."""
+    """The networks that computed in other numbers than float32, in a sentence a set; empty for none."""
     other = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
-    kinds = other[["network", "precision"]].drop_duplicates().itertuples(index=False)
-    return " ".join(f"{label(name)} computed in {numbers}." for name, numbers in kinds)
+    parts = []
+    for (source, numbers), mine in other.groupby(["objects", "precision"], sort=False):
+        names = ", ".join(label(name) for name in dict.fromkeys(mine["network"]))
+        parts.append(f"On {dataset_text(str(source))}, {names} computed in {numbers}.")
+    return " ".join(parts)
 
 
 def _guesses(frame: pd.DataFrame) -> str:
