@@ -175,10 +175,16 @@ def test_figures_are_drawn(run, figure):
 
 
 @pytest.mark.slow
-def test_chart_costs_are_seconds_of_training(run):
-    build_one(transfer, "tradeoff", "networks", run)
-    frame = pd.read_csv(run.out / "tradeoff/networks.csv").set_index("name")
-    assert frame.loc["MobileNetV2, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(6)
+def test_chart_costs_are_the_time_of_an_imprint_at_the_size_that_the_networks_saw(bare, small, benched_results):
+    small.write(bare, "transfer", pd.concat([rows(), rows().assign(method="alexnet"), converged()]))
+    times = pd.DataFrame({"network": ["mobilenet_v2", "alexnet"], "size": [80, 80], "milliseconds": [10.0, 5.0]})
+    results = benched_results("networks", times)
+    build_one(transfer, "tradeoff", "networks", results)
+    frame = pd.read_csv(results.out / "tradeoff/networks.csv").set_index("name")
+    assert frame.loc["AlexNet, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(0.5)
+    assert "MobileNetV2, ImageNet, fine-tuned, until nothing improves" in frame.index
+    with pytest.raises(NotRun, match="no network at a size"):
+        transfer.CHARTS["networks"](benched_results("networks", times.assign(size=96)))
 
 
 @pytest.mark.slow

@@ -4,10 +4,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from haptic_glance.base.timing import CLOCK
 from haptic_glance.know.split import shared_by
 from stages.report.drawing import CYCLE, GREY, INK, MARKERS, label, plt, start
 from stages.report.items import Figure
-from stages.report.networks import COARSE, FINE, MODES, NETWORK, SPLITS, STARTS, THEIRS, everywhere, measured, of_passes
+from stages.report.networks import COARSE, FINE, MODES, NETWORK, PASSES, SPLITS, STARTS, THEIRS, everywhere, of_passes
 from stages.report.pareto import pareto_chart
 from stages.report.results import Results, dataset_text, some
 from stages.report.tables import grouped, means, records
@@ -80,25 +81,30 @@ REFERENCE = "MobileNetV2, ImageNet, frozen"
 
 
 def networks_chart(results: Results) -> Figure:
-    """Accuracy on touches at random of each network, start and mode against its seconds, on the thesis's classes."""
+    """Accuracy of each network, start, mode and number of passes against the time of one imprint, on touches at random.
+
+    NotRun where the networks saw another size than those that `benchmarks.networks` times.
+    """
     dataset = results.printed(THEIRS, "transfer")
-    rows = measured(results, dataset, data=FINE, split="random")
-    size = rows["size"].max()
-    rows = rows[rows["size"] == size] if size == size else rows  # costs at other sizes are not comparable
-    frame = pd.DataFrame(means(rows, ["method", "weights", "mode"], shared_by("random"), top=1.0))
-    frame = frame.dropna(subset=["seconds"])
+    where = {"metric": "accuracy", "data": FINE, "split": "random"}
+    rows = of_passes(results.measured("transfer", dataset, **where), *PASSES)
+    rows = rows.merge(results.bench("networks").rename(columns={"network": "method"}), on=["method", "size"])
+    some(rows, "no network at a size that benchmarks.networks times", "transfer", runnable=False)
+    rows["seconds"] = rows["milliseconds"] / 1000
+    frame = pd.DataFrame(means(rows, ["method", "weights", "mode", "passes"], shared_by("random"), top=1.0))
     frame["network"] = frame["method"].map(label) + frame["weights"].map(_beside)
     frame["way"] = frame["mode"].map(label).str.replace(r"^\d+:\d+$", "part of the layers frozen", regex=True)
     mode = frame["mode"].map(label).str.replace(r"^(\d+):(\d+)$", r"layers \1 to \2 frozen", regex=True)
     frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + mode
+    frame.loc[frame["passes"] == "converged", "name"] += ", until nothing improves"
     chart = pareto_chart(
-        frame, "mean", title="From sight to touch: what training costs", reference=REFERENCE,
+        frame, "mean", title="From sight to touch: what an imprint costs", reference=REFERENCE,
         quality_label="test accuracy, touches at random", colour="network", marker="way",
-        legends={"way": "trained"}, clock=results.clock("transfer", dataset),
+        legends={"way": "trained"}, clock=CLOCK,
     )  # fmt: skip
     chart.words |= {
         "on": dataset_text(str(rows["dataset"].iloc[0])),
-        "size": f"{size:.0f}",
+        "size": " and ".join(f"{size:.0f}" for size in sorted(rows["size"].unique())),
         "splits": frame["values"].max(),
     }
     return chart
