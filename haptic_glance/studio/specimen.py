@@ -11,7 +11,8 @@ import numpy as np
 
 from haptic_glance.base.files import read_mesh
 from haptic_glance.cli.saliency import finely, points_of
-from haptic_glance.look.points import METHODS, detect
+from haptic_glance.look.points import METHODS
+from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.files import load_unnamed, mesh_files, parse
 from haptic_glance.mesh.headers import MeshError
@@ -67,6 +68,7 @@ class Specimen:
         self.given, self.name, self.note, self.path = given, name, note, path
         self.lock = RLock()
         self._looks: dict[tuple, Look] = {}
+        self._looked: tuple[str, Looked] | None = None  # of the last method
 
     @cached_property
     def baked(self) -> Mesh:
@@ -119,13 +121,19 @@ class Specimen:
             return self._looks[method, count]
 
     def _look(self, method, count):
-        rendered = bool(METHODS[method].channels)
-        arguments = self.baked, method, count
-        found = RENDERING.submit(detect, *arguments).result() if rendered else detect(*arguments)
+        if METHODS[method].channels:
+            return RENDERING.submit(self._found, method, count).result()
+        return self._found(method, count)
+
+    def _found(self, method, count):
+        """The Look; another count of the same method needs neither another look nor another mesh to draw."""
+        if self._looked is None or self._looked[0] != method:
+            self._looked = method, Looked(self.baked, method)
+        found = self._looked[1].detect(count)
         if found.saliency is None:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
-        fine = self.mesh, found.saliency, method
-        drawn = RENDERING.submit(finely, *fine).result() if rendered else finely(*fine)
+        known = next((look.drawn for (name, _), look in self._looks.items() if name == method), None)
+        drawn = known or finely(self.mesh, found.saliency, method)
         return Look(method, found.saliency, points_of(self.given, found), drawn)
 
 

@@ -10,7 +10,8 @@ import pytest
 import trimesh
 
 from haptic_glance.base.files import write_mesh
-from haptic_glance.look.points import detect
+from haptic_glance.look.points import METHODS, detect
+from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job, Stopped
@@ -47,6 +48,18 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert np.array_equal(looks[0].saliency, found.saliency) and set(looks[0].vertices) == set(found.points)
 
 
+@pytest.mark.parametrize("method", ["glance", "touch"])
+def test_another_count_needs_no_other_look(mesh, monkeypatch, method):
+    specimen = Specimen(mesh, "ball")
+    first = specimen.look(method, 3)
+    monkeypatch.setattr(METHODS[method].__class__, "_values", None)
+    more = specimen.look(method, 5)
+    monkeypatch.undo()
+    found = detect(mesh, method, 5)
+    assert set(more.vertices) == set(found.points) and np.array_equal(more.saliency, found.saliency)
+    assert more.drawn is first.drawn
+
+
 def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
     specimen = Specimen(mesh, "ball")
     known = specimen.look("height", 3)
@@ -79,9 +92,9 @@ def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypat
     def slow(*given):
         begun.set()
         go.wait(PATIENCE)
-        return detect(*given)
+        return Looked(*given)
 
-    monkeypatch.setattr("haptic_glance.studio.specimen.detect", slow)
+    monkeypatch.setattr("haptic_glance.studio.specimen.Looked", slow)
     with ThreadPoolExecutor(3) as pool:
         other = pool.submit(specimen.look, "height")
         begun.wait(PATIENCE)

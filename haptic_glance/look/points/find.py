@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -19,6 +21,7 @@ from ..views import TWELVE, render
 from ..weights import LearnedWeights
 from ..weights import weights as published
 from ..weights.weights import GLANCE
+from .glance import SampledDetector
 from .methods import MAIN, METHODS, SVMS, meant, method_for, method_named, split_runnable
 from .options import RADIUS, Detection, HasSaliency, Options, tied
 
@@ -90,28 +93,62 @@ def detect(
             raise ValueError(f"method {method!r} is not the name of a method")
         method, count = None, method
     method = method_for(purpose, method)
-    detector = method_named(method)
+    options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
+    _check(count)
+    return Looked(mesh, method, options, viewpoints, up).detect(count)
+
+
+class Looked:
+    """A mesh that a method has looked at once, so that each number of places is found without another look.
+
+    mesh, method, up, viewpoints: as of `find_points`. Raises ValueError for an unknown method.
+    """
+
+    def __init__(
+        self, mesh: Mesh, method: str = GLANCE, options: Options | None = None,
+        viewpoints: Iterable[Viewpoint] | None = None, up: Axis | None = None,
+    ) -> None:  # fmt: skip
+        self.detector, self.viewpoints = method_named(method), viewpoints
+        self.options = options or Options(_learned(method, None))
+        self.mesh = _prepared(mesh, up)
+
+    @cached_property
+    def sight(self) -> Any:
+        """What the detector needs of the mesh, whatever the count."""
+        if isinstance(self.detector, SampledDetector):
+            return self.detector.seen(self.mesh, self.options)
+        return compute_maps(self.mesh, self.detector.channels, self.viewpoints)
+
+    @cached_property
+    def _places(self) -> KDTree:
+        return KDTree(self.mesh.vertices)
+
+    def detect(self, count: int | None = None) -> Detection:
+        """The Detection of `count` points, None for those past the method's own threshold; ValueError below 1."""
+        _check(count)
+        found = self.detector.find(self.mesh, self.sight, self.options, count)
+        if found.saliency is None:
+            return found
+        scores = scores_of(self.mesh, found.points, found.saliency, self._places)
+        return replace(found, scores=scores, ties=tied(scores))
+
+
+def _check(count):
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")
-    options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
-    mesh = _prepared(mesh, up)
-    found = detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
-    if found.saliency is None:
-        return found
-    scores = scores_of(mesh, found.points, found.saliency)
-    return replace(found, scores=scores, ties=tied(scores))
 
 
-def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> np.ndarray:
+def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, places: KDTree | None = None) -> np.ndarray:
     """(k,) f8 in 0..1: how strongly each of the points (k,) draws the eye, in their order; descending.
 
     It is the mean of the saliency (n,) around a point of the normalised mesh, by area, over the length that smooths the
     saliency before its peaks are taken. Attention inhibits what it has visited, so that a later place may lie beside a
-    high peak: its score is never more than that of the place before it.
+    high peak: its score is never more than that of the place before it. places: the tree of the mesh's vertices, where
+    it is known.
     """
-    place, radius = KDTree(mesh.vertices), 2 * SMOOTHING
+    places, radius = places or KDTree(mesh.vertices), 2 * SMOOTHING
     near = [np.union1d(ids, point).astype(np.int64) for ids, point in zip(
-        place.query_ball_point(mesh.vertices[points], radius), points, strict=True)]  # fmt: skip
+        places.query_ball_point(mesh.vertices[points], radius), points, strict=True)]  # fmt: skip
     areas = [mesh.vertex_areas[ids] for ids in near]
     means = [
         np.average(saliency[ids], weights=own) if own.any() else saliency[point]

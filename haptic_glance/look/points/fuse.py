@@ -167,6 +167,8 @@ def continue_on_surface(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, ra
     The spacing starts at `radius` and halves as the surface fills up. Ties of saliency go by position, never by vertex
     number, so that the order of the vertices plays no role.
     """
+    if len(points) >= count:
+        return points[:count]
     used = np.flatnonzero(mesh.vertex_normals.any(axis=1))
     x, y, z = mesh.vertices[used].round(9).T
     ranked = used[np.lexsort((z, y, x, -saliency[used]))]

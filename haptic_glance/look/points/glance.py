@@ -8,7 +8,7 @@ Linear Bottlenecks, CVPR 2018) with the weights of ImageNet looks at pictures fr
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import ndimage
@@ -44,6 +44,21 @@ def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
     return standardised_maps(mesh, samples) | standardised(samples)
 
 
+class Seen(NamedTuple):
+    """A mesh as a SampledDetector sees it, whatever the number of places.
+
+    points (s, 3), areas (s,), smooth (s,): of the samples; vertices (s,) i8: what stands for each of them.
+    saliency, smoothed (n,) f8 in 0..1: the values and the smooth values at the vertices.
+    """
+
+    points: np.ndarray
+    areas: np.ndarray
+    smooth: np.ndarray
+    vertices: np.ndarray
+    saliency: np.ndarray
+    smoothed: np.ndarray
+
+
 class SampledDetector(ABC):
     """A detector that looks at cells of the surface, so that neither the faces nor noise decide what it finds."""
 
@@ -54,9 +69,9 @@ class SampledDetector(ABC):
     def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
         """(samples, their values (s,), above 0, and the smooth values (s,) whose peaks are the points)."""
 
-    def _vertices(self, mesh: Mesh, samples: Samples, chosen: np.ndarray) -> np.ndarray:
-        """(k,) the vertices that stand for samples (k,)."""
-        return mesh.used[KDTree(mesh.vertices[mesh.used]).query(samples.points[chosen])[1]]
+    def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
+        """(s,) the vertices that stand for the samples."""
+        return mesh.used[KDTree(mesh.vertices[mesh.used]).query(samples.points)[1]]
 
     def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
@@ -65,24 +80,33 @@ class SampledDetector(ABC):
         samples, values, _ = self._values(mesh, options)
         return _on_vertices(mesh, samples, values)[0]
 
-    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
-        """The Detection: strong points are high peaks of the smooth values; a count visits more places."""
-        none = np.zeros(0, dtype=np.int64)
+    def seen(self, mesh: Mesh, options: Options) -> Seen | None:
+        """What `find` needs of a mesh, whatever the count; None without area."""
         if not mesh.face_areas.sum() > 0:
-            return Detection(none, 0, np.zeros(len(mesh.vertices)))
+            return None
         samples, values, smooth = self._values(mesh, options)
-        peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
-        peaks = peaks[standardise(smooth, samples.areas)[peaks] > 1]
-        peaks = peaks[by_place(tied(smooth[peaks]), samples.points[peaks])]
-        order = peaks if count is None else visited(samples.points, smooth, options.radius, count)
+        return Seen(samples.points, samples.areas, smooth, self._vertices(mesh, samples),
+                    *_on_vertices(mesh, samples, values, smooth))  # fmt: skip
+
+    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
+        """The Detection: strong points are high peaks of the smooth values; a count visits more places.
+
+        sight: a Seen of the same mesh and options spares the work of `seen`; anything else is not looked at.
+        """
+        seen = sight if isinstance(sight, Seen) else self.seen(mesh, options)
+        if seen is None:
+            return Detection(np.zeros(0, dtype=np.int64), 0, np.zeros(len(mesh.vertices)))
+        smooth = seen.smooth
+        peaks = local_maxima(Mesh(seen.points, NO_FACES), smooth, options.radius)
+        peaks = peaks[standardise(smooth, seen.areas)[peaks] > 1]
+        peaks = peaks[by_place(tied(smooth[peaks]), seen.points[peaks])]
+        order = peaks if count is None else visited(seen.points, smooth, options.radius, count)
         is_peak = np.isin(order, peaks)
-        chosen = np.r_[order[is_peak], order[~is_peak]]
-        at = self._vertices(mesh, samples, chosen) if len(chosen) else none
+        at = seen.vertices[np.r_[order[is_peak], order[~is_peak]]]
         points = at[np.sort(np.unique(at, return_index=True)[1])]
-        saliency, smoothed = _on_vertices(mesh, samples, values, smooth)
         if count is not None:
-            points = continue_on_surface(mesh, points, smoothed, options.radius, count)
-        return Detection(points, min(int(is_peak.sum()), len(points)), saliency)
+            points = continue_on_surface(mesh, points, seen.smoothed, options.radius, count)
+        return Detection(points, min(int(is_peak.sum()), len(points)), seen.saliency)
 
 
 class GlanceDetector(SampledDetector):

@@ -44,10 +44,10 @@ class TouchDetector(SampledDetector):
         )
         return few, values, values
 
-    def _vertices(self, mesh: Mesh, samples: Samples, chosen: np.ndarray) -> np.ndarray:
+    def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
         """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
         both = np.hstack([mesh.vertices, samples.spacing * mesh.vertex_normals])[mesh.used]
-        wanted = np.hstack([samples.points, samples.spacing * samples.normals])[chosen]
+        wanted = np.hstack([samples.points, samples.spacing * samples.normals])
         return mesh.used[KDTree(both).query(wanted)[1]]
 
 
