@@ -16,7 +16,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, press_at
 from haptic_glance.touch.surface import sensor_axes
 
-from .conftest import as_mesh
+from .conftest import as_mesh, ball_mesh, flat_grid, raised_ball
 
 
 @pytest.mark.parametrize(
@@ -49,9 +49,9 @@ def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_lis
 
 
 @pytest.fixture(scope="module")
-def bumpy(raised):
+def bumpy():
     tops = np.array([[1, 0, 0], [-1, 0, 0.2], [0, 1, 0.5], [0, -1, -0.3], [0.3, 0.2, 1]])
-    return normalise(raised(tops / np.linalg.norm(tops, axis=1, keepdims=True), [0.15] * 5, [0.2] * 5, 4))
+    return normalise(raised_ball(tops / np.linalg.norm(tops, axis=1, keepdims=True), [0.15] * 5, [0.2] * 5, 4))
 
 
 @pytest.mark.slow
@@ -77,13 +77,13 @@ def test_the_order_and_the_number_of_faces_change_no_place_to_touch(bumpy):
 
 
 @pytest.mark.slow
-def test_as_many_places_to_touch_as_asked_for_where_there_are_any(bumpy, sphere, grid):
+def test_as_many_places_to_touch_as_asked_for_where_there_are_any(bumpy):
     face = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
-    for mesh, count in ((bumpy, 400), (sphere(3), 7), (Mesh(*grid(20, 30)), 7), (face, 3)):
+    for mesh, count in ((bumpy, 400), (ball_mesh(3), 7), (flat_grid(20, 30), 7), (face, 3)):
         detection = detect(mesh, 7 if mesh is face else count, purpose="touch")
         assert len(detection.points) == len(set(detection.points.tolist())) == count
         assert detection.saliency.max() == 1
-        assert detection.saliency.min() > 0.5 or mesh is not sphere(3)  # all of a sphere feels alike
+        assert detection.saliency.min() > 0.5 or mesh is not ball_mesh(3)  # all of a sphere feels alike
     assert len(METHODS["touch"].find(Mesh(np.zeros((3, 3)), face.faces), None, Options(), 7).points) == 0
 
 
