@@ -70,28 +70,6 @@ def spoils(faces, before, v, other, place, turn, shape, fold, cut):
 LIMITS = [(0.2, 0.01, -0.9, np.inf), (0.05, 0.6, -2.0, np.inf), (0.01, 0.0, -0.3, np.inf), (0.01, 0.0, -2.0, 0.3)]
 
 
-@pytest.mark.parametrize("limits", LIMITS, ids=["all", "slivers", "folds", "tips"])
-@pytest.mark.slow
-def test_a_move_is_refused_where_it_turns_or_folds_a_face_makes_a_sliver_or_cuts_a_tip(limits):
-    random, answers, check = np.random.default_rng(1), [], interpreted(collapse.check_move)
-    for seed in range(6):
-        surface = surface_of(rough_ball(seed))
-        faces, places = [*map(tuple, surface.corner.reshape(-1, 3).tolist())], surface.position
-        for v in range(len(places)):
-            around = sorted(neighbours(faces, v))
-            other = around[random.integers(len(around))] if v % 3 else -1
-            toward = places[around].mean(axis=0) if v % 2 else places[other]
-            place = places[v] + random.uniform(0, 1.2) * (toward - places[v]) + random.normal(0, 0.03, 3)
-            mark = np.zeros(len(places), dtype=np.int32)
-            mark[around[:2]] = 7
-            found = check(surface.corner, surface.opposite, surface.start, places, mark, 7, v, other, *place, *limits)
-            near = [face for face in faces if {v, *around} & {*face}]
-            assert (found < 0) == spoils(near, places, v, other, place, *limits), (seed, v)
-            assert found in (-1, 2) and (found < 0 or np.flatnonzero(mark == 7).tolist() == around)
-            answers.append(found < 0)
-    assert 0.1 < np.mean(answers) < 0.9
-
-
 def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
     """Whether the edge i-j may collapse to a place."""
     edge, near = {i, j}, {i, j} | neighbours(faces, i) | neighbours(faces, j)
@@ -118,8 +96,8 @@ def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
 @pytest.mark.slow
 def test_a_collapse_keeps_the_topology_and_spoils_no_face(limits):
     random, answers, may = np.random.default_rng(2), [], interpreted(collapse.may_collapse)
-    for seed in range(3):
-        surface = surface_of(rough_ball(seed, noise=0.08))
+    for seed, noise in enumerate((0.08, 0.15)):
+        surface = surface_of(rough_ball(seed, noise=noise))
         faces, places = [*map(tuple, surface.corner.reshape(-1, 3).tolist())], surface.position
         mark, last = np.zeros(len(places), dtype=np.int32), np.zeros(1, dtype=np.int64)
         for h in range(0, len(surface.corner), 4):

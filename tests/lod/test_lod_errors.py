@@ -2,11 +2,9 @@
 
 import numpy as np
 import point_cloud_utils
-import pymeshlab
 import pytest
 import trimesh
 
-from haptic_glance.lod import simplify
 from haptic_glance.lod.errors import SurfaceIndex, metro, salient_error, surface_errors, vertex_errors
 from haptic_glance.mesh.mesh import Mesh
 from tests.lod.shapes import ball, sheet
@@ -32,26 +30,6 @@ def test_larger_of_both_directions_counts():
     for name in ("mean", "rms"):
         assert metro(small, large, 500)[name] == pytest.approx(2 * metro(large, small, 500)[name], rel=0.1)
         assert metro(large, small, 500)[name] > 0.1
-
-
-def test_agrees_with_pymeshlab_within_sampling_error():
-    simple = simplify(SPHERE, 200)
-    theirs = []
-    for sampled, target in ((0, 1), (1, 0)):
-        work = pymeshlab.MeshSet(verbose=False)
-        for mesh in (SPHERE, simple):
-            work.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
-        theirs.append(
-            work.apply_filter(
-                "get_hausdorff_distance", sampledmesh=sampled, targetmesh=target, savesample=False, samplevert=False,
-                sampleedge=False, samplefauxedge=False, sampleface=True, samplenum=20_000,
-                maxdist=pymeshlab.PercentageValue(50),
-            )
-        )  # fmt: skip
-    found = metro(SPHERE, simple, 20_000)
-    for ours, name in (("mean", "mean"), ("rms", "RMS")):
-        assert found[ours] * SPHERE.diagonal == pytest.approx(max(t[name] for t in theirs), rel=0.02)
-    assert found["max"] * SPHERE.diagonal >= 0.95 * max(t["max"] for t in theirs)
 
 
 def test_samples_are_even_by_area():
@@ -113,7 +91,7 @@ def test_faces_without_area_are_segments_and_points():
 
 
 @pytest.mark.parametrize("height", [1e-2, 1e-8, 1e-13, 0.0])
-@pytest.mark.parametrize("foot", [0.3, 1.0, -0.5])
+@pytest.mark.parametrize("foot", [0.3, -0.5])
 def test_needles_are_as_far_as_their_sides_at_most_their_height_less(height, foot):
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     corners = np.array([[0, 0, 0], [1, 0, 0], [foot, height, 0]]) @ turn + 0.1
@@ -123,21 +101,6 @@ def test_needles_are_as_far_as_their_sides_at_most_their_height_less(height, foo
     expected = np.hypot(places[:, 0] - places[:, 0].clip(low, high), places[:, 2])
     found, _ = SurfaceIndex(Mesh(corners, [[0, 1, 2]])).nearest(places @ turn + 0.1)
     assert np.abs(found - expected).max() <= height + 1e-12
-
-
-def test_near_questions_are_answered_alike_after_far_ones():
-    for mesh in MESHES.values():
-        surface, points = SurfaceIndex(mesh), mesh.vertices[:100] * 1.01
-        before = surface.nearest(points)[0]
-        surface.nearest([[1e3, 0, 0]])
-        assert (surface.nearest(points)[0] == before).all()
-
-
-def test_flat_meshes_and_meshes_far_from_the_origin_are_measured():
-    flat = Mesh(SPHERE.vertices * [1, 1, 0], SPHERE.faces)
-    moved = Mesh(flat.vertices + [1e4, 0, 0], flat.faces)
-    assert SurfaceIndex(flat).nearest([[0, 0, 0.2], [2, 0, 0]])[0] == pytest.approx([0.2, 1.5], rel=1e-6)
-    assert SurfaceIndex(moved).nearest([[1e4, 0, 0.2]])[0] == pytest.approx([0.2], rel=1e-6)
 
 
 @pytest.mark.slow
@@ -198,6 +161,7 @@ def test_equal_saliency_is_metro_and_the_seed_decides():
     known = metro(SPHERE, dented(1), 2000, seed=3)
     assert found.pop("salient") == pytest.approx(known["mean"], rel=1e-12) and found == known
     assert known != metro(SPHERE, dented(1), 2000, seed=4)
+    assert max(surface_errors(SPHERE, SPHERE, {"salient": UPPER}, 1000).values()) < 1e-15
 
 
 def test_damage_where_nobody_looks_is_no_error():
@@ -219,10 +183,6 @@ def test_scale_of_the_saliency_and_of_the_meshes_does_not_matter():
     value = salient_error(SPHERE, damaged, saliency, 1000)
     larger = [Mesh(4 * mesh.vertices, mesh.faces) for mesh in (SPHERE, damaged)]
     assert salient_error(*larger, 10 * saliency, 1000) == pytest.approx(value, rel=1e-12)
-
-
-def test_a_mesh_has_no_error_to_itself():
-    assert all(value < 1e-15 for value in surface_errors(SPHERE, SPHERE, {"salient": UPPER}, 1000).values())
 
 
 EMPTY = Mesh(np.zeros((3, 3)), np.zeros((0, 3), dtype=int))
@@ -249,6 +209,11 @@ def test_what_cannot_be_measured_is_named(work, words):
         work()
 
 
-def test_points_far_away_and_points_as_surfaces_are_measured():
-    assert SurfaceIndex(SPHERE).nearest([[1e30, 0, 0]])[0] == pytest.approx([1e30])
+def test_points_far_away_and_flat_meshes_and_points_as_surfaces_are_measured():
+    surface = SurfaceIndex(SPHERE)
+    near = surface.nearest(1.01 * SPHERE.vertices)[0]
+    assert surface.nearest([[1e30, 0, 0]])[0] == pytest.approx([1e30])
+    assert (surface.nearest(1.01 * SPHERE.vertices)[0] == near).all()
+    flat = Mesh(SPHERE.vertices * [1, 1, 0] + [1e4, 0, 0], SPHERE.faces)
+    assert SurfaceIndex(flat).nearest([[1e4, 0, 0.2], [1e4 + 2, 0, 0]])[0] == pytest.approx([0.2, 1.5], rel=1e-6)
     assert SurfaceIndex(Mesh(np.ones((3, 3)), [[0, 1, 2]])).nearest([[1, 1, 3], [1, 1, 1]])[0] == pytest.approx([2, 0])

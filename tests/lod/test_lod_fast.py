@@ -123,12 +123,6 @@ def rippled():
     return Mesh(ripples * made.vertices, made.faces)
 
 
-def test_every_face_is_in_one_block(small):
-    parts = blocks.split(rippled())
-    assert len(parts) > 10 and max(map(len, parts)) < 4000
-    assert np.array_equal(np.sort(np.concatenate(parts)), np.arange(len(rippled().faces)))
-
-
 def test_blocks_join_again_without_a_crack(small):
     mesh = rippled()
     found, _, _ = blocks.thinned(mesh, 0.1, nothing(mesh), None)

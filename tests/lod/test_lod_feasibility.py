@@ -14,34 +14,31 @@ from tests.lod.shapes import ball
 LARGE = ball()
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 TORUS = trimesh.creation.torus(0.35, 0.15, major_sections=24, minor_sections=12)
+TUBE = trimesh.creation.cylinder(0.2, 0.6, sections=16)
+SHUFFLED = np.random.default_rng(0).permutation(TORUS.faces)
+SHUFFLED[::3] = SHUFFLED[::3, ::-1]
+BOW_TIE = np.array([[0, 1, 2], [0, 3, 4]])
+PAGES = np.array([[0, 1, page] for page in range(2, 7)])  # an edge of several faces is a rim of each
 
 
-def test_topology_of_known_surfaces():
-    assert topology(SPHERE.faces) == Topology(0, 0, 1, 1, genus=0)
-    assert topology(TORUS.faces) == Topology(0, 0, 1, 1, genus=1)
-    assert topology(np.array([[0, 1, 2]])) == Topology(3, 1, 1, 0, genus=0)
-    tube = trimesh.creation.cylinder(0.2, 0.6, sections=16)
-    side = tube.faces[np.abs(tube.face_normals[:, 2]) < 0.5]
-    assert topology(side) == Topology(32, 2, 1, 0, genus=0)
+@pytest.mark.parametrize(
+    ("faces", "expected"),
+    [
+        pytest.param(SPHERE.faces, Topology(0, 0, 1, 1, genus=0), id="sphere"),
+        pytest.param(TORUS.faces, Topology(0, 0, 1, 1, genus=1), id="torus"),
+        pytest.param(SHUFFLED, Topology(0, 0, 1, 1, genus=1), id="torus in another order and winding"),
+        pytest.param(PAGES[:1], Topology(3, 1, 1, 0, genus=0), id="triangle"),
+        pytest.param(TUBE.faces[np.abs(TUBE.face_normals[:, 2]) < 0.5], Topology(32, 2, 1, 0, genus=0), id="tube"),
+        pytest.param(BOW_TIE, Topology(6, 2, 2, 0, genus=0), id="bow tie"),
+        pytest.param(PAGES[:3], Topology(9, 3, 3, 0, genus=0), id="book"),
+    ],
+)
+def test_topology_of_known_surfaces(faces, expected):
+    assert topology(faces) == expected
 
 
-def test_topology_does_not_depend_on_winding_or_order():
-    faces = np.random.default_rng(0).permutation(TORUS.faces)
-    faces[::3] = faces[::3, ::-1]
-    assert topology(faces) == topology(TORUS.faces)
-
-
-def test_components_that_touch_in_a_vertex_count_apart():
-    bow_tie = np.array([[0, 1, 2], [0, 3, 4]])
-    assert topology(bow_tie) == Topology(6, 2, 2, 0, genus=0)
-    assert len(np.unique(split_nonmanifold_vertices(bow_tie))) == 6
-
-
-def test_edge_of_three_faces_becomes_a_rim():
-    book = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
-    assert topology(book).components == 3
-    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 1]], book)
-    assert faults(mesh).non_manifold == 3
+def test_a_vertex_of_two_fans_is_split():
+    assert len(np.unique(split_nonmanifold_vertices(BOW_TIE))) == 6
 
 
 def test_faults_count_degenerate_and_folded_faces():
@@ -54,6 +51,12 @@ def test_faults_count_degenerate_and_folded_faces():
     needle = Mesh([[0, 0, 0], [1, 0, 0], [0.5, 1e-9, 0]], [[0, 1, 2]])
     assert faults(needle).degenerate == 1
     assert "1 new folded" in faults(folded).added(faults(flat))
+
+
+def test_faults_count_the_half_edges_of_an_edge_of_many_faces():
+    places = np.array([[0, 0, 0], [0, 0, 1], *([np.cos(at), np.sin(at), 0] for at in range(5))])
+    three, four, five = (faults(Mesh(places, PAGES[:count])) for count in (3, 4, 5))
+    assert three.non_manifold == 3 and "1 new half-edges" in five.added(four)
 
 
 def test_frozen_faces_lie_wholly_within_the_rings():
@@ -133,13 +136,6 @@ def test_the_smallest_count_is_searched_for_once_for_all_refused_targets(monkeyp
         assert (len(asked), caught.value.smallest) == (calls, smallest)
 
 
-def test_an_edge_of_many_faces_that_takes_one_more_is_a_new_fault():
-    vertices = np.array([[0, 0, 0], [0, 0, 1], *([np.cos(at), np.sin(at), 0] for at in range(5))])
-    pages = np.array([[0, 1, page] for page in range(2, 7)])
-    before, after = (faults(Mesh(vertices, pages[:count])) for count in (4, 5))
-    assert "1 new half-edges" in after.added(before)
-
-
 def test_meshes_out_of_range_are_named():
     for size in (1e70, 1e-70):
         with pytest.raises(ValueError, match="out of range: scale it"):
@@ -172,20 +168,17 @@ def walk(rings):
     return states
 
 
-def test_a_feasible_target_keeps_everything_and_nothing_kept_has_nothing_to_shrink():
-    assert shrunk_rings(LARGE, smallest_feasible(LARGE, KEEP), KEEP).tolist() == [3] * 6
-    assert shrunk_rings(LARGE, 100, None).shape == (0,)
-
-
 @pytest.mark.parametrize(("rings", "faces"), [([3] * 6, 150), ([3] * 6, 450), ([1, 4, 2, 0, -1, 3], 20)])
 def test_the_first_feasible_state_of_the_walk_is_taken(rings, faces):
     states = walk(rings)
     first = next(state for state in states if smallest_feasible(LARGE, KEEP, np.array(state)) <= faces)
+    assert shrunk_rings(LARGE, smallest_feasible(LARGE, KEEP, np.array(rings)), KEEP, np.array(rings)).tolist() == rings
     assert shrunk_rings(LARGE, faces, KEEP, np.array(rings)).tolist() == first
 
 
-def test_a_target_below_the_mesh_itself_is_infeasible():
+def test_nothing_kept_has_nothing_to_shrink_and_a_target_below_the_mesh_itself_is_infeasible():
     ring = Mesh(TORUS.vertices, TORUS.faces)
+    assert shrunk_rings(ring, 100, None).shape == (0,)
     with pytest.raises(InfeasibleTarget) as caught:
         shrunk_rings(ring, 10, [3])
     assert (caught.value.frozen, caught.value.smallest) == (0, smallest_feasible(ring))

@@ -6,40 +6,32 @@ import pytest
 from haptic_glance.lod import frozen_faces, neighbourhoods
 from haptic_glance.lod.neighbourhood import edge_lengths
 from haptic_glance.mesh.mesh import Mesh
+from tests.lod.shapes import sheet, together
 
 
-def grid(x, y):
-    """A flat sheet with vertices at all (x, y); vertex i of x and j of y has number i * len(y) + j."""
-    a = np.arange(len(x) * len(y)).reshape(len(x), len(y))
-    corner, right, up, both = a[:-1, :-1].ravel(), a[1:, :-1].ravel(), a[:-1, 1:].ravel(), a[1:, 1:].ravel()
-    places = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    return Mesh(np.c_[places, np.zeros(len(places))], np.r_[np.c_[corner, right, up], np.c_[up, right, both]])
+def scaled(mesh, size, place=0):
+    return Mesh(size * mesh.vertices + [place, 0, 0], mesh.faces)
 
 
-EVEN = grid(np.arange(31.0), np.arange(31.0))
+EVEN = scaled(sheet(30), 30)  # edges of 1; vertex i of x and j of y has number i * 31 + j
 MIDDLE = 15 * 31 + 15
-# Three sheets with edges of 1, 2 and 4 in one mesh: three densities.
-SHEETS = [grid(np.arange(9) * step, np.arange(9) * step) for step in (1.0, 2.0, 4.0)]
-THREE = Mesh(
-    np.concatenate([sheet.vertices + [100 * k, 0, 0] for k, sheet in enumerate(SHEETS)]),
-    np.concatenate([sheet.faces + 81 * k for k, sheet in enumerate(SHEETS)]),
-)
+THREE = together(*(scaled(sheet(8), 8 * step, 100 * step) for step in (1, 2, 4)))  # three densities: edges of 1, 2, 4
 CENTRES = np.array([40, 40 + 81, 40 + 162])
 
 
-def test_fixed_takes_the_same_everywhere():
-    assert neighbourhoods(EVEN, [3, MIDDLE]).tolist() == [3, 3]
-    assert neighbourhoods(EVEN, [3, MIDDLE], rings=5).tolist() == [5, 5]
-
-
-def test_adaptive_takes_one_two_and_three_rings_by_thirds_of_the_longest():
-    assert neighbourhoods(THREE, CENTRES, "adaptive").tolist() == [1, 2, 3]
-    assert neighbourhoods(THREE, CENTRES[::-1], "adaptive").tolist() == [3, 2, 1]
-
-
-def test_adaptive_compares_the_points_with_each_other_alone():
-    assert neighbourhoods(THREE, CENTRES[:2], "adaptive").tolist() == [2, 3]  # 1/2 of the longest, and the longest
-    assert neighbourhoods(THREE, CENTRES[:1], "adaptive").tolist() == [3]
+@pytest.mark.parametrize(
+    ("points", "settings", "rings"),
+    [
+        (CENTRES[:2], {}, [3, 3]),
+        (CENTRES[:2], {"rings": 5}, [5, 5]),
+        (CENTRES, {"rule": "adaptive"}, [1, 2, 3]),  # by thirds of the longest
+        (CENTRES[::-1], {"rule": "adaptive"}, [3, 2, 1]),
+        (CENTRES[:2], {"rule": "adaptive"}, [2, 3]),  # compared with each other alone
+        (CENTRES[:1], {"rule": "adaptive"}, [3]),
+    ],
+)
+def test_fixed_takes_the_same_everywhere_and_adaptive_goes_by_the_length_of_edges(points, settings, rings):
+    assert neighbourhoods(THREE, points, **settings).tolist() == rings
 
 
 def test_adaptive_puts_the_ends_of_the_thirds_into_the_lower_one():
@@ -74,7 +66,7 @@ def test_outside_all_regions_and_where_there_is_none_a_point_keeps_one_ring():
 
 
 def test_area_counts_surface_and_not_vertices():
-    fine = grid(np.arange(0, 30.5, 0.5), np.arange(0, 30.5, 0.5))
+    fine = scaled(sheet(60), 30)
     smooth = [-((mesh.vertices[:, :2] - 15) ** 2).sum(axis=1) for mesh in (EVEN, fine)]
     coarse = neighbourhoods(EVEN, [MIDDLE], "area", smooth[0])[0]
     assert abs(neighbourhoods(fine, [30 * 61 + 30], "area", smooth[1])[0] - 2 * coarse) <= 1

@@ -7,7 +7,7 @@ from skimage.metrics import structural_similarity
 
 from haptic_glance.base.similarity import local_moments
 from haptic_glance.lod import perceptual, picture_errors, simplify, take_pictures
-from haptic_glance.lod.perceptual import analyse, laplacian_pyramid, ssim_error
+from haptic_glance.lod.perceptual import analyse, ssim_error
 from haptic_glance.look.views import FOUR
 from haptic_glance.mesh.mesh import Mesh
 
@@ -75,11 +75,9 @@ def test_bad_arguments_are_named():
 # plenoptic 1.2.0 in double precision: metric.nlpd, and the same pooling over simulate.LaplacianPyramid(6, True).
 SCORES = {
     ("shift", 225, 300): (0.36543885290173156, 0.016516276691764212),
-    ("shift", 67, 81): (0.5243430908999467, 0.0224654911279288),
     ("dim", 67, 81): (0.167706308298362, 0.029703061685613277),
     ("disc", 67, 81): (0.06685266749247444, 0.002492714241497552),
     ("shift", 64, 50): (0.6052396636084998, 0.025705877132114367),
-    ("disc", 64, 50): (0.06196616933962821, 0.002474239311256318),
 }
 
 
@@ -115,23 +113,6 @@ def test_distances_are_a_symmetric_zero_for_equal_pictures():
     one, other = pair("disc", 60, 80)
     assert not distances(one, one).any()
     assert (distances(one, other) == distances(other, one)).all() and (distances(one, other) > 0).all()
-
-
-def test_bands_add_up_to_the_picture():
-    import cv2
-
-    image = 255 * waves(64, 96)
-    rest, *bands = laplacian_pyramid(image)[::-1]
-    for band in bands:
-        rimmed = cv2.copyMakeBorder(rest, 1, 1, 1, 1, cv2.BORDER_REFLECT_101)
-        rest = band + cv2.pyrUp(rimmed)[2 : 2 + band.shape[0], 2 : 2 + band.shape[1]]
-    assert 255 * rest == pytest.approx(image, abs=1e-4)
-
-
-def test_an_even_picture_has_only_its_mean():
-    *bands, rest = laplacian_pyramid(np.full((64, 96), 102.0))
-    assert max(np.abs(band).max() for band in bands) < 1e-7
-    assert rest == pytest.approx(np.full(rest.shape, 0.4), rel=1e-6)
 
 
 def test_small_pictures_give_finite_distances():

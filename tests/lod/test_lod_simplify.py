@@ -8,7 +8,6 @@ from haptic_glance.lod import (
     InfeasibleTarget,
     SimplifyError,
     frozen_faces,
-    metro,
     qem,
     quadric_weights,
     shrunk_rings,
@@ -46,20 +45,6 @@ def test_unit_of_length_does_not_matter():
         assert np.array_equal(simplify(Mesh(mesh.vertices * unit, mesh.faces), 300).vertices, simple.vertices * unit)
 
 
-def test_enough_faces_give_the_mesh_itself():
-    mesh = ball(2)
-    assert simplify(mesh, len(mesh.faces)) is mesh
-    assert simplify(mesh, 10**6, keep=[1]) is mesh
-
-
-def test_colours_follow_the_surface():
-    mesh = ball(3)
-    colors = np.where(mesh.vertices[:, 2:] > 0, [[200, 0, 0]], [[0, 0, 200]]).astype(np.uint8)
-    simple = simplify(Mesh(mesh.vertices, mesh.faces, colors), 300)
-    up = np.abs(simple.vertices[:, 2]) > 0.1
-    assert ((simple.colors[:, 0] == 200) == (simple.vertices[:, 2] > 0))[up].all()
-
-
 def test_many_nonmanifold_vertices_do_not_hold_the_surface_up():
     inner = ball(3)
     pinched = []
@@ -88,7 +73,6 @@ def test_infeasible_target_names_the_smallest_count_and_that_count_works():
     assert caught.value.smallest == smallest_feasible(mesh, keep)
     simple = simplify(mesh, caught.value.smallest, keep)
     assert len(simple.faces) <= caught.value.smallest
-    assert metro(mesh, simple, 2000)["mean"] < 0.01
 
 
 def test_a_result_with_new_faults_is_never_returned(monkeypatch):
@@ -129,12 +113,6 @@ def test_shrinking_reaches_what_was_infeasible_and_keeps_the_rings_it_says():
     rings = shrunk_rings(mesh, 250, keep)
     assert as_triangles(mesh, frozen_faces(mesh, keep, rings)) <= as_triangles(simple)
     assert simplify(mesh, 250, keep, rings).vertices.tobytes() == simple.vertices.tobytes()
-
-
-def test_equal_weights_are_plain_qem():
-    mesh = ball(3)
-    plain, soft = simplify(mesh, 300), simplify(mesh, 300, weights=np.full(len(mesh.vertices), 0.4))
-    assert soft.vertices.tobytes() == plain.vertices.tobytes() and np.array_equal(soft.faces, plain.faces)
 
 
 def test_where_the_weight_is_high_more_faces_stay_and_the_surface_is_closer():

@@ -17,7 +17,6 @@ from haptic_glance.look.views import viewpoint_set
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.lod import Params, __main__, data_set
-from stages.lod import cell as cell_module
 from stages.lod.cell import ObjectInputs, measure_cells, measure_errors
 from stages.lod.data_set import summarise
 from stages.salient_points.measure import write_points
@@ -250,23 +249,6 @@ def test_bad_targets_are_named(target):
 def test_bad_names_of_methods_are_named(name, message):
     with pytest.raises(ValueError, match=message):
         variant(name)
-
-
-def test_it_works_once_for_each_backend(monkeypatch):
-    asked = []
-
-    def counted(mesh, faces, *rest, **options):
-        asked.append((faces, options.get("backend")))
-        return simplify(mesh, faces, *rest, **options)
-
-    monkeypatch.setattr(cell_module, "simplify", counted)
-    cell_module.warm_up.cache_clear()
-    cell_module.warm_up("fast")
-    assert len(asked) == 2
-    cell_module.warm_up("fast")
-    assert len(asked) == 2
-    cell_module.warm_up("pymeshlab")
-    assert len(asked) == 4
 
 
 def test_the_stage_warms_its_backend_up_before_it_reads_the_object(monkeypatch, tmp_path):
