@@ -80,7 +80,7 @@ def test_odd_meshes_give_finite_maps(name):
             assert not values.any() or channel == "symmetry", channel
 
 
-@pytest.mark.parametrize("size", [(3, 5), (9, 12), (20, 31)])
+@pytest.mark.parametrize("size", [(3, 5), (20, 31)])
 def test_tiny_and_empty_views_give_finite_maps(size):
     view = render(BOX, Viewpoint(30, 20), size, "raster")
     assert all(np.isfinite(values).all() for values in conspicuity(BOX, view, [*CHANNELS, *OTHERS]).values())

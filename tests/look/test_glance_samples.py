@@ -53,28 +53,6 @@ def test_the_two_sides_of_a_thin_plate_stay_apart():
     assert np.abs(up[inner]).min() > 0.99
 
 
-def test_values_are_interpolated_nearly_where_they_are_linear_and_from_the_own_side_of_a_thin_plate(ball):
-    mesh = sphere(4)
-    near, weights = ball.interpolation(mesh.vertices, mesh.vertex_normals)
-    assert weights.sum(axis=1) == pytest.approx(1)
-    assert (ball.points[near] * weights[:, :, None]).sum(axis=1) == pytest.approx(mesh.vertices, abs=2 * SPACING)
-    plate = as_mesh(trimesh.creation.box((0.7, 0.7, 0.004)).subdivide_to_size(0.05))
-    samples = samples_of_mesh(plate)
-    near, weights = samples.interpolation(plate.vertices, plate.vertex_normals)
-    inner = np.abs(plate.vertices[:, :2]).max(axis=1) < 0.3
-    facing = (samples.normals[near, 2] * weights).sum(axis=1)
-    assert np.abs(facing - plate.vertex_normals[:, 2])[inner].mean() < 0.05
-
-
-def test_smoothing_spreads_by_its_length_and_keeps_a_constant(ball):
-    assert ball.smoothed(np.ones(len(ball.points)), 0.05) == pytest.approx(1)
-    spot = np.zeros(len(ball.points))
-    spot[0] = 1
-    spread = ball.smoothed(spot, 0.05)
-    away = np.linalg.norm(ball.points - ball.points[0], axis=1)
-    assert np.sqrt((spread * away**2).sum() / spread.sum() / 2) == pytest.approx(0.05, rel=0.4)
-
-
 def test_little_surface_has_samples_along_it_and_none_is_an_error():
     needle = samples_of_mesh(Mesh(np.array([[-0.5, 0, 0], [0.5, 0, 0], [0, 1e-14, 0]]), np.array([[0, 1, 2]])))
     assert np.ptp(needle.points[:, 0]) > 0.9 and np.abs(needle.points[:, 1:]).max() < 1e-9

@@ -23,7 +23,6 @@ from .conftest import as_mesh, ball_mesh, flat_grid, raised_ball
     ("name", "message"),
     [
         ("thesis", "did you mean thesis_ssim"),
-        ("enhanced attention", "did you mean thesis_ssim"),
         ("visual-attention", "did you mean itti"),
         ("glanse", "did you mean glance"),
         ("Lee", "did you mean mesh_saliency"),

@@ -34,15 +34,6 @@ def test_a_bump_of_the_right_size_is_the_first_point_and_a_wide_swell_is_none(ri
     assert points[0] == top if rival is not sift else len(points) == 1
 
 
-@pytest.mark.parametrize("rival", [mesh_saliency, salient_points])
-@pytest.mark.slow
-def test_the_ends_of_an_ellipsoid_and_the_corners_of_a_cube_come_first(rival):
-    ellipsoid = Mesh(ball_mesh(4).vertices * [1, 0.3, 0.3], ball_mesh(4).faces)
-    np.testing.assert_allclose(np.abs(ellipsoid.vertices[rival.points(ellipsoid)[:2]]), [X, X], atol=0.02)
-    first = CUBE.vertices[rival.points(CUBE)[:8]]
-    np.testing.assert_allclose(np.abs(first), np.full((8, 3), 0.5))
-
-
 def test_salient_points_exceed_three_tenths_of_the_maximum():
     mesh = raised_ball(np.eye(3), [0.08, 0.08, 0.08], [0.06, 0.006, 0.04])
     values = salient_points.saliency(mesh)
