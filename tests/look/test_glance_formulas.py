@@ -34,6 +34,16 @@ def bean() -> trimesh.Trimesh:
     return shape
 
 
+def sized(samples):
+    """(s, 3): the points from their centroid, along the axes of the object, over 3.5 times their deviation."""
+    local = (samples.points - samples.shares @ samples.points) @ samples.axes.T
+    return local / (3.5 * np.sqrt(samples.shares @ (local**2).sum(axis=1)))
+
+
+def spacing_of(samples):
+    return np.sqrt((samples.areas**2).sum() / samples.areas.sum())
+
+
 @pytest.fixture(scope="module")
 def few() -> Samples:
     return samples_of_mesh(as_mesh(bean()), 700)
@@ -43,7 +53,7 @@ def few() -> Samples:
 def dense(few):
     """(s, s): the matrix of the averages."""
     squared = ((few.points[:, None] - few.points[None]) ** 2).sum(axis=2)
-    spacing = np.sqrt((few.areas**2).sum() / few.areas.sum())
+    spacing = spacing_of(few)
     side = np.clip((few.normals @ few.normals.T + 0.2) / 0.4, 0, 1)
     weight = np.exp(-squared / (1.4 * spacing) ** 2) * side * (squared <= (2.5 * spacing) ** 2)
     np.fill_diagonal(weight, 1)
@@ -54,13 +64,13 @@ def dense(few):
 @pytest.mark.slow
 def test_an_average_weighs_near_points_of_its_side_by_their_area(few, dense):
     assert few.average.toarray() == pytest.approx(dense, abs=1e-12)
-    values, spacing = few.points, np.sqrt((few.areas**2).sum() / few.areas.sum())
+    values, spacing = few.points, spacing_of(few)
     steps = np.linalg.matrix_power(dense, 7)  # 2.6^2 = 6.76
     assert few.smoothed(values, 2.6 * spacing) == pytest.approx(steps @ values, abs=1e-12)
 
 
 def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, dense):
-    spacing = np.sqrt((few.areas**2).sum() / few.areas.sum())
+    spacing = spacing_of(few)
     fine, coarse = (
         np.einsum("ij,ij->i", few.normals, few.points - np.linalg.matrix_power(dense, step) @ few.points)
         / (np.sqrt(step) * spacing)
@@ -74,8 +84,7 @@ def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, de
 @pytest.mark.slow
 def test_fullness_is_the_surface_in_a_gaussian_over_a_disc():
     samples = samples_of_mesh(as_mesh(bean()), 2000)
-    local = (samples.points - samples.shares @ samples.points) @ AXES.T
-    local /= 3.5 * np.sqrt(samples.shares @ (local**2).sum(axis=1))
+    local = sized(samples)
     squared = ((local[:, None] - local[None]) ** 2).sum(axis=2)
     for radius in (0.12, 0.24):
         within = np.exp(-squared / (2 * radius**2 / 5)) @ samples.shares
@@ -97,7 +106,7 @@ def directions():
 
 def looked_at(samples):
     """(s,) of `visibility`, one direction and one point after the other."""
-    spacing = np.sqrt((samples.areas**2).sum() / samples.areas.sum())
+    spacing = spacing_of(samples)
     places = (samples.points - samples.shares @ samples.points) / spacing
     sums, counts, seen = np.zeros((3, len(places))), np.zeros(3), np.zeros(len(places))
     for eye in directions():
@@ -125,10 +134,7 @@ def test_visibility_is_that_of_pictures_drawn_point_by_point(few, monkeypatch):
 
 
 def test_a_mirror_plane_counts_by_the_correlation_of_both_halves(few):
-    samples = few
-    local = (samples.points - samples.shares @ samples.points) @ samples.axes.T
-    local /= 3.5 * np.sqrt(samples.shares @ (local**2).sum(axis=1))
-    x, y, z = local.T
+    samples, (x, y, z) = few, sized(few).T
     radius = np.hypot(x, y)
     index = [
         np.clip(((values - low) / (high - low) * bins).astype(int), 0, bins - 1)
@@ -160,8 +166,7 @@ def test_a_mirror_plane_counts_by_the_correlation_of_both_halves(few):
 def test_each_feature_is_its_formula():
     samples = samples_of_mesh(as_mesh(bean()), 3000)
     found, (seen, side, above, below) = features(samples), visibility(samples)
-    local = (samples.points - samples.shares @ samples.points) @ samples.axes.T
-    local /= 3.5 * np.sqrt(samples.shares @ (local**2).sum(axis=1))
+    local = sized(samples)
     height, distance, normals = local[:, 2], np.linalg.norm(local, axis=1), samples.normals @ samples.axes.T
     rank = np.array([samples.shares @ ((height < h) + (height == h) / 2) for h in height])
     assert found["rank"] == pytest.approx(rank, abs=0.02) and found["rank"] == pytest.approx(rank, abs=0.006, rel=0.1)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.look.channels.channels import CHANNELS, OTHERS
 from haptic_glance.look.glance import samples_of_mesh
 from haptic_glance.look.kernels import pressed
 from haptic_glance.look.points import METHODS, detect, find_points
@@ -45,6 +46,7 @@ def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_lis
     with pytest.raises(ValueError, match="no such method; choose one of qem, glance, "):
         check_name("xyzzy", ["qem"])
     assert set(MEANT.values()) <= set(METHODS) and not set(MEANT) & set(METHODS)
+    assert all(set(method.channels) <= {*CHANNELS, *OTHERS} for method in METHODS.values())
 
 
 @pytest.fixture(scope="module")

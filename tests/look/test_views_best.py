@@ -75,13 +75,6 @@ def test_the_best_set_has_the_highest_average_of_all_and_equal_sets_go_by_order_
         assert best_viewpoints(ball, level) == list(PERPENDICULAR_SETS[0])
 
 
-def test_at_most_four_views_are_added():
-    shells = [trimesh.creation.icosphere(subdivisions=2, radius=radius) for radius in (0.5, 0.4)]
-    assert best_viewpoints(as_mesh(trimesh.util.concatenate(shells)), flat_level) == [
-        *PERPENDICULAR_SETS[0], *BETWEEN[0],
-    ]  # fmt: skip
-
-
 def test_the_rays_of_a_view_depend_on_the_seed_and_the_view_alone():
     torus = as_mesh(trimesh.creation.torus(0.4, 0.05, major_sections=32, minor_sections=12))
     views = [Viewpoint(azimuth, 8) for azimuth in range(0, 360, 10)]
