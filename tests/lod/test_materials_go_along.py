@@ -105,25 +105,25 @@ def test_materials_and_their_pictures_go_from_glb_to_glb(simplified, tmp_path):
     assert all(new[name] == old[name] for name in ("normalTexture", "metallicRoughnessTexture"))
 
 
-def test_what_cannot_be_carried_is_said(simplified):
+def named(tree, name):
+    """The one material of a GLB with this name."""
+    (material,) = (each for each in tree["materials"] if each["name"] == name)
+    return material
+
+
+def test_what_cannot_be_carried_is_said_and_a_picture_on_other_coordinates_is_left_out(simplified):
     def change(tree):
-        tree["materials"][0]["extensions"] = {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}
-        tree["materials"][0]["normalTexture"]["scale"] = 0.5
+        varnish = named(tree, "varnish")
+        varnish["occlusionTexture"] = {**varnish["normalTexture"], "texCoord": 1}
+        varnish["extensions"] = {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}
+        varnish["normalTexture"]["scale"] = 0.5
         tree["animations"] = [{"channels": [], "samplers": []}]
 
-    _, said = simplified("out.glb", change)
-    assert "dropped from art.glb" in said
-    assert all(name in said for name in ("KHR_materials_clearcoat", "normalTexture.scale", "animations"))
-
-
-def test_a_picture_on_other_coordinates_is_left_out(simplified):
-    def change(tree):
-        (varnish,) = (one for one in tree["materials"] if one["name"] == "varnish")
-        varnish["occlusionTexture"] = {**varnish["normalTexture"], "texCoord": 1}
-
     out, said = simplified("out.glb", change)
-    assert "occlusionTexture.texCoord" in said
-    (varnish,) = (one for one in tree_of(out)[0]["materials"] if one["name"] == "varnish")
+    assert "dropped from art.glb" in said
+    lost = ("KHR_materials_clearcoat", "normalTexture.scale", "animations", "occlusionTexture.texCoord")
+    assert all(name in said for name in lost)
+    varnish = named(tree_of(out)[0], "varnish")
     assert "occlusionTexture" not in varnish and "normalTexture" in varnish
 
 

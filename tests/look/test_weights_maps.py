@@ -94,7 +94,6 @@ FLAT = np.zeros(SHAPE)
     ("call", "message"),
     [
         (lambda: euclidean_weights([{}, {}]), "no view shows a ground truth point"),
-        (lambda: similarity_weights([{}]), "no view shows a ground truth point"),
         (lambda: average([{"a": 1.0}, {"b": 1.0}]), "different channels: a and b"),
         (lambda: euclidean_weights([{"a": 1.0, "b": float("nan")}]), "finite"),
         (lambda: view_distances({}, [1], [1]), "no conspicuity maps"),
