@@ -102,8 +102,9 @@ def test_everything_kept_leaves_the_mesh_or_is_infeasible(name):
     assert smallest_feasible(mesh, everything) == len(mesh.faces)
     assert simplify(mesh, len(mesh.faces), everything) is mesh
     if len(mesh.faces) > 1:
-        with pytest.raises(InfeasibleTarget):
+        with pytest.raises(InfeasibleTarget) as caught:
             simplify(mesh, len(mesh.faces) - 1, everything)
+        assert caught.value.smallest == caught.value.frozen == len(mesh.faces)
 
 
 def normals_up(mesh):

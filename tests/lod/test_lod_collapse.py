@@ -134,25 +134,6 @@ def test_buckets_halve_each_doubling_of_the_cost():
     assert bucket(0.0) == bucket(1e-40) == 0 and collapse.BUCKETS == 456
 
 
-def test_the_queue_gives_a_half_edge_of_the_least_bucket():
-    push, pop, queued = (interpreted(work) for work in (collapse.push, collapse.pop, collapse.is_queued))
-    queue, random = collapse.empty_queue(60), np.random.default_rng(0)
-    buckets, inside, gone = random.integers(0, 30, 60), {}, []
-    assert pop(*queue) == (-1, -1)
-    for h in random.permutation(60).tolist():
-        push(*queue, h, int(buckets[h]))
-        inside[h] = buckets[h]
-        if h % 3 == 0:
-            first, at = pop(*queue)
-            assert at == min(inside.values()) == inside.pop(first)
-            gone.append(first)
-        assert [k for k in range(60) if queued(queue[1], k)] == sorted(inside)
-    while inside:
-        first, at = pop(*queue)
-        assert at == min(inside.values()) == inside.pop(first)
-    assert pop(*queue) == (-1, -1) and len(gone) == 20
-
-
 def plane_sums(mesh, weight, place, vertices):
     """The error of some vertices at a place: a third of each face's area times its squared distances, by definition."""
     error, a_third = 0.0, 1 / 6

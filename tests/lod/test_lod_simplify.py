@@ -5,14 +5,11 @@ import pytest
 import trimesh
 
 from haptic_glance.lod import (
-    InfeasibleTarget,
     SimplifyError,
     frozen_faces,
     qem,
     quadric_weights,
-    shrunk_rings,
     simplify,
-    smallest_feasible,
 )
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
@@ -66,15 +63,6 @@ def test_a_tiny_piece_and_a_thin_handle_survive_a_low_target():
     assert topology(simplify(Mesh(thin.vertices, thin.faces), 60).faces).genus == 1
 
 
-def test_infeasible_target_names_the_smallest_count_and_that_count_works():
-    mesh, keep = ball(), [11, 900, 1500, 2200]
-    with pytest.raises(InfeasibleTarget) as caught:
-        simplify(mesh, 250, keep)
-    assert caught.value.smallest == smallest_feasible(mesh, keep)
-    simple = simplify(mesh, caught.value.smallest, keep)
-    assert len(simple.faces) <= caught.value.smallest
-
-
 def test_a_result_with_new_faults_is_never_returned(monkeypatch):
     mesh = ball(3)
     folded = Mesh(mesh.vertices, np.r_[mesh.faces[:300], mesh.faces[:1, ::-1]])
@@ -104,15 +92,6 @@ def test_frozen_faces_survive_bit_for_bit_where_rings_differ_and_a_vertex_may_be
     assert as_triangles(mesh, frozen_faces(mesh, [11], 3) | frozen_faces(mesh, [900], 0)) <= held
     for vertex, rings in ((900, 2), (1500, 0)):
         assert not as_triangles(mesh, frozen_faces(mesh, [vertex], rings)) <= held
-
-
-def test_shrinking_reaches_what_was_infeasible_and_keeps_the_rings_it_says():
-    mesh, keep = ball(), [11, 900, 1500, 2200]
-    simple = simplify(mesh, 250, keep, shrink=True)
-    assert len(simple.faces) <= 250
-    rings = shrunk_rings(mesh, 250, keep)
-    assert as_triangles(mesh, frozen_faces(mesh, keep, rings)) <= as_triangles(simple)
-    assert simplify(mesh, 250, keep, rings).vertices.tobytes() == simple.vertices.tobytes()
 
 
 def test_where_the_weight_is_high_more_faces_stay_and_the_surface_is_closer():
