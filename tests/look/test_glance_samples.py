@@ -9,23 +9,19 @@ from haptic_glance.look.glance import COUNT, Samples, samples_of_mesh, samples_o
 from haptic_glance.look.glance.denoise import denoised
 from haptic_glance.mesh.mesh import Mesh, unit
 
-from .conftest import as_mesh
+from .conftest import as_mesh, ball_mesh
 
 SPACING = np.sqrt(np.pi / COUNT)  # of points spread evenly over a sphere of radius 0.5
 
 
-def sphere(subdivisions: int) -> Mesh:
-    return as_mesh(trimesh.creation.icosphere(subdivisions, radius=0.5))
-
-
 @pytest.fixture(scope="module")
 def ball() -> Samples:
-    return samples_of_mesh(sphere(5))
+    return samples_of_mesh(ball_mesh(5, 0.5))
 
 
 def test_samples_are_as_many_as_asked_for_even_and_on_the_surface(ball):
     assert len(ball.points) == pytest.approx(COUNT, rel=0.35)
-    assert ball.areas.sum() == pytest.approx(sphere(5).face_areas.sum())
+    assert ball.areas.sum() == pytest.approx(ball_mesh(5, 0.5).face_areas.sum())
     assert np.linalg.norm(ball.points, axis=1) == pytest.approx(0.5, abs=0.2 * SPACING)
     assert np.einsum("ij,ij->i", ball.normals, ball.points) == pytest.approx(0.5, abs=0.01)
     polar = [np.sum(ball.areas[np.abs(ball.points[:, axis]) > 0.25]) for axis in range(3)]  # half of a sphere's area
@@ -35,11 +31,11 @@ def test_samples_are_as_many_as_asked_for_even_and_on_the_surface(ball):
 
 @pytest.mark.slow
 def test_samples_hardly_depend_on_the_triangles_and_are_the_same_of_a_cloud_and_at_every_call(ball):
-    coarse = samples_of_mesh(sphere(4))
+    coarse = samples_of_mesh(ball_mesh(4, 0.5))
     assert ball.tree.query(coarse.points)[0].max() < 2 * SPACING
     assert len(coarse.points) == pytest.approx(len(ball.points), rel=0.05)
-    assert coarse.points.tobytes() == samples_of_mesh(sphere(4)).points.tobytes()
-    dense = samples_of_mesh(sphere(5), 3 * COUNT)
+    assert coarse.points.tobytes() == samples_of_mesh(ball_mesh(4, 0.5)).points.tobytes()
+    dense = samples_of_mesh(ball_mesh(5, 0.5), 3 * COUNT)
     cloud = samples_of_points(dense.points, dense.normals)
     assert len(cloud.points) == pytest.approx(COUNT, rel=0.3)
     assert ball.tree.query(cloud.points)[0].max() < 2 * SPACING

@@ -11,14 +11,10 @@ from haptic_glance.look.views import CANDIDATES, PERPENDICULAR_SETS, best_viewpo
 from haptic_glance.look.views.best import BETWEEN
 from haptic_glance.mesh.mesh import Mesh
 
-from .conftest import as_mesh
+from .conftest import as_mesh, ball_mesh
 
+BALL = ball_mesh(3, 0.5)
 ALONG, ACROSS = [Viewpoint(90, 0), Viewpoint(270, 0)], [Viewpoint(0, 0), Viewpoint(180, 0), Viewpoint(0, 90)]
-
-
-@pytest.fixture(scope="module")
-def ball():
-    return as_mesh(trimesh.creation.icosphere(subdivisions=3, radius=0.5))
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +28,10 @@ def flat_level(_):
     return 1.0
 
 
-def test_a_convex_body_hides_nothing_and_gets_no_added_view(ball):
-    assert not hidden_surface(ball, CANDIDATES).any()
-    assert best_viewpoints(ball, flat_level) == list(PERPENDICULAR_SETS[0])
-    doubled = Mesh(ball.vertices, np.r_[ball.faces, ball.faces[:, ::-1]])  # coincident faces count once
+def test_a_convex_body_hides_nothing_and_gets_no_added_view():
+    assert not hidden_surface(BALL, CANDIDATES).any()
+    assert best_viewpoints(BALL, flat_level) == list(PERPENDICULAR_SETS[0])
+    doubled = Mesh(BALL.vertices, np.r_[BALL.faces, BALL.faces[:, ::-1]])  # coincident faces count once
     assert not hidden_surface(doubled, CANDIDATES[::6]).any()
 
 
@@ -67,12 +63,12 @@ def test_added_views_count_in_the_average(row):
     assert best_viewpoints(row, level) == list(PERPENDICULAR_SETS[0])
 
 
-def test_the_best_set_has_the_highest_average_of_all_and_equal_sets_go_by_order_whatever_the_rounding(ball):
+def test_the_best_set_has_the_highest_average_of_all_and_equal_sets_go_by_order_whatever_the_rounding():
     levels = dict(zip(CANDIDATES, np.random.default_rng(0).random(62), strict=True))
     means = [np.mean([levels[view] for view in views]) for views in PERPENDICULAR_SETS]
-    assert best_viewpoints(ball, levels.__getitem__) == list(PERPENDICULAR_SETS[int(np.argmax(means))])
+    assert best_viewpoints(BALL, levels.__getitem__) == list(PERPENDICULAR_SETS[int(np.argmax(means))])
     for level in (lambda view: 0.1 + 1e-17 * view.azimuth, lambda view: 0.0):
-        assert best_viewpoints(ball, level) == list(PERPENDICULAR_SETS[0])
+        assert best_viewpoints(BALL, level) == list(PERPENDICULAR_SETS[0])
 
 
 def test_the_rays_of_a_view_depend_on_the_seed_and_the_view_alone():
@@ -93,6 +89,6 @@ def test_one_triangle_has_four_views_and_a_mesh_without_area_is_refused():
 
 
 @pytest.mark.parametrize("level", [np.inf, np.zeros((2, 2))], ids=["infinite", "map"])
-def test_a_level_that_is_no_finite_number_names_the_view(ball, level):
+def test_a_level_that_is_no_finite_number_names_the_view(level):
     with pytest.raises(ValueError, match="az0_el0 must be one finite number"):
-        best_viewpoints(ball, lambda view: level)
+        best_viewpoints(BALL, lambda view: level)
