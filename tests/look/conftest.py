@@ -38,7 +38,7 @@ def lopsided():
     return Mesh(v / (2 * np.linalg.norm(v, axis=1).max()), source.faces)
 
 
-def raised_ball(tops, widths, heights, subdivisions=5):
+def raised_ball(tops, widths, heights, subdivisions=4):
     """The ball_mesh raised round each top (a unit vector) by height * exp(-distance^2 / (2 width^2))."""
     ball = ball_mesh(subdivisions)
     squared = 2 - 2 * ball.vertices @ np.array(tops, dtype=float).T

@@ -123,7 +123,7 @@ def test_little_to_look_at_has_an_answer_without_a_warning():
 
 @pytest.fixture(scope="module")
 def knob():
-    return raised_ball([(1.0, 0, 0)], [0.15], [0.3], 4)
+    return raised_ball([(1.0, 0, 0)], [0.15], [0.3])
 
 
 def nearest(mesh, place):
@@ -143,7 +143,7 @@ def test_the_parts_add_up_to_the_log_of_the_saliency(knob, method):
 def test_a_knob_is_found_for_its_shape_and_a_hollow_counts_against_a_place(knob):
     words = reasons(contributions(knob, nearest(knob, (1.3, 0, 0))))[0]
     assert "bulges out" in dict(words) and [amount for _, amount in words] == sorted(dict(words).values(), reverse=True)
-    dent = raised_ball([(1.0, 0, 0)], [0.2], [-0.3], 4)
+    dent = raised_ball([(1.0, 0, 0)], [0.2], [-0.3])
     parts = contributions(dent, nearest(dent, (0.7, 0, 0)))
     assert parts["convexity"] < 0 and "a hollow" not in dict(reasons(parts, count=len(parts))[0])
     assert dict(reasons(parts, against=True)[0])["a hollow"] == pytest.approx(parts["convexity"][0])

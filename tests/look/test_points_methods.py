@@ -52,7 +52,7 @@ def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_lis
 @pytest.fixture(scope="module")
 def bumpy():
     tops = np.array([[1, 0, 0], [-1, 0, 0.2], [0, 1, 0.5], [0, -1, -0.3], [0.3, 0.2, 1]])
-    return normalise(raised_ball(tops / np.linalg.norm(tops, axis=1, keepdims=True), [0.15] * 5, [0.2] * 5, 4))
+    return normalise(raised_ball(tops / np.linalg.norm(tops, axis=1, keepdims=True), [0.15] * 5, [0.2] * 5))
 
 
 @pytest.mark.slow

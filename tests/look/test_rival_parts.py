@@ -34,7 +34,7 @@ def long():
 @pytest.fixture(scope="module")
 def knob():
     """A ball with one bump at +x."""
-    return raised_ball([[1, 0, 0]], [0.15], [0.3], subdivisions=4)
+    return raised_ball([[1, 0, 0]], [0.15], [0.3])
 
 
 def test_vertices_in_one_place_are_one_and_the_others_are_left_out(long):
@@ -94,7 +94,7 @@ def test_the_heat_kernel_of_a_sphere_is_even_and_its_spectrum_the_known_one():
 def test_the_heat_points_of_a_starfish_are_its_tips():
     angles = 2 * np.pi * np.arange(5) / 5 + 0.3
     tips = np.stack([np.cos(angles), np.sin(angles), np.zeros(5)], axis=1)
-    starfish = raised_ball(tips, [0.25] * 5, [2.5] * 5, subdivisions=4)  # a ball with thick arms round the equator
+    starfish = raised_ball(tips, [0.25] * 5, [2.5] * 5)  # a ball with thick arms round the equator
     points = heat_kernel.points(starfish, heat_kernel.saliency(starfish))
     directions = trimesh.util.unitize(starfish.vertices[points])
     assert len(points) == 5 and ((directions @ tips.T).max(axis=0) > np.cos(0.1)).all()

@@ -27,7 +27,7 @@ def test_a_bump_of_the_right_size_is_the_first_point_and_a_wide_swell_is_none(ri
     mesh = raised_ball([X, -X], [0.08, 0.5], [0.06, 0.12])
     values = rival.saliency(mesh)
     points = rival.points(mesh, values)
-    along = ball_mesh(5).vertices[:, 0]
+    along = ball_mesh(4).vertices[:, 0]
     top, swell = along.argmax(), along.argmin()
     assert np.linalg.norm(mesh.vertices[points[0]] - 1.06 * X) < 0.05 and swell not in points
     assert values[swell] <= swollen * values[top]
@@ -159,7 +159,7 @@ def test_the_corners_of_a_cube_are_its_points_and_edges_and_faces_are_far_below(
 
 
 def test_corners_of_two_sizes_are_found_each_at_its_own_scale(monkeypatch):
-    mesh, directions = raised_ball(TOPS, [0.1, 0.2], [0.3, 0.6], subdivisions=4), ball_mesh(4).vertices
+    mesh, directions = raised_ball(TOPS, [0.1, 0.2], [0.3, 0.6]), ball_mesh(4).vertices
     responses, points = corners._responses(mesh), corners.points(mesh)
     assert ((directions[points[:2]] @ np.transpose(TOPS)).max(axis=0) > np.cos(0.05)).all()
     best = responses[:, points].max(axis=0)
