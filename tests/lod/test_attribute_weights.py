@@ -9,8 +9,8 @@ from haptic_glance.lod.attribute_quadrics import attribute_quadrics
 from haptic_glance.lod.attributes import closest
 from haptic_glance.lod.kernels.collapse import decimate
 from haptic_glance.mesh.mesh import Mesh, Texture
-from tests.lod.shapes import ball, centres, grey, sheet
-from tests.lod.test_attributes import GREY, tube
+
+from .conftest import GREY, ball, centres, grey, sheet, tube
 
 COLORS, UV = {"colors": 1.0}, {"uv": 1.0}
 RAMP = np.dstack([*np.meshgrid(np.arange(256), 255 - np.arange(256)), *2 * [np.full((256, 256), 255)]]).astype(np.uint8)

@@ -7,9 +7,8 @@ from haptic_glance.lod import simplify
 from haptic_glance.lod.attributes import carry, charts
 from haptic_glance.lod.borders import close_borders, cut_borders
 from haptic_glance.mesh.mesh import Mesh, Texture
-from tests.lod.shapes import sheet
 
-GREY = np.full((1, 1, 4), 128, np.uint8)
+from .conftest import GREY, sheet, tube
 
 
 def painted_sheet():
@@ -18,20 +17,6 @@ def painted_sheet():
     plan = mesh.vertices[:, :2]
     colors = np.column_stack([200 * plan, np.full(len(plan), 50)]).round().astype(np.uint8)
     return Mesh(mesh.vertices, mesh.faces, colors, Texture(plan[mesh.faces], np.zeros(len(mesh.faces)), (GREY,)))
-
-
-def tube(around=48, along=24):
-    """A cylinder whose picture is wrapped round it once: one chart, a seam where its two ends meet, no end faces."""
-    angle, height = np.meshgrid(np.arange(around), np.linspace(0, 1, along + 1), indexing="ij")
-    turn = 2 * np.pi * angle / around
-    vertices = np.stack([0.3 * np.cos(turn), 0.3 * np.sin(turn), height], axis=-1).reshape(-1, 3)
-    at = np.arange(len(vertices)).reshape(around, along + 1)
-    a, b = at[:, :-1].ravel(), np.roll(at, -1, axis=0)[:, :-1].ravel()
-    faces = np.concatenate([np.stack([a, b, b + 1], 1), np.stack([a, b + 1, a + 1], 1)])
-    u = (faces // (along + 1)) / around
-    u[(u.max(axis=1) - u.min(axis=1) > 0.5)[:, None] & (u == 0)] = 1
-    uv = np.stack([u, vertices[faces][:, :, 2]], axis=-1)
-    return Mesh(vertices, faces, None, Texture(uv, np.zeros(len(faces)), (GREY,)))
 
 
 def bare(mesh):

@@ -8,7 +8,8 @@ from haptic_glance.lod.feasibility import frozen_faces
 from haptic_glance.lod.task import SimplificationTask
 from haptic_glance.lod.topology import NONE, faults, topology
 from haptic_glance.mesh.mesh import Mesh, Texture
-from tests.lod.shapes import sheet
+
+from .conftest import sheet
 
 
 def corners_of(mesh):

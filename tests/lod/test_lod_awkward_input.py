@@ -21,7 +21,8 @@ from haptic_glance.lod import (
 from haptic_glance.lod.errors import vertex_errors
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
-from tests.lod.shapes import sheet
+
+from .conftest import sheet
 
 SMALL = trimesh.creation.icosphere(subdivisions=2, radius=0.5)
 RING = trimesh.creation.torus(0.35, 0.12, major_sections=20, minor_sections=10)

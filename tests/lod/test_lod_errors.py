@@ -7,7 +7,8 @@ import trimesh
 
 from haptic_glance.lod.errors import SurfaceIndex, metro, salient_error, surface_errors, vertex_errors
 from haptic_glance.mesh.mesh import Mesh
-from tests.lod.shapes import ball, sheet
+
+from .conftest import ball, sheet
 
 SPHERE = ball(3)
 

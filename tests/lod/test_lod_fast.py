@@ -19,7 +19,8 @@ from haptic_glance.lod.kernels.collapse import decimate
 from haptic_glance.lod.kernels.mesh import before
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
-from tests.lod.shapes import ball, bumpy, nothing, sheet, subdivided_box
+
+from .conftest import ball, bumpy, nothing, sheet, subdivided_box
 
 
 def rows(mesh):

@@ -9,7 +9,8 @@ import trimesh
 from haptic_glance.lod import BACKENDS, InfeasibleTarget, frozen_faces, shrunk_rings, simplify, smallest_feasible
 from haptic_glance.lod.topology import Topology, faults, split_nonmanifold_vertices, topology
 from haptic_glance.mesh.mesh import Mesh
-from tests.lod.shapes import ball
+
+from .conftest import ball
 
 LARGE = ball()
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)

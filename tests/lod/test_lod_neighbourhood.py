@@ -6,7 +6,8 @@ import pytest
 from haptic_glance.lod import frozen_faces, neighbourhoods
 from haptic_glance.lod.neighbourhood import edge_lengths
 from haptic_glance.mesh.mesh import Mesh
-from tests.lod.shapes import sheet, together
+
+from .conftest import sheet, together
 
 
 def scaled(mesh, size, place=0):

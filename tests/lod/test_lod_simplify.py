@@ -13,7 +13,8 @@ from haptic_glance.lod import (
 )
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
-from tests.lod.shapes import ball, sheet, together, torus
+
+from .conftest import ball, sheet, together, torus
 
 
 def as_triangles(mesh, faces=slice(None)):

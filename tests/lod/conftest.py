@@ -1,9 +1,9 @@
-"""Surfaces to simplify: balls, tori, boxes and sheets."""
+"""Surfaces to simplify: balls, tori, boxes, sheets and a tube with a picture."""
 
 import numpy as np
 import trimesh
 
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, Texture
 
 
 def mesh_of(shape):
@@ -65,3 +65,20 @@ def together(*meshes):
     offsets = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
     faces = [mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)]
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
+
+
+GREY = np.full((1, 1, 4), 128, np.uint8)  # a picture of one pixel
+
+
+def tube(around=48, along=24):
+    """A cylinder whose picture is wrapped round it once: one chart, a seam where its two ends meet, no end faces."""
+    angle, height = np.meshgrid(np.arange(around), np.linspace(0, 1, along + 1), indexing="ij")
+    turn = 2 * np.pi * angle / around
+    vertices = np.stack([0.3 * np.cos(turn), 0.3 * np.sin(turn), height], axis=-1).reshape(-1, 3)
+    at = np.arange(len(vertices)).reshape(around, along + 1)
+    a, b = at[:, :-1].ravel(), np.roll(at, -1, axis=0)[:, :-1].ravel()
+    faces = np.concatenate([np.stack([a, b, b + 1], 1), np.stack([a, b + 1, a + 1], 1)])
+    u = (faces // (along + 1)) / around
+    u[(u.max(axis=1) - u.min(axis=1) > 0.5)[:, None] & (u == 0)] = 1
+    uv = np.stack([u, vertices[faces][:, :, 2]], axis=-1)
+    return Mesh(vertices, faces, None, Texture(uv, np.zeros(len(faces)), (GREY,)))
