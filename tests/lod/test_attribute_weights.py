@@ -47,7 +47,7 @@ def test_smooth_colours_come_out_closer_and_the_shape_stays():
     x, y, _ = plain.vertices.T
     mesh = Mesh(plain.vertices, plain.faces, grey(127 * (1 + np.sin(6 * x) * np.cos(5 * y))))
     blind, seeing = simplify(mesh, 2000), simplify(mesh, 2000, attributes={"colors": 0.1})
-    assert colour_error(mesh, seeing) < colour_error(mesh, blind) / 2
+    assert colour_error(mesh, seeing) < colour_error(mesh, blind) / 2 < 2.5
     assert metro(mesh, seeing)["mean"] < 1.5 * metro(mesh, blind)["mean"]
 
 

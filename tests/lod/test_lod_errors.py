@@ -18,6 +18,11 @@ def square(height=0.0, side=1.0):
     return Mesh(corners, [[0, 1, 2], [0, 2, 3]])
 
 
+def test_parallel_planes_are_their_distance_apart():
+    found = metro(square(), square(0.25), 500)
+    assert found == pytest.approx(dict.fromkeys(("mean", "rms", "max"), 0.25 / np.sqrt(2)), rel=1e-12)
+
+
 def test_larger_of_both_directions_counts():
     # All of the small square lies on the large one, not the other way round: the far corner is sqrt(2) / 2 away.
     small, large = square(side=0.5), square()
@@ -121,8 +126,9 @@ def test_concentric_boxes_have_the_known_errors():
     inner, outer = Mesh(box.vertices, box.faces), Mesh(1.2 * box.vertices, box.faces)
     found = metro(inner, outer, 20_000)
     over = np.clip(np.abs((np.arange(1000) + 0.5) / 1000 * 1.2 - 0.6) - 0.5, 0, None)
-    mean = np.sqrt(0.01 + over[:, None] ** 2 + over**2).mean()
-    assert found["mean"] == pytest.approx(mean / np.sqrt(3), rel=2e-3)
+    squares = 0.01 + over[:, None] ** 2 + over**2
+    assert found["mean"] == pytest.approx(np.sqrt(squares).mean() / np.sqrt(3), rel=2e-3)
+    assert found["rms"] == pytest.approx(np.sqrt(squares.mean()) / np.sqrt(3), rel=2e-3)
     assert found["max"] == pytest.approx(0.1, rel=1e-9)
 
 

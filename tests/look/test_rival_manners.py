@@ -30,9 +30,9 @@ class Held:
     rival: ModuleType
     same: float  # of the largest value: what another order or size of the mesh may change
     most: float = np.inf  # the largest value that there may be
-    alike: float = 0.99  # correlation with the map of a moved mesh: ties between clusters are told apart anew
+    alike: float = 0.99  # correlation with the map of a moved mesh: ties are told apart anew, voxels hold other parts
     samples: int = 0  # that stand for the mesh: fewer than in use, since this does not depend on how many
-    turns: bool = True  # or else a turn draws other samples, or a grid that does not turn holds other voxels
+    turns: bool = True  # or else a turn draws other samples
 
 
 EXACTLY = 1 - 1e-6
@@ -42,7 +42,7 @@ HELD = [
     Held(heat_kernel, 1e-4, alike=EXACTLY),
     Held(mesh_saliency, 1e-9, most=1 + 1e-12),
     Held(salient_points, 1e-9, most=1 + 1e-12),
-    Held(sift, 1e-9, most=1 + 1e-12, turns=False),
+    Held(sift, 1e-9, most=1 + 1e-12, alike=0.95),
     Held(leifman, 1e-6, most=1 + 1e-12, samples=300, turns=False),
     Held(song, 1e-4, samples=300, turns=False),
     Held(tasse, 1e-6, most=1 + 1e-12),
