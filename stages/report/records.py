@@ -187,5 +187,7 @@ def command(conf: Path, stage: str, sets: Iterable[str]) -> str:
     return " && ".join(parts) + " report"
 
 
+@cache
 def _read(path: Path) -> dict:
+    """The content of a file of the configuration, which one run of the report asks for some hundred times."""
     return yaml.safe_load(path.read_text(encoding="utf-8")) or {} if path.is_file() else {}
