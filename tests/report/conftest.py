@@ -227,7 +227,8 @@ def _write_sight(root, name):
 
 def make_bare(root):
     """A root with the thesis's tables and nothing measured."""
-    shutil.copytree(THESIS, root / "data/reference/thesis")
+    (root / "data/reference").mkdir(parents=True)
+    (root / "data/reference/thesis").symlink_to(THESIS)
     common = f"seed: 0\nprofile: test\nparallel: {{backend: sequential}}\ngraph: {{}}\nsets: [{', '.join(SETS)}]\n"
     write_text(root / "params.yaml", common)
     return root
@@ -269,6 +270,27 @@ def small():
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
         agreed_marks=agreed_marks,
     )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def measure(tmp_path_factory):
+    """A function that writes the rows of a stage, on one set or on those of their column, and returns the results.
+
+    results: of the root to write below; else a new one with nothing measured.
+    """
+
+    def written(stage, frame, dataset=None, results=None):
+        root = results.workspace.root if results else make_bare(tmp_path_factory.mktemp("measured"))
+        write_measurements(root, stage, frame, dataset)
+        return read_results(root)
+
+    return written
+
+
+@pytest.fixture(scope="session")
+def empty(tmp_path_factory):
+    """The results of a root with nothing measured, which no test changes."""
+    return read_results(make_bare(tmp_path_factory.mktemp("empty")))
 
 
 @pytest.fixture

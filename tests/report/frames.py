@@ -1,6 +1,8 @@
-"""Rows of frames and pictures that several tests of the report look at."""
+"""Rows of frames, verdicts and pictures that several tests of the report look at."""
 
 from PIL import Image
+
+from stages.report.verdict import judge
 
 SHADES = 20  # a chart has more, for the rims of its letters
 
@@ -11,6 +13,11 @@ def only(frame, **where):
         frame = frame[frame[column] == value]
     assert len(frame) == 1
     return frame.iloc[0]
+
+
+def verdicts(claims, results, *keys):
+    """The judged claims by key: those of these keys, or all."""
+    return judge([one for one in claims if not keys or one.key in keys], results).set_index("key")
 
 
 def has_ink(figure):

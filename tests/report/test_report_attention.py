@@ -193,13 +193,6 @@ def test_figure_is_drawn_and_says_what_it_shows(seen, name):
     assert ("3 for the median object" in drawn.caption) == (name == "views_seen")  # the fewest
 
 
-def test_without_attention_its_pieces_are_not_run(bare, small):
-    results = small.results(bare)
-    missing = {name for kind in KINDS for name in build_all(kind, results, [attention]).not_run}
-    tables = {"attention_gaze", "attention_marks", "table_3_1", "section_3_2_3", "annotations", "attention_nested"}
-    assert {*attention.FIGURES, *attention.CHARTS} | tables <= missing
-
-
 def test_object_without_ground_truth_is_passed_over(root, small):
     seen = small.results(root)
     (root / "data/test/weights/ground_truth/ball.npz").unlink()

@@ -97,12 +97,6 @@ def test_chart_puts_the_fastest_alone_on_the_front_and_counts_rounding_as_equal(
     assert figure.paths[0].exists() and "TACTO" in figure.alt
 
 
-def test_without_a_bench_nothing_is_run(bare, small):
-    for build in (table, chart):
-        with pytest.raises(NotRun, match="make bench"):
-            build(small.results(bare))
-
-
 def test_half_a_bench_or_one_without_a_rate_is_not_run(bench):
     rows = benched()
     for broken in (rows[rows["what"] == "rate"].drop(columns="to_mesh"), rows.assign(value=np.nan)):
@@ -149,8 +143,3 @@ def test_one_commit_is_drawn_and_said(bare, small):
         stability, "figures", "kernels", history(bare, small, row("a", 1, "maps", 0.1), row("a", 1, "press", 4.0))
     )
     assert figure.paths[0].exists() and "press (peer of press), maps (peer of maps)" in figure.alt
-
-
-def test_without_the_history_of_kernels_it_is_not_run(bare, small):
-    with pytest.raises(NotRun, match="make bench"):
-        costs.kernels(small.results(bare))

@@ -86,9 +86,3 @@ def test_the_chart_draws_the_front_and_keeps_its_numbers(measured):
     figure = build_one(chain, "tradeoff", "front", measured)
     assert all(path.exists() for path in figure.paths) and "takes 10 ms" in figure.caption
     assert figure.frame is not None and set(figure.frame["rung"]) == {"last", "confirmation"}
-
-
-def test_without_a_search_nothing_is_shown(bare_results):
-    for kind, name in (("tables", "front"), ("tables", "front_changed"), ("tradeoff", "front")):
-        with pytest.raises(NotRun, match="no measurements of front"):
-            build_one(chain, kind, name, bare_results)

@@ -1,6 +1,5 @@
 """Claims: pairing, intervals, words, and the one word."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,41 +10,35 @@ from stages.engine.statistics import interval, p_value
 from stages.report import effects, topics
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
-from stages.report.claims import tested_on as words_on
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.effects import STATISTICS, differences
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import CLAIMS
 from stages.report.verdict import counted, holding, judge, judged, over_readings, sentences, verdict
-
-
-def of(results, key):
-    return judge([claim for claim in CLAIMS if claim.key == key], results).iloc[0]
+from tests.report.frames import verdicts
 
 
 @pytest.fixture
-def values(bare, small):
+def values(measure):
     """A function of columns to the results whose stage `test` has rows of these."""
-
-    def write(**columns):
-        small.write(bare, "test", pd.DataFrame({"dataset": "test", "metric": "error"} | columns))
-        return small.results(bare)
-
-    return write
+    return lambda **columns: measure("test", pd.DataFrame({"dataset": "test", "metric": "error"} | columns))
 
 
 @pytest.fixture
-def sets_of_rows(bare, small):
+def sets_of_rows(measure):
     """A function of sets and their differences from zero, one an item, to the results whose stage `test` has these."""
 
     def write(**found):
-        for dataset, numbers in found.items():
-            items = [f"{dataset}{k}" for k in range(len(numbers))]
-            frame = {"dataset": dataset, "metric": "error", "item": items, "value": numbers}
-            small.write(bare, "test", pd.DataFrame(frame), dataset)
-        return small.results(bare)
+        rows = [
+            (name, "error", f"{name}{k}", value) for name, numbers in found.items() for k, value in enumerate(numbers)
+        ]
+        return measure("test", pd.DataFrame(rows, columns=["dataset", "metric", "item", "value"]))
 
     return write
+
+
+def of(results, key):
+    return verdicts(CLAIMS, results, key).loc[key]
 
 
 def claim(**fields):
@@ -73,15 +66,6 @@ def test_what_is_decided_holds_or_falls_with_the_number_of_claims_of_its_chapter
     assert holding(unknown).tolist() == ["", ""]
 
 
-def test_a_side_may_be_of_another_set(bare, small):
-    for dataset, error in (("test", 1.0), ("other", 3.0)):
-        small.write(
-            bare, "test", pd.DataFrame({"dataset": dataset, "metric": "error", "item": ["a", "b"], "value": error})
-        )
-    found = differences(small.results(bare), claim(first={"dataset": "other"}, second={"metric": "error"}))
-    assert found.to_dict() == {"a": 2, "b": 2}
-
-
 @pytest.mark.parametrize(("key", "word", "size", "pairs"), [
     ("glance_over_blind_ours", "supported", 30, 6), ("glance_over_ssim_ours", "no difference", 0, 6),
     ("glance_keep_metro", "open", 100 * (1 - 2) / 1.5, 2),
@@ -100,18 +84,23 @@ def test_beyond_chance_takes_off_the_guessing_of_the_objects_that_the_group_held
     assert of(results, "four_easier_beyond_chance_ours")["effect"] == pytest.approx(0, abs=1e-3)
 
 
-def test_pairs_match_by_repetition_not_by_row(root, results, small):
-    one = next(claim for claim in CLAIMS if claim.key == "glance_over_ssim_ours")
-    before = differences(results, one)
-    small.write(root, "classification", results.rows("classification").iloc[::-1])
-    after = differences(small.results(root), one)
-    assert np.allclose(before.sort_index(), after.sort_index())
+def test_pairs_match_by_repetition_not_by_row(values):
+    columns = {"item": list("abba"), "method": ["x", "x", "y", "y"], "value": [3, 5, 1, 2]}
+    found = differences(values(**columns), claim(first={"method": "x"}, second={"method": "y"}))
+    assert found.to_dict() == {"a": 1, "b": 4}
 
 
-def test_side_that_was_not_measured_is_not_run(results):
-    one = next(claim for claim in CLAIMS if claim.key == "glance_over_ssim_ours")
-    with pytest.raises(NotRun, match="heat_kernel"):
-        differences(results, replace(one, second={"method": "heat_kernel"}))
+@pytest.mark.parametrize(("where", "note", "key", "said"), [
+    ({"group": "six"}, "no duck", "four_easier_ours", "no duck"),  # a note of all methods and classifiers
+    ({"group": "six", "method": "thesis_ssim"}, "no duck", "glance_over_ssim_ours", "no duck"),
+    ({"group": "six", "method": "random", "classifier": "knn", "metric": "accuracy"}, "no duck",
+     "glance_over_blind_ours", "no duck"),
+    ({"group": "six"}, None, "knn_best_ours", "group six is not among those that classification measured"),
+])  # fmt: skip
+def test_rows_that_were_left_out_hand_on_their_note(measure, small, where, note, key, said):
+    frame = small.left_out(small.classification(), note, **where)
+    frame = frame if note else frame.dropna(subset=["value"])
+    assert of(measure("classification", frame), key)["tested_on"] == f"not run: {said}"
 
 
 def test_several_values_are_averaged_where_all_were_measured(values):
@@ -138,15 +127,18 @@ def test_differences_within_a_unit_are_relative_and_averaged_or_contrasted(value
     results = values(**columns)
     found = differences(results, claim(**sides, within=("target",), relative=True))
     assert found.to_dict() == {"a": 0.5}  # 2 / 2 at the first target, 0 where both are zero
-    assert differences(results, claim(**sides, contrast=({"target": "1"}, {"target": "2"}))).tolist() == [2.0]
+    one = claim(**sides, contrast=({"target": "1"}, {"target": "2"}), scale=100, margin=1)
+    assert differences(results, one).tolist() == [201]  # the scale comes before the margin
 
 
-def test_one_side_may_count_by_its_mean(bare, small):
+def test_one_side_may_count_by_its_mean_or_be_of_another_set(measure, values):
     columns = {"item": ["a", "b", None, None], "method": ["own", "own", "all", "all"], "value": [3, 4, 1, 2]}
     sides = {"first": {"method": "own"}, "second": {"method": "all"}, "mean_of": "second"}
-    small.write(bare, "test", pd.DataFrame({"dataset": "test", "fold": [0, 1, 2, 3]} | columns))
-    found = differences(small.results(bare), claim(**sides, over=("fold",)))
-    assert found.tolist() == [1.5, 2.5]
+    results = values(fold=[0, 1, 2, 3], **columns)
+    assert differences(results, claim(**sides, over=("fold",))).tolist() == [1.5, 2.5]
+    other = pd.DataFrame({"dataset": "other", "metric": "error", "item": ["a", "b"], "value": [7, 9]})
+    elsewhere = claim(first={"dataset": "other"}, second={"method": "own"})
+    assert differences(measure("test", other, results=results), elsewhere).to_dict() == {"a": 4, "b": 5}
 
 
 def test_pattern_and_empty_cell_choose_rows(values):
@@ -154,24 +146,6 @@ def test_pattern_and_empty_cell_choose_rows(values):
     results = values(**columns, value=[1, 2, 3, 4])
     assert differences(results, claim(where={"method": "*-frozen"}, second=0)).to_dict() == {"a": 1, "b": 3}
     assert differences(results, claim(where={"sense": None}, second=0)).to_dict() == {"a": 1.5}
-
-
-def test_scale_comes_before_margin(values):
-    results = values(item=list("ab"), value=[0.01, 0.02])
-    assert differences(results, claim(second=0, scale=100, margin=1)).tolist() == pytest.approx([2, 3])
-
-
-def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, small):
-    table = judge(CLAIMS, small.results(bare)).set_index("key")
-    assert table.index.is_unique and set(table["verdict"]) == {"open"}
-    assert "dvc repro transfer" in table.loc["tuned_over_frozen_objects", "tested_on"]
-
-
-def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(bare, small):
-    results = small.results(bare)
-    for one in CLAIMS:
-        said = words_on(one, results, [name for name in one.sets if name] or ["household"])
-        assert not re.search(r", ?,|  |,$|minus$", said), (one.key, said)
 
 
 def test_equal_differences_are_open_and_say_why(values):
@@ -191,26 +165,6 @@ def test_words_are_written_from_the_fields(root, results, small):
     assert of(results, "knn_best_ours")["tested_on"].endswith("kNN minus the highest of the others")
     small.write_set(root, "six", 4)
     assert of(results, one.key)["tested_on"] == said.replace("six objects", "4 objects (group six)")
-
-
-NOTES = [  # what was left out of the classification, and of which claims the note is
-    ({"group": "six"}, ["glance_over_blind_ours", "knn_best_ours", "four_easier_ours"]),
-    ({"group": "six", "method": "thesis_ssim"}, ["glance_over_ssim_ours"]),
-    ({"group": "six", "method": "random", "classifier": "knn", "metric": "accuracy"}, ["glance_over_blind_ours"]),
-]
-
-
-@pytest.mark.parametrize(("where", "keys"), NOTES)
-def test_rows_that_were_left_out_hand_on_their_note(root, small, where, keys):
-    small.write(root, "classification", small.left_out(small.classification(), "no duck", **where))
-    results = small.results(root)
-    assert [of(results, key)["tested_on"] for key in keys] == ["not run: no duck"] * len(keys)
-
-
-def test_absent_group_is_called_a_group(root, small):
-    frame = small.classification()
-    small.write(root, "classification", frame[frame["group"] == "four"])
-    assert of(small.results(root), "knn_best_ours")["tested_on"].startswith("not run: group six is not among")
 
 
 def frame_of(words, **columns):
@@ -276,6 +230,7 @@ def test_the_printed_set_judges_the_thesis_and_the_others_show_whether_it_carrie
     assert pooled(results, "absent", "one", section="T9")["verdict"] == "supported"  # as printed it was not run
     assert pooled(results, "absent", "one", section="T9")["tested_on"] == "one; not measured on absent"
     assert pooled(results, "absent", "one", "two", section="T9")["units"] == 12  # of the first that was measured
+    assert pooled(results, "absent", "one")["by_set"] == ""
 
 
 def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_rows):
@@ -290,40 +245,25 @@ def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_ro
     assert counted(table).startswith(said)
 
 
-@pytest.mark.parametrize(
-    ("words", "word"),
-    [
-        (["supported", "supported"], "supported"),
-        (["supported", "open"], "supported"),
-        (["supported", "contradicted"], "depends on the reading"),
-        (["supported", "open", "no difference"], "depends on the reading"),
-        (["open", "supported"], "open"),
-        (["not testable", "supported"], "supported"),
-        (["not testable", "supported", "contradicted"], "depends on the reading"),
-        (["not testable", "not testable"], "not testable"),
-        (["mixed", "supported"], "mixed"),
-    ],
-)
+@pytest.mark.parametrize(("words", "word"), [
+    (["supported", "open"], "supported"), (["supported", "open", "no difference"], "depends on the reading"),
+    (["open", "supported"], "open"), (["mixed", "supported"], "mixed"),
+    (["not testable", "supported", "contradicted"], "depends on the reading"),
+    (["not testable", "supported"], "supported"), (["not testable", "not testable"], "not testable"),
+])  # fmt: skip
 def test_a_verdict_holds_in_each_reading_or_depends_on_the_reading(words, word):
     assert over_readings(words) == word
 
 
-def test_readings_are_judged_by_their_own_rows_and_told(bare, small):
-    frame = {"dataset": "test", "metric": "error", "item": [*range(12)] * 2, "way": ["a"] * 12 + ["b"] * 12}
-    small.write(bare, "test", pd.DataFrame(frame | {"value": [*spread_about(2.0), *spread_about(-2.0)]}))
+def test_readings_are_judged_by_their_own_rows_and_told(values):
+    numbers = [*spread_about(2.0), *spread_about(-2.0)]
+    results = values(item=[*range(12)] * 2, way=["a"] * 12 + ["b"] * 12, value=numbers)
     one = claim(second=0.0, where={"way": "a"}, readings=(reading("the other way", where={"way": "b"}),
                                                           reading("absent", where={"way": "c"})))  # fmt: skip
-    row = judge([one], small.results(bare)).iloc[0]
+    row = judge([one], results).iloc[0]
     assert row["verdict"] == "depends on the reading" and row["effect"] == pytest.approx(2.0)
     assert row["readings"].startswith("as written: supported +2.00 [") and row["readings"].count(";") == 1
     assert "the other way: contradicted -2.00 [" in row["readings"] and row["holds"] == ""
-
-
-def test_a_set_without_rows_is_named_and_the_others_decide(sets_of_rows):
-    results = sets_of_rows(one=spread_about(2.0), two=spread_about(2.0, 1))
-    row = pooled(results, "absent", "one", "two")
-    assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
-    assert pooled(results, "absent", "one")["by_set"] == ""
 
 
 def test_a_set_without_an_interval_is_told_and_not_pooled(sets_of_rows):
@@ -334,9 +274,8 @@ def test_a_set_without_an_interval_is_told_and_not_pooled(sets_of_rows):
 
 
 def test_methods_give_way_to_others_on_all_sets_but_the_first():
-    one = claim(
-        dataset=("a", "b"), elsewhere={"x": "y"}, first={"method": ("x", "z")}, second={"method": highest_of("x")}
-    )
+    sides = {"first": {"method": ("x", "z")}, "second": {"method": highest_of("x")}}
+    one = claim(dataset=("a", "b"), elsewhere={"x": "y"}, **sides)
     assert one.on("a").first == {"method": ("x", "z")}
     assert one.on("b").first == {"method": ("y", "z")} and one.on("b").second == {"method": highest_of("y")}
 
@@ -348,16 +287,11 @@ def test_copies_of_a_shape_count_once(values):
     assert over_text(row) == "5 objects, 3 units"
 
 
-@pytest.mark.parametrize(
-    ("values", "cause"),
-    [
-        ([0.5, -0.4, 1.0, -0.5], "5 units or fewer a set"),
-        (spread_about(0.3), "fewer than 100 units needed"),
-        (spread_about(0.1), "100 units or more needed"),
-        (spread_about(0.001), "hardly an effect"),
-        ([1.0, 1.0], "no spread"),
-    ],
-)
+@pytest.mark.parametrize(("values", "cause"), [
+    ([0.5, -0.4, 1.0, -0.5], "5 units or fewer a set"), (spread_about(0.3), "fewer than 100 units needed"),
+    (spread_about(0.1), "100 units or more needed"), (spread_about(0.001), "hardly an effect"),
+    ([1.0, 1.0], "no spread"),
+])  # fmt: skip
 def test_an_open_claim_says_why_and_how_many_units_would_decide_it(sets_of_rows, cause, values):
     row = judge([claim(second=0.0)], sets_of_rows(one=values)).iloc[0]
     assert row["verdict"] == "open" and row["cause"] == cause
@@ -371,10 +305,9 @@ def test_sets_are_few_units_where_the_largest_has_five_or_fewer(sets_of_rows, co
     assert row["verdict"] == "open" and (row["cause"] == "5 units or fewer a set") == few
 
 
-def test_splits_of_the_same_data_may_never_decide(bare, small):
-    frame = pd.DataFrame({"dataset": "test", "metric": "error", "repetition": range(12), "value": spread_about(0.3)})
-    small.write(bare, "test", frame)
-    row = judge([claim(second=0.0, over=("repetition",), shared=1 / 3)], small.results(bare)).iloc[0]
+def test_splits_of_the_same_data_may_never_decide(values):
+    results = values(repetition=range(12), value=spread_about(0.3))
+    row = judge([claim(second=0.0, over=("repetition",), shared=1 / 3)], results).iloc[0]
     assert row["cause"] == "more splits of the same data would not decide"
 
 
@@ -401,9 +334,8 @@ def test_chance_calls_as_many_verdicts_as_is_said():
 
 @pytest.mark.slow
 def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
-    small.write(
-        root, "test", pd.DataFrame({"dataset": "test", "item": list("abc"), "value": [0.1234567891, 0.2, -0.01]})
-    )
+    rows = {"dataset": "test", "item": list("abc"), "value": [0.1234567891, 0.2, -0.01]}
+    small.write(root, "test", pd.DataFrame(rows))
     table, pairs = judged([*CLAIMS, claim(second=0)], small.results(root))
     write_claims(table, pairs, root / "reports")
     claims = pd.read_csv(root / "reports/claims.csv")
@@ -417,18 +349,10 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
 
 
 def test_a_process_that_imported_no_topic_loads_the_statistic_of_a_claim(values, monkeypatch):
-    known, loaded = dict(STATISTICS), []
-
-    def load(name):
-        loaded.append(name)
-        STATISTICS.update(known)
-
-    monkeypatch.setattr(effects, "import_module", load)
-    for name in known:
-        monkeypatch.delitem(STATISTICS, name)
-    results = values(item=list("ab"), value=[1.0, 2.0])
-    assert differences(results, claim(second=0)).tolist() == [1, 2] == differences(results, claim(second=0)).tolist()
-    assert loaded == [topics.__name__]
+    known = {topics.__name__: dict(STATISTICS)}
+    monkeypatch.setattr(effects, "import_module", lambda name: STATISTICS.update(known[name]))
+    monkeypatch.delitem(STATISTICS, "difference")
+    assert differences(values(item=list("ab"), value=[1.0, 2.0]), claim(second=0)).tolist() == [1, 2]
 
 
 def test_a_reading_on_sets_of_its_own_is_judged_by_their_rows_alone(sets_of_rows):

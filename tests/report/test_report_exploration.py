@@ -77,14 +77,6 @@ def test_claims_know_the_truth_of_the_rows(explorer):
     assert judged.loc["adaptive_over_fixed", "effect"] == pytest.approx(7, abs=0.5)
 
 
-def test_nothing_explored_is_said_and_not_crashed_on(bare_results):
-    assert set(judge(exploration.CLAIMS, bare_results)["verdict"]) == {"open"}
-    missing = [(exploration, "tables", "exploration"), *((exploration, *chart) for chart in CHARTS)]
-    for topic, kind, name in missing + [(stability, *item) for item in DEGRADED]:
-        with pytest.raises(NotRun):
-            build_one(topic, kind, name, bare_results)
-
-
 def disturbed():
     """Rows in which noise halves the lead of kNN at 0.2, and coarse models do no harm down to 400 faces."""
     lost = {("noise", 0.1): 0.1, ("noise", 0.2): 0.3, ("noise", 0.4): 0.5, ("coarse_model", 400.0): 0.01,

@@ -419,12 +419,3 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     kept.paths[0].unlink()
     with pytest.raises(NotRun, match="figure_3_34_gaze.png"):
         figure(results, "figure_3_34_gaze")
-
-
-def test_without_any_attention_nothing_is_made_up(bare, small):
-    empty = small.results(bare)
-    for build in (*topic.FIGURES.values(), *topic.TABLES.values(), *topic.CHARTS.values()):
-        with pytest.raises(NotRun, match="fixation"):
-            build(empty)
-    judged = judge(topic.CLAIMS, empty)
-    assert (judged["verdict"] == "open").all() and judged["tested_on"].str.startswith("not run").all()

@@ -189,12 +189,6 @@ def test_damage_is_told_at_its_harshest(run):
     assert shown.loc["sight alone", "picture: darkness 0.95, %"].startswith("10")
 
 
-PICTURES = [(hybrid, "figures", "figure_5_6"), (hybrid, "tradeoff", "hybrid"),
-            (stability, "figures", "transfer_stability")]  # fmt: skip
-TABLES = [(hybrid, "tables", "section_5_5"), (hybrid, "tables", "hybrid_senses"),
-          (stability, "tables", "transfer_stability")]  # fmt: skip
-
-
 @pytest.mark.slow
 def test_confusions_of_each_split_and_sense_are_in_per_cent(run):
     made = build_one(hybrid, "figures", "figure_5_6", run)
@@ -253,13 +247,6 @@ def test_claims_on_the_thesis_s_classes_and_ours_are_pooled(bare, small):
     row = verdicts(bare, small, frame, ["sight_over_touch_random"], "princeton_six").iloc[0]
     assert row["verdict"] == "contradicted" and row["tested_on"].startswith("psb, the thesis's 6 classes, ")
     assert row["by_set"].startswith("psb, the thesis's 6 classes -") and row["carries"].startswith("mixed")
-
-
-def test_without_a_hybrid_nothing_is_made_up(bare, small):
-    empty = small.results(bare)
-    for topic, kind, name in [*PICTURES, *TABLES]:
-        with pytest.raises(NotRun, match="transfer"):
-            build_one(topic, kind, name, empty)
 
 
 def test_new_objects_stand_below_the_table_and_in_the_claims(bare, small):

@@ -380,9 +380,3 @@ def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
     assert plain["on_front"].all() and (plain["cost_ratio"] == 1).all() and len(plain) == 6
     assert found.loc[("metro_mean", "25%", "itti"), "cost_ratio"] == pytest.approx(10)
     assert not found.drop(index="qem", level="method")["on_front"].any()
-
-
-def test_all_of_it_is_not_run_without_measurements(bare, small):
-    results = small.results(bare)
-    missing = {name for kind in KINDS for name in build_all(kind, results, [meshes]).not_run}
-    assert missing == {*meshes.TABLES, *meshes.FIGURES, *meshes.CHARTS} - {"table_3_1_5_combinations"}

@@ -223,14 +223,6 @@ def test_selection_and_the_best_classifier_are_judged_on_real_touches(every):
     assert found.loc["real_blocked", "verdict"] == "supported"
 
 
-def test_without_recorded_touches_nothing_is_run_and_the_remedy_is_told(measured):
-    for name in ("table_4_4", "grasps", "simulated_to_real", "real_touches"):
-        with pytest.raises(NotRun, match="no measurements of"):
-            (topic.TABLES | topic.FIGURES)[name](measured())
-    found = judged(measured())
-    assert (found["verdict"] == "open").all() and found["tested_on"].str.startswith("not run: no measurements of").all()
-
-
 def test_methods_stand_beside_the_published_ones_with_what_they_take(every):
     made = table("touch_events", every)
     lines = made.text.set_index("method")

@@ -254,10 +254,3 @@ def test_a_claim_names_the_training_or_the_rival_that_it_lacks(measured):
     alone = {way: level for way, level in levels.items() if way[0] == "resnet50"}
     alone = verdicts(measured(touches(alone, PRESSURE)), "resnet_best_pressure_random").iloc[0]
     assert alone["verdict"] == "open" and "no other method than resnet50" in alone["tested_on"]
-
-
-def test_without_recorded_touches_all_claims_are_open_and_say_what_to_run(bare, small):
-    path = bare / "params.yaml"
-    path.write_text(path.read_text().replace("sets: [", "sets: [pressure_images, biotac_grasps, schunk, "))
-    found = verdicts(small.results(bare))
-    assert set(found["verdict"]) == {"open"} and found["tested_on"].str.contains("dvc repro recorded_networks").all()

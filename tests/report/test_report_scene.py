@@ -98,14 +98,6 @@ def test_a_way_that_was_not_asked_has_no_line(bare, bare_results):
     assert len(found) == len(scenes.WAYS) - 1 and "the thesis's network" not in set(found["levels chosen by"])
 
 
-def test_without_scenes_nothing_is_run(bare_results):
-    with pytest.raises(NotRun, match="bench/scenes"):
-        scenes.scenes(bare_results)
-    for kind, name in (("tables", "random_scenes"), ("figures", "faces_by_task")):
-        with pytest.raises(NotRun):
-            build_one(topic, kind, name, bare_results)
-
-
 BY_KEY = {claim.key: claim for claim in CLAIMS}
 
 

@@ -81,13 +81,6 @@ def test_claims_know_the_truth_of_the_rows(bare, sensed, small):
     assert judged.loc["knn_best_sensor", "effect"] == pytest.approx(5, abs=1)
 
 
-def test_nothing_pressed_is_said_and_not_crashed_on(bare_results):
-    assert set(judge(arrays.CLAIMS, bare_results)["verdict"]) == {"open"}
-    for kind, name in (("tables", "figure_4_11"), ("tradeoff", "sensor_size")):
-        with pytest.raises(NotRun):
-            build_one(sensor, kind, name, bare_results)
-
-
 def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(bare, bare_results, small):
     rows = pressed().query("cells == 16 and pitch == 0.02 and metric == 'accuracy'")
     kinds = [

@@ -81,12 +81,6 @@ def test_larger_run_stands_below_where_there_is_one(bare, small):
     assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes", "the thesis"]
 
 
-def test_unmeasured_is_not_run(bare, small):
-    for build in (*sequences.TABLES.values(), *sequences.FIGURES.values(), *sequences.CHARTS.values()):
-        with pytest.raises(NotRun):
-            build(small.results(bare))
-
-
 @pytest.mark.slow
 def test_chart_charges_each_choice_its_seconds(run):
     figure = build_one(sequences, "tradeoff", "sequences", run)

@@ -263,14 +263,6 @@ def test_other_networks_on_the_thesis_s_classes_stand_beside_and_change_no_claim
     assert "psb, the thesis's 6 classes, touches at random, 80 px, 5 splits, %" in table.shown
 
 
-def test_without_trainings_nothing_is_made_up(bare, small):
-    empty = small.results(bare)
-    for kind, builders in KINDS.items():
-        for name in set(getattr(transfer, builders)) - {"coarse_imprints"}:
-            with pytest.raises(NotRun, match="transfer"):
-                build_one(transfer, kind, name, empty)
-
-
 @pytest.mark.parametrize(("table", "figure"), [("table_5_1", "83.0"), ("table_5_5", "85.2")])
 def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
     """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""

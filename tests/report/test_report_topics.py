@@ -1,0 +1,33 @@
+"""Every topic of the report where nothing was measured: it names what is missing, and makes nothing up."""
+
+import re
+
+import pytest
+
+from stages.report.claims import tested_on as words_on
+from stages.report.topics import CLAIMS, KINDS, TOPICS, build_all
+from tests.report.frames import verdicts
+
+UNMEASURED = {"table_3_1_5_combinations", "fidelity"}  # of the data of the thesis
+REMEDY = "no measurements of|`dvc repro |`make bench`|run the stage"
+
+
+@pytest.mark.parametrize("topic", TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+def test_a_topic_without_measurements_names_what_is_missing_of_each_item(topic, empty):
+    for kind, items in KINDS.items():
+        missing = build_all(kind, empty, [topic]).not_run
+        assert set(missing) == set(getattr(topic, items)) - UNMEASURED
+        assert all(re.search(REMEDY, said) for said in missing.values()), missing
+
+
+def test_every_claim_has_its_own_key_and_is_open_without_measurements(empty):
+    table = verdicts(CLAIMS, empty)
+    assert table.index.is_unique and set(table["verdict"]) == {"open"} and not table["pairs"].any()
+    assert table["tested_on"].str.startswith("not run: no ").all()
+    assert "dvc repro transfer" in table.loc["tuned_over_frozen_objects", "tested_on"]
+
+
+def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(empty):
+    for one in CLAIMS:
+        said = words_on(one, empty, [name for name in one.sets if name] or ["household"])
+        assert not re.search(r", ?,|  |,$|minus$", said), (one.key, said)
