@@ -1,5 +1,6 @@
 """The pieces on simplified meshes: paired cells, table 3.2, all detectors, claims, figures, and the backends."""
 
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -17,7 +18,7 @@ from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, low
 from stages.report.meshes.errors import BOXES
 from stages.report.meshes.tables import UNSEEN, data_sets, face_counts, ordered, paired_cells, short
 from stages.report.results import SECTION_3_2, SETS_3_1, NotRun, dataset_text
-from stages.report.topics import KINDS, build_all, build_one
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 from tests.report.frames import has_ink
 
@@ -50,33 +51,22 @@ def measured(dataset="test", seed=0, objects=OBJECTS):
     return pd.DataFrame(rows)
 
 
+table = partial(build_one, meshes, "tables")
+figure = partial(build_one, meshes, "figures")
+
+
 @pytest.fixture
-def run(bare, small):
-    """A function that writes rows (and those of further sets, without seconds) and returns the results."""
-
-    def written(rows, **further):
-        small.write(bare, "lod", rows)
-        for frame in further.values():
-            small.write(bare, "lod", frame.assign(seconds=np.nan))
-        return small.results(bare)
-
-    return written
+def run(measure):
+    """A function of rows, and of those of further sets, which have no seconds, to the results."""
+    return lambda rows, *further: measure(
+        "lod", pd.concat([rows, *(frame.assign(seconds=np.nan) for frame in further)])
+    )
 
 
 @pytest.fixture(scope="module")
-def plain(tmp_path_factory, small):
+def plain(measure):
     """The results of a run with the rows of `measured` on one set."""
-    root = small.bare(tmp_path_factory.mktemp("plain"))
-    small.write(root, "lod", measured())
-    return small.results(root)
-
-
-def table(results, name):
-    return build_one(meshes, "tables", name, results)
-
-
-def figure(results, name):
-    return build_one(meshes, "figures", name, results)
+    return measure("lod", measured())
 
 
 def without(rows, value=np.nan, **where):
@@ -93,14 +83,12 @@ def test_only_cells_where_nothing_shrank_when_asked_for_the_whole(plain):
     assert set(paired_cells(plain, ["metro_mean"], ["itti"], whole=True)["target"]) == set(TARGETS)
 
 
-def test_sets_that_are_not_switched_on_stand_behind_those_that_are(run, bare, small):
-    with pytest.raises(NotRun, match="lod"):
-        data_sets(small.results(bare))
+def test_sets_that_are_not_switched_on_stand_behind_those_that_are(run):
     results = run(measured("gaze"))
     assert data_sets(results) == ["gaze"]
     with pytest.raises(NotRun, match="princeton"):
         paired_cells(results, ["metro_mean"], ["itti"], "princeton")
-    results = run(measured(), princeton=measured("princeton", 1))
+    results = run(measured(), measured("princeton", 1), measured("gaze"))
     assert data_sets(results) == ["test", "gaze", "princeton"]
     rows = paired_cells(results, ["metro_mean"], ["qem", "itti"], "princeton")
     assert rows["seconds"].isna().all() and len(rows) == 2 * len(OBJECTS) * len(TARGETS)
@@ -113,35 +101,34 @@ def test_face_counts_come_before_shares_and_need_objects():
     assert face_counts(rows[rows["item"].isin(["a", "b"])]) == []
 
 
-def test_table_3_2_compares_all_methods_on_the_same_objects(run):
+def test_table_3_2_compares_all_methods_on_the_same_objects_and_shows_every_data_set(run):
     rows = without(measured(), item="d", target="1500", method="guided_ed", metric="ssim_error")
-    frame = table(run(rows), "table_3_2").frame
+    built = table("table_3_2", run(rows, measured("gaze", 2)))
+    frame = built.frame[(built.frame["data"] == "test") & ~built.frame["nothing_shrunk"]]
     counts = frame.groupby(["target", "metric"])["objects"].unique().map(list).to_dict()
     assert counts["1500", "ssim_error"] == [3] and counts["1500", "metro_mean"] == [4]
     same = frame[(frame["target"] == "3000") & (frame["metric"] == "metro_mean")].set_index("method")
     assert same.loc["svm", "over_plain_low"] > 0
     assert same.loc["svm-adaptive", "mean"] == pytest.approx(0.95 * same.loc["svm", "mean"], rel=0.01)
-
-
-def test_table_3_2_shows_the_thesis_and_every_data_set(run):
-    shown = table(run(measured(), gaze=measured("gaze", 2)), "table_3_2").shown.set_index(["target", "kept points"])
+    shown = built.shown.set_index(["target", "kept points"])
     row = shown.loc[("3,000 faces", "guided by SSIM")]
     assert row["Metro mean, %, thesis"] == "0.180"
     assert row["Metro mean, %, test"].endswith("+") and "[" in row["Metro mean, %, meshes with human gaze"]
     assert not shown.loc[("3,000 faces", "plain QEM"), "Metro mean, %, test"].endswith(("+", "–"))
 
 
-@pytest.mark.slow
-def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(run):
+def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(plain, run):
+    assert not table("table_3_2", plain).frame["nothing_shrunk"].any()
     rows = measured()
-    assert not table(run(rows), "table_3_2").frame["nothing_shrunk"].any()
     rows.loc[(rows["method"] == "svm") & (rows["item"] == "a"), "shrunk"] = True
-    found = table(run(rows), "table_3_2").frame.groupby("nothing_shrunk")["objects"].max()
+    found = table("table_3_2", run(rows)).frame.groupby("nothing_shrunk")["objects"].max()
     assert found.to_dict() == {False: 4, True: 3}
 
 
 def test_every_detector_has_all_errors_in_the_thesis_order(plain):
-    frame = table(plain, "lod_detectors").frame
+    combinations = table("table_3_1_5_combinations", plain).shown.set_index("combination")["Metro mean, %"]
+    assert combinations["VisAttEnt"] == "not run" and float(combinations["VisAtt"]) > 0
+    frame = table("lod_detectors", plain).frame
     assert frame["method"].iloc[0] == "harris" and frame["method"].iloc[-1] == "qem"
     assert set(frame["metric"]) >= {"metro_rms", "dlap", "dnor", "salient_error", "points", "kept"}
     means = frame[frame["metric"] == "metro_mean"].set_index("method")["mean"]
@@ -158,12 +145,6 @@ def test_a_way_is_said_behind_the_method_and_stands_behind_the_thesis_s_order():
     assert ordered(sorted(names)) == names
 
 
-def test_combinations_without_errors_are_not_run(plain):
-    shown = table(plain, "table_3_1_5_combinations").shown.set_index("combination")
-    assert shown.loc["VisAttEnt", "Metro mean, %"] == "not run"
-    assert float(shown.loc["VisAtt", "Metro mean, %"]) > 0
-
-
 def higher(results, worse, better, target=""):
     """How much higher the Metro mean error of `worse` is than that of `better`, in % of the mean of the two."""
     return differences(results, lower("s", "metro_mean", "k", "Sentence.", worse, better, target))
@@ -177,14 +158,8 @@ def stated(results, statistic, **fields):
 ERROR = {"metric": "metro_mean"}
 
 
-def test_difference_is_relative_and_reverses_with_its_sides(plain):
-    there = higher(plain, "corners", "itti", "3000")
-    back = higher(plain, "itti", "corners", "3000")
-    assert there.to_numpy() == pytest.approx(-back.to_numpy())
-    assert there.mean() == pytest.approx(100 * (1.6 - 1.15) / 1.375, rel=0.02)
-
-
-def test_group_is_the_mean_of_those_that_were_run_or_the_worst_or_the_best(plain):
+def test_difference_is_relative_and_a_group_is_the_mean_of_those_that_were_run_or_the_worst_or_the_best(plain):
+    assert higher(plain, "corners", "itti", "3000").mean() == pytest.approx(100 * (1.6 - 1.15) / 1.375, rel=0.02)
     group = higher(plain, ("corners", "sift"), "itti")
     assert group.to_numpy() == pytest.approx(higher(plain, "corners", "itti").to_numpy())
     with pytest.raises(NotRun, match="sift"):
@@ -249,20 +224,25 @@ def test_ranks_agree_where_the_error_grows_with_the_points(plain, run):
     assert stated(results, "ranks_agree", first=ERROR, second={"metric": "dlap"}).min() > 0.98
 
 
-def chosen(monkeypatch, *keys):
-    """The claims of these keys; the table of claims judges these alone from here on."""
-    claims = [claim for claim in CLAIMS if claim.key in keys]
-    monkeypatch.setattr(levels, "CLAIMS", claims)
-    return claims
+@pytest.fixture
+def chosen(monkeypatch):
+    """A function of keys to these claims; from then on the table of claims judges these alone."""
+
+    def choose(*keys):
+        claims = [one for one in CLAIMS if one.key in keys]
+        monkeypatch.setattr(levels, "CLAIMS", claims)
+        return claims
+
+    return choose
 
 
 @pytest.mark.slow
-def test_claims_on_meshes_are_judged_on_every_set(run, monkeypatch):
+def test_claims_on_meshes_are_judged_on_every_set(run, chosen):
     own_truth = measured(SECTION_3_2, 3).replace({"method": {name: seen for seen, name in UNSEEN.items()}})
-    results = run(measured(), own_truth=own_truth, **{name: measured(name, k) for k, name in enumerate(SETS_3_1, 1)})
+    results = run(measured(), own_truth, *(measured(name, k) for k, name in enumerate(SETS_3_1, 1)))
     alike = ("more_faces", "wider_apart", "symmetry_alone", "combinations_same")  # on all of their sets
-    claims = chosen(monkeypatch, "many_points_distort", "adaptive_svm_metro", "hks_high", *alike)
-    built = table(results, "lod_claims")
+    claims = chosen("many_points_distort", "adaptive_svm_metro", "hks_high", *alike)
+    built = table("lod_claims", results)
     assert len(built.shown) == len(claims) == 7
     words = built.frame.set_index(["key", "data"])["verdict"]
     for data in ("test", dataset_text(SECTION_3_2)):
@@ -287,78 +267,61 @@ def with_people():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("own", [True, False])
-def test_where_people_look_is_judged_and_shown_on_the_meshes_with_gaze(run, own, monkeypatch):
-    results = run(with_people()) if own else run(measured(), gaze=with_people())
-    found = judge(chosen(monkeypatch, "glance_keep_gaze", "glance_keep_salient"), results).set_index("key")
+def test_where_people_look_is_judged_and_shown_on_the_meshes_with_gaze(run, own, chosen):
+    results = run(with_people()) if own else run(measured(), with_people())
+    found = judge(chosen("glance_keep_gaze", "glance_keep_salient"), results).set_index("key")
     assert found.loc["glance_keep_gaze", "verdict"] == "supported"
     assert found.loc["glance_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
     assert found.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
-    found = table(results, "lod_claims").frame.set_index(["key", "data"])["verdict"]
+    found = table("lod_claims", results).frame.set_index(["key", "data"])["verdict"]
     assert found["glance_keep_gaze", "meshes with human gaze"] == "supported"
     assert own or found["glance_keep_gaze", "test"] == "open"
-    shown = table(results, "lod_detectors").shown
+    shown = table("lod_detectors", results).shown
     assert ("error where people look, %" + ("" if own else ", meshes with human gaze")) in shown
-    assert ("error where people look, %" in table(results, "table_3_1_5_combinations").shown) == own
+    assert ("error where people look, %" in table("table_3_1_5_combinations", results).shown) == own
 
 
-def test_not_run_claims_say_so(run):
-    rows = measured()
-    frame = table(run(rows[rows["method"].isin(["qem", "VisAttAll"])]), "lod_claims").frame
-    assert (frame["verdict"] == "open").all() and (frame["objects"] == 0).all()
-
-
-@pytest.fixture
-def simplified(run, small):
-    """A run with points, and simplified meshes of two objects on the disk."""
-    results = run(measured())
+@pytest.fixture(scope="module")
+def simplified(measure, small):
+    """A run with simplified meshes of two objects: of b corners finds far more points, and missed a target."""
+    results = measure("lod", measured())
     root, mesh = results.data / "test", small.ball()
-    methods = ["qem", *POINTS, *WAYS]
-    for name in ("a", "b"):
+    counts = {"a": {}, "b": {"corners": 60, "VisAttCurvSymCon": 14}}
+    for name, own in counts.items():
         write_mesh(root / f"meshes/{name}.npz", mesh)
-        arrays = {f"{method}.points": np.array([3, 50, 100]) for method in POINTS}
-        arrays |= {f"{method}.strong": np.int64(2) for method in POINTS}
+        arrays = {f"{method}.points": np.arange(60) for method in POINTS}
+        arrays |= {f"{method}.strong": np.int64(own.get(method, 3)) for method in POINTS}
         write_arrays(root / f"salient_points/{name}.npz", **arrays)
-        for method in methods:
+        for method in ["qem", *POINTS, *WAYS]:
             write_mesh(root / f"lod/{name}/{method}_3000.npz", small.ball(9))
             write_mesh(root / f"lod/{name}/{method}_1500.npz", small.ball(6))
+    (root / "lod/b/corners_1500.npz").unlink()
     return results
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["figure_3_4", "figure_3_5", "figure_3_23"])
-def test_charts_of_errors_are_drawn(run, name):
-    found = figure(run(measured(), princeton=measured("princeton", 1)), name)
-    assert has_ink(found)
-    assert "4 " in found.caption or "objects" in found.caption
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["figure_3_7", "figure_3_8", "figure_3_21", "figure_3_22"])
 def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
     monkeypatch.setattr(pictures, "ROWS", dict.fromkeys(pictures.ROWS, 60))
-    assert has_ink(figure(simplified, name))
+    made = figure(name, simplified)
+    assert has_ink(made)
+    if name == "figure_3_7":  # many and few points where they differ, at a target that all methods reached
+        assert made.caption.startswith("b (test) at 3,000 faces")
 
 
 @pytest.mark.slow
-def test_pictures_take_the_same_target_of_all_methods(simplified):
-    for path in (simplified.data / "test/lod/a").glob("corners_1500.npz"):
-        path.unlink()
-    assert "a (test) at 3,000 faces" in figure(simplified, "figure_3_7").caption
-
-
-@pytest.mark.slow
-def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(simplified):
-    path = simplified.data / "test/salient_points/b.npz"
-    arrays = {f"{method}.points": np.arange(60) for method in POINTS}
-    counts = {"corners": 60, "VisAttCurvSymCon": 14}
-    write_arrays(path, **arrays | {f"{method}.strong": np.int64(counts.get(method, 3)) for method in POINTS})
-    assert figure(simplified, "figure_3_7").caption.startswith("b (test) at ")
+@pytest.mark.parametrize("name", ["figure_3_4", "figure_3_5"])
+def test_charts_of_errors_are_drawn(plain, name):
+    made = figure(name, plain)
+    assert has_ink(made) and ("4 " in made.caption or "objects" in made.caption)
 
 
 @pytest.mark.slow
 def test_boxes_hold_the_objects_without_error(run):
     rows = without(measured(), 0.0, item="a", metric="metro_mean")
-    drawing, panels = figure(run(rows), "figure_3_23").drawing, product(["metro_mean", "ssim_error"], ["1500", "3000"])
+    made, panels = figure("figure_3_23", run(rows)), product(["metro_mean", "ssim_error"], ["1500", "3000"])
+    assert has_ink(made)
+    drawing = made.drawing
     methods = [method for method in BOXES if method in set(rows["method"])]
     for axes, (metric, target) in zip(drawing.axes, panels, strict=True):
         here = rows[(rows["metric"] == metric) & (rows["target"] == target)].set_index("method")["value"]
