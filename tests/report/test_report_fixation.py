@@ -20,8 +20,7 @@ from stages.report.fixation import rows as _fixation
 from stages.report.items import Figure
 from stages.report.results import NotRun
 from stages.report.topics import build_one
-from stages.report.verdict import judge
-from tests.report.frames import has_ink, only
+from tests.report.frames import has_ink, only, verdicts
 
 NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "vgg16-last_block",
             "resnet50-last_block", "mobilenet_v2-random", "vgg16-random", "resnet50-random"]  # fmt: skip
@@ -35,12 +34,8 @@ ALIKE = {"vgg16-last_block": 0.5, "resnet50-last_block": 0.7}  # mean correlatio
 VIEWED = ["figure_3_29", "figure_3_30", "figure_3_34"]
 
 
-def table(results):
-    return build_one(topic, "tables", "fixation", results)
-
-
-def figure(results, name):
-    return build_one(topic, "figures", name, results)
+table = partial(build_one, topic, "tables", "fixation")
+figure = partial(build_one, topic, "figures")
 
 
 def rows(dataset="gaze", count=6, resnet=0.0, **means):
@@ -100,12 +95,9 @@ def elbow():
 
 
 @pytest.fixture(scope="module")
-def gaze(tmp_path_factory, small):
+def gaze(measure):
     """Results with rows of the meshes with human gaze, and of a run on marked objects."""
-    root = small.bare(tmp_path_factory.mktemp("gaze"))
-    small.write(root, "fixation", rows())
-    small.write(root, "fixation", pd.concat([rows("household", 4), elbow()]), "household")
-    return small.results(root)
+    return measure("fixation", pd.concat([rows(), rows("household", 4), elbow().assign(dataset="household")]))
 
 
 @pytest.fixture(scope="module")
@@ -114,19 +106,14 @@ def made(gaze):
 
 
 @pytest.fixture
-def written(bare, small):
-    """A function of rows, of a set or of those in their column, to the results with all rows written."""
-
-    def write(frame, dataset=None):
-        small.write(bare, "fixation", frame, dataset)
-        return small.results(bare)
-
-    return write
+def written(measure):
+    """A function of rows, of a set or of those in their column, to the results."""
+    return partial(measure, "fixation")
 
 
 def one(results, key):
     """The judged row of one claim."""
-    return judge([claim for claim in topic.CLAIMS if claim.key == key], results).iloc[0]
+    return verdicts(topic.CLAIMS, results, key).loc[key]
 
 
 def test_views_are_those_of_the_stage():
@@ -138,14 +125,8 @@ def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze
     found = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
     assert found["a"] == pytest.approx(0.4 - 0.2, abs=0.01)  # 0.9, of all views in one, is not among them
     assert _fixation.scores(frame, "nss")["vgg16-frozen", "ewigc"]["a"] == pytest.approx(0.4, abs=0.02)
-
-
-def test_views_are_told_apart_whether_they_are_read_as_words_or_as_numbers():
-    frame = rows()
-    read = frame.assign(
-        view=frame["view"].map(lambda view: view if view == ALL_VIEWS or view is None else f"{view:.0f}")
-    )
-    pd.testing.assert_frame_equal(_fixation.scores(frame, "pcc"), _fixation.scores(read, "pcc"))
+    numbers = frame[frame["view"] != ALL_VIEWS].assign(view=lambda row: row["view"].astype(float))  # without the word
+    pd.testing.assert_frame_equal(_fixation.scores(numbers, "pcc"), _fixation.scores(frame, "pcc"))
 
 
 def test_truths_are_named_and_gaze_comes_first(gaze):
@@ -157,7 +138,7 @@ def test_truths_are_named_and_gaze_comes_first(gaze):
 def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(written):
     frame = rows("furniture")
     results = written(frame[frame["metric"] != "pcc"])
-    assert figure(results, "figure_3_31").paths[0].exists()
+    assert figure("figure_3_31", results).paths[0].exists()
     with pytest.raises(NotRun, match="ground truth"):
         table(results)
 
@@ -215,12 +196,21 @@ VERDICTS = {
 
 
 def test_claims_say_what_the_rows_hold(gaze):
-    found = judge([claim for claim in topic.CLAIMS if claim.key in VERDICTS], gaze).set_index("key")
+    found = verdicts(topic.CLAIMS, gaze, *VERDICTS)
     assert found["verdict"].to_dict() == {key: word for key, (word, _) in VERDICTS.items()}
     assert found["effect"].to_dict() == pytest.approx({key: size for key, (_, size) in VERDICTS.items()}, rel=0.05)
     assert (found["pairs"] == 6).all()
     alike = next(claim for claim in topic.CLAIMS if claim.key == "resnet_more_alike")
     assert differences(gaze, alike).to_numpy() == pytest.approx(np.full(6, 0.2))
+
+
+def test_claims_turn_with_the_rows_and_name_what_was_not_run(gaze, written):
+    results = written(rows(resnet=-0.05, average=0.38))
+    for key, effect in (("over_vgg", -0.05), ("nearer_than_vgg", -10), ("nearer_than_vgg_least", -5)):
+        found = one(results, f"resnet_{key}")
+        assert found["verdict"] == "contradicted" and found["effect"] == pytest.approx(effect, rel=0.1)
+    assert one(results, "entropy_over_average")["verdict"] == "supported"
+    assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
 
 
 def test_the_network_with_the_lowest_accuracy_is_beside_the_least_of_the_thesis(written):
@@ -232,28 +222,15 @@ def test_the_network_with_the_lowest_accuracy_is_beside_the_least_of_the_thesis(
     assert found["effect"] == pytest.approx(1.5) and found["pairs"] == 2
 
 
-def test_each_sentence_has_one_primary_claim_and_the_thesis_is_judged_as_printed():
-    claims = {claim.key: claim for claim in topic.CLAIMS}
-    primary = [claim for claim in claims.values() if not claim.of]
-    assert all(not claims[claim.of].of for claim in claims.values() if claim.of)  # of a primary claim
-    assert len({claim.sentence for claim in primary}) == len(primary)
-    for claim in primary:
-        if claim.section != "ours":
-            assert claim.sets[0] == "gaze" and claim.where["metric"] not in ("pcc", "nss", "auc", "distance_mean")
-
-
 @pytest.mark.parametrize(("key", "share"), [("median", 100 / 3), ("upper_quartile", -100 / 6)])
 def test_a_quartile_is_lower_where_more_views_lie_below_that_of_both(written, key, share):
     """The network has the lower median, and the higher upper part, than Leifman, the nearer rival."""
-    frame = []
-    for number in range(8):
-        for method, task, views in (
-            ("resnet50-last_block", "ewigc", (0.1, 0.1 + 0.001 * number, 0.9)), ("rival", "leifman", (0.2, 0.3, 0.4)),
-            ("rival", "mesh_saliency", (0.5, 0.6, 0.8)),
-        ):  # fmt: skip
-            row = {"item": f"mesh{number}", "method": method, "task": task, "metric": "distance"}
-            frame += [row | {"view": view, "value": value} for view, value in zip((0, 1, 2, ALL_VIEWS), [*views, 9],
-                                                                                  strict=True)]  # fmt: skip
+    of_views = {("resnet50-last_block", "ewigc"): (0.1, 0.1, 0.9), ("rival", "leifman"): (0.2, 0.3, 0.4),
+                ("rival", "mesh_saliency"): (0.5, 0.6, 0.8)}  # fmt: skip
+    frame = [{"item": f"mesh{number}", "method": method, "task": task, "metric": "distance", "view": view,
+              "value": value + 0.001 * number * (value == 0.1)}
+             for number in range(8) for (method, task), values in of_views.items()
+             for view, value in zip((0, 1, 2, ALL_VIEWS), (*values, 9), strict=True)]  # fmt: skip
     claim = next(one for one in topic.CLAIMS if one.key == f"ewigc_{key}_nearer_resnet50")
     found = differences(written(pd.DataFrame(frame), "gaze"), claim)
     assert found.to_numpy() == pytest.approx(np.full(8, share))  # a tie counts half
@@ -272,34 +249,14 @@ def test_classical_saliency_is_compared_with_that_of_networks_in_how_far_it_spre
     assert judged[0]["verdict"] == "supported" and judged[0]["unit"] == "% of the surface"
 
 
-def test_resnet_is_compared_with_vgg_in_correlation_and_in_both_distances(written):
-    results = written(rows(resnet=-0.05))
-    for key, effect in (("over_vgg", -0.05), ("nearer_than_vgg", -10), ("nearer_than_vgg_least", -5)):
-        found = one(results, f"resnet_{key}")
-        assert found["verdict"] == "contradicted" and found["effect"] == pytest.approx(effect, rel=0.1)
-
-
 def test_one_place_from_all_sides_is_judged_on_both_kinds_of_objects(gaze, written):
-    for count, dataset in ((6, "household"), (8, "princeton")):
-        names = [f"{dataset}_{k}" for k in range(count)]
-        frame = [{"item": name, "method": "mobilenet_v2-frozen", "task": "level_3", "metric": "nearer_than_chance",
-                  "value": 0.05 + 0.01 * (k % 3)} for k, name in enumerate(names)]  # fmt: skip
-        results = written(pd.DataFrame(frame), dataset)
-    found = one(results, "same_place_over_chance")
+    frame = [{"item": f"{dataset}_{k}", "method": "mobilenet_v2-frozen", "task": "level_3", "dataset": dataset,
+              "metric": "nearer_than_chance", "value": 0.05 + 0.01 * (k % 3)}
+             for dataset, count in (("household", 6), ("princeton", 8)) for k in range(count)]  # fmt: skip
+    found = one(written(pd.DataFrame(frame)), "same_place_over_chance")
     assert found["verdict"] == "supported" and found["units"] == 6 and 5 < found["effect"] < 7  # the first set judges
     assert found["carries"].startswith("supported") and found["by_set"].endswith("(8)")
     assert one(gaze, "same_place_over_middle")["verdict"] == "open"  # without such rows
-
-
-def test_entropy_is_compared_with_plain_averages_where_they_were_measured(gaze, written):
-    assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
-    assert one(written(rows(average=0.38)), "entropy_over_average")["verdict"] == "supported"
-
-
-def test_a_network_that_was_not_run_leaves_its_claim_open_and_is_named(written):
-    frame = rows()
-    found = one(written(frame[~frame["method"].str.startswith("vgg16")]), "ewigc_over_lee_vgg16")
-    assert found["verdict"] == "open" and "vgg16-last_block" in found["tested_on"]
 
 
 SAID = {
@@ -312,7 +269,7 @@ SAID = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SAID)
 def test_figures_are_drawn_of_both_truths_with_their_numbers(gaze, name):
-    drawn = figure(gaze, name)
+    drawn = figure(name, gaze)
     assert has_ink(drawn) and SAID[name] in drawn.caption.replace("\n", " ")
     assert name != "figure_3_35" or "no human subjects" in drawn.caption
 
@@ -339,37 +296,38 @@ def test_cost_is_teaching_once_and_looking_at_every_object(gaze):
 
 @pytest.fixture(scope="module")
 def looked(tmp_path_factory, small):
-    """Results of a run with two balls at which two networks have looked."""
-    root = small.root(tmp_path_factory.mktemp("looked"))
+    """Results of a run in which two networks have looked at two balls: attention is highest at their top."""
+    root, mesh = small.root(tmp_path_factory.mktemp("looked")), small.ball()
     small.write_attention(root)
     classes = [{"item": "ball", "task": task, "metric": "class", "label": "1"} for task in TASKS if "ewigc" not in task]
     small.write(root, "fixation", pd.concat([rows("test", 4), pd.DataFrame(classes)]), "test")
-    for name in ("ball", "cube"):
-        write_look(root, name, small.ball(), np.array([0.0, 0, 1]))
-    return small.results(root)
-
-
-def write_look(root, name, mesh, peak):
-    """Leaves the attention on a mesh: highest towards `peak` in all views, or at each picture's middle for None."""
-    axes = np.array([view.axes[2] for view in _fixation.VIEWPOINTS])
-    visible = mesh.vertices @ axes.T > -0.05
-    arrays = {"visible": visible.T, "seen": visible.any(axis=1)}
+    visible = mesh.vertices @ np.array([view.axes[2] for view in _fixation.VIEWPOINTS]).T > -0.05
+    arrays, height = {"visible": visible.T, "seen": visible.any(axis=1)}, mesh.vertices[:, 2] + 0.5
     for method in ("mobilenet_v2-frozen", "mobilenet_v2-random"):
         arrays[f"{method}.maps"] = np.random.default_rng(0).random((3, len(TASKS) - 2, 7, 7)).astype(np.float16)
         for task in TASKS:
-            views = np.stack([mesh.vertices @ (axis if peak is None else peak) + 0.5 for axis in axes])
-            arrays |= {f"{method}.{task}": views.mean(axis=0).astype(np.float16), f"{method}.{task}.views": views}
-    write_arrays(root / f"data/test/fixation/{name}.npz", **arrays)
+            arrays |= {f"{method}.{task}": height.astype(np.float16), f"{method}.{task}.views": np.stack([height] * 3)}
+    for name in ("ball", "cube"):
+        write_arrays(root / f"data/test/fixation/{name}.npz", **arrays)
+    return small.results(root)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", VIEWED)
 def test_maps_are_drawn_on_the_object(looked, name):
-    made = figure(looked, name)
+    made = figure(name, looked)
     assert has_ink(made)
     assert "MobileNetV2" in made.alt
     assert "random weights" not in made.alt  # the thesis's figures show no controls
     assert made.caption.count(maps.FROZEN) == 1
+
+
+@pytest.mark.slow
+def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked, tmp_path, small):
+    root = shutil.copytree(looked.workspace.root, tmp_path / "root")
+    shutil.rmtree(root / "data/test/weights/ground_truth")
+    made = figure("figure_3_34", small.results(root))
+    assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "glance" in made.alt
 
 
 def test_a_network_is_drawn_as_it_was_taught_most():
@@ -388,28 +346,20 @@ def test_a_map_is_drawn_where_it_is_high():
     assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2-frozen").any()
 
 
-@pytest.mark.slow
-def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked, tmp_path, small):
-    root = shutil.copytree(looked.workspace.root, tmp_path / "root")
-    for path in (root / "data/test/weights/ground_truth").glob("*.npz"):
-        path.unlink()
-    made = figure(small.results(root), "figure_3_34")
-    assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "glance" in made.alt
-
-
 def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small, monkeypatch):
     def figure_3_34(results, dataset=None):
         drawing, axes = plt.subplots()
         axes.plot([0, 1])
         return Figure(drawing, {"names": dataset, "columns": "marks", "taught": "", "marks": ""})
 
-    monkeypatch.setitem(topic.FIGURES, "figure_3_34_gaze", partial(maps.on_gaze, figure_3_34))
+    name = "figure_3_34_gaze"
+    monkeypatch.setitem(topic.FIGURES, name, partial(maps.on_gaze, figure_3_34))
     results = small.results(bare)
     (bare / "data/gaze/fixation").mkdir(parents=True)
-    drawn = figure(results, "figure_3_34_gaze")
+    drawn = figure(name, results)
     content = drawn.paths[0].read_bytes()
     (bare / "data/gaze/fixation").rmdir()
-    kept = figure(results, "figure_3_34_gaze")
+    kept = figure(name, results)
     for one in (drawn, kept):
         assert one.title == "Figure 3.34: fused attention on the surface, on meshes with human gaze"
         assert one.alt == "Meshes of gaze, coloured from dark (low) to yellow (high): marks."
@@ -418,4 +368,4 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     assert kept.paths == drawn.paths and kept.paths[0].read_bytes() == content
     kept.paths[0].unlink()
     with pytest.raises(NotRun, match="figure_3_34_gaze.png"):
-        figure(results, "figure_3_34_gaze")
+        figure(name, results)
