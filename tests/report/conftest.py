@@ -276,12 +276,15 @@ def small():
 def measure(tmp_path_factory):
     """A function that writes the rows of a stage, on one set or on those of their column, and returns the results.
 
-    results: of the root to write below; else a new one with nothing measured.
+    stage: or `bench/NAME`, of a benchmark. results: of the root to write below; else a new one with nothing measured.
     """
 
     def written(stage, frame, dataset=None, results=None):
         root = results.workspace.root if results else make_bare(tmp_path_factory.mktemp("measured"))
-        write_measurements(root, stage, frame, dataset)
+        if stage.startswith("bench/"):
+            write_table(root / f"reports/{stage}.csv", frame)
+        else:
+            write_measurements(root, stage, frame, dataset)
         return read_results(root)
 
     return written
@@ -297,17 +300,6 @@ def empty(tmp_path_factory):
 def bare(tmp_path):
     """A root with nothing measured."""
     return make_bare(tmp_path)
-
-
-@pytest.fixture
-def benched_results(bare, small):
-    """A function (name, rows) that writes the rows of a benchmark and returns the results with them."""
-
-    def written(name, rows):
-        write_table(bare / f"reports/bench/{name}.csv", rows)
-        return small.results(bare)
-
-    return written
 
 
 @pytest.fixture

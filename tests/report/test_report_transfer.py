@@ -2,22 +2,20 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import write_table
 from haptic_glance.know.split import shared_by
 from stages.report import networks as _transfer
 from stages.report import recorded as recorded_topic
 from stages.report import transfer
 from stages.report.effects import differences
-from stages.report.results import NotRun
-from stages.report.topics import KINDS, build_one
+from stages.report.topics import build_one
 from stages.report.transfer import figure_5_3, tables
-from stages.report.verdict import judge
-from tests.report.frames import has_ink, only
+from tests.report.frames import has_ink, only, verdicts
 
 FINE, COARSE = "imprints128", "imprints16"
 LEVELS = {  # (data, weights, mode) -> accuracy
@@ -79,77 +77,71 @@ def converged(dataset="furniture", repetitions=3):
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory, small):
+def run(measure):
     """Results of a run that has trained MobileNetV2, by the printed passes and until nothing improves."""
-    root = small.bare(tmp_path_factory.mktemp("run"))
-    small.write(root, "transfer", pd.concat([rows(), converged()]))
-    return small.results(root)
+    return measure("transfer", pd.concat([rows(), converged()]))
+
+
+table = partial(build_one, transfer, "tables")
+words = partial(verdicts, transfer.CLAIMS)
 
 
 @pytest.fixture(scope="module")
-def both(tmp_path_factory, small):
-    """Results of a run in which all is as the thesis says, and of trainings on its classes in which nothing is."""
-    root = small.bare(tmp_path_factory.mktemp("both"))
-    small.write(root, "transfer", rows())
-    small.write(root, "transfer", rows("princeton_six", turned=True))
-    return small.results(root)
+def printed(run):
+    return table("table_5_4", run)
 
 
-def words(results, *keys):
-    """The judged rows of chapter 5 by key: those of these keys, or all."""
-    return judge([one for one in transfer.CLAIMS if not keys or one.key in keys], results).set_index("key")
-
-
-def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
-    table = build_one(transfer, "tables", "table_5_4", run)
-    found = only(table.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(printed):
+    found = only(printed.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
     assert found["accuracy"] == pytest.approx(0.5, abs=0.01) and found["thesis"] == 0.4381
     assert found["above_chance"] == pytest.approx(found["accuracy"] - 1 / 6, abs=1e-6)
-    line = only(table.shown, network="MobileNetV2", filters="frozen", passes=TEN, **{"starts from": "ImageNet"})
+    line = only(printed.shown, network="MobileNetV2", filters="frozen", passes=TEN, **{"starts from": "ImageNet"})
     said, _, interval = line[SPLITS].partition(" ")
     assert float(said) == pytest.approx(100 * found["accuracy"], abs=0.06) and interval[0] == "["
     assert line["thesis, %"] == "43.8"
-    assert table.shown.loc[table.best_rows, "network"].tolist() == ["MobileNetV2"]
-    line = only(table.shown, network="ResNet50", filters="frozen", passes=TEN)
+    assert printed.shown.loc[printed.best_rows, "network"].tolist() == ["MobileNetV2"]
+    line = only(printed.shown, network="ResNet50", filters="frozen", passes=TEN)
     assert line["furniture, unseen objects, 80 px, 5 folds, %"] == "not run" and line["thesis, %"] == "52.4"
 
 
-@pytest.mark.parametrize("table", ["table_5_4", "table_5_6"])
-def test_a_note_says_what_the_networks_of_a_column_saw(bare, small, table):
+@pytest.mark.parametrize("name", ["table_5_4", "table_5_6"])
+def test_a_note_says_what_the_networks_of_a_column_saw(measure, name):
     frame = rows().assign(precision="float32")
     later = frame["split"] == "random"
     frame.loc[later, ["size", "touches", "precision"]] = 128, 28, "float16"
-    small.write(bare, "transfer", frame)
-    made = build_one(transfer, "tables", table, small.results(bare))
+    made = table(name, measure("transfer", frame))
     notes = " ".join(made.notes)
     assert "furniture, touches at random: 28 touches an object at 128 px; furniture, unseen obj" in notes
     assert "furniture, unseen objects: 20 touches an object at 80 px." in notes
-    assert ("Guessing: furniture 16.7 %." in notes) == (table == "table_5_4")
-    assert ("On furniture, MobileNetV2 computed in float16." in made.notes) == (table == "table_5_4")
+    assert ("Guessing: furniture 16.7 %." in notes) == (name == "table_5_4")
+    assert ("On furniture, MobileNetV2 computed in float16." in made.notes) == (name == "table_5_4")
 
 
-def test_tables_hold_the_coarse_array_alone_and_frozen_layers_by_the_thesis_s_numbers(run):
-    coarse = build_one(transfer, "tables", "table_5_3", run).frame
+def test_table_5_3_holds_the_coarse_array_alone(run):
+    coarse = table("table_5_3", run).frame
     found = only(coarse, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
     assert found["accuracy"] == pytest.approx(0.2, abs=0.01) and found["thesis"] == 0.2048
-    layers = build_one(transfer, "tables", "table_5_6", run).frame
-    found = {name: only(layers, frozen_layers=name, split="random")["accuracy"] for name in ("1:134", "none", "1:150")}
-    assert found == pytest.approx({"1:134": 0.7, "none": 0.8, "1:150": np.nan}, abs=0.01, nan_ok=True)
 
 
-def test_trainings_until_nothing_improves_stand_below_those_of_the_printed_passes(run):
-    made = build_one(transfer, "tables", "table_5_4", run)
-    found = only(made.frame, network="mobilenet_v2", weights="imagenet", mode="finetuned", split="random")
+def test_trainings_until_nothing_improves_stand_below_those_of_the_printed_passes(printed):
+    found = only(printed.frame, network="mobilenet_v2", weights="imagenet", mode="finetuned", split="random")
     assert found["accuracy"] == pytest.approx(0.8, abs=0.01) and found["converged"] == pytest.approx(0.96)
     assert found["converged_training"] == pytest.approx(0.99) and found["converged_epochs"] == 31
     assert found["training"] == 1 and found["converged_values"] == 3
-    mine = made.shown[made.shown["network"] == "MobileNetV2"]
+    mine = printed.shown[printed.shown["network"] == "MobileNetV2"]
     mine = mine[(mine["starts from"] == "ImageNet") & (mine["filters"] == "fine-tuned")].set_index("passes")
     assert list(mine.index) == [TEN, "until nothing improves"]
     assert mine[SPLITS].iloc[1].startswith("96") and list(mine["training touches, %"]) == ["100.0", "99.0"]
-    counts = made.shown["network"].value_counts()
+    counts = printed.shown["network"].value_counts()
     assert counts["VGG16"] == 2 and counts["MobileNetV2"] == 6  # a network without any training is named one time
-    shown = build_one(transfer, "tables", "table_5_6", run).shown.set_index(["frozen layers", "passes"])
+
+
+def test_table_5_6_has_frozen_layers_by_the_thesis_s_numbers(run):
+    made = table("table_5_6", run)
+    names = ("1:134", "none", "1:150")
+    found = {name: only(made.frame, frozen_layers=name, split="random")["accuracy"] for name in names}
+    assert found == pytest.approx({"1:134": 0.7, "none": 0.8, "1:150": np.nan}, abs=0.01, nan_ok=True)
+    shown = made.shown.set_index(["frozen layers", "passes"])
     late = shown.xs("until nothing improves", level="passes")[SPLITS]
     assert late["none"].startswith("96.0") and late["18:139"] == "not run" and "1:150" not in late
 
@@ -175,20 +167,21 @@ def test_figures_are_drawn(run, figure):
 
 
 @pytest.mark.slow
-def test_chart_costs_are_the_time_of_an_imprint_at_the_size_that_the_networks_saw(bare, small, benched_results):
-    small.write(bare, "transfer", pd.concat([rows(), rows().assign(method="alexnet"), converged()]))
+def test_chart_costs_are_the_time_of_an_imprint_at_the_size_that_the_networks_saw(measure):
+    results = measure("transfer", pd.concat([rows(), rows().assign(method="alexnet"), converged()]))
     times = pd.DataFrame({"network": ["mobilenet_v2", "alexnet"], "size": [80, 80], "milliseconds": [10.0, 5.0]})
-    results = benched_results("networks", times)
+    results = measure("bench/networks", times, results=results)
     build_one(transfer, "tradeoff", "networks", results)
     frame = pd.read_csv(results.out / "tradeoff/networks.csv").set_index("name")
     assert frame.loc["AlexNet, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(0.5)
     assert "MobileNetV2, ImageNet, fine-tuned, until nothing improves" in frame.index
     with pytest.raises(NotRun, match="no network at a size"):
-        transfer.CHARTS["networks"](benched_results("networks", times.assign(size=96)))
+        transfer.CHARTS["networks"](measure("bench/networks", times.assign(size=96), results=results))
 
 
 @pytest.mark.slow
-def test_sets_that_contradict_each_other_are_mixed_and_each_is_told(both):
+def test_sets_that_contradict_each_other_are_mixed_and_each_is_told(measure):
+    both = measure("transfer", pd.concat([rows(), rows("princeton_six", turned=True)]))
     found = words(both)
     keys = {key.removesuffix("_psb").rpartition("_")[0] for key in found.index}
     assert keys == KEYS and found["section"].str.startswith("T5.").all()
@@ -203,9 +196,13 @@ def test_sets_that_contradict_each_other_are_mixed_and_each_is_told(both):
 
 
 @pytest.mark.slow
-def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(bare, small):
-    small.write(bare, "transfer", rows("princeton_six"))
-    results = small.results(bare)
+def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure):
+    others = rows("princeton_six", frozen=0.9).assign(method="resnet50")  # which change no claim
+    frame = pd.concat([rows("princeton_six"), others[others["mode"] == "frozen"]], ignore_index=True)
+    results = measure("transfer", frame)
+    where = {"objects": "princeton_six", "network": "resnet50", "mode": "frozen", "weights": "imagenet"}
+    beside = only(table("table_5_4", results).frame, split="objects", **where)
+    assert beside["accuracy"] == pytest.approx(0.9, abs=0.01) and beside["values"] == 5
     found = words(results)
     changed = found.index == "earlier_change_more"  # equal differences show no spread
     assert set(found.loc[~changed, "verdict"]) == {"supported"}
@@ -216,27 +213,19 @@ def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(bare, sm
     assert list(drawn[["mean", "low", "high"]]) == pytest.approx([gain["effect"], gain["low"], gain["high"]])
 
 
-@pytest.mark.parametrize(("changes", "verdicts"), [
+@pytest.mark.parametrize(("changes", "words_then"), [
     ({"train_accuracy": None}, {"tuned_over_frozen_random": "not testable"}),  # nobody knows how far they were trained
     ({"size": 128}, {"fine_over_coarse_tuned_random": "open", "early_and_late_random": "open",
                      "tuned_over_frozen_random": "supported"}),  # networks that saw other sizes are not compared
     ({"1:134": 0.85}, {"early_decisive_random_psb": "contradicted", "early_decisive_objects_psb": "contradicted"}),
 ])  # fmt: skip
-def test_claims_turn_with_the_rows(bare, small, changes, verdicts):
+def test_claims_turn_with_the_rows(measure, changes, words_then):
     frame = rows("princeton_six", **{mode: level for mode, level in changes.items() if ":" in mode})
     if "train_accuracy" in changes:
         frame = frame[frame["metric"] != "train_accuracy"]
     if "size" in changes:
         frame.loc[(frame["data"] == COARSE) | (frame["mode"] == "18:139"), "size"] = changes["size"]
-    small.write(bare, "transfer", frame)
-    assert words(small.results(bare), *verdicts)["verdict"].to_dict() == verdicts
-
-
-def test_without_trainings_on_the_thesis_s_classes_the_claims_name_what_measures_them(run):
-    found = words(run, "early_decisive_random_psb", "tuned_over_frozen_random")
-    told = "not run: no measurements of transfer on princeton_six"
-    assert found.loc["early_decisive_random_psb", "tested_on"].startswith(told)
-    assert found.loc["tuned_over_frozen_random", "verdict"] == "supported"
+    assert words(measure("transfer", frame), *words_then)["verdict"].to_dict() == words_then
 
 
 def test_one_object_of_five_says_more_than_one_of_three():
@@ -248,23 +237,8 @@ def test_one_object_of_five_says_more_than_one_of_three():
     assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
 
 
-@pytest.mark.slow
-def test_other_networks_on_the_thesis_s_classes_stand_beside_and_change_no_claim(bare, small):
-    one, other = rows("princeton_six"), rows("princeton_six", frozen=0.9).assign(method="resnet50")
-    frame, effects = pd.concat([one, other[other["mode"] == "frozen"]], ignore_index=True), []
-    for found in (one, frame):
-        small.write(bare, "transfer", found)
-        effects.append(words(small.results(bare), "tuned_over_frozen_random", "frozen_over_chance_objects")["effect"])
-    assert effects[0].equals(effects[1])
-    table = build_one(transfer, "tables", "table_5_4", small.results(bare))
-    where = {"objects": "princeton_six", "network": "resnet50", "mode": "frozen", "weights": "imagenet"}
-    found = only(table.frame, split="objects", **where)
-    assert found["accuracy"] == pytest.approx(0.9, abs=0.01) and found["values"] == 5
-    assert "psb, the thesis's 6 classes, touches at random, 80 px, 5 splits, %" in table.shown
-
-
 @pytest.mark.parametrize(("table", "figure"), [("table_5_1", "83.0"), ("table_5_5", "85.2")])
-def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
+def test_a_data_set_that_is_not_at_hand_is_named(measure, table, figure):
     """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""
     one = {"dataset": "pressure_images", "data": "pressure", "item": None, "split": "random", "metric": "accuracy"}
     seen = {"method": "mobilenet_v2", "weights": "imagenet", "pretrained": "complete", "mode": "frozen", "size": 96}
@@ -272,25 +246,23 @@ def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
     found.append(one | {"method": "features_knn", "repetition": 0, "value": 0.6})
     missing = {"dataset": "vt60", "data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen"}
     found.append(missing | {"metric": "accuracy", "note": "not run: data set not at hand"})
-    small.write(bare, "recorded_networks", pd.DataFrame(found))
-    made = build_one(recorded_topic, "tables", table, small.results(bare))
+    made = build_one(recorded_topic, "tables", table, measure("recorded_networks", pd.DataFrame(found)))
     line = only(made.shown, network="AlexNet")
     assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
     assert "Not run" in made.notes[0]
 
 
-def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
+def test_the_coarse_array_is_told_one_change_at_a_time(measure):
     base = {"cells": 16, "weights": "imagenet", "size": 80, "chance": 0.125, "metric": "accuracy"}
     levels = {"rate_of_table_5_3": 0.2, "plain": 0.6}
     found = [base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)]
-    small.write(bare, "coarse_imprints", pd.DataFrame(found), "furniture")
-    shown = build_one(transfer, "tables", "coarse_imprints", small.results(bare)).shown
+    shown = table("coarse_imprints", measure("coarse_imprints", pd.DataFrame(found), "furniture")).shown
     assert list(shown["what differs"]) == [tables.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
     assert shown["accuracy, %"][0].startswith("61.0 [")
 
 
 @pytest.mark.slow
-def test_the_smallest_network_that_is_enough_is_named(bare, small):
+def test_the_smallest_network_that_is_enough_is_named(measure):
     found = [
         {"data": "pressure", "item": None, "method": name, "weights": "imagenet", "mode": "frozen", "split": "blocks"}
         | {"pretrained": "complete", "size": 96, "repetition": k, "metric": "accuracy", "value": level + 0.001 * k}
@@ -300,7 +272,7 @@ def test_the_smallest_network_that_is_enough_is_named(bare, small):
     costs = [
         {"network": n, "size": 96, "parameters": s, "operations": s, "milliseconds": 1.0} for n, s in sizes.items()
     ]
-    small.write(bare, "recorded_networks", pd.DataFrame(found), "pressure_images")
-    write_table(bare / "reports/bench/networks.csv", pd.DataFrame(costs))
-    made = build_one(recorded_topic, "tradeoff", "network_sizes", small.results(bare))
+    results = measure("recorded_networks", pd.DataFrame(found), "pressure_images")
+    results = measure("bench/networks", pd.DataFrame(costs), results=results)
+    made = build_one(recorded_topic, "tradeoff", "network_sizes", results)
     assert "best on average is MobileNetV2." in made.caption
