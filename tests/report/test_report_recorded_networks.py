@@ -1,5 +1,6 @@
 """Networks on recorded touches in the report: gains, guesses and claims on trainings whose truth is known."""
 
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -11,10 +12,8 @@ from stages.engine.statistics import interval
 from stages.report import recorded as topic
 from stages.report.recorded.claims import NETWORKS as CLAIMS
 from stages.report.recorded.claims import SETTINGS
-from stages.report.results import NotRun
 from stages.report.topics import build_one
-from stages.report.verdict import judge
-from tests.report.frames import only
+from tests.report.frames import only, verdicts
 
 LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exact, the splits differ by far more
     ("mobilenet_v2", "imagenet", "frozen"): 0.7,
@@ -73,47 +72,34 @@ def majority():
     return pd.DataFrame([*rows, *(rows[0] | other | {"value": 1.0} for other in others)])
 
 
-def write(root, small, frame):
-    """The results of a root with these trainings, and with what guessing gets right of grasps."""
-    small.write(root, "recorded_networks", frame)
-    small.write(root, "recorded", majority(), "biotac_grasps")
-    return small.results(root)
+real_networks = partial(build_one, topic, "tables", "real_networks")
+judge = partial(verdicts, CLAIMS)
 
 
 @pytest.fixture
-def measured(bare, small):
-    return lambda frame: write(bare, small, frame)
+def measured(measure):
+    """A function of trainings to the results."""
+    return partial(measure, "recorded_networks")
 
 
 @pytest.fixture(scope="module")
-def touched(tmp_path_factory, small):
-    """The results of trainings in all settings."""
-    return write(small.bare(tmp_path_factory.mktemp("touched")), small, touches())
+def touched(measure):
+    """The results of trainings in all settings, and of what guessing gets right of grasps."""
+    return measure("recorded", majority(), "biotac_grasps", measure("recorded_networks", touches()))
 
 
 @pytest.fixture(scope="module")
 def table(touched):
-    return build_one(topic, "tables", "real_networks", touched)
+    return real_networks(touched)
 
 
 @pytest.fixture(scope="module")
 def judged(touched):
-    return verdicts(touched)
+    return judge(touched)
 
 
 def line(table, data="pressure", split="random", method="mobilenet_v2", weights="imagenet", mode="frozen"):
     return only(table.frame, data=data, split=split, method=method, weights=weights, mode=mode)
-
-
-def real_networks(results):
-    return build_one(topic, "tables", "real_networks", results)
-
-
-def verdicts(results, *keys):
-    """The claims of these keys (behind `recorded_`), or all, judged."""
-    return judge([one for one in CLAIMS if not keys or one.key.removeprefix("recorded_") in keys], results).set_index(
-        "key"
-    )
 
 
 @pytest.mark.parametrize(("data", "split"), SETTINGS.values())
@@ -166,24 +152,14 @@ def test_guessing_is_what_is_right_more_often_and_of_each_kept_object(table, mea
     assert line(real_networks(measured(frame)))["guess"] == pytest.approx(0.3)
 
 
-def test_classical_features_lead_each_split_and_have_no_gains(table):
+def test_classical_features_lead_each_split_and_have_neither_gains_nor_guesses_alone(measured, table):
     first = table.shown.drop_duplicates(["data", "split"])
     assert set(first["network"]) == {"features and kNN"} and len(first) == len(SETTINGS)
     assert set(first["over features and kNN"]) == set(first["over random weights"]) == {"–"}
-    assert set(first["guessing, %"]) == {"20.0", "25.0"}
-
-
-def test_a_table_of_classical_features_alone_has_no_guesses_nor_sets_that_are_not_at_hand(measured):
     absent = {"dataset": "vt60", "data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen"}
     frame = pd.concat([touches({}, PRESSURE), pd.DataFrame([absent | {"metric": "accuracy"}])])
     shown = real_networks(measured(frame)).shown
     assert list(shown["guessing, %"]) == list(shown["starts from"]) == ["–"]
-
-
-@pytest.mark.parametrize("build", [*topic.CHARTS.values(), topic.TABLES["real_networks"], topic.TABLES["table_5_1"]])
-def test_without_accuracies_the_pieces_are_not_run(measured, build):
-    with pytest.raises(NotRun, match="no accuracy|no measurements"):
-        build(measured(touches(settings=PRESSURE).assign(value=np.nan)))
 
 
 WORDS = {
@@ -207,9 +183,9 @@ def test_claims_say_what_the_rows_hold_in_every_setting(judged):
 def test_claims_turn_with_the_rows(measured):
     worse = {way: 1 - level for way, level in LEVELS.items()} | {("mobilenet_v2", "imagenet", "frozen"): 0.1}
     worse |= {("mobilenet_v2", "imagenet", "finetuned"): 0.05}
-    found = verdicts(measured(touches(worse, PRESSURE, 4)), *(f"{key}_pressure_random" for key in WORDS))
     turned = {"supported": "contradicted", "contradicted": "supported"}
-    assert found["verdict"].to_dict() == {f"recorded_{key}_pressure_random": turned[WORDS[key]] for key in WORDS}
+    wanted = {f"recorded_{key}_pressure_random": turned[word] for key, word in WORDS.items()}
+    assert judge(measured(touches(worse, PRESSURE, 4)), *wanted)["verdict"].to_dict() == wanted
 
 
 @pytest.mark.parametrize(("key", "effect", "over"), [
@@ -230,27 +206,27 @@ def test_one_reading_is_held_against_guessing_and_against_the_series(measured, i
     rows, random = [], np.random.default_rng(0)
     for (data, level), split in product({"schunk": 0.4, "schunk_coarse": instant}.items(), ("random", "objects")):
         rows += _trained(said | {"data": data, "split": split}, level, random, 4)
-    keys = [f"{key}_hand_{split}" for key in ("instant_by_guessing", "series_over_instant")
+    keys = [f"recorded_{key}_hand_{split}" for key in ("instant_by_guessing", "series_over_instant")
             for split in ("random", "grasps")]  # fmt: skip
-    found = verdicts(measured(pd.DataFrame(rows, columns=COLUMNS)), *keys)
+    found = judge(measured(pd.DataFrame(rows, columns=COLUMNS)), *keys)
     assert found["verdict"].tolist() == [word] * 4 and found["pairs"].tolist() == [4] * 4
     series = found[found.index.str.contains("series")]
     assert series["effect"].to_numpy() == pytest.approx(100 * (0.4 - instant), abs=0.3)
 
 
-def test_claims_over_repeated_splits_alone_are_widened():
-    shares = {(claim.pairs, claim.share) for claim in CLAIMS}
-    assert shares == {("repetitions", shared_by("random")), ("objects", 0.0), ("networks", 0.0)}
-
-
 def test_a_claim_names_the_training_or_the_rival_that_it_lacks(measured):
     levels = {way: level for way, level in LEVELS.items() if way[0] == "resnet50"}
     levels |= {way: level for way, level in LEVELS.items() if way[0] == "mobilenet_v2" and way[2] == "frozen"}
-    keys = ("tuned_over_frozen_pressure_random", "frozen_over_features_pressure_random")
-    told = verdicts(measured(touches(levels, PRESSURE)), *keys)
-    lacking = told.loc[f"recorded_{keys[0]}"]
+    keys = ("recorded_tuned_over_frozen_pressure_random", "recorded_frozen_over_features_pressure_random")
+    told = judge(measured(touches(levels, PRESSURE)), *keys)
+    lacking = told.loc[keys[0]]
     assert lacking["tested_on"] == "not run: mode finetuned is not among those that recorded_networks measured"
-    assert lacking["verdict"] == "open" and told.loc[f"recorded_{keys[1]}", "verdict"] == "supported"
+    assert lacking["verdict"] == "open" and told.loc[keys[1], "verdict"] == "supported"
     alone = {way: level for way, level in levels.items() if way[0] == "resnet50"}
-    alone = verdicts(measured(touches(alone, PRESSURE)), "resnet_best_pressure_random").iloc[0]
+    alone = judge(measured(touches(alone, PRESSURE)), "recorded_resnet_best_pressure_random").iloc[0]
     assert alone["verdict"] == "open" and "no other method than resnet50" in alone["tested_on"]
+
+
+def test_claims_over_repeated_splits_alone_are_widened():
+    shares = {(claim.pairs, claim.share) for claim in CLAIMS}
+    assert shares == {("repetitions", shared_by("random")), ("objects", 0.0), ("networks", 0.0)}
