@@ -1,6 +1,7 @@
 """Real touches in the report: table 4.4's twin, grasps, simulation beside real touches, touch events, the claims."""
 
 import re
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -14,10 +15,8 @@ from stages.report.recorded.grasps import TASKS
 from stages.report.recorded.networks import PANELS
 from stages.report.recorded.table_4_4 import CLASSES
 from stages.report.recorded.touch_events import PUBLISHED
-from stages.report.results import NotRun
 from stages.report.topics import build_one
-from stages.report.verdict import judge
-from tests.report.frames import has_ink
+from tests.report.frames import has_ink, verdicts
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
 GAIN = {"all": 0.0, "selected": 0.05, "selected_control": 0.0, "selected_training": -0.05}
@@ -120,39 +119,20 @@ def grasp_rows():
     return pd.DataFrame(found)
 
 
-PLACES = {  # name of the rows -> their stage and set
-    "real": ("recorded", "pressure_images"), "grasps": ("recorded", "biotac_grasps"),
-    "simulated_to_real": ("simulated_to_real", "pressure_images"), "events": ("recorded", "touch_events"),
-    "series": ("recorded", "schunk"),
-}  # fmt: skip
-
-
-def write(root, small, **frames):
-    """The results of a root with these rows, by the names of PLACES."""
-    for name, rows in frames.items():
-        stage, dataset = PLACES[name]
-        small.write(root, stage, rows, dataset)
-    return small.results(root)
-
-
-@pytest.fixture
-def measured(bare, small):
-    return lambda **frames: write(bare, small, **frames)
-
-
 @pytest.fixture(scope="module")
-def every(tmp_path_factory, small):
+def every(measure):
     """The results of a root with rows of all kinds."""
-    frames = {"real": recorded(), "grasps": grasped(), "simulated_to_real": transferred(), "events": event_rows()}
-    return write(small.bare(tmp_path_factory.mktemp("every")), small, **frames, series=grasp_rows())
+    results = measure("simulated_to_real", transferred(), "pressure_images")
+    sets = {
+        "pressure_images": recorded(),
+        "biotac_grasps": grasped(),
+        "touch_events": event_rows(),
+        "schunk": grasp_rows(),
+    }
+    return measure("recorded", pd.concat([frame.assign(dataset=name) for name, frame in sets.items()]), results=results)
 
 
-def table(name, results):
-    return build_one(topic, "tables", name, results)
-
-
-def judged(results):
-    return judge(CLAIMS, results).set_index("key")
+table = partial(build_one, topic, "tables")
 
 
 def test_table_4_4_stands_beside_the_thesis(every):
@@ -171,11 +151,12 @@ def test_table_4_4_stands_beside_the_thesis(every):
     assert "first four classes 20.0 %" in notes and "Most alike: can, pen; four: can, pen" in notes
 
 
-def test_table_4_4_has_the_readings_of_the_scale_behind(measured):
+def test_table_4_4_has_the_readings_of_the_scale_behind(measure):
     rows = recorded()
     other = rows[(rows["method"] == "all") & (rows["split"] == "random")].assign(scaling="min_max")
     other["value"] += np.where(other["classifier"] == "svm", 0.3, 0.0)
-    shown = table("table_4_4", measured(real=pd.concat([rows, other]))).shown.set_index(["set", "selection"])
+    results = measure("recorded", pd.concat([rows, other]), "pressure_images")
+    shown = table("table_4_4", results).shown.set_index(["set", "selection"])
     cells = shown.loc[("all 22 classes", "no selection: all data from 0 to 1")]
     assert cells["SVM, %"].startswith("70 [") and cells["mean of all, %"].startswith("63 [")
     assert shown.loc[("all 22 classes", "no selection"), "SVM, %"].startswith("40 [")
@@ -208,15 +189,13 @@ def test_the_picture_of_simulated_and_real_touches_is_drawn(every):
     assert has_ink(figure)
 
 
-def test_simulation_that_does_not_help_contradicts_its_claim(measured):
-    found = judged(measured(simulated_to_real=transferred(-0.1))).loc["simulation_helps_5"]
-    assert found["verdict"] == "contradicted" and found["effect"] == pytest.approx(-10, abs=0.5)
-
-
 @pytest.mark.slow
-def test_selection_and_the_best_classifier_are_judged_on_real_touches(every):
-    found = judged(every)
+def test_selection_simulation_and_the_best_classifier_are_judged_on_real_touches(every, measure):
+    found = verdicts(CLAIMS, every)
     assert found.loc["simulation_helps_5", "verdict"] == "supported"
+    worse = measure("simulated_to_real", transferred(-0.1), "pressure_images")
+    worse = verdicts(CLAIMS, worse, "simulation_helps_5").iloc[0]
+    assert worse["verdict"] == "contradicted" and worse["effect"] == pytest.approx(-10, abs=0.5)
     assert found.loc["real_selection_six_alike", "effect"] == pytest.approx(5, abs=0.3)
     assert found.loc["real_selection_training", "verdict"] == "contradicted"
     assert found.loc["real_knn_best_all", "effect"] == pytest.approx(5, abs=0.5)
@@ -251,15 +230,16 @@ def test_grasps_are_counted_one_by_one(every):
     made = table("grasp_series", every)
     assert made.text["published test list"].tolist() == ["5 of 5", "0 of 5"]
     assert made.text["grasps left out in turn, %"].str.split(" ").str[0].tolist() == ["95", "50"]
-    (claim,) = [one for one in SERIES if one.key == "grasp_series_over_components"]
-    assert judge([claim], every).loc[0, "effect"] == pytest.approx(45)
+    key = "grasp_series_over_components"
+    assert verdicts(SERIES, every, key).loc[key, "effect"] == pytest.approx(45)
 
 
-def test_claims_on_events_turn_with_the_rows(every, measured):
+def test_claims_on_events_turn_with_the_rows(every, measure):
     events = [one for one in SERIES if one.dataset == "touch_events"]
-    words = judge(events, every).set_index("key")["verdict"]
+    words = verdicts(events, every)["verdict"]
     assert words["events_discriminant_over_network_objects"] == "supported"
     assert words["events_linear_svm_over_network_containers"] == "supported"
     assert words["events_quarter_enough"] == "contradicted" and words["events_half_the_taxels_objects"] == "supported"
-    words = judge(events, measured(events=event_rows(dict.fromkeys(EVENTS, 0.5)))).set_index("key")["verdict"]
-    assert words["events_discriminant_over_network_objects"] == "contradicted"
+    worse = measure("recorded", event_rows(dict.fromkeys(EVENTS, 0.5)))
+    words = verdicts(events, worse, "events_discriminant_over_network_objects")["verdict"]
+    assert words.tolist() == ["contradicted"]
