@@ -6,7 +6,6 @@ import pytest
 
 from stages.report import chain
 from stages.report.chain import smallest_kept, words
-from stages.report.results import NotRun
 from stages.report.topics import build_one
 
 BLIND = {"method": "random", "points": 40, "cells": 8, "level": "500", "touches": 3, "classifier": "knn"}
@@ -27,8 +26,8 @@ def choice_rows(rung, number, options, accuracy, seconds, role=None):
     ]
 
 
-@pytest.fixture
-def measured(bare, bare_results, small):
+@pytest.fixture(scope="module")
+def measured(measure):
     rows = choice_rows("confirmation", 5, LOOKING, 0.55, 1.0, "default")
     rows += choice_rows("confirmation", 0, BLIND, 0.5, 0.01, "smallest")
     rows += choice_rows("confirmation", 1, OTHERS[0], 0.45, 0.005)
@@ -36,9 +35,7 @@ def measured(bare, bare_results, small):
         rows += choice_rows(rung, 0, BLIND, 0.6, 0.01) + choice_rows(rung, 1, OTHERS[0], 0.5, 0.005)
     rows += choice_rows("one_choice", 1, OTHERS[0], 0.4, 0.005) + choice_rows("one_choice", 7, OTHERS[1], 0.52, 0.02)
     frame = pd.DataFrame(rows)
-    for dataset, split in (("test", "regions"), ("classes", "objects")):
-        small.write(bare, "front", frame[frame["split"] == split], dataset)
-    return bare_results
+    return measure("front", frame.assign(dataset=frame["split"].map({"regions": "test", "objects": "classes"})))
 
 
 def test_confirmed_choices_stand_beside_what_the_search_found(measured):

@@ -1,5 +1,7 @@
 """Tables, charts and claims of exploring by touch and of its stability, on rows with a known truth."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,13 +9,11 @@ import pytest
 from haptic_glance.base.files import write_arrays
 from stages.report import exploration, stability
 from stages.report.exploration import needed
-from stages.report.results import NotRun
 from stages.report.stability.touch import DENOISED, breaking, curve, harmless, severities
 from stages.report.topics import build_one
-from stages.report.verdict import judge
+from tests.report.frames import verdicts
 
 CHARTS = [("tradeoff", "exploration"), ("figures", "exploration_calibration")]
-DEGRADED = [("tables", "touch_stability"), ("figures", "touch_stability"), ("figures", "touch_stability_imprints")]
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
 SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
 
@@ -41,10 +41,8 @@ def explored():
 
 
 @pytest.fixture(scope="module")
-def explorer(tmp_path_factory, small):
-    root = small.bare(tmp_path_factory.mktemp("explored"))
-    small.write(root, "exploration", explored())
-    return small.results(root)
+def explorer(measure):
+    return measure("exploration", explored())
 
 
 def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
@@ -67,7 +65,7 @@ def test_charts_are_drawn(explorer, kind, name):
 
 
 def test_claims_know_the_truth_of_the_rows(explorer):
-    judged = judge(exploration.CLAIMS, explorer).set_index("key")
+    judged = verdicts(exploration.CLAIMS, explorer)
     words = judged["verdict"]
     assert words["five_touches_over_one"] == words["adaptive_over_fixed"] == "supported"
     assert words["gain_over_random"] == words["gain_over_saliency"] == "supported"
@@ -100,52 +98,47 @@ def test_half_of_the_lead_is_lost_where_the_rows_say_so_and_severities_go_from_m
     assert points["severity"].tolist() == [400, 100] and harmless(points) == 400
 
 
-def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(bare, bare_results, small):
-    small.write(bare, "touch_stability", disturbed())
-    table = build_one(stability, "tables", "touch_stability", bare_results)
+touch_stability = partial(build_one, stability, "tables", "touch_stability")
+
+
+def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(measure):
+    results = measure("touch_stability", disturbed())
+    table = touch_stability(results)
     shown = table.shown.set_index("perturbation")
     assert shown.loc["coarse model", "kNN breaks at"].startswith("< 100")
     assert shown.loc["noise", "kNN breaks at"].startswith("0.2") and shown.loc["noise", "SVM breaks at"] == "–"
     assert any(note.startswith("Undisturbed: kNN 80 %") for note in table.notes)
-    assert build_one(stability, "figures", "touch_stability", bare_results).paths[0].exists()
+    assert build_one(stability, "figures", "touch_stability", results).paths[0].exists()
 
 
-def test_what_is_no_better_than_guessing_has_no_breaking_point(bare, small):
+def test_what_is_no_better_than_guessing_has_no_breaking_point(measure):
     lost = disturbed()
-    small.write(bare, "touch_stability", lost.assign(value=lost["value"] - 0.7))
-    assert build_one(stability, "tables", "touch_stability", small.results(bare)).frame.empty
+    assert touch_stability(measure("touch_stability", lost.assign(value=lost["value"] - 0.7))).frame.empty
 
 
-def test_what_a_denoiser_gains_stands_beside_its_breaking_point(bare, bare_results, small):
+def test_what_a_denoiser_gains_stands_beside_its_breaking_point(measure):
     """An autoencoder that gives back a tenth under noise, and a median filter that takes one."""
     rows, more = disturbed(), {"imprint": 0.0, "imprint_median": -0.1, "imprint_autoencoder": 0.1}
-    noisy, several = rows["perturbation"] == "noise", [rows.query("perturbation != 'coarse_model'")] * 3
-    several = [
-        part.assign(features=name, value=part["value"] + gained * noisy)
-        for part, (name, gained) in zip(several, more.items(), strict=True)
-    ]
-    small.write(bare, "touch_stability", rows)
-    small.write(bare, "touch_stability", pd.concat(several), DENOISED)
-    table = build_one(stability, "tables", "touch_stability", bare_results)
+    noise = rows[rows["perturbation"] != "coarse_model"].assign(dataset=DENOISED)
+    noisy = noise["perturbation"] == "noise"
+    several = [noise.assign(features=name, value=noise["value"] + gain * noisy) for name, gain in more.items()]
+    results = measure("touch_stability", pd.concat([rows, *several]))
+    table = touch_stability(results)
     shown = table.shown.set_index("perturbation")["kNN breaks at"]
     assert len(shown) == 4 and not shown.str.contains("+", regex=False).any()
-    gained = build_one(stability, "tables", "touch_denoised", bare_results).shown.set_index(
-        ["perturbation", "denoiser"]
-    )
+    gained = build_one(stability, "tables", "touch_denoised", results).shown.set_index(["perturbation", "denoiser"])
     assert gained.loc[("noise", "an autoencoder"), "kNN: points gained"].startswith("+10")
     assert gained.loc[("noise", "a median filter"), "kNN: points gained"].startswith("-10")
     assert any("after an autoencoder kNN 80 %" in note for note in table.notes)
-    keys = ("autoencoder_over_none_noise", "autoencoder_over_median_noise")
-    judged = judge([one for one in stability.CLAIMS if one.key in keys], bare_results).set_index("key")
+    judged = verdicts(stability.CLAIMS, results, "autoencoder_over_none_noise", "autoencoder_over_median_noise")
     assert judged.loc["autoencoder_over_none_noise", "effect"] == pytest.approx(10, abs=0.1)
     assert judged.loc["autoencoder_over_median_noise", "effect"] == pytest.approx(20, abs=0.1)
 
 
 def test_the_picture_of_disturbed_imprints_goes_from_mild_to_harsh(root, results):
-    images = np.zeros((1, 8, 8))
     keys = ("clean", "gain.0.5", "gain.0.9", "noise.0.1", "coarse_model.100")
-    write_arrays(root / "data/test/touch_stability/ball.npz", **{f"shown.{key}": images for key in keys})
+    stored = {f"shown.{key}": np.zeros((1, 8, 8)) for key in keys}
+    write_arrays(root / "data/test/touch_stability/ball.npz", **stored)
     figure = build_one(stability, "figures", "touch_stability_imprints", results)
     assert figure.paths[0].exists() and "coarse" not in figure.alt
-    stored = {f"shown.{key}": images for key in keys}
     assert severities(stored, "gain") == ["0.9", "0.5"]

@@ -1,19 +1,15 @@
 """The tables, figures, chart and claims of the hybrid network, on rows whose truth is known."""
 
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from stages.engine.rows import write_rows
 from stages.report import hybrid, stability
-from stages.report.effects import differences
 from stages.report.hybrid.section_5_5 import JOINED, NEW_OBJECTS
-from stages.report.results import NotRun
 from stages.report.topics import build_one
-from stages.report.verdict import judge
-from stages.transfer import COLUMNS
+from tests.report import frames
 from tests.report.frames import has_ink
 
 FIRST, LONGER = "18:139", "18:147"
@@ -59,13 +55,7 @@ def rows(repetitions=3, both=0.05, small=-0.003):
         one |= {"mode": "frozen", "split": "random", "repetition": number}
         found += [one | {"metric": "accuracy", "value": 0.5}, one | {"metric": "chance", "value": 0.125}]
     found += [row | {"metric": "train_accuracy", "value": 1.0} for row in found if row["metric"] == "accuracy"]
-    return pd.DataFrame(found).assign(note=None, seconds=10.0)
-
-
-def write(root, frame, dataset="furniture"):
-    """Puts rows on a set as the stage does, which refuses columns and splits that it does not declare."""
-    path = root / f"reports/measurements/{dataset}/transfer.csv.gz"
-    write_rows(path, frame.to_dict("records"), COLUMNS, dataset, seed=0)
+    return pd.DataFrame(found).assign(note=None, seconds=10.0, dataset="furniture", seed=0)
 
 
 def longer(frame, lost=0.1):
@@ -78,7 +68,7 @@ def longer(frame, lost=0.1):
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory, small):
+def run(measure):
     """Results of a run that has stitched hybrid networks."""
     pairs = [(a, b) for a in ("car", "vase") for b in ("car", "vase")]
     counts = [
@@ -92,59 +82,52 @@ def run(tmp_path_factory, small):
         | {"repetition": k, "value": 0.5 - s - 0.01 * k}
         for s in (0.1, 0.2) for k in range(3)
     ]  # fmt: skip
-    root = small.bare(tmp_path_factory.mktemp("run"))
-    write(root, pd.concat([rows(), pd.DataFrame(counts), pd.DataFrame(noisy)]))
-    return small.results(root)
+    return measure("transfer", pd.concat([rows(), pd.DataFrame(counts), pd.DataFrame(noisy)]), "furniture")
 
 
-def test_the_hybrid_stands_beside_the_two_networks(run):
-    table = build_one(hybrid, "tables", "section_5_5", run)
-    frame = table.frame.set_index(["network", "split"])
+@pytest.fixture(scope="module")
+def two_middles(run, measure):
+    """Results of a run in which the network of the longer middle comes first in the file."""
+    frame = run.rows("transfer")
+    return measure("transfer", pd.concat([longer(frame), frame], ignore_index=True))
+
+
+table = partial(build_one, hybrid, "tables")
+verdicts = partial(frames.verdicts, hybrid.CLAIMS)
+
+
+@pytest.fixture(scope="module")
+def stitched(run):
+    return table("section_5_5", run)
+
+
+def test_the_hybrid_stands_beside_the_two_networks(stitched):
+    frame = stitched.frame.set_index(["network", "split"])
     assert frame.loc[("hybrid", "random"), "touch"] == frame.loc[("apart", "random"), "touch"]
     assert frame.loc[("hybrid", "random"), "size_ratio"] == pytest.approx(17 / 11.9, rel=1e-4)
     assert frame.loc[("apart", "random"), "megabytes"] == pytest.approx(17)
-    notes = " ".join(table.notes)
+    notes = " ".join(stitched.notes)
     assert "size ratio 1.4284" in notes and "by 2.00e-06 at most, accuracy by 0.00 points" in notes
     assert "Size ratio 1.4286; the thesis's is 1.4284." in notes and "aim" not in notes
 
 
-def test_a_hybrid_that_loses_accuracy_says_so(bare, small):
-    frame = rows()
-    worse = (frame["method"] == "hybrid") & (frame["metric"] == "accuracy") & (frame["sense"] == "touch")
-    frame.loc[worse, "value"] -= 0.03
-    write(bare, frame)
-    notes = " ".join(build_one(hybrid, "tables", "section_5_5", small.results(bare)).notes)
-    assert "accuracy by 3.00 points at most." in notes
-
-
-@pytest.fixture(scope="module")
-def two_middles(run, tmp_path_factory, small):
-    """Results of a run in which the network of the longer middle comes first in the file."""
-    root, frame = small.bare(tmp_path_factory.mktemp("two")), run.rows("transfer")
-    write(root, pd.concat([longer(frame), frame], ignore_index=True))
-    return small.results(root)
-
-
 @pytest.mark.slow
 def test_networks_of_another_middle_change_no_claim_and_no_table_of_the_first(run, two_middles):
-    claims = [one for one in hybrid.CLAIMS if one.key.endswith("_objects")]
-    pd.testing.assert_frame_equal(judge(claims, two_middles), judge(claims, run))
-    tables = [build_one(hybrid, "tables", "hybrid_senses", results).frame for results in (two_middles, run)]
-    pd.testing.assert_frame_equal(*tables)
-    both, first = (build_one(hybrid, "tables", "section_5_5", results).frame for results in (two_middles, run))
-    pd.testing.assert_frame_equal(both[both["shared_layers"] == FIRST], first)
+    pd.testing.assert_frame_equal(verdicts(two_middles, *EVERY), verdicts(run, *EVERY))
+    pd.testing.assert_frame_equal(*(table("hybrid_senses", results).frame for results in (two_middles, run)))
 
 
-def test_a_longer_middle_is_held_against_the_first_on_the_same_items(two_middles):
-    table = build_one(hybrid, "tables", "section_5_5", two_middles)
-    frame = table.frame.set_index(["shared_layers", "network", "split"])
+def test_a_longer_middle_is_held_against_the_first_on_the_same_items(stitched, two_middles):
+    made = table("section_5_5", two_middles)
+    pd.testing.assert_frame_equal(made.frame[made.frame["shared_layers"] == FIRST], stitched.frame)
+    frame = made.frame.set_index(["shared_layers", "network", "split"])
     found = frame.loc[(LONGER, "hybrid", "objects")]
     assert found["touch_gain"] == pytest.approx(-10) and found["size_ratio"] == pytest.approx(1.68, rel=1e-4)
     assert frame.loc[(FIRST, "hybrid", "objects"), "touch_gain"] == 0
-    line = table.shown.set_index(["shared layers", "network"]).loc[(LONGER, "hybrid")]
+    line = made.shown.set_index(["shared layers", "network"]).loc[(LONGER, "hybrid")]
     assert line["gain by touch, unseen objects, points"] == "-10.0" and "·" not in line["by touch, unseen objects, %"]
-    assert "gain by touch, unseen objects, points" not in table.first
-    assert "Size ratio 1.6800; the thesis's is 1.4284." in " ".join(table.notes)
+    assert "gain by touch, unseen objects, points" not in made.first
+    assert "Size ratio 1.6800; the thesis's is 1.4284." in " ".join(made.notes)
 
 
 @pytest.mark.slow
@@ -157,10 +140,11 @@ def test_a_longer_middle_is_drawn_as_far_from_the_first_as_it_was(run, two_middl
     assert has_ink(alone) and "Hollow" not in alone.caption  # one needs no word on another
 
 
-def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(bare, small):
-    write(bare, rows())
-    write(bare, rows(both=-0.5), "princeton_six")
-    frame = build_one(hybrid, "tables", "section_5_5", small.results(bare)).frame
+def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(measure):
+    own = rows()
+    without = own[own["data"] != "hybrid"].assign(dataset="test")  # the first set has none, and hides none
+    theirs = rows(both=-0.5).assign(dataset="princeton_six")
+    frame = table("section_5_5", measure("transfer", pd.concat([own, without, theirs]))).frame
     assert list(frame["objects"].unique()) == [f"furniture, {LOOKED}", f"psb, the thesis's 6 classes, {LOOKED}"]
     own, theirs = (
         frame[(frame["objects"] == name) & (frame["network"] == "hybrid") & (frame["split"] == "objects")].iloc[0]
@@ -171,18 +155,8 @@ def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(bare, small):
     assert narrower == pytest.approx(np.sqrt((1 + 3 / 4) / (1 + 3 / 2)))  # one object of five, not of three
 
 
-@pytest.mark.parametrize("first", [False, True])
-def test_hybrids_on_the_thesis_s_classes_alone_are_told_and_hidden_by_no_set_without(bare, small, first):
-    frame = rows()
-    if first:
-        write(bare, frame[frame["data"] != "hybrid"])
-    write(bare, frame, "princeton_six")
-    frame = build_one(hybrid, "tables", "section_5_5", small.results(bare)).frame
-    assert list(frame["objects"].unique()) == [f"psb, the thesis's 6 classes, {LOOKED}"]
-
-
 def test_damage_is_told_at_its_harshest(run):
-    shown = build_one(hybrid, "tables", "hybrid_senses", run).shown.set_index("answers")
+    shown = table("hybrid_senses", run).shown.set_index("answers")
     assert list(shown) == ["mean of all columns, %", "both whole, %", "picture: darkness 0.95, %"]
     mean, *shares = (float(cell.split()[0]) for cell in shown.loc["sight alone"])
     assert mean == pytest.approx(sum(shares) / 2, abs=1)
@@ -199,11 +173,11 @@ def test_confusions_of_each_split_and_sense_are_in_per_cent(run):
 
 
 def test_a_network_breaks_where_half_of_its_lead_is_lost(run):
-    table = build_one(stability, "tables", "transfer_stability", run)
-    row = table.frame.set_index("perturbation").loc["noise"]
+    made = build_one(stability, "tables", "transfer_stability", run)
+    row = made.frame.set_index("perturbation").loc["noise"]
     assert row["breaking_point"] == pytest.approx(0.1775)  # 0.39 at 0.1, 0.29 at 0.2; half way from 0.5 to 0.125
     assert row["low"] < row["breaking_point"] < row["high"] or np.isnan(row["high"])
-    assert table.shown["unit"].tolist() == ["sigma, share of full scale"]
+    assert made.shown["unit"].tolist() == ["sigma, share of full scale"]
     assert has_ink(build_one(stability, "figures", "transfer_stability", run))
 
 
@@ -211,20 +185,11 @@ KEYS = ("sight_over_touch", "both_over_better", "touch_in_the_dark", "eight_bits
 EVERY = [f"{key}_{split}" for key in KEYS for split in ("random", "objects")] + ["apart_over_sum_random"]
 
 
-def verdicts(bare, small, frame, keys=EVERY, dataset="furniture"):
-    """The judged claims of these keys on these rows."""
-    write(bare, frame, dataset)
-    return judge([one for one in hybrid.CLAIMS if one.key in keys], small.results(bare)).set_index("key")
-
-
-def test_claims_say_what_the_rows_hold(bare, small):
-    assert verdicts(bare, small, rows())["verdict"].to_dict() == dict.fromkeys(EVERY, "supported")
-
-
-def test_claims_turn_with_the_rows_of_their_split(bare, small):
+def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
+    assert verdicts(run, *EVERY)["verdict"].to_dict() == dict.fromkeys(EVERY, "supported")
     frame = rows(both=-0.5, small=-0.03)
     frame.loc[(frame["split"] == "objects") & (frame["sense"] == "touch"), "value"] += 0.9
-    found = verdicts(bare, small, frame)
+    found = verdicts(measure("transfer", frame), *EVERY)
     assert found.loc["both_over_better_random", "verdict"] == "contradicted"
     assert found.loc["both_over_better_objects", "verdict"] == "contradicted"
     assert found.loc["eight_bits_touch_random", "verdict"] == "contradicted"  # one point may be lost, and no more
@@ -233,23 +198,15 @@ def test_claims_turn_with_the_rows_of_their_split(bare, small):
     assert found.loc["sight_over_touch_objects", "verdict"] == "contradicted"
 
 
-def test_the_hybrid_itself_leaves_no_difference_to_judge(run):
-    eight_bits = next(claim for claim in hybrid.CLAIMS if claim.key == "eight_bits_touch_random").on(None)
-    whole = replace(eight_bits, first={"method": "hybrid"})
-    assert differences(run, whole).to_numpy() == pytest.approx(np.ones(3))
-    assert not np.allclose(differences(run, eight_bits), 1)
-
-
-def test_claims_on_the_thesis_s_classes_and_ours_are_pooled(bare, small):
-    frame = rows()
-    write(bare, frame)
-    frame.loc[frame["sense"] == "touch", "value"] += 0.9
-    row = verdicts(bare, small, frame, ["sight_over_touch_random"], "princeton_six").iloc[0]
+def test_claims_on_the_thesis_s_classes_and_ours_are_pooled(measure):
+    own, theirs = rows(), rows().assign(dataset="princeton_six")
+    theirs.loc[theirs["sense"] == "touch", "value"] += 0.9
+    row = verdicts(measure("transfer", pd.concat([own, theirs])), "sight_over_touch_random").iloc[0]
     assert row["verdict"] == "contradicted" and row["tested_on"].startswith("psb, the thesis's 6 classes, ")
     assert row["by_set"].startswith("psb, the thesis's 6 classes -") and row["carries"].startswith("mixed")
 
 
-def test_new_objects_stand_below_the_table_and_in_the_claims(bare, small):
+def test_new_objects_stand_below_the_table_and_in_the_claims(measure):
     """A head that knows 30 % of eight new objects after one touch and 50 % after five, ten points over the others."""
     random, found = np.random.default_rng(0), []
     for name, worse in (("hybrid_head", 0.0), ("imagenet_head", 0.1), ("hybrid_nearest", 0.1)):
@@ -259,12 +216,13 @@ def test_new_objects_stand_below_the_table_and_in_the_claims(bare, small):
             values = share - worse + 0.02 * random.normal(size=8)
             found += [about | {"item": f"o{k}", "value": value} for k, value in enumerate(values)]
     chance = {"data": "hybrid", "method": "chance", "metric": NEW_OBJECTS, "value": 1 / 8}
-    write(bare, pd.concat([rows(), pd.DataFrame([*found, chance])]))
-    results = small.results(bare)
-    notes = " ".join(build_one(hybrid, "tables", "section_5_5", results).notes)
+    frame = rows()
+    worse = (frame["method"] == "hybrid") & (frame["metric"] == "accuracy") & (frame["sense"] == "touch")
+    frame.loc[worse, "value"] -= 0.03
+    results = measure("transfer", pd.concat([frame, pd.DataFrame([*found, chance])]), "furniture")
+    notes = " ".join(table("section_5_5", results).notes)
     assert "a new head on the hybrid's features: " in notes and "0.10 to 1 s an object on one core" in notes
-    assert "8 new objects, guessing 12.5 %" in notes
-    keys = ("new_object_hybrid_over_imagenet", "new_object_over_guessing")
-    judged = judge([one for one in hybrid.CLAIMS if one.key in keys], results).set_index("key")
+    assert "8 new objects, guessing 12.5 %" in notes and "accuracy by 3.00 points at most." in notes
+    judged = verdicts(results, "new_object_hybrid_over_imagenet", "new_object_over_guessing")
     assert judged.loc["new_object_hybrid_over_imagenet", "effect"] == pytest.approx(10, abs=3)
     assert judged.loc["new_object_over_guessing", "effect"] == pytest.approx(17.5, abs=3)

@@ -4,10 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import write_table
 from stages.report import scene as topic
 from stages.report.effects import differences
-from stages.report.results import NotRun
 from stages.report.scene import scene as scenes
 from stages.report.scene.random import CLAIMS, left_of, planning, plans, saving
 from stages.report.topics import build_one
@@ -36,14 +34,19 @@ def scene(name, saved=0.4, held=1.0, **changes):
     return [common | changes | row for row in rows]
 
 
-def table(bare, results, *groups):
-    write_table(bare / "reports/bench/scenes.csv", pd.DataFrame([row for group in groups for row in group]))
-    return build_one(topic, "tables", "scenes", results)
+@pytest.fixture
+def table(measure):
+    """A function of the rows of scenes to their table."""
+
+    def build(*groups):
+        results = measure("bench/scenes", pd.DataFrame([row for group in groups for row in group]))
+        return build_one(topic, "tables", "scenes", results)
+
+    return build
 
 
-def test_every_scene_has_a_line_a_way(bare, bare_results):
-    hall = scene("hall", saved=0.29)
-    made = table(bare, bare_results, scene("shelf"), hall, scene("hall", kind="ssim", tolerance=0.05))
+def test_every_scene_has_a_line_a_way(table):
+    made = table(scene("shelf"), scene("hall", saved=0.29), scene("hall", kind="ssim", tolerance=0.05))
     found, notes = made.shown, made.notes
     assert "8 objects (5 different), 24 frames" in notes[0]
     assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:2]] == [2, 2]
@@ -71,30 +74,25 @@ def test_what_the_matching_leaves_open_is_said_with_figures(spread, said):
     assert left_of(saved[saved["matched"] == "error"]) == left_of(saved[:0]) == ""
 
 
-def staged(bare, results, *more):
-    """The table of the scene that the stage did."""
-    common = {"dataset": "test", "frame": "all", "factor": 1.0, "item": None, "seconds": 1.0, "note": None}
-    rows = pd.DataFrame([common | row for row in (*scene("shelf"), *more)]).rename(columns={"scene": "group"})
-    write_table(bare / "reports/measurements/test/scene.csv.gz", rows)
-    return build_one(topic, "tables", "scene", results)
-
-
 ABSENT = {"scene": "shelf", "kind": "pixels", "tolerance": 1.0, "method": "network", "matched": "error",
           "metric": "faces", "value": None, "note": "no object to learn from"}  # fmt: skip
 
 
-def test_both_tables_say_why_there_is_no_network(bare, bare_results):
+def test_both_tables_say_why_there_is_no_network(measure, table):
     rows = [row for row in scene("shelf") if row["method"] != "network"]
-    found = table(bare, bare_results, [*rows, ABSENT], scene("hall"))
+    found = table([*rows, ABSENT], scene("hall"))
     assert found.notes[0].endswith(" The thesis's network: no object to learn from.")
     assert "no object" not in "".join(found.notes[1:]) and "network" not in set(found.frame["method"][:6])
-    assert "the thesis's network: no object to learn from." in staged(bare, bare_results, ABSENT).notes
+    common = {"dataset": "test", "frame": "all", "factor": 1.0, "item": None, "seconds": 1.0, "note": None}
+    staged = pd.DataFrame([common | row for row in (*scene("shelf"), ABSENT)]).rename(columns={"scene": "group"})
+    found = build_one(topic, "tables", "scene", measure("scene", staged))
+    assert "the thesis's network: no object to learn from." in found.notes
 
 
-def test_a_way_that_was_not_asked_has_no_line(bare, bare_results):
+def test_a_way_that_was_not_asked_has_no_line(table):
     rows = [row for row in scene("shelf") if row["method"] != "network"]
     rows.append({"scene": "shelf", "kind": "pixels", "tolerance": None, "method": "network", "metric": "faces"})
-    found = table(bare, bare_results, rows).shown
+    found = table(rows).shown
     assert len(found) == len(scenes.WAYS) - 1 and "the thesis's network" not in set(found["levels chosen by"])
 
 
@@ -115,17 +113,15 @@ def rows_of(group, faces):
 
 
 @pytest.fixture
-def measured(bare, bare_results):
+def measured(measure):
     """A function of {plan: a function of the scene's number to faces} to the results of twelve scenes."""
 
     def make(**faces):
         ways = {("ours", ""): lambda k: 1000 + 10 * k, ("full", ""): lambda k: 50_000}
         ways |= {tuple(name.split("__")) if "__" in name else (name, ""): way for name, way in faces.items()}
-        rows = [
-            row for k in range(12) for row in rows_of(f"random_{k:02d}", {key: way(k) for key, way in ways.items()})
-        ]
-        write_table(bare / "reports/measurements/household_scenes/scene.csv.gz", pd.DataFrame(rows))
-        return bare_results
+        rows = [row for k in range(12)
+                for row in rows_of(f"random_{k:02d}", {key: way(k) for key, way in ways.items()})]  # fmt: skip
+        return measure("scene", pd.DataFrame(rows))
 
     return make
 
@@ -156,7 +152,7 @@ def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verd
 
 
 @pytest.mark.slow
-def test_the_time_of_drawing_stands_beside_the_faces(bare, measured):
+def test_the_time_of_drawing_stands_beside_the_faces(measure, measured):
     rivals = [f"{name}__{matched}" for name in ("uniform", "uniform_size") for matched in ("displacement", "error")]
     ways = {"online": lambda k: 1000, "online_unrendered": lambda k: 1800 + k}
     ways |= {"beforehand__displacement": lambda k: 1195 + k, "every_level__displacement": lambda k: 900 + 10 * k}
@@ -166,7 +162,7 @@ def test_the_time_of_drawing_stands_beside_the_faces(bare, measured):
     bench = [{"scene": f"random_{k:02d}", "method": name, "rows": 270, "faces": faces, "ms": 40 * ratio + 0.1 * k,
               "ratio": ratio + 0.001 * k, "device": "llvmpipe (LLVM 15)"}
              for k in range(12) for name, (faces, ratio) in ways.items()]  # fmt: skip
-    write_table(bare / "reports/bench/frame_times.csv", pd.DataFrame(bench))
+    results = measure("bench/frame_times", pd.DataFrame(bench), results=results)
     table = build_one(topic, "tables", "random_scenes", results)
     less = table.frame.set_index("method")["less"]
     assert less["beforehand"] == pytest.approx(0.2, abs=0.001) and 0.3 < less["every_level"] < 0.4
@@ -183,7 +179,7 @@ def test_the_time_of_drawing_stands_beside_the_faces(bare, measured):
 
 
 @pytest.fixture
-def needs(bare, bare_results):
+def needs(measure):
     """Results of nine objects that need 100 faces to be seen, 1,000 to be felt and 300 to be recognised, about."""
     ways = {("full", None): 5000, ("seen", 0.5): 200, ("seen", 1.0): 100, ("felt", 0.05): 1000, ("felt", 0.02): 3000,
             ("recognised", 0.02): 300}  # fmt: skip
@@ -193,11 +189,8 @@ def needs(bare, bare_results):
             for k in range(9) for (task, condition), count in ways.items()]  # fmt: skip
     rows += [common | {"item": f"object {k}", "task": "recognised", "metric": "accuracy", "value": 0.7 + 0.01 * k}
              for k in range(9)]  # fmt: skip
-    rows.append(
-        common | {"item": None, "task": "recognised", "condition": 0.02, "metric": "faces_together", "value": 250}
-    )
-    write_table(bare / "reports/measurements/household_scenes/face_needs.csv.gz", pd.DataFrame(rows))
-    return bare_results
+    together = {"item": None, "task": "recognised", "condition": 0.02, "metric": "faces_together", "value": 250}
+    return measure("face_needs", pd.DataFrame([*rows, common | together]))
 
 
 def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):

@@ -7,10 +7,9 @@ import pytest
 from haptic_glance.base.timing import WALL
 from stages.engine.statistics import interval
 from stages.report import sensor
-from stages.report.results import NotRun
 from stages.report.sensor import arrays
 from stages.report.topics import build_one
-from stages.report.verdict import judge
+from tests.report.frames import verdicts
 
 
 def pressed():
@@ -31,12 +30,11 @@ def pressed():
     return pd.DataFrame(rows)
 
 
-@pytest.fixture
-def sensed(bare, small):
+@pytest.fixture(scope="module")
+def sensed(measure):
     again = {"dataset": "furniture", "classifier": "knn", "cells": 32, "pitch": 0.01, "value": 0.46}
     again = pd.DataFrame([again | {"metric": "smallest_chosen_again"}])
-    small.write(bare, "sensor_size", pd.concat([pressed(), again]))
-    return small.results(bare)
+    return measure("sensor_size", pd.concat([pressed(), again]))
 
 
 def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_again(sensed):
@@ -59,20 +57,20 @@ def test_the_chart_shows_milliseconds_with_intervals(sensed):
     assert low < drawn[0][0] < high
 
 
-def test_a_cost_has_the_interval_of_its_objects(bare, small):
+def test_a_cost_has_the_interval_of_its_objects(measure):
     rows = pressed()
     timed = rows[rows["metric"] == "seconds_a_touch"]
     objects = [timed.assign(item=f"o{k}", value=timed["value"] * factor) for k, factor in enumerate((0.9, 1.0, 1.1))]
-    small.write(bare, "sensor_size", pd.concat([rows[rows["metric"] != "seconds_a_touch"], *objects]))
-    axes = build_one(sensor, "tradeoff", "sensor_size", small.results(bare)).drawing.axes[-1]
+    results = measure("sensor_size", pd.concat([rows[rows["metric"] != "seconds_a_touch"], *objects]))
+    axes = build_one(sensor, "tradeoff", "sensor_size", results).drawing.axes[-1]
     low, high = axes.collections[-1].get_segments()[0][:, 1]
     mean, *ends = interval([0.09, 0.1, 0.11])
     assert [low, high] == pytest.approx(ends)
 
 
-def test_claims_know_the_truth_of_the_rows(bare, sensed, small):
-    small.write(bare, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
-    judged = judge(arrays.CLAIMS, sensed).set_index("key")
+def test_claims_know_the_truth_of_the_rows(measure):
+    results = measure("sensor_size", pd.concat([pressed(), pressed().assign(dataset="princeton_eight")]))
+    judged = verdicts(arrays.CLAIMS, results)
     words = judged["verdict"]
     better = ["more_cells_help_all", "more_cells_help_more", "larger_pitch_helps_16", "larger_pitch_helps_32",
               "more_cells_help", "knn_best_sensor", "known_objects_easier"]  # fmt: skip
@@ -81,7 +79,7 @@ def test_claims_know_the_truth_of_the_rows(bare, sensed, small):
     assert judged.loc["knn_best_sensor", "effect"] == pytest.approx(5, abs=1)
 
 
-def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(bare, bare_results, small):
+def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(measure):
     rows = pressed().query("cells == 16 and pitch == 0.02 and metric == 'accuracy'")
     kinds = [
         ({"fine": "12-0.005"}, 0.2),
@@ -89,10 +87,10 @@ def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(bare, ba
         ({"extent": "points"}, 0.0),
         ({"cells": 20}, 0.0),
     ]
-    several = [rows.assign(**kind, value=rows["value"] + more, dataset=arrays.HANDS[0]) for kind, more in kinds]
-    small.write(bare, "sensor_size", pd.concat([*several, pressed().assign(dataset=arrays.HANDS[0])]), arrays.HANDS[0])
-    shown = build_one(sensor, "tables", "figure_4_11", bare_results).shown
+    several = [rows.assign(**kind, value=rows["value"] + more) for kind, more in kinds]
+    results = measure("sensor_size", pd.concat([*several, pressed()]), arrays.HANDS[0])
+    shown = build_one(sensor, "tables", "figure_4_11", results).shown
     said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
     assert set(said) < set(shown["cells"])
-    judged = judge(arrays.CLAIMS, bare_results).set_index("key")
-    assert judged.loc["wide_hand_over_coarse", "effect"] == pytest.approx(20, abs=0.5)
+    found = verdicts(arrays.CLAIMS, results, "wide_hand_over_coarse").iloc[0]
+    assert found["effect"] == pytest.approx(20, abs=0.5)

@@ -1,5 +1,6 @@
 """Table 4.9, figure 4.19, the layers, the chart and the claims of whole contours."""
 
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -7,12 +8,10 @@ import pandas as pd
 import pytest
 
 from stages.report import sequences
-from stages.report.results import NotRun
 from stages.report.sequences.contours import SHOWN
 from stages.report.sequences.tables import MORE, PRINTED_SET, SAID, SPLITS
 from stages.report.topics import build_one
-from stages.report.verdict import judge
-from tests.report.frames import only
+from tests.report.frames import only, verdicts
 
 CLASSES = ("car", "chair", "vase")
 MEANS = {"cnn": 0.9, "cnn_images": 0.8, "cnn_normals": 0.4, "knn": 0.6, "svm": 0.7, "knn_no_som": 0.65,
@@ -43,15 +42,12 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), datase
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory, small):
+def run(measure):
     """Results of a run that has measured the sequences."""
-    root = small.bare(tmp_path_factory.mktemp("run"))
-    small.write(root, "sequences", rows())
-    return small.results(root)
+    return measure("sequences", rows())
 
 
-def table_4_9(results):
-    return build_one(sequences, "tables", "table_4_9", results)
+table_4_9 = partial(build_one, sequences, "tables", "table_4_9")
 
 
 def test_twin_stands_beside_the_thesis_s_figures(run):
@@ -69,14 +65,14 @@ def test_twin_stands_beside_the_thesis_s_figures(run):
     assert len(table.frame) == 2 * 3 * len(MEANS)  # without smaller films
 
 
-def test_larger_run_stands_below_where_there_is_one(bare, small):
+def test_larger_run_stands_below_where_there_is_one(measure):
     note = {"dataset": "furniture", "metric": "accuracy", "note": "class far: no sequences of away"}
-    small.write(bare, "sequences", pd.concat([rows(splits=("random",)), pd.DataFrame([note])], ignore_index=True))
-    table = table_4_9(small.results(bare))
+    frame = pd.concat([rows(splits=("random",)), pd.DataFrame([note])], ignore_index=True)
+    results = measure("sequences", frame)
+    table = table_4_9(results)
     assert set(table.frame["split"]) == {"random"}  # one half, without objects left out
     assert "Not run: class far: no sequences of away." in table.notes
-    small.write(bare, "sequences", rows(dataset="princeton_eight"))
-    table = table_4_9(small.results(bare))
+    table = table_4_9(measure("sequences", rows(dataset="princeton_eight"), results=results))
     assert list(dict.fromkeys(table.frame["objects"])) == ["furniture", "princeton_eight"]
     assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes", "the thesis"]
 
@@ -92,39 +88,40 @@ def test_chart_charges_each_choice_its_seconds(run):
 
 
 @pytest.mark.slow
-def test_confusions_are_drawn_for_every_strategy_of_the_thesis(bare, small):
+def test_confusions_are_drawn_for_every_strategy_of_the_thesis(measure):
     found = [
         {"method": method, "split": split, "classifier": name, "group": one, "predicted": other, "metric": "confusion",
          "value": 9 * (one == other) + 1}
         for method, split, name in product(("random", "thesis_ssim", "glance"), SPLITS, MEANS)
         for one, other in product(CLASSES, CLASSES)
     ]  # fmt: skip
-    small.write(bare, "sequences", pd.DataFrame(found), "furniture")
-    figure = build_one(sequences, "figures", "figure_4_19", small.results(bare))
+    results = measure("sequences", pd.DataFrame(found), "furniture")
+    figure = build_one(sequences, "figures", "figure_4_19", results)
     assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
 
 
-def test_layers_stand_beside_the_printed_ones(bare, small):
+def test_layers_stand_beside_the_printed_ones(measure):
     layers = [
         {"classifier": network, "layer": layer, "kind": "Conv3d", "output": "8x5", "metric": "parameters", "value": 7}
         for network, layer in SAID
     ]
-    small.write(bare, "sequences", pd.DataFrame(layers), "furniture")
-    table = build_one(sequences, "tables", "table_4_7", small.results(bare))
+    results = measure("sequences", pd.DataFrame(layers), "furniture")
+    table = build_one(sequences, "tables", "table_4_7", results)
     assert (table.frame["thesis"] != "").all() and "3D 42; 1D 42" in table.notes[-1]
 
 
-def verdicts(bare, small, frame):
-    """dict key -> verdict, and the frame of all, of the claims on these rows, as printed and on the other data sets."""
-    for name in (PRINTED_SET, *MORE):
-        small.write(bare, "sequences", frame, name)
-    found = judge(sequences.CLAIMS, small.results(bare)).set_index("key")
-    return found["verdict"].to_dict(), found
+def everywhere(measure, frame):
+    """The results with these rows as printed and on the other data sets."""
+    return measure("sequences", pd.concat(frame.assign(dataset=name) for name in (PRINTED_SET, *MORE)))
+
+
+judged = partial(verdicts, sequences.CLAIMS)
 
 
 @pytest.mark.slow
-def test_claims_that_hold_are_supported(bare, small):
-    words, found = verdicts(bare, small, rows())
+def test_claims_that_hold_are_supported(measure):
+    found = judged(everywhere(measure, rows()))
+    words = found["verdict"].to_dict()
     for key in ("contours_map_helps_random", "contours_map_helps_unseen"):
         assert words.pop(key) == words.pop(f"{key}_more") == "contradicted"
     assert set(words.values()) == {"supported"}
@@ -135,19 +132,16 @@ def test_claims_that_hold_are_supported(bare, small):
     assert found.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
 
 
-@pytest.mark.slow
-def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is_another_reading(bare, small):
+def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is_another_reading(measure):
     frame = rows(guided=-0.05, unseen=0.05)
     frame.loc[frame["classifier"] == "knn_no_som", "value"] = 1.2
-    words, _ = verdicts(bare, small, frame)
-    for key in ("contours_guided_random", "contours_guided_unseen", "contours_random_flatters"):
-        assert words[key] == "contradicted"
-    assert words["contours_cnn_best_unseen"] == "depends on the reading"
+    wanted = dict.fromkeys(("contours_guided_random", "contours_guided_unseen", "contours_random_flatters"),
+                           "contradicted")  # fmt: skip
+    wanted["contours_cnn_best_unseen"] = "depends on the reading"
+    assert judged(everywhere(measure, frame), *wanted)["verdict"].to_dict() == wanted
 
 
-@pytest.mark.slow
-def test_claims_without_their_strategy_are_open_and_say_so(bare, small):
+def test_claims_without_their_strategy_are_open_and_say_so(measure):
     frame = rows()
-    words, found = verdicts(bare, small, frame[frame["method"] != "glance"])
-    assert words["contours_glance_unseen"] == "open" and "glance" in found.loc["contours_glance_unseen", "tested_on"]
-    assert words["contours_guided_unseen"] == "supported"
+    found = judged(everywhere(measure, frame[frame["method"] != "glance"]), "contours_glance_unseen").iloc[0]
+    assert found["verdict"] == "open" and "glance" in found["tested_on"]
