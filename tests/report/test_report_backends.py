@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import write_table
 from stages.report import meshes
 from stages.report.meshes.levels import growth
 from stages.report.results import NotRun
@@ -36,12 +35,11 @@ def benched(power=1.0, noise=0.0):
 
 
 @pytest.fixture
-def bench(benched_results):
-    return partial(benched_results, "simplification")
+def bench(measure):
+    return partial(measure, "bench/simplification")
 
 
-def table(results):
-    return build_one(meshes, "tables", "backends", results)
+table = partial(build_one, meshes, "tables", "backends")
 
 
 def by_backend(results):
@@ -49,15 +47,19 @@ def by_backend(results):
 
 
 @pytest.mark.slow
-def test_backends_are_compared_as_ratios(bench):
+def test_backends_are_compared_as_ratios_and_their_growth_without_and_with_points_apart(bench):
     rows = benched()
     rows.loc[(rows["backend"] == "poor") & (rows["mesh"] == "m4"), "kept"] = False
+    kept = rows["kept_points"] > 0
+    rows.loc[kept, "seconds"] *= rows.loc[kept, "full"] * np.log(rows.loc[kept, "full"])
     frame = by_backend(bench(rows))
     row = frame.loc["fast", True]
     assert (row["time_ratio"], row["error_ratio"], row["seen_ratio"]) == pytest.approx((0.05, 0.9, 0.9))
     assert (row["whole_ratio"], row["colours_ratio"]) == pytest.approx((0.1, 0.15))
     assert row["kept"] == 1 and row["valid"] == 1 and np.isnan(frame.loc[("fast", False), "kept"])
     assert frame.loc[("poor", True), "kept"] == pytest.approx(9 / 10)
+    assert frame.loc[("fast", False), "loglinear_power"] == pytest.approx(1)
+    assert frame.loc[("fast", True), "loglinear_power"] == pytest.approx(2)
 
 
 @pytest.mark.parametrize(("outcome", "points"), [("refused", 12), ("missed", 0)])
@@ -92,16 +94,6 @@ def test_what_ours_has_is_said_without_and_with_points_and_without_inner_targets
     assert built.summary == "Our simplifier is 25 times as fast as pymeshlab's, where no points are to be kept."
 
 
-@pytest.mark.slow
-def test_growth_is_fitted_without_and_with_points_apart(bench):
-    rows = benched()
-    kept = rows["kept_points"] > 0
-    rows.loc[kept, "seconds"] *= rows.loc[kept, "full"] * np.log(rows.loc[kept, "full"])
-    frame = by_backend(bench(rows))
-    assert frame.loc[("fast", False), "loglinear_power"] == pytest.approx(1)
-    assert frame.loc[("fast", True), "loglinear_power"] == pytest.approx(2)
-
-
 @pytest.mark.parametrize("older", [True, False])
 @pytest.mark.slow
 def test_the_largest_mesh_is_named_and_rows_of_an_older_benchmark_are_said_to_be(bench, older):
@@ -113,19 +105,14 @@ def test_the_largest_mesh_is_named_and_rows_of_an_older_benchmark_are_said_to_be
 
 
 @pytest.mark.slow
-def test_infeasible_targets_are_no_refusals(bench):
+def test_infeasible_targets_are_no_refusals_and_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):
     rows = benched()
     rows.loc[rows["mesh"] == "m0", "outcome"] = "infeasible"
-    built = table(bench(rows))
+    built = table(bench(rows[(rows["backend"] != "poor") | (rows["kept_points"] == 0)]))
     assert (built.frame["refused"] == 0).all() and (built.frame["tried"] == 8).all()
     assert "4 targets are infeasible" in built.notes[2]
-
-
-def test_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):
-    rows = benched()
-    rows = rows[(rows["backend"] != "poor") | (rows["kept_points"] == 0)]
-    frame = by_backend(bench(rows))
-    assert frame.loc[("fast", True), "cells"] == 10 and ("poor", True) not in frame.index
+    frame = built.frame.set_index(["backend", "with_points"])
+    assert frame.loc[("fast", True), "cells"] == 8 and ("poor", True) not in frame.index
 
 
 def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(bench):
@@ -138,14 +125,13 @@ def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(ben
     assert len(said) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in said)
 
 
-def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, bare):
-    results = bench(benched())
+def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, measure):
     cells = [("a", 0.5, 0.5), ("a", 0.1, 0.5), ("b", 0.5, 1.0), ("b", 0.1, 1.0)]
     row = {"outcome": "reached", "bar": 1}
     rows = [row | {"mesh": mesh, "share": share, "method": "fast_weights", "salient_ratio": ratio}
             for mesh, share, ratio in cells]  # fmt: skip
     rows += [found | {"method": "meshoptimizer", "salient_ratio": 1.3} for found in rows]
-    write_table(bare / "reports/bench/salient_simplification.csv", pd.DataFrame(rows))
+    results = measure("bench/salient_simplification", pd.DataFrame(rows), results=bench(benched()))
     said = [note for note in table(results).notes if "gaze" in note]
     assert len(said) == 1 and "2 meshes" in said[0] and "has 0.707" in said[0] and "0.71 at 10%, 0.71 at 50%" in said[0]
 

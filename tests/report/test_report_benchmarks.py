@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import write_table
 from stages.report import stability, touch
 from stages.report.results import NotRun
 from stages.report.stability import costs
@@ -39,42 +38,34 @@ def benched(ours=4000.0, tacto=True):
     return pd.DataFrame(rows)
 
 
-def table(results):
-    return build_one(touch, "tables", "imprint_rates", results)
-
-
-def chart(results):
-    return build_one(touch, "tradeoff", "imprints", results)
+table = partial(build_one, touch, "tables", "imprint_rates")
+chart = partial(build_one, touch, "tradeoff", "imprints")
 
 
 @pytest.fixture
-def bench(benched_results):
-    return partial(benched_results, "imprints")
+def bench(measure):
+    return partial(measure, "bench/imprints")
 
 
 def test_rates_ratios_and_errors_are_those_of_the_bench(bench):
-    frame = table(bench(benched())).frame
+    built = table(bench(benched()))
+    frame = built.frame
     row = frame[(frame["method"] == "ours") & (frame["cells"] == 32)].iloc[0]
     assert row["rate"] == pytest.approx(4000 * 1.1 ** (1 / 3), rel=1e-4) and row["rate_least"] == pytest.approx(4000)
     assert row["rate_low"] < row["rate"] < row["rate_high"] and row["meshes"] == 3
     assert row["ratio"] == pytest.approx(200) and row["error"] == pytest.approx(1e-16)
     assert frame.loc[frame["method"] == "tacto_160x120", "error"].tolist() == pytest.approx([2e-4, 2e-4])
     assert len(frame) == 10 and list(frame["cells"]) == [16] * 5 + [32] * 5
-
-
-def test_rates_are_said_without_inner_targets_and_the_fastest_stands_out(bench):
-    built = table(bench(benched()))
     assert built.notes[1].startswith("Ours, 32 x 32 cells: 4,129 [") and built.notes[1].endswith("times TACTO's rate.")
-    assert "is met" not in " ".join(built.notes)
-    assert built.shown.loc[built.best_rows, ["method", "cells"]].values.tolist() == [["ours", "16"], ["ours", "32"]]
-    slow = table(bench(benched(ours=900.0)))
-    assert slow.shown.loc[slow.best_rows, "method"].tolist() == ["ours", "trimesh on embree"]
-
-
-def test_shown_table_names_the_methods_and_hides_rounding(bench):
-    text = table(bench(benched())).paths[1].read_text()
+    text = built.paths[1].read_text()
     assert "TACTO, its 160 x 120 pixels" in text and "< 1e-6" in text and "| 20 |" in text
     assert "m0 (psb, 2,000 faces)" in text
+
+
+@pytest.mark.parametrize(("ours", "best"), [(4000.0, ["ours", "ours"]), (900.0, ["ours", "trimesh on embree"])])
+def test_the_fastest_at_each_number_of_cells_stands_out(bench, ours, best):
+    built = table(bench(benched(ours)))
+    assert built.shown.loc[built.best_rows, "method"].tolist() == best
 
 
 @pytest.mark.slow
@@ -118,12 +109,7 @@ def row(commit, hour, what, ratio, machine="here"):
             "machine": machine}  # fmt: skip
 
 
-def history(root, small, *rows):
-    write_table(root / "reports/bench/history.csv", pd.DataFrame(list(rows)))
-    return small.results(root)
-
-
-def test_lines_are_those_of_the_machine_that_measured_last_by_date(bare, small, monkeypatch):
+def test_lines_are_those_of_the_machine_that_measured_last_by_date(measure, monkeypatch):
     drawn, draw = {}, costs._draw
 
     def noted(axes, rows, *looks):
@@ -132,14 +118,14 @@ def test_lines_are_those_of_the_machine_that_measured_last_by_date(bare, small, 
 
     monkeypatch.setattr(costs, "_draw", noted)
     rows = [row("b", 2, "maps", 0.2), row("a", 1, "maps", 0.1), row("a", 1, "old", 5.0, "elsewhere")]
-    words = costs.kernels(history(bare, small, *rows, row("b", 2, "loop", None))).words
+    rows.append(row("b", 2, "loop", None))
+    words = costs.kernels(measure("bench/history", pd.DataFrame(rows))).words
     assert list(drawn) == ["maps"] and list(drawn["maps"]["ratio"]) == [0.1, 0.2]
     assert list(drawn["maps"]["place"]) == [0, 1]
     assert words == {"kernels": 1, "commits": 2, "machine": "here", "names": "maps (peer of maps)"}
 
 
-def test_one_commit_is_drawn_and_said(bare, small):
-    figure = build_one(
-        stability, "figures", "kernels", history(bare, small, row("a", 1, "maps", 0.1), row("a", 1, "press", 4.0))
-    )
+def test_one_commit_is_drawn_and_said(measure):
+    results = measure("bench/history", pd.DataFrame([row("a", 1, "maps", 0.1), row("a", 1, "press", 4.0)]))
+    figure = build_one(stability, "figures", "kernels", results)
     assert figure.paths[0].exists() and "press (peer of press), maps (peer of maps)" in figure.alt

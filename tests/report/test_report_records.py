@@ -11,12 +11,12 @@ import pytest
 
 from haptic_glance.base.files import read_json, sha256
 from haptic_glance.base.timing import WALL, clock
-from stages.report import records, touch
+from stages.report import records
 from stages.report.drawing import plt
 from stages.report.items import Built, Figure, Table
 from stages.report.records import DIGITS, FILE, PROVENANCE_FILE, record_of, write_records
 from stages.report.results import NotRun
-from stages.report.topics import KINDS, build_one
+from stages.report.topics import KINDS
 from stages.report.words import as_printed
 
 ROOT = Path(__file__).parents[2]
@@ -58,14 +58,13 @@ def test_the_provenance_is_that_of_the_rows_that_are_committed():
 
 
 @pytest.fixture
-def rows(bare, small):
+def rows(measure):
     """A function that writes rows of a stage and gives the results of the run."""
 
     def written(**columns):
         common = {"dataset": "test", "item": ["ball", "ball", "cube"], "method": ["a", "b", "a"], "metric": "faces"}
         frame = pd.DataFrame(common | {"value": 1.0, "seconds": 0.1, "target": ["25%", "1500", "25%"]} | columns)
-        small.write(bare, "lod", frame)
-        return small.results(bare)
+        return measure("lod", frame)
 
     return written
 
@@ -132,12 +131,6 @@ def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_pat
     assert records.commit(path) == ""
 
 
-def test_a_built_item_has_its_record(results):
-    table = build_one(touch, "tables", "table_4_1", results)
-    assert isinstance(table, Table)
-    assert table.record["sets"] == table.sets and table.record["rows"] == len(table.frame)
-
-
 PROTOCOL = "household_3_1"
 
 
@@ -162,16 +155,9 @@ def at(tmp_path):
     return written
 
 
-def test_without_a_drawing_the_first_set_is_drawn(at):
-    assert at("household")[0] == {"set": "household"}
-
-
-def test_the_drawing_of_the_printed_protocol_outlasts_its_data(at):
+def test_the_drawing_of_the_printed_protocol_outlasts_its_data_but_not_in_a_folder_of_ones_own(at):
+    assert at("household")[0] == {"set": "household"}  # as long as there is none
     drawn = at(PROTOCOL)
     assert drawn[0] == {"set": PROTOCOL}
     assert at("household") == drawn
-
-
-def test_a_folder_of_ones_own_has_its_own_drawing(at):
-    at(PROTOCOL)
     assert at("folder", own=True)[0] == {"set": "folder"}

@@ -1,5 +1,7 @@
 """Tables: beside the thesis's, how they are written, their best row, and figures in sentences that come from them."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -25,13 +27,13 @@ from stages.report.tables import (
 from stages.report.topics import build_all, build_one
 from stages.report.touch.rows import METHODS, SSIM
 
-
-def table_4_1(results):
-    return build_one(touch, "tables", "table_4_1", results)
+table_4_1 = partial(build_one, touch, "tables", "table_4_1")
 
 
 def test_table_holds_every_cell_of_the_thesis(results):
-    frame = table_4_1(results).frame
+    table = table_4_1(results)
+    assert table.record["sets"] == table.sets and table.record["rows"] == len(table.frame)
+    frame = table.frame
     methods = METHODS | {"enhanced_visual_attention": SSIM}  # in our protocol
     thesis = results.thesis("table_4_1_six_virtual_objects").set_index("sampling").rename(index=methods)
     theirs = frame[frame["sampling"].isin(thesis.index)]
@@ -70,14 +72,11 @@ def test_left_out_sampling_is_a_note_of_its_table(root, small):
     assert built.not_run["table_4_2"] == "no cup"
 
 
-def test_lod_seconds_are_those_of_the_simplification(root, results, small):
-    frame = results.rows("lod").copy()
+def test_lod_seconds_are_those_of_the_simplification(measure, small):
+    frame = small.lod()
     frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
-    small.write(root, "lod", frame)
-    assert (paired_cells(small.results(root), ["metro_mean"], ["qem", "glance"])["seconds"] == 0.1).all()
-
-
-def test_missing_column_is_not_run(results):
+    results = measure("lod", frame)
+    assert (paired_cells(results, ["metro_mean"], ["qem", "glance"])["seconds"] == 0.1).all()
     with pytest.raises(NotRun, match="no column speed"):
         results.rows("lod", speed=1)
 
