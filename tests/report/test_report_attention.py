@@ -3,6 +3,7 @@
 import re
 import shutil
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -17,8 +18,9 @@ from stages.report.page import pack_viewer
 from stages.report.pareto import attention_seconds
 from stages.report.results import COLOURED, ON_BLACK, SECTION_3_2, NotRun
 from stages.report.tables import number
-from stages.report.topics import CLAIMS, KINDS, TOPICS, build_all, build_one
+from stages.report.topics import CLAIMS, TOPICS, build_one
 from stages.report.verdict import judge
+from tests.report.frames import verdicts
 
 FIGURES = ["figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen"]
 
@@ -31,6 +33,10 @@ def seen(tmp_path_factory, small):
     return small.results(root)
 
 
+table_of = partial(build_one, attention, "tables")
+figure_of = partial(build_one, attention, "figures")
+
+
 @pytest.fixture
 def root(seen, tmp_path):
     """A copy of the root of that run."""
@@ -39,25 +45,13 @@ def root(seen, tmp_path):
 
 @pytest.fixture(scope="module")
 def gaze(seen):
-    return table_of(seen, "attention_gaze")
+    return table_of("attention_gaze", seen)
 
 
-def again(root, small, stage, frame, dataset="gaze"):
-    """The results with other rows of a stage."""
-    small.write(root, stage, frame, dataset)
-    return small.results(root)
-
-
-def table_of(results, name):
-    return build_one(attention, "tables", name, results)
-
-
-def figure_of(results, name):
-    return build_one(attention, "figures", name, results)
-
-
-def time_spent(results):
-    return build_one(stability, "tables", "time_spent", results).frame.set_index(["stage", "method"])
+@pytest.fixture
+def marked(measure):
+    """A function of rows of salient points, of gaze or another set, to the results."""
+    return lambda rows, dataset="gaze": measure("salient_points", rows, dataset)
 
 
 def test_rows_stand_in_the_order_of_nss_below_the_ceiling(gaze):
@@ -83,9 +77,8 @@ def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen, g
         difference(seen.rows("salient_points", "gaze"), "nss", "glance", "sift")
 
 
-def test_sentences_follow_from_the_numbers(root, small):
-    worse = again(root, small, "salient_points", small.judged({"glance": 0.25}))
-    notes = " ".join(table_of(worse, "attention_gaze").notes)
+def test_sentences_follow_from_the_numbers(marked, small):
+    notes = " ".join(table_of("attention_gaze", marked(small.judged({"glance": 0.25}))).notes)
     assert "In NSS ours is higher than 3 of the 7 others" in notes
     assert "not than facing viewer" in notes
     for pair, word in (
@@ -96,31 +89,25 @@ def test_sentences_follow_from_the_numbers(root, small):
         assert re.search(rf"{pair}: NSS [-+.\d]+ \[[-., \d]+\] \({word}\)", notes)
 
 
-def test_table_of_gaze_stands_without_our_method_or_the_ceiling(root, small):
+def test_table_of_gaze_stands_without_our_method_or_the_ceiling(marked, small):
     rows = small.judged()
-    others = rows[~rows["method"].isin(["glance", "human"])]
-    table = table_of(again(root, small, "salient_points", others), "attention_gaze")
+    table = table_of("attention_gaze", marked(rows[~rows["method"].isin(["glance", "human"])]))
     assert table.frame["method"].iloc[0] == "svm_object"
     assert (table.shown["ours − it, NSS"] == "–").all()
 
 
-@pytest.mark.slow
-def test_marks_are_said_to_be_no_human_gaze_and_need_ground_truth(root, small):
+def test_marks_are_said_to_be_no_human_gaze_and_need_ground_truth(marked, small):
     rows = small.judged()
-    assert any("No human subjects" in note for note in table_of(small.results(root), "attention_marks").notes)
-    (root / "reports/measurements/household/salient_points.csv.gz").unlink()
-    notes = table_of(again(root, small, "salient_points", rows, "furniture"), "attention_marks").notes
-    assert not any("vision model" in note for note in notes)
-    assert any("data set furniture" in note for note in notes)
-    (root / "reports/measurements/furniture/salient_points.csv.gz").unlink()
-    without = again(root, small, "salient_points", rows[rows["metric"] == "points_strong"], "household")
+    assert any("No human subjects" in note for note in table_of("attention_marks", marked(rows, "household")).notes)
+    notes = table_of("attention_marks", marked(rows, "furniture")).notes
+    assert not any("vision model" in note for note in notes) and any("data set furniture" in note for note in notes)
     with pytest.raises(NotRun, match="ground truth"):
-        table_of(without, "attention_marks")
+        table_of("attention_marks", marked(rows[rows["metric"] == "points_strong"], "household"))
 
 
 def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
     _, own = small.learned_weights()
-    frame = table_of(seen, "table_3_1").frame.set_index(["dataset", "method", "channel"])
+    frame = table_of("table_3_1", seen).frame.set_index(["dataset", "method", "channel"])
     thesis = seen.thesis("table_3_1_channel_weights").set_index("channel")
     row = frame.loc[("gaze", "guided_ssim", "color")]
     assert row[["mean", "low", "high"]].tolist() == pytest.approx(interval(own[:, 0]), abs=1e-5)
@@ -129,55 +116,55 @@ def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
     assert np.isnan(frame.loc[("gaze", "guided_ssim_object", "color"), "thesis"])
 
 
-def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, root, small):
-    assert set(table_of(seen, "table_3_1").frame["dataset"]) == {"gaze"}
-    small.write(root, "weights", seen.rows("weights", "gaze"), "household")
-    results = again(root, small, "weights", seen.rows("weights", "gaze"), SECTION_3_2)
-    sets = list(dict.fromkeys(table_of(results, "table_3_1").frame["dataset"]))
-    assert sets == [SECTION_3_2, "gaze", "household"]
+def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, measure):
+    assert set(table_of("table_3_1", seen).frame["dataset"]) == {"gaze"}
+    names, rows = [SECTION_3_2, "gaze", "household"], seen.rows("weights", "gaze")
+    results = measure("weights", pd.concat(rows.assign(dataset=name) for name in names[::-1]))
+    assert list(dict.fromkeys(table_of("table_3_1", results).frame["dataset"])) == names
 
 
 @pytest.mark.parametrize(("channel", "word"), [("color", "supported"), ("edge", "contradicted")])
-def test_a_channel_has_the_least_weight_where_each_object_says_so(root, small, channel, word):
+def test_a_channel_has_the_least_weight_where_each_object_says_so(measure, channel, word):
     own = {"color": np.array([0.1, 0.12, 0.09, 0.11]), "edge": np.array([0.5, 0.7, 0.6, 0.4]), "dkl": np.full(4, 0.45)}
     rows = [
         {"item": item, "channel": name, "value": values.mean() if item is None else np.delete(values, item).mean()}
         for name, values in own.items() for item in (None, 0, 1, 2, 3)
     ]  # fmt: skip
-    small.write(root, "weights", pd.DataFrame(rows).assign(method="guided_ssim", metric="weight"), SECTION_3_2)
+    results = measure("weights", pd.DataFrame(rows).assign(method="guided_ssim", metric="weight"), SECTION_3_2)
     claim = next(one for one in CLAIMS if one.key == "colour_least_ssim")
-    found = judge([replace(claim, first={"channel": channel})], small.results(root)).iloc[0]
+    found = judge([replace(claim, first={"channel": channel})], results).iloc[0]
     lowest = {"color": own["dkl"], "edge": own["color"]}[channel]
     assert found["verdict"] == word and found["effect"] == pytest.approx(float((lowest - own[channel]).mean()))
 
 
-def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(root, small):
+def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(seen, measure):
     row = {"item": "a", "method": "dkl", "metric": "grey_likeness", "value": 0.4}
     rows = [row, row | {"item": "b", "value": 0.6}, row | {"method": "color", "value": None}]
-    results = again(root, small, "conspicuity", pd.DataFrame(rows), COLOURED)
-    shown = table_of(results, "table_3_1").shown.set_index("channel")["in colour: r with itself in grey"]
+    results = measure("weights", seen.rows("weights", "gaze"), "gaze")
+    results = measure("conspicuity", pd.DataFrame(rows), COLOURED, results)
+    shown = table_of("table_3_1", results).shown.set_index("channel")["in colour: r with itself in grey"]
     assert shown["DKL"].startswith("0.50 [") and shown["color"] == "–"
 
 
-def test_methods_on_black_stand_in_the_table_and_in_no_sentence(gaze, root, small):
-    results = again(root, small, "salient_points", small.judged().query("method == 'itti'"), ON_BLACK)
-    after = table_of(results, "attention_gaze")
+def test_methods_on_black_stand_in_the_table_and_in_no_sentence(gaze, marked, measure, small):
+    black = small.judged().query("method == 'itti'")
+    after = table_of("attention_gaze", measure("salient_points", black, ON_BLACK, marked(small.judged())))
     assert set(after.shown["method"]) - set(gaze.shown["method"]) == {"Itti's attention, black background"}
     assert after.notes == gaze.notes
 
 
 def test_accuracy_of_the_thesis_stands_beside_its_own_way_only(seen):
-    frame = table_of(seen, "section_3_2_3").frame
-    beside = frame.dropna(subset=["thesis_accuracy"])
+    made = table_of("section_3_2_3", seen)
+    beside = made.frame.dropna(subset=["thesis_accuracy"])
     assert set(beside["area"]) == {"image"} and set(beside["validation"]) == {"pixels"}
     assert dict(zip(beside["training"], beside["thesis_accuracy"], strict=True)) == {
         "one_for_all": 0.8608, "one_per_object": 0.9318,
     }  # fmt: skip
-    assert any("86.0 %; the background alone gives 85.0 %" in note for note in table_of(seen, "section_3_2_3").notes)
+    assert any("86.0 %; the background alone gives 85.0 %" in note for note in made.notes)
 
 
 def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(seen):
-    table = table_of(seen, "annotations")
+    table = table_of("annotations", seen)
     row = table.frame.set_index(["metric", "method"]).loc[("found", "passes")]
     assert row["gain"] == pytest.approx(0.7)
     assert "least on cup (80 %)" in table.notes[0] and "on 1 of 3 objects" in table.notes[0]
@@ -199,7 +186,7 @@ def test_object_without_ground_truth_is_passed_over(root, small):
     assert seen.with_ground_truth(["ball"], 2) == ["cube"]
     (root / "data/test/weights/ground_truth/cube.npz").unlink()
     with pytest.raises(NotRun, match="ground truth"):
-        figure_of(seen, "figure_3_12")
+        figure_of("figure_3_12", seen)
 
 
 @pytest.mark.slow
@@ -210,23 +197,20 @@ def test_maps_without_a_channel_are_not_run_but_no_crash(root, small):
     seen = small.results(root)
     for name in ("figure_3_3", "figure_3_13"):
         with pytest.raises(NotRun, match="dkl"):
-            figure_of(seen, name)
-    assert "color, contrast, curvature" in figure_of(seen, "figure_3_10").alt
+            figure_of(name, seen)
+    assert "color, contrast, curvature" in figure_of("figure_3_10", seen).alt
 
 
-def test_the_time_spent_names_stages_and_methods_in_words_and_counts_views_once(seen):
-    table = build_one(stability, "tables", "time_spent", seen)
-    assert "glance" in set(table.text["method"]) and "glance" in set(table.frame["method"])
-    assert not table.text[["stage", "method"]].stack().str.contains("_").any()
-    frame = table.frame.set_index(["stage", "method"])
-    assert frame.loc[("views", "greedy"), "seconds"].sum() == 14  # seven for each of two objects
-
-
-def test_a_piece_of_work_counts_once_whatever_it_was_judged_in(bare, small):
+def test_the_time_spent_names_stages_and_methods_in_words_and_counts_a_piece_of_work_once(seen, measure):
     work = {"item": "ball", "method": "net", "metric": "pcc", "value": 0.1, "seconds": 5}
     rows = [work | {"task": task, "view": view} for task in ("level_1", "ewigc") for view in ("0", "all")]
-    table = build_one(stability, "tables", "time_spent", again(bare, small, "fixation", pd.DataFrame(rows), "test"))
-    assert table.frame.set_index(["stage", "method"]).loc[("fixation", "net"), "seconds"] == 5
+    views = seen.rows("views", "test")
+    results = measure("views", views, results=measure("fixation", pd.DataFrame(rows), "test"))
+    table = build_one(stability, "tables", "time_spent", results)
+    assert not table.text[["stage", "method"]].stack().str.contains("_").any()
+    seconds = table.frame.set_index(["stage", "method"])["seconds"]
+    assert seconds["fixation", "net"] == 5  # whatever it was judged in
+    assert seconds[[("views", "greedy")]].sum() == 14  # seven for each of two objects
 
 
 def test_cost_counts_views_channels_and_points(seen):
@@ -253,7 +237,7 @@ VERDICTS = {
 
 
 def test_claims_on_gaze_follow_from_the_rows(seen):
-    found = judge([claim for claim in CLAIMS if claim.key in VERDICTS], seen).set_index("key")
+    found = verdicts(CLAIMS, seen, *VERDICTS)
     assert found["verdict"].to_dict() == VERDICTS
     assert found.loc["svm_per_object", "effect"] == pytest.approx(4)  # in the thesis's way
     assert found.loc["svm_per_object_unseen", "tested_on"].startswith("not run")  # no whole object left out
@@ -279,13 +263,13 @@ def nested_rows():
     return rows
 
 
-def test_nested_choices_stand_beside_those_made_once(bare, small):
+def test_nested_choices_stand_beside_those_made_once(measure):
     rows = pd.DataFrame(nested_rows())
-    results = again(bare, small, "attention_checks", rows)
-    lines = table_of(results, "attention_nested").text
+    results = measure("attention_checks", rows)
+    lines = table_of("attention_nested", results).text
     assert lines["flattered by, NSS"].str[:5].tolist() == ["+0.10"]
     assert lines["features"].tolist() == ["1 to 2 (once: 3)"] and set(lines["in every choice"]) == {"rank"}
     claims = [one for one in attention.CLAIMS if one.key.startswith("gaze_choices")]
     assert judge(claims, results).set_index("key")["verdict"].tolist() == ["supported"]
     with pytest.raises(NotRun):
-        table_of(again(bare, small, "attention_checks", rows.head(1).assign(method="equal")), "attention_nested")
+        table_of("attention_nested", measure("attention_checks", rows.head(1).assign(method="equal")))
