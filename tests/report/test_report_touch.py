@@ -1,5 +1,7 @@
 """The report on one touch and several: tables 4.3, 4.5, 4.6, the shares, figure 4.4, claims and the chart."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -12,7 +14,7 @@ from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, touches
 from stages.report.touch.rows import PRINTED
 from stages.report.verdict import judge
-from tests.report.frames import has_ink
+from tests.report.frames import has_ink, verdicts
 
 GLANCE = {
     "plain": 0.6, "first_15": 0.5, "locations": 0.8, "first_15_locations": 0.7, "locations_turned": 0.4,
@@ -68,14 +70,9 @@ def drawn(dataset):
 
 
 @pytest.fixture(scope="module")
-def glance(tmp_path_factory, small):
+def glance(measure):
     """Results with all variants."""
-    root = small.root(tmp_path_factory.mktemp("glance"))
-    small.write(root, "classification", rows(), PRINTED)
-    for name in SETS_4_2:
-        small.write(root, "classification", drawn(name), name)
-    small.write(root, "classification", rows("glance", "test"))
-    return small.results(root)
+    return measure("classification", pd.concat([rows(), *map(drawn, SETS_4_2), rows("glance", "test")]))
 
 
 def scaled(scaling, gain):
@@ -87,8 +84,7 @@ def scaled(scaling, gain):
     return pd.concat([found, *others]).assign(scaling=scaling)
 
 
-def table(name, results):
-    return build_one(touch, "tables", name, results)
+table = partial(build_one, touch, "tables")
 
 
 @pytest.mark.slow
@@ -127,15 +123,11 @@ def test_selection_has_a_column_for_each_group_and_way(glance):
     assert printed["six, selection, %"] == "76" and printed["six, selection in training alone, %"] == "–"
 
 
-def test_selection_that_was_not_run_says_why(root, small):
+def test_selection_that_was_not_run_says_why(measure):
     frame = rows()[lambda row: row["variant"] != "selected"]
-    note = {"dataset": "test", "group": "six", "method": "VisAttAll", "variant": "selected"}
-    note |= {"note": "an object keeps too few"}
-    small.write(
-        root, "classification", pd.concat([frame[frame["variant"] != "selected"], pd.DataFrame([note])]), PRINTED
-    )
+    note = {"group": "six", "method": "VisAttAll", "variant": "selected", "note": "an object keeps too few"}
     with pytest.raises(NotRun, match="an object keeps too few"):
-        table("table_4_3", small.results(root))
+        table("table_4_3", measure("classification", pd.concat([frame, pd.DataFrame([note])]), PRINTED))
 
 
 def test_shares_stand_beside_those_of_the_thesis_by_sampling_and_by_object(glance):
@@ -160,10 +152,9 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
 
 
 @pytest.mark.slow
-def test_readings_stand_below_with_means_that_leave_out_the_svm(root, small):
+def test_readings_stand_below_with_means_that_leave_out_the_svm(measure):
     rows_by = [scaled("training", 0.0), scaled("min_max", 0.1)]
-    small.write(root, "classification", pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates(), SETS_4_2[0])
-    results = small.results(root)
+    results = measure("classification", pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates())
     shown = table("table_4_1", results).shown
     protocols = ["as printed, 6 random sets", "as printed, 6 random sets: all data from 0 to 1"]
     assert [name for name in shown["protocol"].unique() if "6 random" in name and "unseen" not in name] == protocols
@@ -189,7 +180,7 @@ VERDICTS = {
 
 @pytest.mark.slow
 def test_claims_follow_the_measurements(glance):
-    found = judge([one for one in claims.CLAIMS if one.key in VERDICTS], glance).set_index("key")
+    found = verdicts(claims.CLAIMS, glance, *VERDICTS)
     assert found["verdict"].to_dict() == VERDICTS
     assert found.loc["more_touches", "effect"] == pytest.approx(39, abs=1)
 

@@ -150,10 +150,13 @@ class Page:
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(self.page.evaluate(script)))).convert("RGB"))
 
 
-@pytest.fixture(params=[1400, 390])
+WIDE, NARROW = 1400, 390
+
+
+@pytest.fixture
 def shown(request, browser, levels, tmp_path):
     """The viewer of two objects, opened at a width."""
-    yield from opened(browser, levels, tmp_path, request.param)
+    yield from opened(browser, levels, tmp_path, getattr(request, "param", WIDE))
 
 
 def opened(browser, results, tmp_path, width):
@@ -175,6 +178,7 @@ def halves(image):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("shown", [WIDE, NARROW], indirect=True)
 def test_original_and_level_stand_side_by_side_and_turn_together(shown):
     before = halves(shown.canvas())
     assert all((half < 250).any(axis=2).mean() > 0.1 for half in before)
@@ -203,7 +207,7 @@ def test_slider_leads_from_the_original_to_more_and_more_error(shown):
 
 @pytest.mark.slow
 def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
-    for found in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, 1400):
+    for found in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, WIDE):
         assert found.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
         found.slide(1)
         assert found.caption().startswith("simplified: 120 faces (23 %)")
