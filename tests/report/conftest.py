@@ -303,12 +303,6 @@ def bare(tmp_path):
 
 
 @pytest.fixture
-def bare_results(bare):
-    """The results of such a root, where tests write rows of their own."""
-    return read_results(bare)
-
-
-@pytest.fixture
 def root(tmp_path):
     """The root of a small run."""
     return make_root(tmp_path)

@@ -116,13 +116,6 @@ def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
     assert np.isnan(frame.loc[("gaze", "guided_ssim_object", "color"), "thesis"])
 
 
-def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, measure):
-    assert set(table_of("table_3_1", seen).frame["dataset"]) == {"gaze"}
-    names, rows = [SECTION_3_2, "gaze", "household"], seen.rows("weights", "gaze")
-    results = measure("weights", pd.concat(rows.assign(dataset=name) for name in names[::-1]))
-    assert list(dict.fromkeys(table_of("table_3_1", results).frame["dataset"])) == names
-
-
 @pytest.mark.parametrize(("channel", "word"), [("color", "supported"), ("edge", "contradicted")])
 def test_a_channel_has_the_least_weight_where_each_object_says_so(measure, channel, word):
     own = {"color": np.array([0.1, 0.12, 0.09, 0.11]), "edge": np.array([0.5, 0.7, 0.6, 0.4]), "dkl": np.full(4, 0.45)}

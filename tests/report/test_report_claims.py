@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.engine.statistics import interval, p_value
+from stages.engine.statistics import interval
 from stages.report import effects, topics
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
@@ -321,15 +321,6 @@ def test_no_two_sets_of_a_claim_share_an_object():
     alike = [{"household", SECTION_3_1, None}, {"gaze", "gaze_3_2", "gaze_on_black"}, {"princeton", "princeton_3_1"}]
     for one in CLAIMS:
         assert all(len(same & set(one.sets)) < 2 for same in alike), one.key
-
-
-def test_chance_calls_as_many_verdicts_as_is_said():
-    noise = np.random.default_rng(0).normal(size=(800, 20))
-    words = [verdict(*interval(values)[1:]) for values in noise]
-    assert 5 < words.count("supported") < 40 and 5 < words.count("contradicted") < 40  # 20 of each: 2.5 % either way
-    p_values = [p_value(values) if word != "open" else 0.5 for values, word in zip(noise, words, strict=True)]
-    frame = pd.DataFrame({"section": "T9", "p": p_values, "verdict": words})
-    assert (holding(frame) == "yes").sum() <= 2  # not one of them is an effect
 
 
 @pytest.mark.slow

@@ -198,14 +198,6 @@ def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert found.loc["sight_over_touch_objects", "verdict"] == "contradicted"
 
 
-def test_claims_on_the_thesis_s_classes_and_ours_are_pooled(measure):
-    own, theirs = rows(), rows().assign(dataset="princeton_six")
-    theirs.loc[theirs["sense"] == "touch", "value"] += 0.9
-    row = verdicts(measure("transfer", pd.concat([own, theirs])), "sight_over_touch_random").iloc[0]
-    assert row["verdict"] == "contradicted" and row["tested_on"].startswith("psb, the thesis's 6 classes, ")
-    assert row["by_set"].startswith("psb, the thesis's 6 classes -") and row["carries"].startswith("mixed")
-
-
 def test_new_objects_stand_below_the_table_and_in_the_claims(measure):
     """A head that knows 30 % of eight new objects after one touch and 50 % after five, ten points over the others."""
     random, found = np.random.default_rng(0), []

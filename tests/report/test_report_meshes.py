@@ -170,12 +170,6 @@ def test_difference_is_relative_and_a_group_is_the_mean_of_those_that_were_run_o
     assert best.to_numpy() == pytest.approx(higher(plain, "corners", "itti").to_numpy())
 
 
-def test_a_target_that_one_side_misses_does_not_count(run):
-    rows = without(measured(), item="d", target="1500", method="corners", metric="metro_mean")
-    found = higher(run(rows), "corners", "itti", "1500")
-    assert list(found.index) == ["a", "b", "c"]
-
-
 def test_gap_and_spread_grow_at_few_faces(plain, run):
     results, at = plain, {"where": ERROR, "contrast": FEW_MINUS_MANY}
     there, back = {"method": "corners"}, {"method": "itti"}

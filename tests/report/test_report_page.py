@@ -160,8 +160,6 @@ def raw(text):
 
 
 def test_no_page_shows_raw_names_or_what_is_not_escaped(run):
-    shown = '<svg aria-label="of thesis_ssim"><text>kNN</text></svg><td>hks</td>`'
-    assert raw(readable(shown)) == {"thesis_ssim", "hks", "`"}
     for path, text in run.pages.items():
         assert ODD not in text and "`" not in readable(text), path.name
         cells = " ".join(re.findall(r"<t[dh][^>]*>([^<]*)<", text))

@@ -22,13 +22,6 @@ def test_front_of_a_known_set(cost, accuracy, better, front):
     assert pareto_front(cost, accuracy, better=better).tolist() == front
 
 
-def test_front_does_not_depend_on_order_or_unit():
-    rng = np.random.default_rng(0)
-    cost, accuracy, order = rng.random(40), rng.random(40), rng.permutation(40)
-    front = pareto_front(cost, accuracy)
-    assert (pareto_front(60 * cost[order], accuracy[order]) == front[order]).all()
-
-
 def test_no_choice_on_the_front_is_beaten_and_every_other_is():
     rng = np.random.default_rng(1)
     cost, accuracy = rng.integers(0, 6, 60), rng.integers(0, 6, 60)
@@ -78,20 +71,16 @@ def test_units_drawn_together_tell_a_small_gain_from_chance():
     assert placed(frame, "seconds", "mean", units=units)["on_front"].tolist() == [ON, ON]
 
 
-def test_the_cost_axis_has_seconds_of_a_named_clock():
-    figure = pareto_chart(
-        frame(), "mean", title="T", reference="fast", quality_label="accuracy", clock="processor, Model X"
-    )
+def test_the_cost_axis_has_seconds_of_a_named_clock_and_a_long_front_is_told_by_its_ends():
+    words = {"title": "T", "quality_label": "accuracy", "clock": "processor, Model X"}
+    figure = pareto_chart(frame(), "mean", reference="fast", **words)
     above = figure.drawing.axes[0].child_axes[0]
     assert above.get_xlabel() == "seconds, processor, Model X" and "processor, Model X" in figure.words["caption"]
     low, high = figure.drawing.axes[0].get_xlim()
     figure.drawing.draw_without_rendering()
     assert above.get_xlim() == pytest.approx((2 * low, 2 * high))  # the reference takes two seconds
-
-
-def test_long_front_is_told_by_its_ends():
-    frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
-    caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q", clock="").words["caption"]
+    many = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
+    caption = pareto_chart(many, "mean", reference="n3", **words | {"clock": ""}).words["caption"]
     assert "12, from n0 to n11" in caption and "n5" not in caption
 
 

@@ -81,11 +81,6 @@ def test_a_method_has_more_where_the_others_have_fewer(mesh):
     assert found["up"][np.abs(mesh.vertices[:, 2]) < 0.01] == pytest.approx(0.5)
 
 
-def test_equal_points_differ_nowhere(mesh):
-    same = np.array(ends(mesh))
-    assert all(values == pytest.approx(0.5) for values in against_the_mean(mesh, {"a": same, "b": same}).values())
-
-
 def test_faces_lie_dense_where_they_are_small():
     vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [-1, 0, 0], [0, -1, 0], [-1, -1, 0.0]])
     found = faces_an_area(Mesh(vertices, np.array([[0, 1, 2], [0, 3, 4], [3, 5, 4]])))

@@ -130,7 +130,6 @@ def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, met
 @pytest.mark.parametrize("topic", topics.TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
 def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
     """A row that is gone would leave the paragraph out without a word."""
-    assert typed("It is 3 times faster, by {tables/t : rows} %.")
     for text in (Path(topic.__file__).parent / "findings.md").read_text().strip().split("\n\n"):
         text = " ".join(text.split())
         if not all((REPORTS / f"{name}.csv").exists() for name, _, _ in PLACE.findall(text)):

@@ -180,14 +180,6 @@ def test_claims_say_what_the_rows_hold_in_every_setting(judged):
         assert len(mine) in (2, len(SETTINGS)) and set(mine["verdict"]) == {word}, key
 
 
-def test_claims_turn_with_the_rows(measured):
-    worse = {way: 1 - level for way, level in LEVELS.items()} | {("mobilenet_v2", "imagenet", "frozen"): 0.1}
-    worse |= {("mobilenet_v2", "imagenet", "finetuned"): 0.05}
-    turned = {"supported": "contradicted", "contradicted": "supported"}
-    wanted = {f"recorded_{key}_pressure_random": turned[word] for key, word in WORDS.items()}
-    assert judge(measured(touches(worse, PRESSURE, 4)), *wanted)["verdict"].to_dict() == wanted
-
-
 @pytest.mark.parametrize(("key", "effect", "over"), [
     ("tuned_over_frozen_pressure_runs", 10, "repetitions"), ("resnet_best_pressure_runs", 5, "repetitions"),
     ("tuned_over_frozen_fingers_slip", 10, "objects"), ("frozen_over_guessing_fingers_slip", 30, "objects"),

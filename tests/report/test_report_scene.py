@@ -5,9 +5,8 @@ import pandas as pd
 import pytest
 
 from stages.report import scene as topic
-from stages.report.effects import differences
 from stages.report.scene import scene as scenes
-from stages.report.scene.random import CLAIMS, left_of, planning, plans, saving
+from stages.report.scene.random import CLAIMS, left_of, planning
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 
@@ -124,12 +123,6 @@ def measured(measure):
         return measure("scene", pd.DataFrame(rows))
 
     return make
-
-
-def test_a_plan_against_itself_saves_nothing_in_any_scene(measured):
-    results = measured(uniform__displacement=lambda k: 1000 + 10 * k)
-    assert (saving(plans(results)[0], ("uniform", "displacement")) == 0).all()
-    assert (differences(results, BY_KEY["saves_uniform_displacement"]) == 0).all()
 
 
 def test_the_saving_is_the_mean_of_the_scenes_with_an_interval_over_them(measured):

@@ -53,6 +53,7 @@ def test_a_chart_has_its_numbers_behind_it(tmp_path):
 def test_the_summary_stands_over_a_table_and_the_notes_are_folded():
     notes, paths = ["first `x`", "second"], [Path("tables/t.csv")]
     text = item_html(Table(pd.DataFrame({"x": [1]}), notes=notes, paths=paths, summary="Found: `1`."))
+    assert prose("`a<b` and ` alone") == "<code>a&lt;b</code> and ` alone"
     shown, _, hidden = text.partition("<details>")
     assert shown.index("Found: <code>1</code>.") < shown.index("<table>") and "first" not in shown
     assert "first <code>x</code>" in hidden and "second" in hidden
@@ -120,12 +121,6 @@ def test_a_picture_of_many_colours_is_shrunk(tmp_path):
     assert shown.size == (900, 300)
 
 
-def test_code_in_notes_is_marked_up_and_not_shown_with_its_backticks():
-    assert prose("`a<b` and ` alone") == "<code>a&lt;b</code> and ` alone"
-    table = Table(pd.DataFrame({"x": [1]}), notes=["see `stages.compose`"], paths=[Path("tables/t.csv")])
-    assert "<li>see <code>stages.compose</code></li>" in item_html(table)
-
-
 @pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
 def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole):
     table = Table(pd.DataFrame({"x": [cell]}), name="gaps", topic="none", paths=[Path("tables/t.csv")])
@@ -167,7 +162,7 @@ def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
     assert findings_html(pd.DataFrame(columns=["key", "low", "verdict"]), pd.DataFrame()) == ""
 
 
-def test_ten_questions_are_answered_from_what_the_repository_holds():
+def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
     names = {f"{kind}/{name}" for topic in TOPICS for kind, held in KINDS.items() for name in getattr(topic, held)}
     keys = {f"key={claim.key}" for claim in CLAIMS}
 
@@ -179,7 +174,4 @@ def test_ten_questions_are_answered_from_what_the_repository_holds():
     assert len(found) == ASKED
     assert all(re.search(r"\d", answer) and "{" not in answer for _, answer, _ in found)
     assert questions_html(found).count("<h3>") == ASKED
-
-
-def test_questions_without_measurements_are_left_out(tmp_path):
-    assert questions(tmp_path, lambda *_: "") == [] and questions_html([]) == ""
+    assert questions(tmp_path, link) == [] and questions_html([]) == ""  # without measurements

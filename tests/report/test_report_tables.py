@@ -104,9 +104,6 @@ def test_interval_reads_well():
     assert with_interval(np.nan, np.nan, np.nan) == "not run"
     assert signed(-0.001, -0.004, 0.002) == "+0.00 [0.00, 0.00]"  # zero has no minus
     assert signed(0.126, np.nan, np.nan) == "+0.13"
-
-
-def test_column_of_words_is_not_numeric():
     assert is_numeric(as_text(pd.DataFrame({"a": [1.5, np.nan]}))["a"])
     assert not is_numeric(pd.Series(["1.5 % of it"]))
 
@@ -161,15 +158,11 @@ SHOWN = pd.DataFrame({
 @pytest.mark.parametrize(("best", "rows"), [
     (Ranking("NSS"), [0]), (Ranking("NSS", exempt=["truth"]), [2]), (Ranking("seconds", lowest=True), [4]),
     (Ranking("NSS", among=["set"], exempt=["truth"]), [2, 4, 5]), (Ranking("gone"), []),
+    (Ranking("NSS", exempt=["truth", "x", "z"], among=["set"]), []),  # the best of one is none
 ])  # fmt: skip
 def test_the_best_rows_are_by_what_is_shown_and_a_truth_takes_no_part(best, rows):
     shown = pd.concat([SHOWN, SHOWN.tail(1).assign(NSS="0.40")], ignore_index=True)
     assert np.flatnonzero(best.best(shown)).tolist() == rows
-
-
-def test_the_best_of_one_is_none_and_so_is_that_of_equals():
-    assert not Ranking("NSS").best(SHOWN.head(1)).any()
-    assert not Ranking("NSS").best(SHOWN.tail(2)).any()  # both are shown as 0.50
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from stages.report.results import SECTION_4_2, SETS_4_2, NotRun
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, touches
 from stages.report.touch.rows import PRINTED
-from stages.report.verdict import judge
 from tests.report.frames import has_ink, verdicts
 
 GLANCE = {
@@ -23,10 +22,6 @@ GLANCE = {
     "touches_3_disjoint": 0.6, "touches_5_disjoint": 0.3, "first_15_touches_2_mixed": 0.9,
     "image_features": 0.4, "pixels": 0.55, "wavelet_features": 0.5,
 }  # fmt: skip
-MEASURED = [  # claims that the small run has the rows of
-    "glance_over_blind_ours", "glance_over_ssim_ours", "ssim_over_blind_ours", "knn_best_ours", "network_poor_ours",
-    "four_easier_ours", "four_easier_beyond_chance_ours",
-]  # fmt: skip
 SHARES = {"random": 0.6, "itti": 0.5}
 
 
@@ -154,7 +149,8 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
 @pytest.mark.slow
 def test_readings_stand_below_with_means_that_leave_out_the_svm(measure):
     rows_by = [scaled("training", 0.0), scaled("min_max", 0.1)]
-    results = measure("classification", pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates())
+    frame = pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates()
+    results = measure("classification", frame[frame["variant"].str.contains("plain|touches")])
     shown = table("table_4_1", results).shown
     protocols = ["as printed, 6 random sets", "as printed, 6 random sets: all data from 0 to 1"]
     assert [name for name in shown["protocol"].unique() if "6 random" in name and "unseen" not in name] == protocols
@@ -183,14 +179,6 @@ def test_claims_follow_the_measurements(glance):
     found = verdicts(claims.CLAIMS, glance, *VERDICTS)
     assert found["verdict"].to_dict() == VERDICTS
     assert found.loc["more_touches", "effect"] == pytest.approx(39, abs=1)
-
-
-def test_what_the_small_run_did_not_measure_is_open_or_not_run(results):
-    further = judge([one for one in claims.CLAIMS if one.key not in MEASURED], results)
-    assert (further["verdict"] == "open").all() and (further["pairs"] == 0).all()
-    for kind, name in (("tables", "table_4_6"), ("figures", "figure_4_4")):
-        with pytest.raises(NotRun):
-            build_one(touch, kind, name, results)
 
 
 @pytest.mark.slow

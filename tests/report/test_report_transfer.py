@@ -213,19 +213,12 @@ def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure)
     assert list(drawn[["mean", "low", "high"]]) == pytest.approx([gain["effect"], gain["low"], gain["high"]])
 
 
-@pytest.mark.parametrize(("changes", "words_then"), [
-    ({"train_accuracy": None}, {"tuned_over_frozen_random": "not testable"}),  # nobody knows how far they were trained
-    ({"size": 128}, {"fine_over_coarse_tuned_random": "open", "early_and_late_random": "open",
-                     "tuned_over_frozen_random": "supported"}),  # networks that saw other sizes are not compared
-    ({"1:134": 0.85}, {"early_decisive_random_psb": "contradicted", "early_decisive_objects_psb": "contradicted"}),
-])  # fmt: skip
-def test_claims_turn_with_the_rows(measure, changes, words_then):
-    frame = rows("princeton_six", **{mode: level for mode, level in changes.items() if ":" in mode})
-    if "train_accuracy" in changes:
-        frame = frame[frame["metric"] != "train_accuracy"]
-    if "size" in changes:
-        frame.loc[(frame["data"] == COARSE) | (frame["mode"] == "18:139"), "size"] = changes["size"]
-    assert words(measure("transfer", frame), *words_then)["verdict"].to_dict() == words_then
+def test_networks_that_saw_other_sizes_are_not_compared(measure):
+    frame = rows("princeton_six")
+    frame.loc[(frame["data"] == COARSE) | (frame["mode"] == "18:139"), "size"] = 128
+    wanted = {"fine_over_coarse_tuned_random": "open", "early_and_late_random": "open"}
+    wanted["tuned_over_frozen_random"] = "supported"
+    assert words(measure("transfer", frame), *wanted)["verdict"].to_dict() == wanted
 
 
 def test_one_object_of_five_says_more_than_one_of_three():

@@ -92,8 +92,10 @@ def shades(packed, where):
     return Reader(packed["store"]).shades(where)
 
 
-def test_error_is_the_distance_of_the_original_to_the_level(levels, small):
+def test_error_is_the_distance_of_the_original_to_the_level_on_one_scale_of_all_levels(levels, small):
     packed = pack_object(levels, "ball")
+    fine, coarse = (shades(packed, level["error"]) for level in packed["ladders"]["qem"]["levels"])
+    assert coarse.mean() > fine.mean() and coarse.max() == 1 > fine.max()
     full = ordered(small.ball())[0]
     level = packed["ladders"]["qem"]["levels"][1]
     error = packed["error_top"] * shades(packed, level["error"]) ** 2
@@ -101,14 +103,6 @@ def test_error_is_the_distance_of_the_original_to_the_level(levels, small):
     assert len(error) == len(full.vertices)
     assert error[top] == pytest.approx(min(100 * 0.05 / full.diagonal, packed["error_top"]), rel=0.04)
     assert level["error_max"] >= level["error_mean"] > 0
-
-
-def test_levels_share_one_scale_on_which_the_error_grows(levels):
-    packed = pack_object(levels, "ball")
-    fine, coarse = (shades(packed, level["error"]) for level in packed["ladders"]["qem"]["levels"])
-    assert coarse.mean() > fine.mean()
-    assert coarse.max() == 1
-    assert fine.max() < 1
 
 
 def test_level_equal_to_the_original_has_no_error_and_levels_nearly_as_fine_are_left_out(results, small, monkeypatch):
