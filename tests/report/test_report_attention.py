@@ -18,11 +18,9 @@ from stages.report.page import pack_viewer
 from stages.report.pareto import attention_seconds
 from stages.report.results import COLOURED, ON_BLACK, SECTION_3_2, NotRun
 from stages.report.tables import number
-from stages.report.topics import CLAIMS, TOPICS, build_one
+from stages.report.topics import CLAIMS, build_one
 from stages.report.verdict import judge
 from tests.report.frames import verdicts
-
-FIGURES = ["figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen"]
 
 
 @pytest.fixture(scope="module")
@@ -161,16 +159,6 @@ def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(see
     row = table.frame.set_index(["metric", "method"]).loc[("found", "passes")]
     assert row["gain"] == pytest.approx(0.7)
     assert "least on cup (80 %)" in table.notes[0] and "on 1 of 3 objects" in table.notes[0]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", FIGURES)
-def test_figure_is_drawn_and_says_what_it_shows(seen, name):
-    topic = next(topic for topic in TOPICS if name in topic.FIGURES)
-    drawn = build_one(topic, "figures", name, seen)
-    assert drawn.paths[0].name == f"{name}.png" and drawn.paths[0].exists()
-    assert len(drawn.alt) > 20 and len(drawn.caption) > 20
-    assert ("3 for the median object" in drawn.caption) == (name == "views_seen")  # the fewest
 
 
 def test_object_without_ground_truth_is_passed_over(root, small):

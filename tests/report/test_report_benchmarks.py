@@ -95,12 +95,6 @@ def test_half_a_bench_or_one_without_a_rate_is_not_run(bench):
             table(bench(broken))
 
 
-@pytest.mark.slow
-def test_picture_of_one_mesh_is_of_the_hero(results):
-    figure = build_one(touch, "figures", "touch_one_mesh", results)
-    assert figure.paths[0].exists() and "ball" in figure.alt and "3 numbered places" in figure.alt
-
-
 def row(commit, hour, what, ratio, machine="here"):
     """A row of the history; ratio None for the reference loop."""
     ends = {} if ratio is None else {"low": 0.9 * ratio, "high": 1.1 * ratio, "limit": 1.5 * ratio}

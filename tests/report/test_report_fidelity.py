@@ -72,21 +72,13 @@ def test_what_is_as_printed_agrees_by_a_test_that_is_never_skipped():
             assert "agreement" in [argument.arg for argument in test.args.args], f"{row.test} measures no agreement"
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "measured", "same", "printed"),
-    [
-        ("r = 0.997", "r", 0.9974, True, True),
-        ("r = 0.997", "r", 0.9981, False, True),
-        ("r = 0.89", "r", 0.8949, True, False),
-        ("difference < 1e-6", "difference", 9e-7, True, True),
-        ("difference < 1e-6", "difference", 2e-6, False, True),
-        ("difference < 0.1", "difference", 0.05, True, False),
-        ("5 of 5 settings", "settings", (5, 5), True, True),
-        ("4 of 5 settings", "settings", (5, 5), False, False),
-        ("429.0 pixels", "pixels", 429.04, True, False),
-        ("0.0 % apart", "share", 0.2, False, True),
-        ("r = 1.000", "difference", 1.0, False, True),
-    ],
-)
+@pytest.mark.parametrize(("text", "kind", "measured", "same", "printed"), [
+    ("r = 0.997", "r", 0.9974, True, True), ("r = 0.997", "r", 0.9981, False, True),
+    ("r = 0.89", "r", 0.8949, True, False), ("r = 1.000", "difference", 1.0, False, True),
+    ("difference < 1e-6", "difference", 9e-7, True, True), ("difference < 1e-6", "difference", 2e-6, False, True),
+    ("difference < 0.1", "difference", 0.05, True, False), ("0.0 % apart", "share", 0.2, False, True),
+    ("5 of 5 settings", "settings", (5, 5), True, True), ("4 of 5 settings", "settings", (5, 5), False, False),
+    ("429.0 pixels", "pixels", 429.04, True, False),
+])  # fmt: skip
 def test_an_agreement_is_compared_to_its_last_digit(text, kind, measured, same, printed):
     assert matches(text, kind, measured) is same and is_printed(text) is printed

@@ -34,6 +34,8 @@ ODD = "<b>&qem</b>"
 RAW = re.compile(r"\b[A-Za-z][A-Za-z0-9]*_\w+\b|\b(?:hks|knn|svm|dkl|qem|qslim|leifman|tasse|alexnet|vgg16|resnet50)\b")
 NAMED = {"EWIGC_L4", "x86_64", "lod_points"}  # names of their own: the thesis's, a processor's, and a table's
 CODED = ("fidelity", "scene", "stability")  # topics whose code names stay for now
+DRAWN = {"figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "saliency", "views_seen",
+         "table_4_1", "touch_one_mesh"}  # fmt: skip
 SERIOUS = ("serious", "critical")
 REPEATED = """document.querySelectorAll('tbody tr:nth-child(n+9), .claims > li:nth-child(n+9)')
   .forEach(item => item.remove())"""  # rows and claims that are made as those before, which take axe a minute
@@ -81,6 +83,13 @@ def own(tmp_path_factory, small):
         patch.setattr(items, "save", save)
         write_report(results)
         yield results
+
+
+def test_figures_of_what_was_measured_are_drawn_and_say_what_they_show(run):
+    assert {path.stem for path in (run.root / "reports/figures").glob("*.png")} >= DRAWN
+    text = " ".join(run.pages.values())
+    assert "3 for the median object" in text  # the fewest views
+    assert re.search(r'alt="[^"]*ball[^"]*3 numbered places', text)
 
 
 def test_dvc_knows_every_file_that_the_report_opens(run):
