@@ -13,6 +13,7 @@ from stages.report import networks as _transfer
 from stages.report import recorded as recorded_topic
 from stages.report import transfer
 from stages.report.effects import differences
+from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.transfer import figure_5_3, tables
 from tests.report.frames import has_ink, only, verdicts
