@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.engine.statistics import interval
+from stages.engine.statistics import interval, p_value
 from stages.report import effects, topics
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
@@ -353,3 +353,24 @@ def test_a_reading_on_sets_of_its_own_is_judged_by_their_rows_alone(sets_of_rows
     assert row["verdict"] == "supported" and pd.isna(row["readings"])
     row = pooled(results, "one", "two", section="T9", readings=(there,))
     assert row["verdict"] == "supported" and "elsewhere: supported +2" in row["readings"]
+
+
+def test_chance_calls_as_many_verdicts_as_is_said():
+    noise = np.random.default_rng(0).normal(size=(800, 20))
+    words = [verdict(*interval(values)[1:]) for values in noise]
+    assert 5 < words.count("supported") < 40 and 5 < words.count("contradicted") < 40  # 20 of each: 2.5 % either way
+    p_values = [p_value(values) if word != "open" else 0.5 for values, word in zip(noise, words, strict=True)]
+    frame = pd.DataFrame({"section": "T9", "p": p_values, "verdict": words})
+    assert (holding(frame) == "yes").sum() <= 2  # not one of them is an effect
+
+
+def test_scale_comes_before_margin(values):
+    results = values(item=list("ab"), value=[0.01, 0.02])
+    assert differences(results, claim(second=0, scale=100, margin=1)).tolist() == pytest.approx([2, 3])
+
+
+def test_a_set_without_rows_is_named_and_the_others_decide(sets_of_rows):
+    results = sets_of_rows(one=spread_about(2.0), two=spread_about(2.0, 1))
+    row = pooled(results, "absent", "one", "two")
+    assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
+    assert pooled(results, "absent", "one")["by_set"] == ""

@@ -337,3 +337,13 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     kept.paths[0].unlink()
     with pytest.raises(NotRun, match="figure_3_34_gaze.png"):
         figure(name, results)
+
+
+def test_each_sentence_has_one_primary_claim_and_the_thesis_is_judged_as_printed():
+    claims = {claim.key: claim for claim in topic.CLAIMS}
+    primary = [claim for claim in claims.values() if not claim.of]
+    assert all(not claims[claim.of].of for claim in claims.values() if claim.of)  # of a primary claim
+    assert len({claim.sentence for claim in primary}) == len(primary)
+    for claim in primary:
+        if claim.section != "ours":
+            assert claim.sets[0] == "gaze" and claim.where["metric"] not in ("pcc", "nss", "auc", "distance_mean")
