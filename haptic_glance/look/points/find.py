@@ -114,7 +114,7 @@ class Looked:
 
     @cached_property
     def sight(self) -> Any:
-        """What the detector needs of the mesh, whatever the count."""
+        """The maps, or the samples, that the detector uses for every count."""
         if isinstance(self.detector, SampledDetector):
             return self.detector.seen(self.mesh, self.options)
         return compute_maps(self.mesh, self.detector.channels, self.viewpoints)

@@ -45,9 +45,9 @@ def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
 
 
 class Seen(NamedTuple):
-    """A mesh as a SampledDetector sees it, whatever the number of places.
+    """A mesh as a SampledDetector sees it, the same for every count.
 
-    points (s, 3), areas (s,), smooth (s,): of the samples; vertices (s,) i8: what stands for each of them.
+    points (s, 3), areas (s,), smooth (s,): of the samples; vertices (s,) i8: the vertex that stands for each sample.
     saliency, smoothed (n,) f8 in 0..1: the values and the smooth values at the vertices.
     """
 
@@ -81,7 +81,7 @@ class SampledDetector(ABC):
         return _on_vertices(mesh, samples, values)[0]
 
     def seen(self, mesh: Mesh, options: Options) -> Seen | None:
-        """What `find` needs of a mesh, whatever the count; None without area."""
+        """The samples and values that `find` uses for every count; None without area."""
         if not mesh.face_areas.sum() > 0:
             return None
         samples, values, smooth = self._values(mesh, options)
