@@ -78,35 +78,45 @@ def invalid_pairs(results: Results, claim: Claim, rows: pd.DataFrame, keys: Sequ
     if not claim.checked or claim.stage not in CHECKS:
         return pd.Series(dtype=object)
     found = causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
-    return found[found != ""].groupby([rows[key] for key in keys or (*claim.over, *claim.within)], sort=False).first()
+    found = found[found != ""]
+    if found.empty:
+        return found
+    return found.groupby([rows[key] for key in keys or (*claim.over, *claim.within)], sort=False).first()
 
 
 def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     """(the cause of each invalid pair, number of all pairs) of a claim on one set, before a unit's pairs are averaged.
 
-    A statistic of its own pairs by object and target, as stages.report.meshes.levels does.
+    The number is 0 where no pair is invalid. A statistic of its own pairs by object and target, as
+    stages.report.meshes.levels does.
     """
     if not claim.checked or claim.stage not in CHECKS:
         return pd.Series(dtype=object), 0
-    keys, count = [*claim.over, *claim.within], 0
-    found: list[pd.Series] = []
+    keys = [*claim.over, *claim.within]
     if claim.statistic != "difference":
         keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
     sides = [side for side in (claim.first, claim.second) if isinstance(side, Mapping)]
+    found: list[tuple[list[pd.DataFrame], pd.Series]] = []
     for extra in claim.contrast or ({},):
         parts = [_side_rows(results, claim, own, sides[1 - k] if len(sides) > 1 else None, extra)[0]
                  for k, own in enumerate(sides)]  # fmt: skip
-        common = set.intersection(*(set(part.set_index(keys).index) for part in parts))
-        count += len(common)
-        bad = pd.concat([invalid_pairs(results, claim, part, keys) for part in parts])
-        if len(parts) > 1 and claim.statistic == "difference":
+        bad = [invalid_pairs(results, claim, part, keys) for part in parts]
+        if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
             first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
             both = pd.concat({"first": first, "second": second}, axis=1, join="inner")
-            same = both.index[_same_mesh(claim, both)]
-            bad = pd.concat([bad, pd.Series(SAME, index=same, dtype=object)])
-        bad = bad[~bad.index.duplicated()]
-        found.append(bad[[pair in common for pair in bad.index]])
-    return pd.concat(found), count
+            bad.append(pd.Series(SAME, index=both.index[_same_mesh(claim, both)], dtype=object))
+        found.append((parts, pd.concat(bad)))
+    if all(bad.empty for _, bad in found):
+        return pd.Series(dtype=object), 0
+    common = [set.intersection(*(_pairs(part, keys) for part in parts)) for parts, _ in found]
+    valid = (bad[~bad.index.duplicated()] for _, bad in found)
+    refused = [bad[[pair in pairs for pair in bad.index]] for pairs, bad in zip(common, valid, strict=True)]
+    return pd.concat(refused), sum(map(len, common))
+
+
+def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
+    """The combinations of the columns, as an index of these columns has them: bare values of a single column."""
+    return set(rows[keys[0]]) if len(keys) == 1 else set(zip(*(rows[key] for key in keys), strict=True))
 
 
 def _same_mesh(claim: Claim, both: pd.DataFrame) -> pd.Series:

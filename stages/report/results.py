@@ -161,11 +161,11 @@ class Results:
     def _filtered(self, stage: str, dataset: str, where: Mapping[str, object]) -> pd.DataFrame:
         """The rows of `rows`; each column's values are compared one time, not its cells."""
         frame = self._read(stage, dataset)
-        chosen = np.ones(len(frame), dtype=bool)
+        chosen = np.arange(len(frame))
         for column, wanted in where.items():
             if column in frame:
-                chosen = chosen & self._accepted(stage, dataset, column, wanted)
-                if chosen.any():
+                chosen = chosen[self._accepted(stage, dataset, column, wanted, chosen)]
+                if len(chosen):
                     continue
             notes = self.notes(stage, dataset, **where)
             if notes:
@@ -173,11 +173,13 @@ class Results:
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
             raise NotRun(f"{column} {either(wanted)} is not among those that {stage} measured", stage, runnable=False)
-        return frame[chosen] if where else frame
+        return frame.iloc[chosen] if where else frame
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
         """As `rows`, only those that have a value; NotRun where there is none."""
-        frame = self.rows(stage, dataset, **where).dropna(subset=["value"])
+        frame = self.rows(stage, dataset, **where)
+        valued = frame["value"].notna()
+        frame = frame if valued.all() else frame[valued]
         if frame.empty:
             notes = self.notes(stage, dataset, **where) or [f"{stage} has rows of this, but no value"]
             raise NotRun("; ".join(notes[:2]), stage, runnable=False)
@@ -205,13 +207,18 @@ class Results:
         """`notes` as sentences for a table's prose, a line each."""
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
-    def _accepted(self, stage: str, dataset: str, column: str, wanted: object) -> np.ndarray:
-        """(n,) bool: which rows of a stage on one set have a wanted value in a column; compares each value one time."""
+    def _accepted(
+        self, stage: str, dataset: str, column: str, wanted: object, among: np.ndarray | slice = slice(None)
+    ) -> np.ndarray:
+        """(n,) bool: which rows of a stage on one set have a wanted value in a column; compares each value one time.
+
+        among: positions of the rows, all by default.
+        """
         codes, values = self.once(
             ("values", stage, dataset, column), lambda: pd.factorize(self._read(stage, dataset)[column])
         )
         known = np.zeros(len(values), dtype=bool) if wanted is None else values.isin(listed(wanted))
-        return np.append(known, wanted is None)[codes]  # the code of an empty cell is -1
+        return np.append(known, wanted is None)[codes[among]]  # the code of an empty cell is -1
 
     def _first(self, stage: str, dataset: str | None) -> str:
         return dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]

@@ -52,12 +52,20 @@ def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.Dat
 @check("recorded")
 def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
-    groups = rows["group"].astype(str).str.partition("_")[0] if "group" in rows else pd.Series("", index=rows.index)
-    guess = 1 / groups.map(NUMBERS)  # four of four_drawn
-    share = _beside(results, stage, dataset, rows, "commonest_share")
-    found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
-    found[_below(rows, guess)] = GUESSING
-    return found
+
+    def of_all() -> pd.Series:
+        every = results.rows(stage, dataset)
+        guess = pd.Series(float("nan"), index=every.index)
+        if "group" in every:
+            guess = 1 / every["group"].map(
+                lambda group: NUMBERS.get(str(group).partition("_")[0])
+            )  # four of four_drawn
+        share = _beside(results, stage, dataset, every, "commonest_share").fillna(0.0)
+        found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
+        found[_below(every, guess)] = GUESSING
+        return found
+
+    return results.once(("several answers", stage, dataset), of_all)[rows.index]
 
 
 @check("transfer")

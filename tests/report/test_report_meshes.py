@@ -12,12 +12,12 @@ from stages.engine.statistics import interval
 from stages.report import meshes
 from stages.report.claims import highest_of, lowest_of
 from stages.report.drawing import label
-from stages.report.effects import differences, sets_of
+from stages.report.effects import differences
 from stages.report.meshes import levels, pictures
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.errors import BOXES
-from stages.report.meshes.tables import UNSEEN, data_sets, face_counts, ordered, paired_cells, short
-from stages.report.results import SECTION_3_2, SETS_3_1, NotRun, dataset_text
+from stages.report.meshes.tables import data_sets, face_counts, ordered, paired_cells, short
+from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 from tests.report.frames import has_ink
@@ -230,26 +230,6 @@ def chosen(monkeypatch):
     return choose
 
 
-@pytest.mark.slow
-def test_claims_on_meshes_are_judged_on_every_set(run, chosen):
-    own_truth = measured(SECTION_3_2, 3).replace({"method": {name: seen for seen, name in UNSEEN.items()}})
-    results = run(measured(), own_truth, *(measured(name, k) for k, name in enumerate(SETS_3_1, 1)))
-    alike = ("more_faces", "wider_apart", "symmetry_alone", "combinations_same")  # on all of their sets
-    claims = chosen("many_points_distort", "adaptive_svm_metro", "hks_high", *alike)
-    built = table("lod_claims", results)
-    assert len(built.shown) == len(claims) == 7
-    words = built.frame.set_index(["key", "data"])["verdict"]
-    for data in ("test", dataset_text(SECTION_3_2)):
-        assert words["many_points_distort", data] == words["adaptive_svm_metro", data] == "supported"
-        assert words["hks_high", data] == "contradicted"
-    judged, known = judge(claims, results).set_index("key")["verdict"], results.datasets("lod")
-    of_sets = {
-        one.key: {words[one.key, dataset_text(str(name))] for name in sets_of(one, results) if name in known}
-        for one in claims
-    }
-    assert all(of_sets[key] == {judged[key]} and judged[key] != "open" for key in alike)
-
-
 def with_people():
     """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
     rows = measured("gaze", 2)
@@ -267,9 +247,6 @@ def test_where_people_look_is_judged_and_shown_on_the_meshes_with_gaze(run, own,
     assert found.loc["glance_keep_gaze", "verdict"] == "supported"
     assert found.loc["glance_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
     assert found.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
-    found = table("lod_claims", results).frame.set_index(["key", "data"])["verdict"]
-    assert found["glance_keep_gaze", "meshes with human gaze"] == "supported"
-    assert own or found["glance_keep_gaze", "test"] == "open"
     shown = table("lod_detectors", results).shown
     assert ("error where people look, %" + ("" if own else ", meshes with human gaze")) in shown
     assert ("error where people look, %" in table("table_3_1_5_combinations", results).shown) == own

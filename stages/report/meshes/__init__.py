@@ -17,7 +17,6 @@ TABLES = {
     "lod_detectors": every_detector,
     "lod_points": tables.build,
     "table_3_2": table_3_2,
-    "lod_claims": levels.lod_claims,
     "backends": backends.backends_table,
 }
 FIGURES = {

@@ -1,7 +1,7 @@
 """Claims on simplified meshes: channels and detectors (T3.1.5), kept points, learned weights, neighbourhoods (T3.2).
 
 Each is judged on all sets that have its rows, of which no two share an object; those on the error weighted by human
-gaze on the meshes that have it. tables/lod_claims has them set by set..
+gaze on the meshes that have it.
 """
 
 from functools import partial

@@ -1,13 +1,11 @@
-"""Levels of detail: claims on simplified meshes, error against cost, and the growth of time with the number of faces.
+"""Levels of detail: statistics of claims, error against cost, and the growth of time with the number of faces.
 
-`lod_claims` is the table of the claims on every data set; the statistics of these claims stand below it.
 `simplification` draws error against the seconds to find the points and to simplify, with a front at each share of the
 faces. `growth` fits a backend's time by a power of n, or of n log n, with its interval.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -17,13 +15,11 @@ from stages.engine.statistics import interval
 from stages.report.claims import Claim
 from stages.report.drawing import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
 from stages.report.effects import invalid_pairs, statistic
-from stages.report.items import Figure, Table
+from stages.report.items import Figure
 from stages.report.pareto import ON, attention_seconds, noise_by, placed
-from stages.report.results import SECTION_3_2, NotRun, Results, dataset_text, listed, some
+from stages.report.results import NotRun, Results, listed, some
 from stages.report.tables import means, with_interval
-from stages.report.verdict import judge
 
-from .claims import CLAIMS
 from .tables import (
     CELL,
     CLASSICAL,
@@ -34,37 +30,13 @@ from .tables import (
     PLAIN,
     QSLIM,
     UNITS,
-    UNSEEN,
     WEIGHTED,
-    data_sets,
     fixed,
     paired_cells,
     size,
 )
 
-WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none"}  # the others as they are
 MANY = 5  # methods that a rank correlation needs
-
-
-def lod_claims(results: Results) -> Table:
-    """One row per claim, one column per data set, and the first set again where nothing shrank."""
-    sets, within = data_sets(results), [claim for claim in CLAIMS if "dataset" not in claim.first]
-    within = [replace(claim, elsewhere=UNSEEN, dataset=(SECTION_3_2,)) for claim in within]  # that knows the object
-    wanted = {dataset_text(name): (name, {}) for name in sets}
-    wanted[f"{dataset_text(sets[0])}, nothing shrunk"] = sets[0], {"shrunk": False}
-    parts = {
-        head: judge([replace(one.on(name), where={**one.where, **where}) for one in within], results)
-        for head, (name, where) in wanted.items()
-    }
-    frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
-    texts = {head: [_cell(row) for row in part.itertuples()] for head, part in parts.items()}
-    shown = frame.loc[frame["data"] == dataset_text(sets[0]), ["section", "claim"]].assign(**texts)
-    frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
-    return Table(frame, shown)  # no ranking: claims do not compete
-
-
-def _cell(row: Any) -> str:
-    return WORDS.get(str(row.verdict), str(row.verdict)) if row.pairs else "not run"
 
 
 @statistic("spread")
