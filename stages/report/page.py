@@ -40,6 +40,7 @@ WORDS = {
     "supported": "yes", "contradicted": "no",
     **dict.fromkeys(("no difference", "mixed", "depends on the reading", "not testable", "open"), "open"),
 }  # fmt: skip
+OLDER = "Rows made by an earlier version of their stage's code:"
 UP = "../"  # from a page of reports/site to reports/
 
 
@@ -60,6 +61,7 @@ def item_html(item: Table | Figure) -> str:
         behind = folded("The numbers behind it", frame_html(shown, f"Numbers: {item.title}")) if len(shown) else ""
         caption = f"<figcaption>{prose(item.caption)} {links(item.paths)}</figcaption>"
         body = f"<figure>{box('wide', item.title, item.element)}{caption}</figure>{behind}"
+    body += f"<p>{OLDER} {escape(', '.join(older))}.</p>" if (older := item.record.get("older")) else ""
     return f'<section id="{item.paths[0].parent.name}-{item.name}"><h3>{escape(item.title)}</h3>{body}</section>\n'
 
 

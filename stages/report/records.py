@@ -2,7 +2,8 @@
 
 KIND/records.json has a line for each table, figure or chart: its data sets, files of rows, methods, sizes, number of
 objects and number of rows. provenance.json has the hash of each file of rows, the commit of a file that git knows
-unchanged, and the clock of its seconds; constraints.txt of that commit pins the packages that measured the rows.
+unchanged, the digest of the code that made the rows, and the clock of their seconds; constraints.txt of that commit
+pins the packages that measured the rows.
 headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
 `command` is the shell command that measures the rows of a claim again.
 """
@@ -46,6 +47,7 @@ def record_of(item: Table | Figure, results: Results, kind: str) -> dict[str, An
     found = {"sets": item.sets, "files": sorted(results.sources), "rows": sum(map(len, shown))}
     objects = next(filter(None, (_values(frames, column) for column in OBJECTS)), [])
     found |= {"objects": len(objects), "methods": _values(named, "method")[:MOST]}
+    found |= {"older": older} if (older := [name for name in found["files"] if is_older(results, name)]) else {}
     sizes = {name: _values(frames, name)[:MOST] for name in SIZES}
     return found | {"sizes": {name: values for name, values in sizes.items() if values}}
 
@@ -105,9 +107,36 @@ def path_of(results: Results, name: str) -> Path:
     return results.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
 
 
+def code_of(results: Results, name: str) -> tuple[str, str]:
+    """(digest of the code that made a file of rows, digest of today's code of its stage); empty where unknown.
+
+    A set that is switched on counts as measured by today's code: DVC runs its stage again when the code has changed,
+    unless somebody says with `dvc commit` that the rows stay equal. A file of another set that has not changed since
+    the last report keeps the digest that provenance.json has for it.
+    """
+    dataset, _, stage = name.partition("/")
+    path = results.workspace.build / "code" / stage
+    today = sha256(path)[:DIGITS] if dataset != BENCH and path.is_file() else ""
+    known = results.once("provenance", lambda: _provenance(results)).get(name, {})
+    same = dataset not in results.sets and known.get("sha256") == sha256(path_of(results, name))[:DIGITS]
+    return known.get("code", "") if same else today, today
+
+
+def is_older(results: Results, name: str) -> bool:
+    """Whether a file of rows was made by other code than today's."""
+    made, today = results.once(("code", name), lambda: code_of(results, name))
+    return bool(made and today) and made != today
+
+
+def _provenance(results: Results) -> dict[str, dict[str, str]]:
+    """{file of rows: its entry} of the last report; empty where there was none."""
+    path = results.reports / PROVENANCE_FILE
+    return read_json(path)["files"] if path.is_file() else {}
+
+
 def _file(results: Results, name: str) -> dict[str, str]:
     path = path_of(results, name)
-    found = {"sha256": sha256(path)[:DIGITS], "commit": commit(path)}
+    found = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
     dataset, _, stage = name.partition("/")
     if dataset != BENCH and "seconds" in results.rows(stage, dataset):
         found["clock"] = results.clock(stage, dataset)

@@ -9,11 +9,12 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import read_json, sha256
+from haptic_glance.base.files import read_json, sha256, write_json, write_text
 from haptic_glance.base.timing import WALL, clock
 from stages.report import records
 from stages.report.drawing import plt
 from stages.report.items import Built, Figure, Table
+from stages.report.page import item_html
 from stages.report.records import DIGITS, FILE, PROVENANCE_FILE, record_of, write_records
 from stages.report.results import NotRun
 from stages.report.topics import KINDS
@@ -129,6 +130,30 @@ def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_pat
     path.write_bytes(path.read_bytes() + b" ")
     records.commit.cache_clear()
     assert records.commit(path) == ""
+
+
+@pytest.mark.parametrize(
+    ("first", "sha", "code", "older"),
+    [
+        ("household", "same", "before", True),
+        ("household", "same", "", False),  # nobody knows
+        ("household", "other", "before", False),  # measured anew
+        ("test", "same", "before", False),  # switched on
+    ],
+)
+def test_rows_of_earlier_code_are_named_below_their_table(rows, tmp_path, first, sha, code, older):
+    results = rows()
+    results.sets = [first]
+    results.rows("lod", "test")
+    known = {"sha256": sha256(records.path_of(results, "test/lod"))[:DIGITS] if sha == "same" else sha, "code": code}
+    write_json(results.reports / PROVENANCE_FILE, {"packages": {}, "files": {"test/lod": known}})
+    write_text(results.workspace.build / "code/lod", "today")
+    item = Table(pd.DataFrame({"x": [1]}), name="table", sets=["test"], paths=[tmp_path / "tables/table.csv"])
+    item.record = record_of(item, results, "tables")
+    assert ("test/lod" in item_html(item)) == ("older" in item.record) == older
+    write_records({"tables": Built([item])}, results, tmp_path)
+    made = read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("code")
+    assert made == (code or None if first == "household" and sha == "same" else records.code_of(results, "test/lod")[1])
 
 
 PROTOCOL = "household_3_1"
