@@ -8,7 +8,7 @@ from pathlib import Path
 
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
-from stages.engine.code import PACKAGE, ROOT, stage_digests
+from stages.engine.code import PACKAGE, ROOT, keep_facts, stage_digests
 from stages.engine.settings import check_clone
 
 
@@ -35,6 +35,7 @@ def main() -> None:
     errors_in_one_line("code")
     check_clone()
     write_digests(Path("build/code"))
+    keep_facts()
 
 
 if __name__ == "__main__":

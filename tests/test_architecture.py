@@ -64,12 +64,10 @@ def test_every_stage_is_in_the_pipeline_and_every_setting_is_read():
         ("DISTANCE = 10.0", "DISTANCE = 9.0", True),
     ],
 )
-def test_only_changed_work_changes_the_digest(tmp_path, old, new, changes):
+def test_only_changed_work_changes_the_digest(old, new, changes):
     text = (ROOT / "haptic_glance/look/camera.py").read_text()
     assert old in text
-    (tmp_path / "camera.py").write_text(text.replace(old, new))
-    same = code.file_digest(tmp_path / "camera.py") == code.file_digest(ROOT / "haptic_glance/look/camera.py")
-    assert same is not changes
+    assert (code.code_text(text.replace(old, new)) != code.code_text(text)) is changes
 
 
 def test_code_that_is_imported_late_or_handed_on_is_found(tmp_path, monkeypatch):
@@ -87,11 +85,21 @@ def test_code_that_is_imported_late_or_handed_on_is_found(tmp_path, monkeypatch)
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
     monkeypatch.setattr(code, "ROOT", tmp_path)
-    code._module.cache_clear()
-    found = {path.relative_to(tmp_path).as_posix() for path in code.stage_files("a")}
-    code._module.cache_clear()
-    assert found == set(files) - {
-        "stages/__init__.py",
-        "stages/b/__init__.py",
-        "stages/b/unused.py",
-    }
+
+    def fresh():
+        for remembered in (code._module, code._facts, code._kept, code.imported_files):
+            remembered.cache_clear()
+
+    def found():
+        fresh()
+        return {path.relative_to(tmp_path).as_posix() for path in code.stage_files("a")}
+
+    needed = set(files) - {"stages/__init__.py", "stages/b/__init__.py", "stages/b/unused.py"}
+    assert found() == needed
+    code.keep_facts()
+    with monkeypatch.context() as kept:
+        kept.setattr(code, "_work_out", None)
+        assert found() == needed  # from what was kept
+    (tmp_path / "stages/a/__main__.py").write_text("from stages.b import other\n")
+    assert found() == {"stages/a/__init__.py", "stages/a/__main__.py", "stages/b/unused.py"}
+    fresh()

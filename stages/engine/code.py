@@ -7,10 +7,16 @@ behind the names that it uses, not on whole packages. Imports must therefore be 
 
 import ast
 import hashlib
+import json
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import Any
+
+from haptic_glance.base.files import write_json
 
 ROOT = Path(__file__).parents[2]  # the folder that holds the package `stages`
+OWN = Path(__file__).read_bytes()
 PACKAGE = "stages"
 PACKAGES = PACKAGE, "haptic_glance"  # what a stage may import
 
@@ -40,13 +46,9 @@ def stage_digest(stage: str) -> str:
     return hashlib.sha256(repr(sorted(stage_digests(stage).items())).encode()).hexdigest()[:16]
 
 
-@cache
 def file_digest(path: Path) -> str:
     """16 hex digits of a file; of Python, only what runs."""
-    content = path.read_bytes()
-    if path.suffix == ".py":
-        content = code_text(content.decode()).encode()
-    return hashlib.sha256(content).hexdigest()[:16]
+    return _facts(path).digest
 
 
 def code_text(text: str) -> str:
@@ -71,18 +73,81 @@ def code_text(text: str) -> str:
 @cache
 def imported_files(path: Path) -> set[Path]:
     """The files of both packages that one file imports, anywhere in it, and the data files beside it that it reads."""
-    tree = ast.parse(path.read_text(encoding="utf-8")) if path.suffix == ".py" else ast.Module([], [])
-    here = _package(path)
-    found: set[Path] = set()
+    facts, found = _facts(path), set()
+    for source, name in facts.imports:
+        found |= _files_behind(source, name) if name else _files_of(source)
+    return (found | (_data_files(path) if facts.reads_data else set())) - {path}
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Facts about a file by itself.
+
+    digest: 16 hex digits of what runs; imports: (module, name there, empty for a whole module); reads_data: whether it
+    asks for files beside it; defined: its classes, functions and constants; handed_on: {name: (module, name there)} of
+    what it hands on, by import or by a dict of modules; does_more: whether it does more than import and hand on.
+    """
+
+    digest: str
+    imports: list[tuple[str, str]] = field(default_factory=list)
+    reads_data: bool = False
+    defined: list[str] = field(default_factory=list)
+    handed_on: dict[str, tuple[str, str]] = field(default_factory=dict)
+    does_more: bool = False
+
+
+KEPT = "build/code_facts.json"  # below ROOT: {digest of a file and its place: Facts}, as `keep_facts` wrote it
+
+
+_ASKED: dict[str, Facts] = {}  # {key: Facts} of this process
+
+
+@cache
+def _facts(path: Path) -> Facts:
+    key = _key(path)
+    kept = _kept().get(key)
+    _ASKED[key] = Facts(**kept) if kept else _work_out(path)
+    return _ASKED[key]
+
+
+def _key(path: Path) -> str:
+    """Digest of a file, its place and this module: all that its Facts follow from."""
+    return hashlib.sha256(b"\0".join((OWN, str(path.relative_to(ROOT)).encode(), path.read_bytes()))).hexdigest()[:32]
+
+
+@cache
+def _kept() -> dict[str, dict[str, Any]]:
+    """The Facts of an earlier process; none where there was none, or its file is damaged."""
+    try:
+        return json.loads((ROOT / KEPT).read_bytes())
+    except (OSError, ValueError):
+        return {}
+
+
+def keep_facts() -> None:
+    """Keeps the Facts that this process asked for: to parse a hundred files takes each later process a second."""
+    write_json(ROOT / KEPT, {key: asdict(facts) for key, facts in sorted(_ASKED.items())})
+
+
+def _work_out(path: Path) -> Facts:
+    """The Facts of a file, from its content."""
+    content = path.read_bytes()
+    if path.suffix != ".py":
+        return Facts(hashlib.sha256(content).hexdigest()[:16])
+    text, here = content.decode(), _package(path)
+    tree = ast.parse(text)
+    imports: set[tuple[str, str]] = set()
+    reads_data = False
     for node in _running(tree):
         if isinstance(node, ast.Import):
-            found |= {file for alias in node.names for file in _files_of(alias.name)}
+            imports |= {(alias.name, "") for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            source = _absolute(node, here)
-            found |= {file for alias in node.names for file in _files_behind(source, alias.name)}
-        if isinstance(node, ast.Name | ast.alias) and _named(node) in ("__file__", "resources"):
-            found |= _data_files(path)
-    return found - {path}
+            imports |= {(_absolute(node, here), alias.name) for alias in node.names}
+        elif isinstance(node, ast.Name | ast.alias) and _named(node) in ("__file__", "resources"):
+            reads_data = True
+    own = sorted(one for one in imports if one[0].split(".")[0] in PACKAGES)
+    digest = hashlib.sha256(code_text(text).encode()).hexdigest()[:16]
+    return Facts(digest, own, reads_data, _defined(tree), _handed_on(tree, here), _does_more(tree))
 
 
 def _files_behind(source: str, name: str) -> set[Path]:
@@ -97,12 +162,12 @@ def _files_behind(source: str, name: str) -> set[Path]:
         return set()
     if path.name != "__init__.py":
         return {path, *_busy(source)}
-    handed_on = _handed_on(path)
-    if name in handed_on:
-        return _files_behind(*handed_on[name]) | _busy(f"{source}.{name}")
-    if name in _defined(path):
+    facts = _facts(path)
+    if name in facts.handed_on:
+        return _files_behind(*facts.handed_on[name]) | _busy(f"{source}.{name}")
+    if name in facts.defined:
         return {path}
-    return {path, *path.parent.rglob("*.py")} if _does_more(path) else {path}
+    return {path, *path.parent.rglob("*.py")} if facts.does_more else {path}
 
 
 def _files_of(module: str) -> set[Path]:
@@ -111,20 +176,17 @@ def _files_of(module: str) -> set[Path]:
     return {path} if path else set()
 
 
-@cache
-def _defined(path: Path) -> set[str]:
+def _defined(tree: ast.Module) -> list[str]:
     """The names of the classes, functions and constants that a file defines."""
-    body = ast.parse(path.read_text(encoding="utf-8")).body
-    named = {node.name for node in body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
-    assigned = [target for node in body if isinstance(node, ast.Assign) for target in node.targets]
-    return named | {target.id for target in assigned if isinstance(target, ast.Name)}
+    named = {node.name for node in tree.body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
+    assigned = [target for node in tree.body if isinstance(node, ast.Assign) for target in node.targets]
+    return sorted(named | {target.id for target in assigned if isinstance(target, ast.Name)})
 
 
-@cache
-def _handed_on(path: Path) -> dict[str, tuple[str, str]]:
+def _handed_on(tree: ast.Module, here: str) -> dict[str, tuple[str, str]]:
     """{name: (module, name there)} of what a package's `__init__` hands on, by import or by a dict of modules."""
-    found, here = {}, _package(path)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    found = {}
+    for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             found |= {alias.asname or alias.name: (_absolute(node, here), alias.name) for alias in node.names}
         elif isinstance(node, ast.Dict):
@@ -139,14 +201,13 @@ def _busy(module: str) -> set[Path]:
     parts, found = module.split("."), set()
     for depth in range(1, len(parts)):
         path = _module(".".join(parts[:depth]))
-        if path is not None and path.name == "__init__.py" and _does_more(path):
+        if path is not None and path.name == "__init__.py" and _facts(path).does_more:
             found.add(path)
     return found
 
 
-@cache
-def _does_more(path: Path) -> bool:
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+def _does_more(tree: ast.Module) -> bool:
+    for node in tree.body:
         names = isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__"
         if not (isinstance(node, ast.Import | ast.ImportFrom) or names or _is_text(node) or _is_for_types(node)):
             return True
