@@ -15,6 +15,7 @@ MODULES = {
     "cluster": ("cloudpickle", "dask", "distributed"),
     "studio": ("viser",),
     "front": ("optuna",),
+    "agents": ("gymnasium",),
 }  # fmt: skip
 EXTRAS = {module: extra for extra, modules in MODULES.items() for module in modules}
 

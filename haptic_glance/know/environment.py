@@ -1,0 +1,113 @@
+"""A task for learning agents, in the interface of Gymnasium: touch an unknown object in an unknown pose until sure.
+
+To import this module registers `haptic_glance/TouchUntilSure-v0`.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from haptic_glance.base.extras import from_extra
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface
+
+from .exploration import MOST, PLACES, Exploration
+from .library import CELLS, learn, primitives
+
+with from_extra():
+    import gymnasium
+    from gymnasium.spaces import Box, Dict, Discrete, MultiBinary
+
+REWARD = 10.0  # for the right object, and minus this for a wrong one; each touch costs 1
+
+
+class TouchUntilSure(gymnasium.Env):
+    """An agent chooses where to touch an object that it has to recognise.
+
+    `reset` draws one of the known objects, turns it at random, and draws 64 places on it. An action is the number of
+    the place that is touched next. The belief over the objects follows from the imprints, as in `Exploration`. An
+    episode ends when the belief in one object reaches 95 %, and is cut off after `most` touches. Each touch costs 1;
+    the right object earns 10, a wrong one costs 10.
+
+    An observation has `belief` (objects,), the probability of each object; `image` (16, 16), the last imprint;
+    `positions` and `normals` (64, 3), the places in units of the normalised object; `touched` (64,), the places that
+    were touched.
+
+    Parameters
+    ----------
+    meshes : mapping of str to Mesh, optional
+        The known objects, normalised. Six basic shapes by default.
+    most : int
+        Touches of an episode, at most.
+
+    Raises
+    ------
+    ValueError
+        For fewer than two objects, and for a mesh that cannot be touched.
+    MissingExtra
+        Where Gymnasium is not installed.
+
+    Examples
+    --------
+    >>> environment = TouchUntilSure()
+    >>> observation, info = environment.reset(seed=0, options={"name": "ball"})
+    >>> observation, reward, sure, cut_off, info = environment.step(environment.planned())
+    >>> reward
+    -1.0
+    """
+
+    def __init__(self, meshes: Mapping[str, Mesh] | None = None, most: int = MOST) -> None:
+        self.meshes = dict(primitives() if meshes is None else meshes)
+        self.library = learn(self.meshes, placed=False, turned=True)
+        self.most = most
+        self.action_space = Discrete(PLACES)
+        self.observation_space = Dict({
+            "belief": Box(0, 1, (len(self.library.names),)),
+            "image": Box(0, 1, CELLS),
+            "positions": Box(-1, 1, (PLACES, 3)),
+            "normals": Box(-1, 1, (PLACES, 3)),
+            "touched": MultiBinary(PLACES),
+        })  # fmt: skip
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[dict, dict]:
+        """Draws an object, its pose and the places on it; `options={"name": NAME}` chooses the object."""
+        super().reset(seed=seed)
+        self.name = str((options or {}).get("name") or self.np_random.choice(self.library.names))
+        mesh, turn = self.meshes[self.name], Rotation.random(rng=self.np_random)
+        surface = Surface(Mesh(turn.apply(mesh.vertices), mesh.faces))
+        self.exploration = Exploration(self.library, surface, self.np_random)
+        self.touched = np.zeros(PLACES, dtype=np.int8)
+        return self._observation(), self._info()
+
+    def step(self, action: int) -> tuple[dict, float, bool, bool, dict]:
+        """Touches the place with this number; returns observation, reward, sure, cut off, and info."""
+        self.exploration.touch(self.exploration.candidate(int(action)))
+        self.touched[action] = 1
+        known = self.exploration.belief.known
+        reward = (REWARD if known == self.name else -REWARD if known else 0.0) - 1.0
+        cut_off = not known and len(self.exploration.images) >= self.most
+        return self._observation(), reward, bool(known), cut_off, self._info()
+
+    def planned(self) -> int:
+        """The action of the planner, a baseline: the place at which the belief is expected to gain most."""
+        return int(self.exploration.gains().argmax())
+
+    def _observation(self) -> dict[str, np.ndarray]:
+        touched, places = self.exploration, self.exploration.candidates
+        image = touched.images[-1] if len(touched.images) else np.zeros(CELLS)
+        return {
+            "belief": touched.belief.values.astype(np.float32),
+            "image": image.astype(np.float32),
+            "positions": places.positions.astype(np.float32),
+            "normals": places.normals.astype(np.float32),
+            "touched": self.touched.copy(),
+        }
+
+    def _info(self) -> dict[str, Any]:
+        """The object, which the agent must not see, and the object that is known."""
+        return {"name": self.name, "known": self.exploration.belief.known}
+
+
+gymnasium.register("haptic_glance/TouchUntilSure-v0", f"{__name__}:{TouchUntilSure.__name__}")

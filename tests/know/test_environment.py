@@ -1,0 +1,52 @@
+"""Touch until sure, as an environment of Gymnasium: its checker, its registration, rewards and ends."""
+
+import numpy as np
+import pytest
+
+gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
+
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+
+from haptic_glance.know import primitives  # noqa: E402
+from haptic_glance.know.environment import REWARD, TouchUntilSure  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def task():
+    shapes = primitives()
+    return TouchUntilSure({name: shapes[name] for name in ("box", "torus")}, most=4)
+
+
+@pytest.mark.filterwarnings("error")
+def test_gymnasium_finds_no_fault(task):
+    check_env(task, skip_render_check=True)
+
+
+def test_it_is_registered():
+    assert isinstance(gymnasium.make("haptic_glance/TouchUntilSure-v0").unwrapped, TouchUntilSure)
+
+
+def test_a_seed_decides_object_pose_and_places_and_no_pose_is_the_learned_one(task):
+    first, info = task.reset(seed=1)
+    again, same = task.reset(seed=1)
+    learned, turned = task.meshes[info["name"]].vertices, task.exploration.surface.mesh.vertices
+    assert not np.allclose(learned, turned)
+    assert np.linalg.norm(learned, axis=1).max() == pytest.approx(np.linalg.norm(turned, axis=1).max())
+    other, _ = task.reset(seed=2)
+    assert info == same and all((first[name] == again[name]).all() for name in first)
+    assert not np.allclose(first["normals"], other["normals"])
+
+
+@pytest.mark.parametrize("belief", ["right", "wrong", "none"])
+def test_an_episode_ends_with_a_name_or_after_its_touches(task, belief, monkeypatch):
+    _, info = task.reset(seed=0, options={"name": "box"})
+    assert info["name"] == "box"
+    names = {"right": "box", "wrong": "torus", "none": ""}
+    monkeypatch.setattr("haptic_glance.know.library.Belief.known", property(lambda own: names[belief]))
+    rewards = {"right": REWARD - 1, "wrong": -REWARD - 1, "none": -1}
+    for count in range(1, 5):
+        observation, reward, sure, cut_off, info = task.step(task.planned())
+        assert reward == rewards[belief] and sure == (belief != "none") and observation["touched"].sum() == count
+        assert cut_off == (belief == "none" and count == 4) and info["known"] == names[belief]
+        if sure:
+            break
