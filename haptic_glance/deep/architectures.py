@@ -1,4 +1,4 @@
-"""Architectures of networks: the convolutions up to the last feature maps, and the ImageNet classifier.
+"""Architectures of networks: the convolutions up to the last feature maps.
 
 This module also imports torchvision for the whole project. torchvision's compiled operators are linked against one
 build of torch. With another build (usual for the PyPI wheel of torchvision and a CPU wheel of torch) the operators do
@@ -93,17 +93,14 @@ def _tensor(value):
 
 
 class Architecture(NamedTuple):
-    """The convolutions of a network and its ImageNet classifier.
+    """The convolutions of a network, from images (b, 3, h, w) to the last feature maps (b, width, i, j).
 
-    convolutions: from images (b, 3, h, w) to the last feature maps (b, width, i, j); dropout: the share dropped before
-    the classifier; classifier: the linear layer for ImageNet's 1000 classes on the pooled maps, or None where the
-    published network has more than this one layer after its convolutions.
+    dropout: the share dropped before the classifier.
     """
 
     convolutions: torch.nn.Sequential
     width: int
     dropout: float
-    classifier: torch.nn.Linear | None
 
 
 def he_initialise(module: torch.nn.Module) -> None:
@@ -133,7 +130,7 @@ def alexnet(state: dict[str, torch.Tensor] | None) -> Architecture:
         he_initialise(convolutions)
     else:
         restore(convolutions, features_of(state), "alexnet's convolutions")
-    return Architecture(convolutions, width=256, dropout=0.5, classifier=None)
+    return Architecture(convolutions, width=256, dropout=0.5)
 
 
 def features_of(state: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
@@ -158,7 +155,7 @@ def vgg16(state: dict[str, torch.Tensor] | None) -> Architecture:
         he_initialise(convolutions)
     else:
         restore(convolutions, features_of(state), "vgg16's convolutions")
-    return Architecture(convolutions, width=512, dropout=0.5, classifier=None)
+    return Architecture(convolutions, width=512, dropout=0.5)
 
 
 def fully_connected(state: dict[str, torch.Tensor] | None) -> torch.nn.Sequential:
@@ -184,13 +181,7 @@ def googlenet(state: dict[str, torch.Tensor] | None) -> Architecture:
     state: torchvision's weights without the auxiliary classifiers, or None.
     """
     whole = torchvision.models.googlenet(aux_logits=False, transform_input=False, init_weights=True)
-    if state is not None:
-        restore(whole, state, "googlenet")
-    layers = OrderedDict((name, layer) for name, layer in whole.named_children() if name not in TAIL)
-    return Architecture(torch.nn.Sequential(layers), width=1024, dropout=0.2, classifier=whole.fc)
-
-
-TAIL = ("aux1", "aux2", "avgpool", "dropout", "fc")
+    return _parts(whole, state, "googlenet", dropout=0.2)
 
 
 def mobilenet_v2(state: dict[str, torch.Tensor] | None) -> Architecture:
@@ -198,7 +189,7 @@ def mobilenet_v2(state: dict[str, torch.Tensor] | None) -> Architecture:
     whole = torchvision.models.mobilenet_v2()
     if state is not None:
         restore(whole, state, "mobilenet_v2")
-    return Architecture(whole.features, width=whole.last_channel, dropout=0.2, classifier=whole.classifier[1])
+    return Architecture(whole.features, width=whole.last_channel, dropout=0.2)
 
 
 def resnet50(state: dict[str, torch.Tensor] | None) -> Architecture:
@@ -223,11 +214,14 @@ def resnet101(state: dict[str, torch.Tensor] | None) -> Architecture:
     return _parts(torchvision.models.resnet101(), state, "resnet101")
 
 
-def _parts(whole, state, name):
+TAIL = ("aux1", "aux2", "avgpool", "dropout", "fc")  # what follows the convolutions
+
+
+def _parts(whole, state, name, dropout=0.0):
     if state is not None:
         restore(whole, state, name)
-    layers = OrderedDict((name, layer) for name, layer in whole.named_children() if name not in ("avgpool", "fc"))
-    return Architecture(torch.nn.Sequential(layers), width=whole.fc.in_features, dropout=0.0, classifier=whole.fc)
+    layers = OrderedDict((name, layer) for name, layer in whole.named_children() if name not in TAIL)
+    return Architecture(torch.nn.Sequential(layers), whole.fc.in_features, dropout)
 
 
 STAGES = (  # repeats, kernel, stride, expansion, channels
@@ -248,9 +242,9 @@ def efficientnet_lite0(state: dict[str, torch.Tensor] | None) -> Architecture:
     network = full_network()
     if state is not None:
         restore(network, state, "efficientnet_lite0")
-    convolutions, classifier = network.children()
-    assert isinstance(convolutions, torch.nn.Sequential) and isinstance(classifier, torch.nn.Linear)
-    return Architecture(convolutions, WIDTH, dropout=0.2, classifier=classifier)
+    convolutions = network["convolutions"]
+    assert isinstance(convolutions, torch.nn.Sequential)
+    return Architecture(convolutions, WIDTH, dropout=0.2)
 
 
 def full_network() -> torch.nn.ModuleDict:

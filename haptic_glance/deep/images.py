@@ -20,25 +20,31 @@ def to_images(imprints: np.ndarray | list[np.ndarray], size: int) -> torch.Tenso
     imprints: (k, r, c), u1 or floats in 0..1; resized bilinearly, with an anti-aliasing filter where they shrink.
     Raises ValueError for another shape, several sizes, values out of range or NaN.
     """
-    check_one_size(imprints)
-    grey = torch.as_tensor(imprints)
+    grey = as_floats(imprints, "imprints")
     if grey.ndim != 3 or 0 in grey.shape:
         raise ValueError(f"imprints must have shape (k, rows, columns) and not be empty, got {tuple(grey.shape)}")
-    grey = grey.float() / 255 if grey.dtype == torch.uint8 else grey.float()
-    if not bool(((grey >= 0) & (grey <= 1)).all()):
-        raise ValueError("imprints must hold values in 0..1, and neither NaN nor infinity")
-    if grey.shape[1:] != (size, size):
-        grey = torch.nn.functional.interpolate(grey[:, None], (size, size), mode="bilinear", antialias=True)[:, 0]
     images = torch.zeros(len(grey), 3, size, size)
-    images[:, 0] = grey.clamp(0, 1)
+    images[:, 0] = resized(grey[:, None], size)[:, 0]
     return images
 
 
-def check_one_size(images: Sequence[np.ndarray] | np.ndarray | torch.Tensor) -> None:
-    """Raises ValueError, which names the sizes, for a list of images of several sizes."""
+def as_floats(images: np.ndarray | Sequence[np.ndarray], what: str) -> torch.Tensor:
+    """The images, u1 or floats in 0..1, as one f4 tensor; raises ValueError for several sizes and for other values."""
     sizes = [] if hasattr(images, "shape") else sorted({np.shape(image) for image in images})
     if len(sizes) > 1:
         raise ValueError(f"images of several sizes, {', '.join(map(str, sizes))}: resize them to one first")
+    found = torch.as_tensor(images)
+    found = found.float() / 255 if found.dtype == torch.uint8 else found.float()
+    if not bool(((found >= 0) & (found <= 1)).all()):
+        raise ValueError(f"{what} must hold values in 0..1, and neither NaN nor infinity")
+    return found
+
+
+def resized(images: torch.Tensor, size: int) -> torch.Tensor:
+    """(k, c, size, size) of images (k, c, h, w) in 0..1: bilinear, with an anti-aliasing filter where they shrink."""
+    if images.shape[2:] == (size, size):
+        return images
+    return torch.nn.functional.interpolate(images, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
 
 
 def normalise(images: torch.Tensor) -> torch.Tensor:
@@ -48,16 +54,14 @@ def normalise(images: torch.Tensor) -> torch.Tensor:
     return ((images - mean) / std).contiguous(memory_format=torch.channels_last)
 
 
-def augmentation() -> AugmentationSequential:
+def augmentation(upright: bool = False) -> AugmentationSequential:
     """Random reflection, translation and scaling of images in 0..1, for training only (T5.3).
 
     Uses torch's random numbers. Pixels that move in from outside repeat the imprint's border, since black, the usual
-    fill value, would mean contact.
+    fill value, would mean contact. upright: of pictures, whose objects are upright: reflected left to right alone.
     """
-    return AugmentationSequential(
-        kornia_augmentation.RandomHorizontalFlip(p=0.5),
-        kornia_augmentation.RandomVerticalFlip(p=0.5),
-        kornia_augmentation.RandomAffine(
-            degrees=0, translate=(SHIFT, SHIFT), scale=SCALE, padding_mode="border", p=1.0
-        ),
-    )
+    flips = [kornia_augmentation.RandomHorizontalFlip(p=0.5)]
+    if not upright:
+        flips.append(kornia_augmentation.RandomVerticalFlip(p=0.5))
+    moves = {"translate": (SHIFT, SHIFT), "scale": SCALE, "padding_mode": "border"}
+    return AugmentationSequential(*flips, kornia_augmentation.RandomAffine(degrees=0, p=1.0, **moves))

@@ -8,7 +8,7 @@ import torch
 from .architectures import alexnet, efficientnet_lite0, googlenet, mobilenet_v2, resnet50, resnet50_v1, resnet101, vgg16
 from .architectures import fully_connected as vgg16_layers
 from .images import Transform
-from .weights import available_weights, imagenet_state, resolve_source
+from .weights import imagenet_state, resolve_source
 
 # `random` gets the statistics of its normalisation from the images, `random_initial` keeps those it begins with.
 WEIGHTS = ("imagenet", "random", "random_initial")
@@ -87,7 +87,11 @@ def build(
         raise ValueError(f"unknown weights {weights!r}, known: {', '.join(WEIGHTS)}")
     if classes < 2:
         raise ValueError(f"a classifier needs two classes or more, got {classes}")
-    design = _design(name, source)
+    if name not in NETWORKS:
+        raise ValueError(f"unknown network {name!r}, known: {', '.join(NETWORKS)}")
+    design = NETWORKS[name]
+    if resolve_source(name, source) == "package":
+        design = PACKAGE_VARIANTS.get(name, design)
     state = imagenet_state(name, source) if weights == "imagenet" else None
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seed)
@@ -95,41 +99,13 @@ def build(
         layers, width = FULLY_CONNECTED.get(name, (None, parts.width)) if fully_connected else (None, parts.width)
         hidden = layers(state) if layers else None
         network = Network(parts.convolutions, width, classes, parts.dropout, hidden)
-    return _ready(network)
+    # The channels-last layout halves the time of a convolution on a CPU.
+    return network.to(memory_format=torch.channels_last).eval()
 
 
 def published_layers(name: str, source: str) -> bool:
     """Whether a source has ImageNet's weights of the layers that `fully_connected` keeps; most networks have none."""
     return name not in FULLY_CONNECTED or resolve_source(name, source) == "download"
-
-
-def imagenet_classifier(name: str, source: str = "package") -> Network:
-    """The Network of ImageNet's 1000 classes, in torchvision's order of categories, with the published head.
-
-    Raises ValueError for AlexNet and VGG16, which have more layers after their convolutions than a Network, and
-    FetchError for weights that are not available.
-    """
-    if available_weights(name, source) == "convolutions":
-        raise ValueError(f"only the convolutions of {name} are available, without a classifier of ImageNet's classes: "
-                         "take a network with one linear layer behind them, such as resnet50")  # fmt: skip
-    state = imagenet_state(name, source)
-    with torch.random.fork_rng(devices=[]):
-        parts = _design(name, source)(state)
-        assert parts.classifier is not None  # only networks with their convolutions alone have none
-        network = Network(parts.convolutions, parts.width, parts.classifier.out_features, parts.dropout)
-    network.head[1].load_state_dict(parts.classifier.state_dict())
-    return _ready(network)
-
-
-def _design(name, source):
-    if name not in NETWORKS:
-        raise ValueError(f"unknown network {name!r}, known: {', '.join(NETWORKS)}")
-    return PACKAGE_VARIANTS.get(name, NETWORKS[name]) if resolve_source(name, source) == "package" else NETWORKS[name]
-
-
-def _ready(network):
-    # The channels-last layout halves the time of a convolution on a CPU.
-    return network.to(memory_format=torch.channels_last).eval()
 
 
 @torch.no_grad()

@@ -4,15 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import torch
-from kornia import augmentation as kornia_augmentation
-from kornia.augmentation import AugmentationSequential
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
 
 from .hybrid import present
-from .images import SCALE, SHIFT, check_one_size, to_images
+from .images import as_floats, resized, to_images
 
 ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by a person who sits or stands, and never from below
 STEP = 1 / 255  # the smallest step of a grey value
@@ -51,17 +49,10 @@ def picture_images(pictures: np.ndarray, size: int) -> torch.Tensor:
     Resizing is bilinear, with an anti-aliasing filter where they shrink. Raises ValueError for another shape, values
     out of range or NaN, and for several sizes.
     """
-    check_one_size(pictures)
-    images = torch.as_tensor(pictures)
+    images = as_floats(pictures, "pictures")
     if images.ndim != 4 or images.shape[3] != 3 or 0 in images.shape:
         raise ValueError(f"pictures must have shape (k, h, w, 3) and not be empty, got {tuple(images.shape)}")
-    images = images.float() / 255 if images.dtype == torch.uint8 else images.float()
-    if not bool(((images >= 0) & (images <= 1)).all()):
-        raise ValueError("pictures must hold values in 0..1, and neither NaN nor infinity")
-    images = images.permute(0, 3, 1, 2).contiguous()
-    if images.shape[2:] != (size, size):
-        images = torch.nn.functional.interpolate(images, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
-    return images
+    return resized(images.permute(0, 3, 1, 2).contiguous(), size)
 
 
 def as_images(raw: np.ndarray, size: int) -> torch.Tensor:
@@ -80,13 +71,3 @@ def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
     flat = ~present(images) & (images[:, 0, 0, 0] < 1)
     images[flat, 0, 0, 0] += STEP
     return images
-
-
-def picture_augmentation() -> AugmentationSequential:
-    """Random reflection (left to right, since objects are upright), translation and scaling of pictures in 0..1."""
-    return AugmentationSequential(
-        kornia_augmentation.RandomHorizontalFlip(p=0.5),
-        kornia_augmentation.RandomAffine(
-            degrees=0, translate=(SHIFT, SHIFT), scale=SCALE, padding_mode="border", p=1.0
-        ),
-    )

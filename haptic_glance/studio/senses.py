@@ -14,7 +14,7 @@ from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
 
 if TYPE_CHECKING:
-    from haptic_glance.deep import HybridNet
+    from haptic_glance.deep.hybrid import HybridNet
 
 NETWORKS = "data/*/transfer/hybrid/networks/*.npz"  # below the current folder, where the stage transfer puts them
 MISSING = (

@@ -20,7 +20,7 @@ from haptic_glance.deep.hybrid import PRECISIONS, SENSES, HybridNet, load, save,
 from haptic_glance.deep.images import augmentation, normalise
 from haptic_glance.deep.modes import finetuned_except, frozen_modules
 from haptic_glance.deep.network import Network, build, count_parameters
-from haptic_glance.deep.pictures import as_images, picture_augmentation
+from haptic_glance.deep.pictures import as_images
 from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import train_model
 from haptic_glance.deep.weights import available_weights
@@ -158,7 +158,7 @@ def train_sense(
     device = choose_device(settings.device)
     with Stopwatch() as watch:
         network = build("mobilenet_v2", classes, "imagenet", first_weights, settings.source).to(device)
-        augment = picture_augmentation() if kind == "vision" else augmentation()
+        augment = augmentation(upright=kind == "vision")
         task = finetuned_except(network, sense.images.to(device), augment, tuple(frozen_modules(trial.layers, network)))
         model = train_model(
             task, sense.labels, sense.train, settings.hybrid_rate, settings.epochs, settings.batch, settings.momentum,

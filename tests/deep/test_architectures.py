@@ -19,7 +19,6 @@ from haptic_glance.deep.network import (
     ScaledHead,
     build,
     count_parameters,
-    imagenet_classifier,
     recalibrate,
 )
 from haptic_glance.deep.resize import GRIDS, cell_positions
@@ -152,8 +151,6 @@ def test_images_that_a_network_cannot_take_are_refused():
             network(torch.zeros(shape))
     with pytest.raises(ValueError, match="two touches or more, got 1"):
         recalibrate(build("mobilenet_v2", 2, "random", 0), lambda ids: torch.zeros(len(ids), 3, 32, 32), [0])
-    with pytest.raises(ValueError, match="only the convolutions of vgg16"):
-        imagenet_classifier("vgg16", "download")
 
 
 def test_a_checkpoint_comes_back_from_arrays_and_that_of_another_network_is_refused_by_name():

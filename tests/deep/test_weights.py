@@ -18,7 +18,7 @@ from haptic_glance.base.fetch import FetchError, cache_folder
 from haptic_glance.deep import converters, weights
 from haptic_glance.deep.architectures import torchvision
 from haptic_glance.deep.images import normalise
-from haptic_glance.deep.network import build, imagenet_classifier
+from haptic_glance.deep.network import build
 
 PACKAGE = weights.PACKAGES["mobilenet_v2"]
 
@@ -126,7 +126,7 @@ FILES = {
 def need(network):
     """Skips where the file of a network was not fetched before: tests ask no network."""
     if not (cache_folder() / FILES[network]).exists():
-        pytest.skip(f"{FILES[network]} is not in the cache: haptic_glance.deep.imagenet_state({network!r}) fetches it")
+        pytest.skip(f"{FILES[network]} is not in the cache: weights.imagenet_state({network!r}) fetches it")
 
 
 def photograph(name, size):
@@ -140,7 +140,8 @@ def photograph(name, size):
 @pytest.mark.parametrize("name", ["mobilenet_v2", "efficientnet_lite0", "resnet50"])
 def test_photographs_are_recognised(name):
     need(name)
-    network = imagenet_classifier(name)
+    network, (*_, weight, bias) = build(name, 1000, "imagenet", 0), weights.imagenet_state(name).values()
+    network.head[1].load_state_dict({"weight": weight, "bias": bias})  # the published classifier
     categories = torchvision.models.MobileNet_V2_Weights.IMAGENET1K_V1.meta["categories"]
     images = normalise(torch.cat([photograph(photo, 224) for photo in ("chelsea", "coffee", "rocket")]))
     with torch.no_grad():

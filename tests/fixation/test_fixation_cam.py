@@ -7,7 +7,8 @@ import pytest
 import torch
 
 from haptic_glance.base.files import sha256
-from haptic_glance.deep import Network, build, grad_cam
+from haptic_glance.deep.cam import grad_cam
+from haptic_glance.deep.network import Network, build
 from haptic_glance.deep.resize import resize_cams
 from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.look.channels import facing

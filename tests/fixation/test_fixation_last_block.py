@@ -5,8 +5,8 @@ import pytest
 import torch
 
 from haptic_glance.base.files import write_arrays
-from haptic_glance.deep import build, recalibrate
 from haptic_glance.deep.architectures import fully_connected
+from haptic_glance.deep.network import build, recalibrate
 from stages.fixation import Params, backbone
 from stages.fixation.backbone import Method, method_named, network_inputs
 from stages.fixation.finetune import divided, labels_of

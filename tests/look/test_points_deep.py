@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.deep import build
+from haptic_glance.deep.network import build
 from haptic_glance.look.glance import samples_of_mesh, standardised
 from haptic_glance.look.points import METHODS, glance, saliency
 from haptic_glance.look.points.glance import deep_features

@@ -193,7 +193,7 @@ def _maps(trunk, picture):
     """(1, C, i, j) f4: the mean of the maps of a picture (h, w, 3) u1 and of its mirror image, mirrored back."""
     import torch
 
-    from haptic_glance.deep import normalise
+    from haptic_glance.deep.images import normalise
 
     image = normalise(picture.permute(2, 0, 1)[None].float() / 255)
     with torch.inference_mode():
@@ -206,6 +206,6 @@ def _trunk():
     """The blocks of the network up to BLOCK, their normalisations folded into the convolutions."""
     from torch.fx.experimental.optimization import fuse
 
-    from haptic_glance.deep import build
+    from haptic_glance.deep.network import build
 
     return fuse(build("mobilenet_v2", 2, "imagenet", 0).convolutions[: BLOCK + 1])
