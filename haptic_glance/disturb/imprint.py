@@ -17,11 +17,16 @@ def _skin(images, severity, random, what):
 
 def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """A square of the array, `severity` of its area, at a random position, gives no contact, as with a torn wire."""
-    cells = images.shape[1]
-    side = min(round(cells * np.sqrt(severity)), cells)
+    return with_square(images, severity, random, 1)
+
+
+def with_square(images: np.ndarray, severity: float, random: np.random.Generator, value: float) -> np.ndarray:
+    """Images (k, n, n, ...) with a square of a value at a random position, `severity` of the area."""
+    size = images.shape[1]
+    side = min(round(size * np.sqrt(severity)), size)
     found = images.copy()
-    for image, (row, column) in zip(found, random.integers(0, cells - side + 1, (len(images), 2)), strict=True):
-        image[row : row + side, column : column + side] = 1
+    for image, (row, column) in zip(found, random.integers(0, size - side + 1, (len(images), 2)), strict=True):
+        image[row : row + side, column : column + side] = value
     return found
 
 
@@ -58,7 +63,11 @@ def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Ge
 
 def check(severities: Mapping[str, Sequence[float]]) -> None:
     """Raises ValueError for an unknown perturbation."""
-    unknown = sorted(set(severities) - {*PERTURBATIONS, FEW_TOUCHES})
+    check_known(severities, (*PERTURBATIONS, FEW_TOUCHES), "transfer.severities")
+
+
+def check_known(severities: Mapping[str, Sequence[float]], known: Sequence[str], setting: str) -> None:
+    """Raises ValueError, which names the setting, for a perturbation that is not known."""
+    unknown = sorted(set(severities) - set(known))
     if unknown:
-        known = ", ".join((*PERTURBATIONS, FEW_TOUCHES))
-        raise ValueError(f"transfer.severities: {', '.join(unknown)} not known, choose from {known}")
+        raise ValueError(f"{setting}: {', '.join(unknown)} not known, choose from {', '.join(known)}")

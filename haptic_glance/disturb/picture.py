@@ -6,7 +6,7 @@ import numpy as np
 
 from haptic_glance.base.opencv import cv2
 
-from .imprint import PERTURBATIONS, disturb
+from .imprint import PERTURBATIONS, check_known, disturb, with_square
 
 PICTURE, IMPRINT = "picture_", "imprint_"  # prefixes of perturbations: the sense that is damaged
 MISSING = "missing"  # the sense is absent
@@ -30,12 +30,7 @@ def darkness(images: np.ndarray, severity: float, random: np.random.Generator) -
 
 def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """A grey square of `severity` of the picture's area at a random position, such as a hand or a box."""
-    size = images.shape[1]
-    side = min(round(size * np.sqrt(severity)), size)
-    found = images.copy()
-    for image, (row, column) in zip(found, random.integers(0, size - side + 1, (len(images), 2)), strict=True):
-        image[row : row + side, column : column + side] = 0.5
-    return found
+    return with_square(images, severity, random, 0.5)
 
 
 PICTURES = {"noise": noise, "blur": blur, "darkness": darkness, "occlusion": occlusion}
@@ -61,6 +56,4 @@ def damage(raw: np.ndarray, name: str, severity: float, random: np.random.Genera
 def check(severities: Mapping[str, Sequence[float]]) -> None:
     """Raises ValueError for an unknown perturbation."""
     known = [*(PICTURE + name for name in PICTURES), *(IMPRINT + name for name in PERTURBATIONS)]
-    unknown = sorted(set(severities) - set(known))
-    if unknown:
-        raise ValueError(f"transfer.hybrid_severities: {', '.join(unknown)} not known, choose from {', '.join(known)}")
+    check_known(severities, known, "transfer.hybrid_severities")

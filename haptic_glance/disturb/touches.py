@@ -18,6 +18,8 @@ from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.nearest import closest
 from haptic_glance.touch import Skin, Surface, press_at, sensor_axes, sensor_normals, snap_to_surface, touchable
 
+from .perturbed import in_range
+
 
 class Touches:
     """Touches of a Mesh at vertices (k,) by an array of `cells`, `pitch` units apart.
@@ -108,12 +110,6 @@ class TouchPerturbation:
     moves_positions: bool = False
 
 
-def check_range(severity: float, low: float, high: float, what: str) -> None:
-    """Raises ValueError unless low <= severity <= high."""
-    if not low <= severity <= high:
-        raise ValueError(f"{what} must lie in {low:g}..{high:g}, got {severity:g}")
-
-
 def localisation(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
     """Each place moved `severity` units along its tangent plane in a random direction, then onto the surface.
 
@@ -121,7 +117,7 @@ def localisation(touches: Touches, severity: float, draw: int) -> PerturbedTouch
     array at the smallest step off a vertex, which is another perturbation. The robot knows where it is: the positions
     are those of the touches, not of the places that it missed.
     """
-    check_range(severity, 0, 1, "the localisation error")
+    in_range(severity, 0, 1, "the localisation error")
     angle = touches.random("localisation", draw).uniform(0, 2 * np.pi, len(touches.positions))[:, None]
     step = severity * (np.cos(angle) * touches.axes[:, 0] + np.sin(angle) * touches.axes[:, 1])
     positions, normals = snap_with_blended_normals(touches.mesh, touches.positions + step)
@@ -144,20 +140,20 @@ UP = np.array([0.0, 0.0, 1.0])
 
 def object_turned(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
     """The object rotated about the vertical by `severity` degrees: the same places, the array upright."""
-    check_range(severity, 0, 360, "the turn in degrees")
+    in_range(severity, 0, 360, "the turn in degrees")
     return _turned(touches, rotations_about(UP, np.float64(severity)))
 
 
 def object_tilted(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
     """The object tilted about a random horizontal axis by `severity` degrees; the places on it are the same."""
-    check_range(severity, 0, 180, "the tilt in degrees")
+    in_range(severity, 0, 180, "the tilt in degrees")
     azimuth = touches.random("object_tilted", draw).uniform(0, 2 * np.pi)
     return _turned(touches, rotations_about(np.array([np.cos(azimuth), np.sin(azimuth), 0.0]), np.float64(severity)))
 
 
 def object_scaled(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
     """The object `severity` times as large, touched by the same array: equivalent to a finer array on the original."""
-    check_range(severity, 0.05, 20, "the scale")
+    in_range(severity, 0.05, 20, "the scale")
     return PerturbedTouches(touches.press(pitch=touches.pitch / severity), severity * touches.positions)
 
 
@@ -192,7 +188,7 @@ simplified_by_saliency = partial(touch_simplified, way=SOFT)
 
 def sensor_turned(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
     """Each array rotated about its normal by `severity` degrees, randomly to the left or to the right."""
-    check_range(severity, 0, 180, "the turn in degrees")
+    in_range(severity, 0, 180, "the turn in degrees")
     side = touches.random("sensor_turned", draw).choice([-1, 1], len(touches.positions))
     return PerturbedTouches(
         touches.press(axes=touches.axes @ rotations_about(touches.normals, side * severity).transpose(0, 2, 1))
@@ -201,7 +197,7 @@ def sensor_turned(touches: Touches, severity: float, draw: int) -> PerturbedTouc
 
 def sensor_leaning(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
     """Each array tilted by `severity` degrees from the surface's normal in a random direction, at the same place."""
-    check_range(severity, 0, 60, "the lean in degrees")
+    in_range(severity, 0, 60, "the lean in degrees")
     angle = touches.random("sensor_leaning", draw).uniform(0, 2 * np.pi, len(touches.positions))[:, None]
     axis = np.cos(angle) * touches.axes[:, 0] + np.sin(angle) * touches.axes[:, 1]
     degrees = np.full(len(axis), severity)

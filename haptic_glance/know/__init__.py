@@ -6,14 +6,14 @@ from .exploration import Exploration
 from .explore import STRATEGIES, explore, stop
 from .features import FEATURES, confusable, features, similarity
 from .library import Belief, Library, known_objects, learn, place_at, primitives, sample_places, touched
-from .protocol import evaluate, evaluate_features, random_holdout, region_holdout
+from .protocol import evaluate, random_holdout, region_holdout
 from .touches import concatenate_touches, draw_combinations, touch_map
 from .trial import LIKELIHOODS, SPLITS, Trial, split_touches
 
 __all__ = [
     "Belief", "CLASSIFIERS", "Calibration", "Exploration", "FEATURES", "LIKELIHOODS", "Library", "SPLITS",
     "STRATEGIES", "Trial", "calibrate", "classifier", "concatenate_touches", "confusable", "draw_combinations",
-    "evaluate", "evaluate_features", "explore", "features", "known_objects", "learn", "place_at", "primitives",
+    "evaluate", "explore", "features", "known_objects", "learn", "place_at", "primitives",
     "random_holdout", "region_holdout", "sample_places", "similarity", "split_touches", "stop", "touch_map",
     "touched",
 ]  # fmt: skip

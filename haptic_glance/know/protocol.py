@@ -92,29 +92,9 @@ def evaluate(
     check_counts(counts)
     count = min(counts.values())
     samples = np.concatenate([features(images_by_object[name][:count]) for name in names])
-    rows, _ = evaluate_features(samples, np.repeat(names, count), classifier, repetitions, seed)
+    prepared = prepare(samples, np.repeat(np.arange(len(names)), count), repetitions, seed)
+    rows, _ = evaluate_prepared(prepared, len(names), classifier, seed)
     return [row for row in rows if row["metric"] == "accuracy"]
-
-
-def evaluate_features(
-    samples: np.ndarray,
-    labels: np.ndarray,
-    name: str,
-    repetitions: int = 20,
-    seed: int = 0,
-    places: np.ndarray | None = None,
-    min_distance: float = 0.0,
-) -> tuple[list[dict], np.ndarray]:
-    """The protocol on features (k, d) with labels (k,): (rows as `evaluate` gives them, confusion (n, n) i8).
-
-    Further rows say whether a classifier is dead on the random hold-out: metrics train_accuracy and commonest_share.
-    The confusion matrix sums the hold-outs of all repetitions, true classes in rows, both in alphabetical order.
-    places: (k, 3) positions of the imprints. With them two more splits show how optimistic the random hold-out is, see
-    `draw_splits`; their values are None if an object has no touch far enough.
-    """
-    classes, truth = np.unique(labels, return_inverse=True)
-    prepared = prepare(samples, truth, repetitions, seed, places, min_distance)
-    return evaluate_prepared(prepared, len(classes), name, seed)
 
 
 def prepare(
@@ -125,7 +105,11 @@ def prepare(
     places: np.ndarray | None = None,
     min_distance: float = 0.0,
 ) -> list[dict[Split, list[Prepared]]]:
-    """The splits of each repetition, ready for `evaluate_prepared` with any classifier; truth (k,) object numbers."""
+    """The splits of each repetition, ready for `evaluate_prepared` with any classifier.
+
+    samples (k, d): features; truth (k,): object numbers. places: (k, 3) positions of the imprints. With them two more
+    splits show how optimistic the random hold-out is, see `draw_splits`.
+    """
     prepared = []
     for repetition in range(repetitions):
         splits = draw_splits(truth, repetition_seed(seed, repetition), places, min_distance).items()
@@ -136,7 +120,12 @@ def prepare(
 def evaluate_prepared(
     prepared: list[dict[Split, list[Prepared]]], classes: int, name: str, seed: int
 ) -> tuple[list[dict], np.ndarray]:
-    """The result of `evaluate_features` on the splits of that many classes that `prepare` made with this seed."""
+    """(rows as `evaluate` gives them, confusion (n, n) i8) of the splits that `prepare` made with this seed.
+
+    Further rows say whether a classifier is dead on the random hold-out: metrics train_accuracy and commonest_share.
+    Values of a split are None if an object has no touch far enough. The confusion matrix sums the random hold-outs of
+    all repetitions, true classes in rows.
+    """
     check_name(name)
     rows, confusion = [], np.zeros((classes, classes), dtype=np.int64)
     for repetition, splits in enumerate(prepared):

@@ -1,9 +1,4 @@
-"""The virtual pressure array: what a flat tactile sensor measures at a point of an object (T4.3).
-
-Public names: adaptive_distances, contour, contour_imprints, distances, distances_at, follow, follow_many, forces,
-gaps_at, indent, layout_forces, normalise, press, press_at, press_forces, press_many, quasi_tangent, read_imprints,
-read_layout, section, sensor_axes, sensor_normals, shear, snap_to_surface, touchable, warm_up, write_imprints, Imprints,
-Layer, Layout, SectionCurve, Sequence, Skin, Surface, CONTACTS."""
+"""The virtual pressure array: what a flat tactile sensor measures at a point of an object (T4.3)."""
 
 from .distances import CONTACTS, adaptive_distances, distances, distances_at
 from .follow import Sequence, contour, follow, follow_many
@@ -11,7 +6,7 @@ from .force import forces, gaps_at, press_forces, shear
 from .layout import Layout, layout_forces, read_layout
 from .press import normalise, press, press_at, press_many
 from .quasi_tangent import contour_imprints, quasi_tangent
-from .section import SectionCurve, section, snap_to_surface
+from .section import SectionCurve, snap_to_surface
 from .skin import Layer, Skin, indent
 from .surface import Surface, sensor_axes, sensor_normals, touchable
 from .warm_up import warm_up
@@ -20,5 +15,5 @@ __all__ = [
     "CONTACTS", "Layer", "Layout", "SectionCurve", "Sequence", "Skin", "Surface", "adaptive_distances", "contour",
     "contour_imprints", "distances", "distances_at", "follow", "follow_many", "forces", "gaps_at", "indent",
     "layout_forces", "normalise", "press", "press_at", "press_forces", "press_many", "quasi_tangent", "read_layout",
-    "section", "sensor_axes", "sensor_normals", "shear", "snap_to_surface", "touchable", "warm_up",
+    "sensor_axes", "sensor_normals", "shear", "snap_to_surface", "touchable", "warm_up",
 ]  # fmt: skip

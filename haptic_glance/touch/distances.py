@@ -200,22 +200,19 @@ def adaptive_distances(
     axes: ArrayLike,
     cells: tuple[int, int] = (32, 32),
     pitch: ArrayLike = 0.01,
-    min_pitch: ArrayLike | None = None,
-    tolerance: ArrayLike | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The pitches (k,), at most `pitch`, at which arrays fit on the object (T4.4.3), and their distances.
 
     The arrays are at centres (k, 3) with axes (k, 3, 3); the distances (k, rows, cols) are those of `distances_at`. An
-    array fits when no cell is more than `tolerance` units inside the object. If it does not fit, its pitch shrinks
+    array fits when no cell is more than half a pitch inside the object. If it does not fit, its pitch shrinks
     to the size at which the deepest cells of two neighbouring square rings predict a fit, and it is measured again.
-    This ends when the array fits or the pitch is `min_pitch`, which is returned even if it does not fit. The thesis
-    shrinks the array and gives no rule. By default `min_pitch` is a fifth and `tolerance` a half of the pitch. pitch: a
-    number, or (k,). Raises ValueError for invalid cells or pitches, or a `min_pitch` above the pitch.
+    This ends when the array fits or the pitch is a fifth of `pitch`, which is returned even if it does not fit. The
+    thesis shrinks the array and gives no rule. pitch: a number, or (k,). Raises ValueError for invalid cells or
+    pitches.
     """
     centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
     cells, pitches, max_distances = check_arrays(cells, pitch, None, len(centres))
-    min_pitches = _checked_limit("min_pitch", min_pitch, MIN_PITCH * pitches, pitches)
-    tolerances = _checked_limit("tolerance", tolerance, TOLERANCE * pitches, np.inf)
+    min_pitches, tolerances = MIN_PITCH * pitches, TOLERANCE * pitches
     pitches, active = pitches.copy(), np.arange(len(centres))
     distances = np.empty((len(centres), *cells))
     widths, ring = _rings(cells)
@@ -248,11 +245,3 @@ def _fitting_widths(widths, clearance):
     share = left / (left - clearance[rows, first])
     start = np.where(first > 0, widths[inner], 0.0)
     return np.minimum(start + share * (widths[first] - start), MAX_FACTOR)
-
-
-def _checked_limit(name, value, default, upper):
-    value = default if value is None else np.broadcast_to(np.asarray(value, dtype=np.float64), default.shape)
-    if not ((value > 0) & (value <= upper)).all():
-        limit = "" if upper is np.inf else " and at most the pitch"
-        raise ValueError(f"{name} must be above 0{limit}, got {value.min()} to {value.max()}")
-    return value

@@ -13,6 +13,7 @@ from .press import normalise
 from .surface import LIFT, Surface, as_surface, check_vertices, sensor_axes, sensor_normals, touchable
 
 DEPTH = 0.25  # of the array's longer side: how far the elastic skin yields
+PLANES = 16
 COLLINEAR = 1e-3  # sine of the angle at the first neighbour, below which three neighbours span no plane
 
 
@@ -21,33 +22,23 @@ def contour_imprints(
     vertices: ArrayLike,
     cells: tuple[int, int] = (16, 16),
     pitch: float = 0.01,
-    planes: int = 16,
-    depth: float | None = None,
 ) -> np.ndarray:
-    """(k, rows, cols) f4 in 0..1, steps of 1 / planes: imprints of the sensor of quasi-tangent planes (T4.2.3.1).
+    """(k, rows, cols) f4 in 0..1, steps of 1 / PLANES: imprints of the sensor of quasi-tangent planes (T4.2.3.1).
 
     The first plane contains the three neighbours closest to the vertex (T figure 4.2, `quasi_tangent`). The others
-    follow inwards at equal steps down to `depth`, the sensing depth. A cell's pressure is the share of planes at or
-    below the first surface there. The image is 1 minus it, so that 0 is the highest pressure, as in `press`. A plane
-    beyond the far side of a wall still counts: the thesis registers areas of intersection and does not say, but a skin
-    does not pass through a wall, and a thin cup would otherwise show its thickness and not its shape. Array, axes and
-    errors as in `distances`; by default the depth is a quarter of the array's longer side. A plane that touches the
-    surface counts. Raises ValueError for less than one plane, a depth that is not positive, and as `quasi_tangent`
-    does.
+    follow inwards at equal steps, down to a quarter of the array's longer side. A cell's pressure is the share of
+    planes at or below the first surface there. The image is 1 minus it, so that 0 is the highest pressure, as in
+    `press`. A plane beyond the far side of a wall still counts: the thesis registers areas of intersection and does not
+    say, but a skin does not pass through a wall, and a thin cup would otherwise show its thickness and not its shape.
+    A plane that touches the surface counts. Array, axes and errors as in `distances` and `quasi_tangent`.
     """
     surface = as_surface(mesh)
     cells, pitch, side = check_array(cells, pitch)
-    if not planes >= 1 or planes % 1:
-        raise ValueError(f"planes must be a whole number from 1, got {planes}")
-    depth = DEPTH * side if depth is None else depth
-    if not (np.isfinite(depth) and depth > 0):
-        raise ValueError(f"depth must be a positive number of units, got {depth}")
+    depth = DEPTH * side
     centres, axes = quasi_tangent(surface.mesh, vertices)
-    planes_found = (
-        distances_at(surface, centres, axes, cells, pitch, max_distance=2 * depth) - LIFT * surface.mesh.diagonal
-    )
-    short = np.searchsorted(np.linspace(0, depth, int(planes)), planes_found)  # planes that end above the surface
-    return (short / planes).astype(np.float32)
+    below = distances_at(surface, centres, axes, cells, pitch, max_distance=2 * depth) - LIFT * surface.mesh.diagonal
+    short = np.searchsorted(np.linspace(0, depth, PLANES), below)  # planes that end above the surface
+    return (short / PLANES).astype(np.float32)
 
 
 def quasi_tangent(mesh: Mesh, vertices: ArrayLike) -> tuple[np.ndarray, np.ndarray]:

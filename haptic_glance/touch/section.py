@@ -62,6 +62,8 @@ class MeshCutter:
     def cut(self, point: ArrayLike, normal: ArrayLike) -> list[SectionCurve]:
         """The curves on the plane through `point` (3,) with `normal` (3,), the longest first; [] if it misses the mesh.
 
+        T4.4.6 calls a curve a contour. Raises ValueError for an invalid plane.
+
         Each vertex counts as on one side; a distance of exactly 0 as on that of the normal (Edelsbrunner and Muecke
         1990, simulation of simplicity). So a plane through vertices, along edges or in a face is treated as shifted by
         an infinitesimal amount: every face has no or two crossed edges. At an edge of more than two faces the curves
@@ -96,15 +98,6 @@ class MeshCutter:
             for ids, closed in _trace_curves(_close_cracks(_partners(nodes), points, MAX_CRACK * self.mesh.diagonal))
         ]
         return sorted(curves, key=lambda curve: -curve.length)
-
-
-def section(mesh: Mesh, point: ArrayLike, normal: ArrayLike) -> list[SectionCurve]:
-    """The curves of the section of a mesh by a plane, the longest first; [] if the plane misses the mesh.
-
-    point (3,) on the plane and its normal (3,), of any length, in units of the mesh. Details in
-    `MeshCutter.cut`; T4.4.6 calls a curve a contour. Raises ValueError for an invalid plane.
-    """
-    return MeshCutter(mesh).cut(point, normal)
 
 
 def _plane(point, normal):

@@ -119,7 +119,7 @@ def evaluate_variants(
     """Rows (variant, scaling, classifier, repetition, split, metric, value, seconds, imprints, note) of all trials.
 
     Those of trials.py. classifiers: names in CLASSIFIERS; multi_touch: for trials of several touches; with_selection:
-    also trials of selection, and more readings of the scaling. Splits are those of `evaluate_features` in the same
+    also trials of selection, and more readings of the scaling. Splits are those of `evaluate_prepared` in the same
     repetition. A trial that cannot be run gives one row with the reason.
     """
     rows, reported = [], set()

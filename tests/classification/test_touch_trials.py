@@ -66,7 +66,7 @@ def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
         scalings.setdefault((row["variant"], row["split"]), []).append((row["scaling"], row["metric"]))
     every, valid = ("training", "beforehand", "min_max"), ("accuracy", "train_accuracy", "commonest_share")
     further = [(scaling, metric) for scaling in ("beforehand", "components", "min_max") for metric in valid]
-    assert scalings["plain", "random"] == further  # `evaluate_features` has those of the scaling `training`
+    assert scalings["plain", "random"] == further  # `evaluate_prepared` has those of the scaling `training`
     assert scalings["plain", "regions"] == [(scaling, "accuracy") for scaling in every[1:]]
     assert scalings["first_15", "random"] == [(scaling, "accuracy") for scaling in every]
     for variant in ("touches_2", "first_15_touches_2_mixed"):

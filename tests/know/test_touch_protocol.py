@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from haptic_glance.know import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
+from haptic_glance.know import CLASSIFIERS, classifier, evaluate, features, protocol
 from haptic_glance.know.protocol import Prepared
 
 
@@ -126,8 +126,9 @@ def test_splits_depend_on_nothing_but_the_repetition(monkeypatch):
 
 def test_confusion_counts_the_hold_outs_and_regions_are_none_where_all_touches_overlap(bumps):
     images = bumps(count=16)
-    samples, truth = np.concatenate([features(stack) for stack in images.values()]), np.repeat(list(images), 16)
-    rows, confusion = evaluate_features(samples, truth, "knn", 3, places=np.zeros((48, 3)), min_distance=0.16)
+    samples, truth = np.concatenate([features(stack) for stack in images.values()]), np.repeat([0, 1, 2], 16)
+    prepared = protocol.prepare(samples, truth, 3, 0, np.zeros((48, 3)), 0.16)
+    rows, confusion = protocol.evaluate_prepared(prepared, 3, "knn", 0)
     assert (confusion.sum(axis=1) == 3 * 4).all()
     assert confusion.trace() / confusion.sum() == pytest.approx(mean(rows, "random"))
     last = [(row["split"], row["value"]) for row in rows[-2:]]
@@ -165,7 +166,8 @@ def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
     felt = np.hstack([places, places**2, np.sin(9 * places), np.cos(9 * places)])  # tells the place, not the object
     shaken = felt + 1e-3 * random.normal(size=felt.shape)
     differing = places + np.where(labels, 0.5, 0)[:, None] * (places[:, :1] > 0.5)  # objects differ on one side alone
-    rows, _ = evaluate_features(np.hstack([shaken, differing]), labels, "knn", 6, places=places, min_distance=0.3)
+    prepared = protocol.prepare(np.hstack([shaken, differing]), labels, 6, 0, places, 0.3)
+    rows, _ = protocol.evaluate_prepared(prepared, 2, "knn", 0)
     assert mean(rows, "random_fewer") > mean(rows, "regions") + 0.05
 
 

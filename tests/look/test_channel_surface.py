@@ -89,7 +89,7 @@ def test_a_lopsided_shape_has_no_symmetry_but_its_strongest_plane_and_axis_count
     none = shape_symmetries(lopsided())
     assert not none.planes and not none.axes
     assert not symmetric_points(lopsided(), lopsided().vertices).any()
-    best = shape_symmetries(lopsided(), strongest=True)
+    best = shape_symmetries(lopsided(), True)
     assert [score for _, _, score in best.planes] == [1.0]
     assert [(score, revolves) for _, score, revolves in best.axes] == [(1.0, False)]
     (axis, _, _), *_ = best.axes

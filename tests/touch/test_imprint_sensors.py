@@ -98,8 +98,8 @@ def test_depth_is_limited_from_where_it_rests(shapes):
     assert found.min() == 0 and found.max() == 0.02
 
 
-def pitches(*array, **limits):
-    return adaptive_distances(*array, **limits)[0]
+def pitches(*array):
+    return adaptive_distances(*array)[0]
 
 
 def at(mesh, vertex):
@@ -122,13 +122,6 @@ def test_it_keeps_its_size_where_it_fits_and_ends_at_the_least_even_where_that_d
     assert pitches(mesh, np.zeros((0, 3)), np.zeros((0, 3, 3))).shape == (0,)
     mesh, vertex = shapes.solid(lambda x, y: 30 * np.abs(x), spacing=0.002)
     assert pitches(mesh, *at(mesh, vertex), (16, 16), 0.01).tolist() == [0.002]
-    assert pitches(mesh, *at(mesh, vertex), (16, 16), 0.01, min_pitch=0.005).tolist() == [0.005]
-
-
-def test_a_larger_tolerance_keeps_a_larger_array(shapes):
-    mesh, vertex = shapes.solid(lambda x, y: 2 * x * x - 3 * y * y)
-    tight, loose = (pitches(mesh, *at(mesh, vertex), (16, 16), 0.01, tolerance=t)[0] for t in (0.001, 0.008))
-    assert tight < loose
 
 
 def test_each_array_is_judged_for_itself(shapes):
@@ -139,11 +132,10 @@ def test_each_array_is_judged_for_itself(shapes):
     assert together.tolist() == alone and together[0] == 0.002
 
 
-@pytest.mark.parametrize("min_pitch", [0.002, 0.0099])  # it fits, or ends at the least size
-def test_distances_are_those_of_the_array_at_its_size(shapes, min_pitch):
+def test_distances_are_those_of_the_array_at_its_size(shapes):
     mesh, vertex = shapes.solid(lambda x, y: 2 * x * x - 3 * y * y, half=20, spacing=0.003)  # narrower than the array
     place = at(mesh, vertex)
-    pitch, measured = adaptive_distances(mesh, *place, (16, 16), 0.01, min_pitch)
+    pitch, measured = adaptive_distances(mesh, *place, (16, 16), 0.01)
     assert pitch[0] < 0.01
     np.testing.assert_array_equal(measured, distances_at(mesh, *place, (16, 16), pitch))
 
@@ -187,12 +179,12 @@ def test_neighbours_that_span_no_plane_are_named():
 def test_a_cell_s_pressure_counts_the_planes_that_meet_the_object(shapes):
     mesh, vertex = shapes.solid(lambda x, y: -np.round(np.abs(x) / 0.005) * 0.004)  # flat along y, a roof along x
     centres, axes = quasi_tangent(mesh, [vertex])
-    image = contour_imprints(mesh, [vertex], (15, 15), 0.01, planes=8, depth=0.07)[0]
-    assert image.dtype == np.float32 and set(np.unique(image * 8)) <= set(range(9))
-    down = distances_at(mesh, centres, axes, (15, 15), 0.01)[0]
+    image = contour_imprints(mesh, [vertex], (15, 15), 0.02)[0]  # planes 0.005 apart
+    assert image.dtype == np.float32 and set(np.unique(image * 16)) <= set(range(17))
+    down = distances_at(mesh, centres, axes, (15, 15), 0.02)[0]
     for i, j in ((7, 7), (3, 2), (14, 9)):
-        met = sum(down[i, j] <= depth + 1e-9 for depth in np.arange(8) * 0.01)
-        assert image[i, j] == pytest.approx(1 - met / 8)
+        met = sum(down[i, j] <= depth + 1e-9 for depth in np.arange(16) * 0.005)
+        assert image[i, j] == pytest.approx(1 - met / 16)
 
 
 def test_a_wall_thinner_than_the_depth_presses_like_a_thick_one(shapes):
@@ -204,23 +196,14 @@ def test_a_wall_thinner_than_the_depth_presses_like_a_thick_one(shapes):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"min_pitch": 0.02}, "min_pitch must be above 0 and at most the pitch"),
-        ({"min_pitch": 0.0}, "min_pitch must be"),
-        ({"tolerance": -1.0}, "tolerance must be"),
         ({"cells": (0, 1)}, "cells must be"),
         ({"pitch": 0.0}, "pitch must be"),
-        ({"planes": 0}, "planes must be"),
-        ({"planes": 2.5}, "planes must be"),
-        ({"depth": 0}, "depth must be"),
     ],
 )
 def test_what_makes_no_sensor_is_named(shapes, change, words):
     mesh, vertex = shapes.solid(shapes.sphere, half=4)
     with pytest.raises(ValueError, match=words):
-        if {"planes", "depth"} & set(change):
-            contour_imprints(mesh, [vertex], **change)
-        else:
-            pitches(mesh, *at(mesh, vertex), **change)
+        adaptive_distances(mesh, *at(mesh, vertex), **change)
 
 
 CELLS, PITCH = (16, 16), 0.01

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import section
+from haptic_glance.touch.section import MeshCutter
 
 ORIGIN, X, Z = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
@@ -18,6 +18,10 @@ BALL = mesh_of(trimesh.creation.icosphere(subdivisions=4, radius=0.5))
 RING = mesh_of(trimesh.creation.torus(0.35, 0.15, major_sections=80, minor_sections=40))
 BOX = mesh_of(trimesh.creation.box((2.0, 4.0, 6.0)))
 SQUARE = Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+
+
+def section(mesh, point, normal):
+    return MeshCutter(mesh).cut(point, normal)
 
 
 def in_order(curve):

@@ -1,6 +1,7 @@
 """The channels by name, and their conspicuity maps of a view, all at one size."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -13,14 +14,7 @@ from .colour import color, dkl, intensity
 from .curvature import curvature
 from .operators import OUTPUT_SCALE
 from .printed import OURS, Channel, check_formulas, printed_channels
-from .symmetry import (
-    symmetry,
-    symmetry_lateral,
-    symmetry_radial,
-    symmetry_strongest,
-    symmetry_strongest_lateral,
-    symmetry_strongest_radial,
-)
+from .symmetry import symmetry
 from .texture import contrast, edge, entropy, fine_grained, orientation, spectral_residual
 
 CHANNELS = {
@@ -36,16 +30,16 @@ CHANNELS = {
 }
 # In addition to the nine of T table 3.1: each kind of symmetry alone (T3.1.5), and two saliency maps of OpenCV.
 OTHERS = {
-    "symmetry_lateral": symmetry_lateral,
-    "symmetry_radial": symmetry_radial,
+    "symmetry_lateral": partial(symmetry, kinds=("lateral",)),
+    "symmetry_radial": partial(symmetry, kinds=("radial",)),
     "spectral_residual": spectral_residual,
     "fine_grained": fine_grained,
 }
 # In place of the channels of symmetry where `conspicuity.symmetry` is `strongest`.
 STRONGEST = {
-    "symmetry": symmetry_strongest,
-    "symmetry_lateral": symmetry_strongest_lateral,
-    "symmetry_radial": symmetry_strongest_radial,
+    "symmetry": partial(symmetry, strongest=True),
+    "symmetry_lateral": partial(symmetry, kinds=("lateral",), strongest=True),
+    "symmetry_radial": partial(symmetry, kinds=("radial",), strongest=True),
 }
 PERCEIVED = "perceived"
 SYMMETRIES = {PERCEIVED: {}, "strongest": STRONGEST}  # setting: the channels that it replaces
@@ -79,6 +73,8 @@ def conspicuity(
     size = tuple(max(side // REDUCTION, 1) for side in view.mask.shape) if size is None else tuple(size)
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
+    if not view.mask.any():
+        return {name: np.zeros(size, dtype=np.float32) for name in names}
     inside = mask_at_size(view.mask, size)
     maps: dict[str, Channel] = {**CHANNELS, **OTHERS, **SYMMETRIES[check_symmetry(symmetry)]}
     maps = maps if formulas == OURS else printed_channels(maps, formulas)

@@ -17,8 +17,6 @@ from .operators import OUTPUT_SCALE, centre_surround, normalise, pyramid, reduce
 def intensity(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     """The intensity conspicuity map (h / 16, w / 16) f4 in 0..1, T eq. 3.1, of a haptic_glance.look.views.View."""
     image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     summed = centre_surround(image.intensity_pyramid, image.cover)
     return image.place_in_view(normalise(summed, image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
 
@@ -32,7 +30,7 @@ def color(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     |(R - G)(c) - (R - G)(s)| here, and BY likewise. Zero when no pixel has a hue.
     """
     image = cropped_view(view, filled)
-    if image.empty or image.grey_only:
+    if image.grey_only:
         return image.zero_map()
     summed = np.sum([centre_surround(pyramid(plane), image.cover) for plane in opponency(image.rgb)], axis=0)
     return image.place_in_view(normalise(summed, image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
@@ -67,8 +65,6 @@ def dkl(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     look-up table of T decodes the 256 levels of sRGB.
     """
     image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     if image.grey_only:  # grey lies on the luminance axis
         planes = [reduce(LINEAR.astype(np.float32)[image.luminance], 0, FIRST)]
     else:

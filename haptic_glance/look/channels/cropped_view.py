@@ -39,26 +39,22 @@ def cropped_view(view: View, filled: bool = True) -> "CroppedView":
 class CroppedView:
     """The crop of a view around the object: rgb (h, w, 3) u1 with silhouette and background filled, and pyramids.
 
-    mask (h, w) boolean: the pixel is on the object; known (h, w) boolean: its colour is as rendered, not filled.
+    The view shows some of the object. mask (h, w) boolean: the pixel is on the object; known (h, w) boolean: its colour
+    is as rendered, not filled.
     """
 
     def __init__(self, rgb: np.ndarray, mask: np.ndarray, filled: bool) -> None:
         self.shape = mask.shape
         self.box = _box(mask)
         self.mask = np.ascontiguousarray(mask[self.box])
-        if self.empty:
-            return
         self.known = core(self.mask, max(round(SILHOUETTE_BAND * len(mask)), 1)) if filled else np.ones_like(self.mask)
         rgb = rgb[self.box]
         red, green, blue = (rgb[..., k] for k in range(3))
         self.grey_only = not (((red != green) | (red != blue)) & self.mask).any()
         planes = rgb[..., 0] if self.grey_only else rgb
-        self._planes = _fill_bytes(planes, self.known) if filled else np.ascontiguousarray(planes)
-
-    @property
-    def empty(self) -> bool:
-        """No pixel is on the object."""
-        return self.mask.size == 0
+        self._planes = np.ascontiguousarray(planes)
+        if filled:
+            self._planes = np.rint(fill(planes.astype(np.float32), self.known)).astype(np.uint8)
 
     @cached_property
     def rgb(self) -> np.ndarray:
@@ -111,19 +107,13 @@ def core(mask: np.ndarray, band: int) -> np.ndarray:
 
 
 def _box(mask):
-    """Slices of the object's bounding box with a margin, starting on the grid; empty slices without an object."""
+    """Slices of the object's bounding box with a margin, starting on the grid."""
     slices = []
     for axis in (1, 0):
         on = np.flatnonzero(mask.any(axis=axis))
-        if not len(on):
-            return slice(0, 0), slice(0, 0)
         start = max(on[0] - MARGIN, 0) // GRID * GRID
         slices.append(slice(start, min(on[-1] + 1 + MARGIN, len(mask) if axis else mask.shape[1])))
     return tuple(slices)
-
-
-def _fill_bytes(planes, mask):
-    return np.rint(fill(planes.astype(np.float32), mask)).astype(np.uint8)
 
 
 FILLED, KEPT = BACKGROUNDS = ("filled", "kept")

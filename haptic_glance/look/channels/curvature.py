@@ -8,7 +8,6 @@ from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from ..views import View
-from .cropped_view import cropped_view
 from .surface import surface_conspicuity, visible_surface
 
 SMOOTHING = 0.01  # of the diagonal: smaller bumps are noise or tessellation, and people do not see them either
@@ -24,9 +23,6 @@ def curvature(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     0.40 with on-centre cells and of 0.11 with |c - s|. For VisAttAll the values are 0.38 and 0.30. Symmetry, whose map
     is a thin line on black, uses |c - s|: an NSS of 0.12 against 0.05.
     """
-    image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     seen = visible_surface(view, mesh)
     values = np.einsum("ij,ij->i", seen.weights, capped_curvature(mesh)[mesh.faces[seen.faces]])
     return surface_conspicuity(values, mesh, view, filled, on_centre=True)

@@ -136,7 +136,7 @@ def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str
 
 
 def _of_picture(channel, mended):
-    return lambda mesh, view, _filled: channel(mesh, view, mended) * view.mask.any()
+    return lambda mesh, view, _filled: channel(mesh, view, mended)
 
 
 def _renormalised(channel, mended):

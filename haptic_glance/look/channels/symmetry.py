@@ -14,7 +14,6 @@ from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from ..views import View
-from .cropped_view import cropped_view
 from .surface import surface_conspicuity, visible_surface
 
 DENSE, SPARSE = 8000, 600  # points that represent the surface, and points that are mirrored onto it
@@ -42,6 +41,7 @@ class Symmetries:
     axes: tuple
 
 
+@weak_cache
 def shape_symmetries(mesh: Mesh, strongest: bool = False) -> Symmetries:
     """The Symmetries of a mesh: planes of bilateral and axes of radial symmetry that score at least MIN_SCORE.
 
@@ -195,48 +195,18 @@ BAND = 0.015  # of the diagonal: standard deviation of the response around a pla
 KINDS = ("lateral", "radial")  # planes of bilateral symmetry, axes of radial symmetry
 
 
-def symmetry(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
+def symmetry(
+    mesh: Mesh, view: View, filled: bool = True, kinds: Sequence[str] = KINDS, strongest: bool = False
+) -> np.ndarray:
     """The symmetry conspicuity map (h / 16, w / 16) f4 in 0..1 (T3.1.1) of a view of a mesh.
 
     The response is high where planes of symmetry cut the surface and axes of symmetry pierce it. A plane is weighted
     by the squared sine of its angle to the image, an axis by the squared cosine of its angle to the line of sight: a
-    plane parallel to the image mirrors nothing in it, and its points lie along the silhouette.
+    plane parallel to the image mirrors nothing in it, and its points lie along the silhouette. kinds: which of KINDS
+    count, `lateral` alone for SymLat of T3.1.5, `radial` for SymRad. A body of revolution has a plane through its axis
+    for every view, so that its lateral response is high along the middle. strongest: the strongest plane and axis
+    count, however weak, so that each object has points, as in T3.1.5.
     """
-    return _conspicuity(mesh, view, filled, KINDS)
-
-
-def symmetry_lateral(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
-    """The map as in `symmetry` of bilateral symmetry alone: planes, SymLat of T3.1.5.
-
-    A body of revolution has a plane through its axis for every view, so the response is high along the middle.
-    """
-    return _conspicuity(mesh, view, filled, ("lateral",))
-
-
-def symmetry_radial(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
-    """The map as in `symmetry` of radial symmetry alone: where axes pierce the surface, SymRad of T3.1.5."""
-    return _conspicuity(mesh, view, filled, ("radial",))
-
-
-def symmetry_strongest(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
-    """The map as in `symmetry` of the strongest plane and axis, however weak: each object has points, as in T3.1.5."""
-    return _conspicuity(mesh, view, filled, KINDS, strongest=True)
-
-
-def symmetry_strongest_lateral(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
-    """The map as in `symmetry_strongest` of bilateral symmetry alone."""
-    return _conspicuity(mesh, view, filled, ("lateral",), strongest=True)
-
-
-def symmetry_strongest_radial(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
-    """The map as in `symmetry_strongest` of radial symmetry alone."""
-    return _conspicuity(mesh, view, filled, ("radial",), strongest=True)
-
-
-def _conspicuity(mesh, view, filled, kinds, strongest=False):
-    image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     response = np.max([_seen_symmetry(view, mesh, kind, strongest) for kind in kinds], axis=0)
     return surface_conspicuity(response, mesh, view, filled)
 
@@ -260,7 +230,7 @@ def symmetric_points(
     back (3,): the unit direction to the camera, by which planes and axes are weighted; None weights all equally.
     kinds: which of KINDS count. strongest: as in `shape_symmetries`.
     """
-    found = symmetries(mesh, strongest)
+    found = shape_symmetries(mesh, strongest)
     spread = 2 * (BAND * mesh.diagonal) ** 2
     response = np.zeros(len(points))
     for normal, offset, weight in weighted_planes(found, back) if "lateral" in kinds else ():
@@ -271,12 +241,6 @@ def symmetric_points(
         distance = square - (away @ axis) ** 2
         np.maximum(response, weight * np.exp(-distance / (4 * spread)), out=response)
     return response
-
-
-@weak_cache
-def symmetries(mesh: Mesh, strongest: bool = False) -> Symmetries:
-    """The Symmetries of a mesh, cached; strongest: as in `shape_symmetries`."""
-    return shape_symmetries(mesh, strongest)
 
 
 def weighted_planes(found: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float, float]]:

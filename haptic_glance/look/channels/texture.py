@@ -21,8 +21,6 @@ def contrast(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     Only pixels of the object count in a window, so that the step to the background adds no contrast.
     """
     image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     side = max(round(WINDOW * image.shape[0]), 3)
     variance = reduce(local_variance(image.luminance, image.known, side), 0)
     return image.place_in_view(normalise(variance, image.cover[OUTPUT_SCALE], FLOOR), OUTPUT_SCALE)
@@ -56,8 +54,6 @@ def entropy(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     Only pixels of the object count, so that the background adds no entropy.
     """
     image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     smooth = cv2.medianBlur(image.luminance, MEDIAN)
     values = np.zeros(image.cover[SCALE].shape, dtype=np.float32)
     rows, columns = np.nonzero(image.cover[SCALE])
@@ -96,8 +92,6 @@ EDGE_SIGMA = (
 def edge(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     """The edge conspicuity map (h / 16, w / 16) f4 in 0..1, N of |LoG| (T3.2), of a haptic_glance.look.views.View."""
     image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     sigma = max(EDGE_SIGMA * image.shape[0], 0.7)
     response = np.abs(laplacian_of_gaussian(image.luminance, sigma))
     return image.place_in_view(normalise(reduce(response, 0), image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
@@ -127,8 +121,6 @@ def orientation(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     of the view, half at each coarser scale, the edge itself stands out.
     """
     image = cropped_view(view, filled)
-    if image.empty:
-        return image.zero_map()
     levels = {s: image.intensity_pyramid[s] for s in range(CENTRES[0], CENTRES[-1] + DELTAS[-1] + 1)}
     total = np.zeros(image.cover[OUTPUT_SCALE].shape, dtype=np.float32)
     for angle in ANGLES:
@@ -168,10 +160,9 @@ def spectral_residual(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray
     whatever `filled`, as the authors of the method would use it. Zero for an image of one grey value, for which OpenCV
     returns noise near 1.
     """
-    image = cropped_view(view, False)
     grey = cv2.cvtColor(view.rgb, cv2.COLOR_RGB2GRAY)
-    if image.empty or grey.min() == grey.max():
-        return image.zero_map()
+    if grey.min() == grey.max():
+        return cropped_view(view, False).zero_map()
     detector = cv2.saliency.StaticSaliencySpectralResidual.create()
     return reduce(np.asarray(detector.computeSaliency(grey)[1]), 0, SCALE)
 
@@ -183,9 +174,6 @@ def fine_grained(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     mechanism, Image and Vision Computing 28(3), 2010. The image is used as rendered, whatever `filled`, as the
     authors of the method would use it.
     """
-    image = cropped_view(view, False)
-    if image.empty:
-        return image.zero_map()
     grey = cv2.cvtColor(view.rgb, cv2.COLOR_RGB2GRAY)
     detector = cv2.saliency.StaticSaliencyFineGrained.create()
     return reduce(np.asarray(detector.computeSaliency(grey)[1]), 0, SCALE)
