@@ -34,11 +34,11 @@ class Window:
         self.scene = Scene(client)
         if not self.scene.covered:
             self.gui.main_panel.dock_right()
-        bound_uploads(self.gui, self.refuse)
         self.scene.on_click(self.clicked)
         self.progress = Progress(self.gui, self.on)
         self.tour = Tour(self)
         self.opening = Opening(self, settings)
+        bound_uploads(self.gui, self.opening.refuse)
         self.panels = [make(self) for make in PANELS]
         self.tabs = self.gui.add_button_group("Panel", [panel.title for panel in self.panels])
         self.folders = []
@@ -117,10 +117,6 @@ class Window:
         if not theirs:
             text = f"{type(error).__name__}: {text}. A fault of the studio: the terminal shows where. The rest goes on."
         self.say(title or "That did not work", text, "red", None)
-
-    def refuse(self, name: str, size: int) -> None:
-        """Says that an upload is too large."""
-        self.opening.refuse(name, size)
 
     def put(self, specimen: Specimen, keep: bool = False) -> None:
         """Another mesh on the table: everything of the old one goes."""

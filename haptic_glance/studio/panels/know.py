@@ -30,7 +30,6 @@ class KnowPanel(Panel):
     title = "Know"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         self.about = gui.add_markdown(ASK)
         self.bars = gui.add_html("", visible=False)
         self.next = gui.add_button("Touch next", hint="where the belief is expected to gain most")
@@ -51,7 +50,7 @@ class KnowPanel(Panel):
         on(self.mystery.on_click, lambda: self.learn(hidden=True))
         on(self.name.on_update, self.said)
         on(self.reveal.on_click, self.show_it)
-        on(self.again.on_click, self.start_again)
+        on(self.again.on_click, self.learn)
         for control in (self.basic, self.household, self.placed):
             on(control.on_update, self.learn)
 
@@ -85,10 +84,6 @@ class KnowPanel(Panel):
         self.window.session.kept.pop(self.title, None)
         self.on_mesh()
 
-    def start_again(self) -> None:
-        """Forgets the touches; of a hidden object as well, which is then not told."""
-        self.learn()
-
     def learn(self, hidden: bool = False) -> None:
         """Learns the objects in the background, then begins with the mesh on the table, or with a hidden one."""
         table, settings = self.window.session.specimen, self.window.settings
@@ -115,7 +110,6 @@ class KnowPanel(Panel):
             self.draw()
 
     def on_click(self, hit: Hit) -> None:
-        """Touches where the person clicked."""
         if not self.touchable() or self.guess is None:
             return
         self.touch(place_at(self.guess.exploration.surface, hit.position[None], np.array([hit.face])))

@@ -24,7 +24,6 @@ class LevelsPanel(Panel):
     title = "Levels"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         self.levels: Levels | None = None
         self.level: Level | None = None
         self.share = gui.add_slider("Faces, %", 1, 100, 1, SHARE)
@@ -38,7 +37,6 @@ class LevelsPanel(Panel):
         self.window.on(self.saves.on_click, self.save)
 
     def on_mesh(self) -> None:
-        """Nothing is known of another mesh."""
         self.levels = self.level = None
         self.text.content = ""
 

@@ -35,7 +35,6 @@ class LookPanel(Panel):
     title = "Look"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         session, window = self.window.session, self.window
         self.method = gui.add_dropdown("Method", methods(), initial_value=session.method)
         self.other = gui.add_dropdown("Beside it", [NONE, *methods()], initial_value=session.other or NONE)
@@ -92,7 +91,6 @@ class LookPanel(Panel):
         self.window.work(f"Looking at {specimen.name}", work, self.draw, slot=self.title)
 
     def on_hide(self) -> None:
-        """Takes away all but the mesh."""
         self.window.scene.clear(POINTS, OTHER, NAMES)
 
     def draw(self, looks: Sequence[Look]) -> None:

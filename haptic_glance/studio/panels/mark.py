@@ -17,7 +17,6 @@ class MarkPanel(Panel):
     title = "Mark"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         self.marking: Marking | None = None
         settings = self.window.settings
         gui.add_markdown("Click the points of this object that matter to you, from all sides.")
@@ -45,11 +44,9 @@ class MarkPanel(Panel):
         self.draw()
 
     def on_hide(self) -> None:
-        """Takes the points away."""
         self.window.scene.clear(MARKS)
 
     def on_click(self, hit: Hit) -> None:
-        """Marks the vertex."""
         if self.marking is None:
             raise ValueError("who marks? Write your name first")
         self.marking.add(hit.vertex)

@@ -31,7 +31,6 @@ class PathPanel(Panel):
     title = "Path"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         self.path: Path | None = None
         self.how = gui.add_dropdown("Path", (THROUGH, AROUND))
         self.about = gui.add_markdown(ASK[THROUGH])
@@ -60,14 +59,12 @@ class PathPanel(Panel):
         self.hide()
 
     def on_show(self) -> None:
-        """Shows the mesh in grey, and the path."""
         self.window.show()
         self.draw()
         if self.path is None and len(self.places) > 1:  # of a page that was loaded again
             self.follow()
 
     def on_hide(self) -> None:
-        """Takes the path away and stops playing."""
         self.pause()
         self.window.scene.clear("/path")
 

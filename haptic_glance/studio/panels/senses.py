@@ -27,7 +27,6 @@ class SensesPanel(Panel):
     title = "Senses"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         self.network: Trained | None = None
         self.about = gui.add_markdown(ASK)
         self.images = gui.add_html("", visible=False)
@@ -44,7 +43,6 @@ class SensesPanel(Panel):
         return self.window.session.kept.get(self.title)
 
     def on_mesh(self) -> None:
-        """Nothing of this mesh is shown yet."""
         self.images.visible = self.seen.visible = self.felt.visible = False
 
     def on_show(self) -> None:
@@ -62,11 +60,9 @@ class SensesPanel(Panel):
         self.again()
 
     def on_hide(self) -> None:
-        """Takes the array away."""
         self.window.scene.clear(ARRAY)
 
     def on_click(self, hit: Hit) -> None:
-        """Touches there."""
         surface = as_surface(self.window.session.on_table.mesh)
         self.window.session.kept[self.title] = place_at(surface, hit.position[None], np.array([hit.face]))
         self.again()

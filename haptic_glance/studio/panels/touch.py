@@ -25,7 +25,6 @@ class TouchPanel(Panel):
     title = "Touch"
 
     def build(self, gui: viser.GuiApi) -> None:
-        """Adds the controls."""
         first = Sensor()
         self.about = gui.add_markdown(ASK)
         self.grid = gui.add_html("", visible=False)
@@ -55,22 +54,18 @@ class TouchPanel(Panel):
         return self.window.session.kept.get(self.title)
 
     def on_mesh(self) -> None:
-        """Nothing of this mesh was touched yet."""
         self.about.content, self.grid.visible = ASK, False
         self.window.scene.clear(ARRAY)
 
     def on_show(self) -> None:
-        """Shows the mesh in grey, and the last touch."""
         mesh = self.window.session.on_table.mesh
         self.window.show()
         self.window.work("Preparing the mesh for touch", lambda _: prepare(mesh), lambda _: self.again())
 
     def on_hide(self) -> None:
-        """Takes the array away."""
         self.window.scene.clear(ARRAY)
 
     def on_click(self, hit: Hit) -> None:
-        """Presses the array at the place."""
         surface = as_surface(self.window.session.on_table.mesh)
         self.window.session.kept[self.title] = place_at(surface, hit.position[None], np.array([hit.face]))
         self.again()
