@@ -77,7 +77,7 @@ def values(rival, bumpy):
 
 @pytest.mark.slow
 def test_answers_in_the_agreed_form_and_does_not_depend_on_size_and_vertex_order(held, bumpy, values):
-    points = held.rival.points(bumpy)
+    points = held.rival.points(bumpy, values)
     assert values.shape == (len(bumpy.vertices),) and values.dtype == np.float64
     assert values.min() >= 0 and 0 < values.max() <= held.most
     assert points.dtype == np.int64 and 0 < len(points) == len(set(points))
@@ -98,7 +98,7 @@ def test_does_not_depend_on_scale_turn_place_and_which_side_is_out(held, bumpy, 
     assert np.corrcoef(again, values)[0, 1] > held.alike
     if held.alike == EXACTLY:
         assert np.allclose(again, values, atol=1e-4 * values.max())
-        assert set(held.rival.points(moved)) == set(held.rival.points(bumpy))
+        assert set(held.rival.points(moved, again)) == set(held.rival.points(bumpy, values))
 
 
 @pytest.fixture(scope="module")

@@ -72,7 +72,7 @@ def test_harris_on_a_sphere_is_the_closed_form():
 def test_the_eight_best_harris_points_of_a_round_cube_are_its_corners_one_of_each_cluster():
     ball = ball_mesh(4)
     cube = Mesh(ball.vertices * ((np.abs(ball.vertices) ** 6).sum(axis=1) ** (-1 / 6))[:, None], ball.faces)
-    places = cube.vertices[harris.points(cube)]
+    places = cube.vertices[harris.points(cube, harris.saliency(cube))]
     assert np.allclose(np.abs(places[:8]), 3 ** (-1 / 6), atol=0.08)
     assert len(np.unique(np.sign(places[:8]), axis=0)) == 8
     distance = np.linalg.norm(places[:, None] - places, axis=2) + np.eye(len(places))
@@ -109,7 +109,7 @@ def test_each_piece_keeps_its_own_heat():
         vertices = np.concatenate([ball.vertices * [1, 1, 3], small.vertices + [distance, 0, 0]])
         both = Mesh(vertices, np.concatenate([ball.faces, small.faces + n]))
         values.append(heat_kernel.saliency(both))
-        assert set(np.abs(both.vertices[heat_kernel.points(both), 2]).round(1)) == {3.0}
+        assert set(np.abs(both.vertices[heat_kernel.points(both, heat_kernel.saliency(both)), 2]).round(1)) == {3.0}
     assert np.allclose(*values, atol=1e-4) and np.allclose(values[0][n:], 1, atol=1e-4)
     assert np.average(values[0][:n]) == pytest.approx(1, abs=0.3) and values[0][:n].max() > 1.15
 

@@ -160,7 +160,7 @@ def test_the_corners_of_a_cube_are_its_points_and_edges_and_faces_are_far_below(
 
 def test_corners_of_two_sizes_are_found_each_at_its_own_scale(monkeypatch):
     mesh, directions = raised_ball(TOPS, [0.1, 0.2], [0.3, 0.6]), ball_mesh(4).vertices
-    responses, points = corners._responses(mesh), corners.points(mesh)
+    responses, points = corners._responses(mesh), corners.points(mesh, corners.saliency(mesh))
     assert ((directions[points[:2]] @ np.transpose(TOPS)).max(axis=0) > np.cos(0.05)).all()
     best = responses[:, points].max(axis=0)
     assert (np.abs(responses[:, points] - best) < 1e-12).any(axis=1).sum() > 1

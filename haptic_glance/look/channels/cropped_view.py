@@ -27,13 +27,15 @@ COVERED = 0.1  # share of its footprint for a pyramid pixel to be on the object;
 
 @weak_cache
 def cropped_view(view: View, filled: bool = True) -> "CroppedView":
-    """The CroppedView of a view, shared by its channels. filled=False leaves the background as rendered.
+    """The CroppedView of a view, shared by its channels. filled=False leaves the background as rendered."""
+    return CroppedView(checked_rgb(view), view.mask, filled)
 
-    Raises ValueError when the rgb of the view is not of type uint8.
-    """
+
+def checked_rgb(view: View) -> np.ndarray:
+    """The rgb of a view. Raises ValueError when it is not of type uint8."""
     if view.rgb.dtype != np.uint8:
         raise ValueError(f"the rgb of a view must be of type uint8, got {view.rgb.dtype}")
-    return CroppedView(view.rgb, view.mask, filled)
+    return view.rgb
 
 
 class CroppedView:

@@ -8,7 +8,7 @@ from haptic_glance.base.opencv import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View
-from .cropped_view import cropped_view, fill
+from .cropped_view import checked_rgb, cropped_view, fill
 from .operators import CENTRES, DELTAS, OUTPUT_SCALE, centre_surround, normalise, reduce
 
 WINDOW = 80 / 900  # of the image's rows: 80 x 80 pixels in the thesis's 1200 x 900 (T3.1.1)
@@ -160,7 +160,7 @@ def spectral_residual(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray
     whatever `filled`, as the authors of the method would use it. Zero for an image of one grey value, for which OpenCV
     returns noise near 1.
     """
-    grey = cv2.cvtColor(view.rgb, cv2.COLOR_RGB2GRAY)
+    grey = cv2.cvtColor(checked_rgb(view), cv2.COLOR_RGB2GRAY)
     if grey.min() == grey.max():
         return cropped_view(view, False).zero_map()
     detector = cv2.saliency.StaticSaliencySpectralResidual.create()
@@ -174,6 +174,6 @@ def fine_grained(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     mechanism, Image and Vision Computing 28(3), 2010. The image is used as rendered, whatever `filled`, as the
     authors of the method would use it.
     """
-    grey = cv2.cvtColor(view.rgb, cv2.COLOR_RGB2GRAY)
+    grey = cv2.cvtColor(checked_rgb(view), cv2.COLOR_RGB2GRAY)
     detector = cv2.saliency.StaticSaliencyFineGrained.create()
     return reduce(np.asarray(detector.computeSaliency(grey)[1]), 0, SCALE)

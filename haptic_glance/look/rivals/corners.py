@@ -11,7 +11,7 @@ from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
 from ..channels.surface import laplacian
-from .maxima import ring_maxima
+from .maxima import check_values, ring_maxima
 
 SCALES = 0.01 * 2 ** (np.arange(6) / 2)  # standard deviations, of the square root of the area: from 1 % to 5.7 %
 STEPS = 2  # implicit steps from scale to scale: one alone has a sharper top and longer tails than a Gaussian
@@ -36,16 +36,14 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return _responses(mesh).max(axis=0)
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first: peaks over the surface at a scale that is no worse than its neighbours.
 
     That is a corner at its own scale, however weak beside others: only NOISE is left out. Meshes of 20,000 vertices
     have 100 to 200 such points, those of 3,000 some 30; a round body has a few where its mesh is uneven.
-    values: saliency(mesh) up to a factor, by which the points are ordered; computed where None.
+    values: saliency(mesh) up to a factor, by which the points are ordered.
     """
-    values = saliency(mesh) if values is None else np.asarray(values)
-    if values.shape != (len(mesh.vertices),):
-        raise ValueError(f"values must be {len(mesh.vertices)} numbers, one per vertex, got {values.shape}")
+    check_values(mesh, values)
     responses = np.pad(_responses(mesh), ((1, 1), (0, 0)))
     found = [
         peaks[own[peaks] >= np.maximum(NOISE, np.maximum(finer, coarser)[peaks])]

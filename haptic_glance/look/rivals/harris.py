@@ -40,12 +40,11 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return (np.maximum(response, 0) ** 0.25).round(DIGITS)
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first: maxima over the one-ring, one of each cluster (3.3).
 
     From the highest down, a maximum is kept when it lies farther than SPACING from all that are kept.
     """
-    values = saliency(mesh) if values is None else values
     return representatives(mesh, ring_maxima(mesh, values, 1), SPACING * _size(mesh))
 
 

@@ -45,9 +45,9 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return np.where(areas > 0, result, 0).round(DIGITS)
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """(k,) i8 vertex ids: the local maxima of the signature over the 2-ring (section 5), most salient first."""
-    return ring_maxima(mesh, saliency(mesh) if values is None else values, RINGS)
+    return ring_maxima(mesh, values, RINGS)
 
 
 def _scaled_signature(stiffness, areas):

@@ -53,12 +53,9 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return unit.to_vertices(few.spread(unit.mesh, interest).clip(0, 1))
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
-    """(k,) i8 vertex ids, most salient first: the local maxima above the mean of all local maxima.
-
-    values: saliency(mesh), computed where None.
-    """
-    return high_maxima(mesh, saliency(mesh) if values is None else values)
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, most salient first: the local maxima of saliency above the mean of all of them."""
+    return high_maxima(mesh, values)
 
 
 def distinctness(mesh: Mesh, few: Samples, apart: np.ndarray) -> np.ndarray:

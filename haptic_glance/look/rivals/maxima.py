@@ -16,6 +16,12 @@ SPACING = 0.05  # of the size, between points of detectors that leave it open, a
 DIGITS = 9  # relative to the largest value: smaller differences are rounding, and count as equal
 
 
+def check_values(mesh: Mesh, values: np.ndarray) -> None:
+    """Raises ValueError unless values are finite, one per vertex."""
+    if np.shape(values) != (len(mesh.vertices),) or not np.isfinite(values).all():
+        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {np.shape(values)}")
+
+
 def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
     """(k,) i8 vertex ids where values (n,) is largest within `radius`, largest value first.
 
@@ -23,15 +29,11 @@ def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
     radius is lower: a plateau has no peak. Of equal values the one that comes last by x, then y, then z is the peak, so
     that the order of the vertices does not matter. Raises ValueError when values do not fit the mesh or radius <= 0.
     """
-    values = np.asarray(values, dtype=np.float64)
-    if values.shape != (len(mesh.vertices),) or not np.isfinite(values).all():
-        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {values.shape}")
+    levels = _levels(mesh, values)
     if not radius > 0:
         raise ValueError(f"radius must be above 0, in units of the mesh, got {radius}")
-    top = values.max(initial=0)
-    if top <= 0:
+    if not levels.any():
         return np.zeros(0, dtype=np.int64)
-    levels = np.round(values / top, DIGITS)
     order = np.lexsort((*-mesh.vertices.T[::-1], -levels))
     ranks = np.argsort(order)
     tree = cKDTree(mesh.vertices)
@@ -61,6 +63,14 @@ def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     return found[values[found] >= values[found].mean()] if len(found) else found
 
 
+def _levels(mesh, values):
+    """(n,) values over the largest, without their rounding errors; zero where no value is above zero."""
+    check_values(mesh, values)
+    values = np.asarray(values, dtype=np.float64)
+    top = values.max(initial=0)
+    return np.round(values / top, DIGITS) if top > 0 else np.zeros(len(values))
+
+
 def _above_nearest(tree, levels, ranks, radius):
     """Vertex ids above zero that none of the nearest vertices within the radius outranks."""
     found = np.flatnonzero(levels > 0)
@@ -73,17 +83,11 @@ def _above_nearest(tree, levels, ranks, radius):
 def ring_maxima(mesh: Mesh, values: np.ndarray, rings: int) -> np.ndarray:
     """(k,) i8 vertex ids where values (n,) is largest within `rings` edges, largest value first.
 
-    Only values above zero count, and only where some vertex of the rings is lower: a plateau has no peak. Of equal
-    values the one that comes last by x, then y, then z is the peak, so that the order of the vertices does not matter.
-    Raises ValueError when values do not fit the mesh.
+    Which values count, and which of equal ones is the peak, is as for `local_maxima`.
     """
-    values = np.asarray(values, dtype=np.float64)
-    if values.shape != (len(mesh.vertices),) or not np.isfinite(values).all():
-        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {values.shape}")
-    top = values.max(initial=0)
-    if top <= 0:
+    levels = _levels(mesh, values)
+    if not levels.any():
         return np.zeros(0, dtype=np.int64)
-    levels = np.round(values / top, DIGITS)
     order = np.lexsort((*mesh.vertices.T[::-1], levels))
     ranks = np.argsort(order)
     itself = sparse.identity(len(values), dtype=bool)  # pyright: ignore[reportArgumentType] (scipy has no stub)

@@ -34,12 +34,8 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return np.average(list(contrasts.values()), axis=0, weights=weights)
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
-    """(k,) i8 vertex ids, most salient first: the local maxima above the mean of all local maxima.
-
-    values: saliency(mesh), computed where None.
-    """
-    values = saliency(mesh) if values is None else np.asarray(values)
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, most salient first: the local maxima of saliency above the mean of all of them."""
     if not values.any():
         return np.zeros(0, dtype=np.int64)
     peaks = local_maxima(mesh, values, RADIUS * EPSILON * mesh.diagonal)

@@ -35,12 +35,8 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return total / total.max() if total.any() else total
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
-    """(k,) i8 vertex ids, most salient first: the local maxima above 30 % of the maximum.
-
-    values: saliency(mesh), computed where None.
-    """
-    values = saliency(mesh) if values is None else np.asarray(values)
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, most salient first: the local maxima of saliency above 30 % of the maximum."""
     if not values.any():
         return np.zeros(0, dtype=np.int64)
     peaks = local_maxima(mesh, values, RADIUS * EPSILON * mesh.diagonal)

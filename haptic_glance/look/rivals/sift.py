@@ -18,6 +18,7 @@ from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 
 from ..kernels import scale_peaks, splat
+from .maxima import check_values
 from .samples import subdivide
 
 VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
@@ -58,14 +59,9 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return values / values.max()
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
-    """(k,) i8 vertex ids, most salient first: the vertices nearest to the keypoints.
-
-    values: saliency(mesh), computed where None.
-    """
-    values = saliency(mesh) if values is None else np.asarray(values)
-    if values.shape != (len(mesh.vertices),):
-        raise ValueError(f"values must be {len(mesh.vertices)} numbers, one per vertex, got {values.shape}")
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, most salient first, by saliency: the vertices nearest to the keypoints."""
+    check_values(mesh, values)
     found = np.unique(_nearest(mesh, _keypoints(mesh)))
     return found[np.lexsort((*-mesh.vertices[found].T[::-1], -values[found]))]
 

@@ -52,12 +52,9 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return unit.to_vertices(few.spread(unit.mesh, change).clip(0))
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
-    """(k,) i8 vertex ids, most salient first: the local maxima above the mean of all local maxima.
-
-    values: saliency(mesh), computed where None.
-    """
-    return high_maxima(mesh, saliency(mesh) if values is None else values)
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, most salient first: the local maxima of saliency above the mean of all of them."""
+    return high_maxima(mesh, values)
 
 
 def spectral_saliency(positions: np.ndarray, graph: sparse.csr_matrix) -> np.ndarray:

@@ -58,12 +58,9 @@ def saliency(mesh: Mesh) -> np.ndarray:
     return unit.to_vertices(_stretched((fit * values[near]).sum(axis=1) / fit.sum(axis=1)))
 
 
-def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
-    """(k,) i8 vertex ids, most salient first: the local maxima above the mean of all local maxima.
-
-    values: saliency(mesh), computed where None.
-    """
-    return high_maxima(mesh, saliency(mesh) if values is None else values)
+def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, most salient first: the local maxima of saliency above the mean of all of them."""
+    return high_maxima(mesh, values)
 
 
 def squares(a: np.ndarray, b: np.ndarray) -> np.ndarray:

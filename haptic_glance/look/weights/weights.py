@@ -4,8 +4,7 @@ Published weights are equal ones, those of T table 3.1, and those learned from h
 learned from an object are never applied to the same object: learning leaves one object out at a time.
 """
 
-import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,8 +17,10 @@ from .attention import average, euclidean_weights, fit_fixations, similarity_wei
 from .convexity import convexity, nearest_convexity
 from .svm import SVMModel
 
-# T table 3.1: channel -> (average SSIM over 43 models, one minus the average normalised Euclidean distance).
-# In code rather than in a data file, so that they are available wherever the package is installed.
+# T table 3.1: channel -> (average SSIM over 43 models, one minus the average normalised Euclidean distance): how
+# similar its map is to that of the ground truth (T3.2.1.2, T3.2.1.4), and how near its brightest pixels are (T3.2.1.1).
+# The text calls the second a value "for a selected viewpoint from model of skull", the caption an average; T3.2.2
+# agrees with the caption. In code rather than in a data file, so that they are available with the package.
 TABLE = {
     "color": (0.1096, 0.6417),
     "contrast": (0.7692, 0.3941),
@@ -34,25 +35,6 @@ TABLE = {
 
 
 GLANCE = "glance"  # the default method
-
-
-def equal() -> dict[str, float]:
-    """One for every channel: the plain average (T eq. 3.8)."""
-    return dict.fromkeys(TABLE, 1.0)
-
-
-def thesis_ssim() -> dict[str, float]:
-    """Similarity of each channel's map to that of the ground truth (T3.2.1.2 and T3.2.1.4)."""
-    return {channel: ssim for channel, (ssim, _) in TABLE.items()}
-
-
-def thesis_ed() -> dict[str, float]:
-    """One minus the distance of each channel's brightest pixels from the ground truth (T3.2.1.1).
-
-    The text calls this column a value "for a selected viewpoint from model of skull", the caption an average over 43
-    models. T3.2.2 agrees with the caption, so this is taken as the average.
-    """
-    return {channel: nearness for channel, (_, nearness) in TABLE.items()}
 
 
 # Of the features of haptic_glance.look.glance, learned from 32 people's gaze on the 19 meshes of the data set `gaze`
@@ -95,10 +77,12 @@ DEEP = {
 }  # fmt: skip
 
 
-METHODS: dict[str, Callable[[], dict[str, float]]] = {
-    "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed,
-    **{name: functools.partial(dict, found) for name, found in GLANCES.items()},
-}  # fmt: skip
+METHODS: dict[str, dict[str, float]] = {
+    "equal": dict.fromkeys(TABLE, 1.0),  # the plain average (T eq. 3.8)
+    "thesis_ssim": {channel: ssim for channel, (ssim, _) in TABLE.items()},
+    "thesis_ed": {channel: nearness for channel, (_, nearness) in TABLE.items()},
+    **GLANCES,
+}
 
 
 def weights(method: str) -> dict[str, float]:
@@ -109,7 +93,7 @@ def weights(method: str) -> dict[str, float]:
     """
     if method not in METHODS:
         raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")
-    return METHODS[method]()
+    return dict(METHODS[method])
 
 
 SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
