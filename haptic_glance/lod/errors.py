@@ -6,8 +6,7 @@ import numpy as np
 
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.nearest import SurfaceIndex as SurfaceIndex
-from haptic_glance.mesh.nearest import surface_index
+from haptic_glance.mesh.nearest import closest, surface_index
 
 
 def metro(reference: Mesh, mesh: Mesh, samples: int = 10_000, seed: int = 0) -> dict[str, float]:
@@ -109,9 +108,8 @@ def colour_error(reference: Mesh, mesh: Mesh, samples: int = 10_000, seed: int =
     errors = []
     for one, other, name in ((reference, mesh, "reference"), (mesh, reference, "mesh")):
         points, *own = surface_index(one).sample(samples, rng(seed, name))
-        index = surface_index(other)
-        face = index.nearest(points)[1].astype(np.int64)
-        errors.append(((shown(one, *own) - shown(other, face, index.weights(points, face))) ** 2).mean())
+        _, *nearest = closest(other, points)
+        errors.append(((shown(one, *own) - shown(other, *nearest)) ** 2).mean())
     return float(np.sqrt(max(errors)))
 
 

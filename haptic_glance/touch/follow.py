@@ -228,9 +228,7 @@ def _check_planes(planes):
     return planes
 
 
-@lru_cache(maxsize=2)
-def _cutter(mesh):
-    return MeshCutter(mesh)
+_cutter = lru_cache(maxsize=2)(MeshCutter)
 
 
 def _path_or_reason(cutter, points, frames, width):

@@ -81,9 +81,7 @@ class Surface:
         return run(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places, *more)
 
 
-@lru_cache(maxsize=2)  # for touching one mesh, or two in turn, point by point
-def _cached_surface(mesh):
-    return Surface(mesh)
+_cached_surface = lru_cache(maxsize=2)(Surface)  # for touching one mesh, or two in turn, point by point
 
 
 def as_surface(mesh: Mesh | Surface) -> Surface:

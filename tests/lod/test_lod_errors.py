@@ -7,8 +7,9 @@ import pytest
 import trimesh
 
 from haptic_glance.lod import simplify
-from haptic_glance.lod.errors import SurfaceIndex, metro, salient_error, surface_errors, vertex_errors
+from haptic_glance.lod.errors import metro, salient_error, surface_errors, vertex_errors
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.nearest import SurfaceIndex
 
 from .conftest import ball, sheet
 
