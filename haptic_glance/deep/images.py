@@ -60,8 +60,7 @@ def augmentation(upright: bool = False) -> AugmentationSequential:
     Uses torch's random numbers. Pixels that move in from outside repeat the imprint's border, since black, the usual
     fill value, would mean contact. upright: of pictures, whose objects are upright: reflected left to right alone.
     """
-    flips = [kornia_augmentation.RandomHorizontalFlip(p=0.5)]
-    if not upright:
-        flips.append(kornia_augmentation.RandomVerticalFlip(p=0.5))
+    sideways = kornia_augmentation.RandomHorizontalFlip(p=0.5)
+    upside_down = [] if upright else [kornia_augmentation.RandomVerticalFlip(p=0.5)]
     moves = {"translate": (SHIFT, SHIFT), "scale": SCALE, "padding_mode": "border"}
-    return AugmentationSequential(*flips, kornia_augmentation.RandomAffine(degrees=0, p=1.0, **moves))
+    return AugmentationSequential(sideways, *upside_down, kornia_augmentation.RandomAffine(degrees=0, p=1.0, **moves))

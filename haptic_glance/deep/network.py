@@ -100,7 +100,7 @@ def build(
         hidden = layers(state) if layers else None
         network = Network(parts.convolutions, width, classes, parts.dropout, hidden)
     # The channels-last layout halves the time of a convolution on a CPU.
-    return network.to(memory_format=torch.channels_last).eval()
+    return network.to(memory_format=torch.channels_last).eval()  # pyright: ignore[reportCallIssue] (no overload has it)
 
 
 def published_layers(name: str, source: str) -> bool:
