@@ -109,10 +109,5 @@ def summary(rows: Rows) -> dict[str, float]:
     return {name: round(float(np.mean(own)), 6) for name, own in values.items()}
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "annotations"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "annotations"))

@@ -85,10 +85,5 @@ def run(workspace: Workspace) -> None:
     print(f"contours: {workspace.dataset}, {len(objects)} objects, {strategies} strategies, {counted} sequences")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "contours"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "contours"))

@@ -44,10 +44,5 @@ def summary(rows: Rows) -> dict[str, float]:
     return {name: float(np.median(values)) for name, values in found.items()}
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "face_needs"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "face_needs"))

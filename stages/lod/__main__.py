@@ -35,10 +35,5 @@ def run(workspace: Workspace) -> None:
     print(simplify_all(workspace, settings, workspace.settings(MeshesParams).source))
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "lod"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "lod"))

@@ -91,10 +91,5 @@ def run(workspace: Workspace) -> None:
     print(f"meshes: {workspace.dataset}, {len(manifest)} objects, {closed} watertight, {len(refused)} refused")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "meshes"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "meshes"))

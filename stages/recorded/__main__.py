@@ -33,10 +33,5 @@ def run(workspace: Workspace) -> None:
     print(f"recorded: {workspace.dataset}, {len(stage.rows):,} rows")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "recorded"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "recorded"))

@@ -141,10 +141,5 @@ def run(workspace: Workspace) -> None:
         print("sensor_size: {classifier} needs {cells} x {cells} cells, {pitch} apart: {accuracy:.3f}".format(**one))
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "sensor_size"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "sensor_size"))

@@ -88,10 +88,5 @@ def run(workspace: Workspace) -> None:
     print(f"sequences: {workspace.dataset}, {classes} classes, {trials} trials, {len(rows)} rows")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "sequences"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "sequences"))

@@ -95,10 +95,5 @@ def summary(rows: Rows) -> dict[str, float]:
     return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "simulated_to_real"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "simulated_to_real"))

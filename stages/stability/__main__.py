@@ -157,10 +157,5 @@ def run(workspace: Workspace) -> None:
     )
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "stability"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "stability"))

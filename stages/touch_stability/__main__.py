@@ -111,10 +111,5 @@ def run(workspace: Workspace) -> None:
     print(f"touch_stability: {workspace.dataset}, {measured}; {breaking}")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "touch_stability"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "touch_stability"))

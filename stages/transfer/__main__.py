@@ -79,10 +79,5 @@ def run(workspace: Workspace) -> None:
     print(f"transfer: {workspace.dataset}, {len(planned.members['random'])} classes, {len(planned.trials)} trainings")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "transfer"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "transfer"))

@@ -71,10 +71,5 @@ def run(workspace: Workspace) -> None:
     print(f"views: {count} by {renderer}, {coverage:.1%} of the pixels on objects")
 
 
-def main() -> None:
-    """Runs the stage on the data set that the command line names."""
-    run(workspace_of_arguments(__doc__, "views"))
-
-
 if __name__ == "__main__":
-    main()
+    run(workspace_of_arguments(__doc__, "views"))
