@@ -20,15 +20,15 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from haptic_glance.base.files import read_mesh, write_table
+from haptic_glance.base.files import read_arrays, read_mesh, write_table
 from haptic_glance.lod.scene.camera import world_mesh
 from haptic_glance.lod.scene.chain import finest
 from stages.engine.parallel import progress
 from stages.engine.run import object_names
 from stages.engine.settings import Workspace, load_params
 from stages.scene import Params
-from stages.scene.compare import OURS, read_chain, read_plans
-from stages.scene.measure import Case, scene_of, scenes_of
+from stages.scene.compare import OURS, read_chain
+from stages.scene.measure import PLAN_FILE, Case, scene_of, scenes_of
 
 OUT, SET = Path("reports/bench/frame_times.csv"), "household_scenes"
 PLANS = {
@@ -91,7 +91,7 @@ def measured(settings, names, data, renderer):
     meshes = {placed.name: read_mesh(data / f"meshes/{placed.name}.npz") for placed in scene.objects}
     chains = [read_chain(data / "scene/levels" / placed.name, OURS, finest(meshes[placed.name]))
               for placed in scene.objects]  # fmt: skip
-    poses, plans = scene.poses(meshes), read_plans(data / "scene", Case(settings).name)
+    poses, plans = scene.poses(meshes), read_arrays(data / "scene" / PLAN_FILE.format(Case(settings).name))
     taken, faces = {plan: [] for plan in PLANS}, {plan: [] for plan in PLANS}
     for frame in range(0, len(scene.cameras), EVERY):
         drawn = {}

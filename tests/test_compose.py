@@ -53,7 +53,7 @@ def test_every_option_composes_and_fits_the_schemas(dataset, overrides):
 
 @pytest.mark.parametrize(
     "command",
-    ["claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "front.__main__", "engine.settings household"],
+    ["claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "front.__main__", "engine.settings"],
 )
 def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monkeypatch, command):
     name, *arguments = command.split()

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_mesh, write_table
+from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_mesh, write_table
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.lod.scene.beforehand import Profile, by_profiles, by_sums, rendered_sums
 from haptic_glance.lod.scene.budget import budget, cheapest
@@ -60,38 +60,16 @@ class SceneSetup:
 
 def load_setup(scene: Scene, meshes: Mapping[str, Mesh], folder: Path) -> SceneSetup:
     """The SceneSetup with the LOD chains in a folder."""
-    full = finest_levels({name: meshes[name] for name in sorted({placed.name for placed in scene.objects})})
-    chains = {kind: read_chains(folder, kind, full) for kind in (OURS, PLAIN)}
+    full = {name: finest(meshes[name]) for name in sorted({placed.name for placed in scene.objects})}
+    chains = {kind: {name: read_chain(folder / name, kind, level) for name, level in full.items()}
+              for kind in (OURS, PLAIN)}  # fmt: skip
     frames = Frames(scene, meshes, [full[placed.name] for placed in scene.objects])
     profiles = {name: Profile(**read_arrays(folder / name / PROFILE)) for name in full}
     return SceneSetup(scene, dict(meshes), frames, chains, profiles)
 
 
-def mean_error(plan: Plan) -> float:
-    """Mean over the frames of the error compared with the tolerance."""
-    return float(plan.errors.mean())
-
-
-def mean_displacement(plan: Plan) -> float:
-    """Mean displacement in pixels over all pixels that show an object."""
-    return float(np.concatenate([check.displacements for check in plan.checks]).mean())
-
-
-def worst_error(plan: Plan) -> float:
-    """The error of the worst frame."""
-    return float(plan.errors.max())
-
-
 def _budget(setup, kind):
     return budget(setup.meshes, setup.scene, chains=setup.chains[kind], frames=setup.frames)
-
-
-def _plain(setup, ours):
-    return [_timed("ours_plain", "", lambda: _budget(setup, PLAIN))]
-
-
-def _full(setup, ours):
-    return [_timed("full", "", lambda: rivals.full(setup.frames))]
 
 
 def _online(setup, ours):
@@ -147,16 +125,23 @@ def _limited(setup, ours):
     return [replace(_timed(name, "limit", make), note=f"limit of {limit:,} faces") for name, make in plans.items()]
 
 
+MEASURES: dict[str, Callable[[Plan], float]] = {  # means over the frames of the error, and over all pixels
+    "error": lambda plan: float(plan.errors.mean()),
+    "displacement": lambda plan: float(np.concatenate([check.displacements for check in plan.checks]).mean()),
+}
+
+
 def _tuned(setup, method, plan_of, ours, matched):
     found = []
-    for name, measure in (("error", mean_error), ("displacement", mean_displacement)):
+    for name, measure in MEASURES.items():
         if name in matched:
             target = measure(ours)
             own = _timed(method, name, lambda measure=measure, target=target: rivals.tune(plan_of, measure, target))
             note = f"even its coarsest plan has less {name} than ours" if measure(own.plan) < target else ""
             found.append(replace(own, note=note))
     if "held" in matched:
-        found.append(_timed(method, "held", lambda: rivals.tune_below(plan_of, worst_error, setup.scene.tolerance)))
+        worst, most = lambda plan: float(plan.errors.max()), setup.scene.tolerance
+        found.append(_timed(method, "held", lambda: rivals.tune(plan_of, worst, most, below=True)))
     return found
 
 
@@ -196,8 +181,9 @@ def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:
 # Plans beside ours and uniform levels: without salience, all faces, by the levels' own errors without rendering, under
 # a face limit, by planners that see no frame ahead, and by the mean displacement, rendered beforehand or in each frame.
 OTHERS = {
-    "plain": _plain, "full": _full, "unrendered": _unrendered, "limited": _limited, "online": _online,
-    "beforehand": _beforehand,
+    "plain": lambda setup, _: [_timed("ours_plain", "", lambda: _budget(setup, PLAIN))],
+    "full": lambda setup, _: [_timed("full", "", lambda: rivals.full(setup.frames))],
+    "unrendered": _unrendered, "limited": _limited, "online": _online, "beforehand": _beforehand,
 }  # fmt: skip
 
 
@@ -243,23 +229,3 @@ def read_chain(folder: Path, kind: str, full: Level) -> tuple[Level, ...]:
     table = read_table(folder / f"{kind}.csv").set_index("faces")
     below = [Level(read_mesh(folder / f"{kind}_{faces}.npz"), dict(row)) for faces, row in table.iloc[1:].iterrows()]
     return (full, *below)
-
-
-def read_chains(folder: Path, kind: str, full: Mapping[str, Level]) -> dict[str, tuple[Level, ...]]:
-    """dict name -> Levels; full: dict name -> the finest Level."""
-    return {name: read_chain(folder / name, kind, level) for name, level in full.items()}
-
-
-def finest_levels(meshes: Mapping[str, Mesh]) -> dict[str, Level]:
-    """dict name -> the finest Level, of dict name -> Mesh."""
-    return {name: finest(mesh) for name, mesh in meshes.items()}
-
-
-def write_plans(folder: Path, name: str, levels: Mapping[str, np.ndarray]) -> None:
-    """Writes the levels (frames, objects) of plans for one case; levels: dict method.matched -> levels."""
-    write_arrays(folder / f"plans/{name}.npz", **levels)
-
-
-def read_plans(folder: Path, name: str) -> dict[str, np.ndarray]:
-    """Reads the plans that write_plans wrote."""
-    return read_arrays(folder / f"plans/{name}.npz")

@@ -5,7 +5,7 @@ of its own, since it alone depends on objects that are not in the scene.
 """
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from haptic_glance.base.files import read_mesh, read_table, write_arrays, write_table
+from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_table
 from haptic_glance.lod.scene.camera import Placed, Scene, bounds, fly
 from haptic_glance.lod.scene.frames import Frames, Plan
 from haptic_glance.lod.scene.pictures import displacement_picture, shaded
@@ -33,12 +33,9 @@ from .compare import (
     compare,
     compare_network,
     load_setup,
-    read_plans,
-    write_plans,
 )
-from .counts import Counts, evaluate_counts, fit_counts, read_curves
-from .counts.evaluate import COMBINED, Map
-from .counts.models import Points
+from .counts.evaluate import COMBINED, Map, evaluate_counts
+from .counts.models import Counts, fit_counts, read_curves
 from .online import draw_scene
 from .rows import frame_rows, object_rows, plan_rows, saved_rows
 
@@ -46,7 +43,10 @@ SHOWN = ("full", "uniform", OURS)  # methods of the pictures for the report
 FRAMED = ("full", "uniform", "uniform_size", "network", OURS, "ours_plain")  # with rows of every frame
 MAIN = ("", "error")  # plans of their own, and those at the same mean error
 FIXED = ("plain", "full", "unrendered", "limited", "online")  # compared in a scene that is not drawn at random
-TABLE = "plan.csv"
+TABLE, PLAN_FILE = (
+    "plan.csv",
+    "plans/{}.npz",
+)  # of our plan, and of all: METHOD or METHOD.MATCHED -> (frames, objects) levels
 
 
 @dataclass(frozen=True)
@@ -87,16 +87,12 @@ def measure(case: Case, folder: Path, data: Path, made: Path, shown: Sequence[st
     """
     setup, saliency = _setup(case, data, made, shown)
     found = compare(setup, case.matched, case.others)
-    write_plans(folder, case.name, {plan_name(each): each.plan.levels for each in found})
+    levels = {f"{each.method}.{each.matched}".rstrip("."): each.plan.levels for each in found}
+    write_arrays(folder / PLAN_FILE.format(case.name), **levels)
     if case.in_detail:
         write_table(folder / TABLE, pd.DataFrame(plan_table(setup, found[0].plan)))
         write_arrays(folder / "pictures.npz", **pictures(setup, _framed(found)))
     return _rows(setup, found[0], found, saliency, case, seed)
-
-
-def plan_name(found: MethodPlan) -> str:
-    """The key of a plan among those of its case: method, or method.matched."""
-    return f"{found.method}.{found.matched}".rstrip(".")
 
 
 def measure_network(
@@ -109,12 +105,16 @@ def measure_network(
     setup, saliency = _setup(case, data, made, shown)
     others = sorted({*shown, *others} - {placed.name for placed in setup.scene.objects})
     try:
-        model = _model(setup.scene, data, others, seed)
+        if setup.scene.kind != "pixels":
+            raise ValueError("the thesis's network has no perceptual tolerance")
+        model = fit_network(data, others, setup.scene.cameras[0].focal, COMBINED, seed)
     except ValueError as error:
         row = {"method": "network", "kind": setup.scene.kind, "tolerance": setup.scene.tolerance, "matched": "error"}
         row |= {"frame": "all", "metric": "faces", "value": None, "note": str(error)}
         return [row | {"factor": case.factor, "group": case.settings.name}]
-    ours = MethodPlan(OURS, "", Plan(read_plans(made, case.name)[OURS], setup.of(OURS), setup.frames), 0.0)
+    ours = MethodPlan(
+        OURS, "", Plan(read_arrays(made / PLAN_FILE.format(case.name))[OURS], setup.of(OURS), setup.frames), 0.0
+    )
     matched = case.matched[:1] if case.settings.random else (*case.matched, *([ASKED] if case.in_detail else []))
     found = compare_network(setup, _counts(setup, data, model), ours.plan, matched)
     return _rows(setup, ours, found, saliency, case, seed)
@@ -141,13 +141,6 @@ def _rows(setup, ours, found, saliency, case, seed):
 
 def _framed(found):
     return [each for each in found if each.matched in MAIN and each.method in FRAMED]
-
-
-def _model(scene, data, others, seed):
-    """The thesis's network for the scene; ValueError where there is none."""
-    if scene.kind != "pixels":
-        raise ValueError("the thesis's network has no perceptual tolerance")
-    return fit_network(data, others, scene.cameras[0].focal, COMBINED, seed)
 
 
 def _counts(setup, data, model):
@@ -178,21 +171,13 @@ def pictures(setup: SceneSetup, found: Sequence[MethodPlan]) -> dict[str, np.nda
     methods = [method for method in SHOWN if method in plans]
     order = np.argsort(setup.frames.scale.mean(axis=1), kind="stable")  # far frames first, of few pixels
     frames = np.unique([order[len(order) // 3], order[2 * len(order) // 3], order[-1]])
-    rows = [(frame, [plans[method].shown(frame) for method in methods]) for frame in frames]
+    shown = [[(setup.frames, frame, plans[method].shown(frame)) for method in methods] for frame in frames]
     return {
         "frames": frames,
         "methods": np.array(methods),
-        "rgb": np.stack([[_rgb(setup, frame, levels) for levels in row] for frame, row in rows]),
-        "displacement": np.stack([[_displacement(setup, frame, levels) for levels in row] for frame, row in rows]),
+        "rgb": np.stack([[shaded(*one).clip(0, 255).astype(np.uint8) for one in row] for row in shown]),
+        "displacement": np.stack([[displacement_picture(*one).astype(np.float16) for one in row] for row in shown]),
     }
-
-
-def _rgb(setup, frame, levels):
-    return shaded(setup.frames, frame, levels).clip(0, 255).astype(np.uint8)
-
-
-def _displacement(setup, frame, levels):
-    return displacement_picture(setup.frames, frame, levels).astype(np.float16)
 
 
 MESH, POINTS = "meshes/{}.npz", "salient_points/{}.npz"  # of an object, below data/SET
@@ -289,17 +274,17 @@ def fit_network(data: Path, objects: Sequence[str], focal: float, combinations: 
 
 
 def predicted_counts(
-    model: Counts, frames: Frames, points: Sequence[Points], diagonals: np.ndarray, tolerance: float
+    model: Counts, frames: Frames, points: Sequence[Mapping[str, int]], diagonals: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """(frames, objects) f8 face counts that the model predicts.
 
-    points: a number, or dict combination -> number, per object; diagonals: in metres, per object. Distances are in
+    points: dict combination -> number, per object; diagonals: in metres, per object. Distances are in
     diagonals of the object, as in training.
     """
     distance = frames.distance / diagonals
     pixels = np.full(len(distance), tolerance)
     columns = [
-        np.asarray(model.faces_needed(pixels, distance[:, item], level.faces, points[item]))
+        model.faces_needed(pixels, distance[:, item], level.faces, points[item])
         for item, level in enumerate(frames.full)
     ]
     return np.stack(columns, axis=1).astype(np.float64)

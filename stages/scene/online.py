@@ -124,12 +124,7 @@ def draw_scene(
         Item(name, [*map(float, place), 0.0], float(turn), float(length))
         for name, place, turn, length in zip(names, places, turns, lengths, strict=True)
     ]
-    return replace(settings, name=scene_name(number), objects=objects, camera=_camera(objects, side, random))
-
-
-def scene_name(number: int) -> str:
-    """The name of a random scene, for the tables."""
-    return f"random_{number:02d}"
+    return replace(settings, name=f"random_{number:02d}", objects=objects, camera=_camera(objects, side, random))
 
 
 def _footprint(box):
@@ -214,32 +209,21 @@ def equal(plan: Plan, limit: int) -> Plan:
     return Plan(levels, plan.chains, plan.frames)
 
 
-def tune(plan_of: Callable[[float], Plan], measure: Callable[[Plan], float], target: float) -> Plan:
+def tune(
+    plan_of: Callable[[float], Plan], measure: Callable[[Plan], float], target: float, below: bool = False
+) -> Plan:
     """The Plan of `plan_of(factor)` whose `measure` is closest to `target` from above: no more faces than at equality.
 
-    Larger factors must give coarser plans. Where even the coarsest has less error, that one.
+    Larger factors must give coarser plans. Where even the coarsest has less error, that one. below: the coarsest Plan
+    found whose `measure` is at most `target`.
     """
-    low, high = np.log(SPAN)
-    coarse = plan_of(float(np.exp(high)))
+    kept, other = np.log(SPAN) if below else np.log(SPAN)[::-1]
+    found = plan_of(float(np.exp(kept)))
     for _ in range(HALVINGS):
-        middle = (low + high) / 2
+        middle = (kept + other) / 2
         plan = plan_of(float(np.exp(middle)))
-        if measure(plan) >= target:
-            high, coarse = middle, plan
+        if measure(plan) <= target if below else measure(plan) >= target:
+            kept, found = middle, plan
         else:
-            low = middle
-    return coarse
-
-
-def tune_below(plan_of: Callable[[float], Plan], measure: Callable[[Plan], float], limit: float) -> Plan:
-    """As `tune`: the coarsest Plan found whose `measure` is at most `limit`."""
-    low, high = np.log(SPAN)
-    fine = plan_of(float(np.exp(low)))
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        plan = plan_of(float(np.exp(middle)))
-        if measure(plan) <= limit:
-            low, fine = middle, plan
-        else:
-            high = middle
-    return fine
+            other = middle
+    return found

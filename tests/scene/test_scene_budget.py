@@ -182,7 +182,7 @@ def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, chains)
     wanted = 0.6 * plan_of(1e3).errors.mean()  # the coarsest has more
     found = online.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
     assert wanted <= found.errors.mean() < 1.6 * wanted
-    assert online.tune_below(plan_of, lambda plan: plan.errors.max(), wanted).errors.max() <= wanted
+    assert online.tune(plan_of, lambda plan: plan.errors.max(), wanted, below=True).errors.max() <= wanted
 
 
 def test_copies_of_an_object_are_one_object_to_the_interval():

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
 
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.lod import metro, simplify
 
-from .models import DISTANCES, FEWEST, FLOOR, Curve, focal_length
+from .models import DISTANCES, FLOOR, FOCAL, Curve
 
 if TYPE_CHECKING:
     from .evaluate import Fold  # which imports this module
@@ -42,7 +41,7 @@ class Case:
     @property
     def tolerance(self) -> float:
         """Pixels that the error covers at the distance."""
-        return self.error * focal_length() / self.distance
+        return self.error * FOCAL / self.distance
 
 
 def between(curves: Sequence[Curve], seed: int) -> list[Case]:
@@ -107,27 +106,8 @@ def _with_points(curves):
     return [(curve, points[curve.object]) for curve in curves]
 
 
-@dataclass(frozen=True)
-class PowerLaw:
-    """faces ~ error ** -exponent, the same for all objects."""
-
-    exponent: float
-
-    def faces_needed(
-        self, error: ArrayLike, faces: ArrayLike, measured: ArrayLike, initial_faces: ArrayLike
-    ) -> int | np.ndarray:
-        """The faces for an error over the diagonal, from one simplified mesh with `faces` faces and error `measured`.
-
-        All may be arrays: (k,) i8, or an int for numbers. Between 4 and initial_faces.
-        """
-        ratio = np.maximum(measured, FLOOR) / np.maximum(error, FLOOR)
-        found = np.ceil(np.asarray(faces) * ratio**self.exponent - 1e-6)
-        found = np.minimum(np.maximum(found, FEWEST), initial_faces).astype(np.int64)
-        return int(found) if found.ndim == 0 else found
-
-
-def fit_power_law(curves: Sequence[Curve]) -> PowerLaw:
-    """The PowerLaw of measured curves: least squares of log faces on log error about the mean of each curve.
+def power_law(curves: Sequence[Curve]) -> float:
+    """x of faces ~ error ** -x, the same for all objects: least squares of the logarithms about the mean of each curve.
 
     Errors below FLOOR are left out. Raises ValueError where no curve has two points of unequal error.
     """
@@ -140,7 +120,7 @@ def fit_power_law(curves: Sequence[Curve]) -> PowerLaw:
             variance += ((errors - errors.mean()) ** 2).sum()
     if variance == 0:
         raise ValueError(f"a power law needs a curve with two points above an error of {FLOOR:g}")
-    return PowerLaw(float(-covariance / variance))
+    return float(-covariance / variance)
 
 
 BUILT = 4  # objects per fold, one case each: all folds and models together take half a minute on one core

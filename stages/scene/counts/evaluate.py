@@ -17,8 +17,8 @@ from haptic_glance.base.timing import Stopwatch
 from haptic_glance.look.points import COMBINATIONS
 from haptic_glance.mesh.mesh import Mesh
 
-from .cases import HALF, Case, PowerLaw, between, beyond, build_some, fit_power_law, flat, is_informative, side
-from .models import KINDS, Counts, Curve, fit_counts
+from .cases import HALF, Case, between, beyond, build_some, flat, is_informative, power_law, side
+from .models import FEWEST, FLOOR, KINDS, Counts, Curve, fit_counts
 
 RATE = 0.9  # share of the cases within the tolerance when models are compared at an equal rate
 INNER = 3  # folds of the training objects, for the safety factor
@@ -60,7 +60,8 @@ def _left_out(fold, cases, counts):
         found = counts(kind, frozenset(_names(fold.training)))
         yield labelled(score_counts(cases, found), kind, "left_out")
         yield labelled(build_some(fold, cases, found), kind, "built")
-        safe = enlarged(found, _safety(fold, kind, parts), cases)
+        full = [case.curve.initial_faces for case in cases]
+        safe = np.minimum(np.ceil(found * _safety(fold, kind, parts)), full).astype(np.int64)
         yield labelled(score_counts(cases, safe), kind, "equal_rate")
         yield labelled(build_some(fold, cases, safe), kind, "built_equal_rate")
 
@@ -72,7 +73,8 @@ def _safety(fold, kind, parts):
     of one object are dependent, so the rate is approximate.
     """
     counts = [predict_counts(kind, others, cases, fold.combinations, fold.seed) for others, cases in parts]
-    return safety_factor(np.concatenate(counts), [case for _, cases in parts for case in cases], RATE)
+    needed = np.array([case.needed for _, cases in parts for case in cases])
+    return float(np.quantile(needed / np.concatenate(counts), RATE, method="higher"))
 
 
 def _inner_parts(fold):
@@ -193,9 +195,9 @@ def _costs(curves, frame, combinations, seed):
     one = float(frame["seconds"].mean())
     case = between(curves, seed)[:1]
     fits = {"one_mesh": one, "lookup": one * float(np.mean([len(curve) for curve in curves]))}
-    law = fit_power_law(curves)
+    exponent = power_law(curves)
     asks: dict[str, Callable[[], object]] = {
-        "one_mesh": lambda: from_one_mesh(law, case),
+        "one_mesh": lambda: from_one_mesh(exponent, case),
         "lookup": lambda: predict_counts("lookup", [], case, [], seed),
     }
     for kind in KINDS:
@@ -237,9 +239,8 @@ def predict_counts(
     if kind == "lookup":
         return np.array([case.given.faces_needed(case.error) for case in cases])
     if kind == "one_mesh":
-        return from_one_mesh(fit_power_law(training), cases)
-    model = fit_counts(training, combinations, kind, seed)
-    return predict_with(model, cases)
+        return from_one_mesh(power_law(training), cases)
+    return predict_with(fit_counts(training, combinations, kind, seed), cases)
 
 
 def predict_with(model: Counts, cases: Sequence[Case]) -> np.ndarray:
@@ -248,30 +249,19 @@ def predict_with(model: Counts, cases: Sequence[Case]) -> np.ndarray:
     tolerance = np.array([case.tolerance for case in cases])
     distance = np.array([case.distance for case in cases])
     initial = np.array([case.curve.initial_faces for case in cases])
-    return np.asarray(model.faces_needed(tolerance, distance, initial, points))
+    return model.faces_needed(tolerance, distance, initial, points)
 
 
-def safety_factor(counts: np.ndarray, cases: Sequence[Case], rate: float) -> float:
-    """The factor on the counts with which the share `rate` of the cases gets enough faces."""
-    needed = np.array([case.needed for case in cases])
-    return float(np.quantile(needed / counts, rate, method="higher"))
-
-
-def enlarged(counts: np.ndarray, factor: float, cases: Sequence[Case]) -> np.ndarray:
-    """Counts times a factor, at most those of the full mesh."""
-    return np.minimum(np.ceil(counts * factor), [case.curve.initial_faces for case in cases]).astype(np.int64)
-
-
-def from_one_mesh(law: PowerLaw, cases: Sequence[Case]) -> np.ndarray:
-    """(k,) i8: the power law from the given mesh nearest to half of the object's faces."""
+def from_one_mesh(exponent: float, cases: Sequence[Case]) -> np.ndarray:
+    """(k,) i8: the power law from the given mesh nearest to half of the object's faces; 4 faces to all."""
     faces, errors = [], []
     for case in cases:
         nearest = np.abs(np.log(case.given.faces / (HALF * case.curve.initial_faces))).argmin()
         faces.append(case.given.faces[nearest])
         errors.append(case.given.errors[nearest])
-    target = np.array([case.error for case in cases])
-    initial = np.array([case.curve.initial_faces for case in cases])
-    return np.asarray(law.faces_needed(target, np.array(faces), np.array(errors), initial))
+    ratio = np.maximum(errors, FLOOR) / np.maximum([case.error for case in cases], FLOOR)
+    found = np.maximum(np.ceil(np.array(faces) * ratio**exponent - 1e-6), FEWEST)
+    return np.minimum(found, [case.curve.initial_faces for case in cases]).astype(np.int64)
 
 
 RESAMPLES = 400  # of the objects, with all their cases: the interval's ends are then within a tenth of its width

@@ -43,12 +43,6 @@ class Curve:
     def __post_init__(self) -> None:
         faces, first = np.unique(np.asarray(self.faces, dtype=np.int64), return_index=True)
         errors = np.asarray(self.errors, dtype=np.float64)[first]
-        if len(faces) == 0 or faces[0] < 1 or faces[-1] > self.initial_faces:
-            raise ValueError(
-                f"{self.object}: a curve needs counts from 1 to {self.initial_faces}, got {faces.tolist()}"
-            )
-        if not np.isfinite(errors).all() or errors.min() < 0:
-            raise ValueError(f"{self.object}: errors must be finite and 0 or more, got {errors.tolist()}")
         errors = np.maximum.accumulate(np.maximum(errors, TINY)[::-1])[::-1]
         object.__setattr__(self, "faces", faces)
         object.__setattr__(self, "errors", errors)
@@ -56,21 +50,17 @@ class Curve:
     def __len__(self) -> int:
         return len(self.faces)
 
-    def faces_needed(self, error: ArrayLike) -> int | np.ndarray:
-        """The fewest faces with at most an error (k,) over the diagonal: (k,) i8, or an int for one error.
+    def faces_needed(self, error: ArrayLike) -> np.ndarray:
+        """The fewest faces with at most an error (k,) over the diagonal: (k,) i8.
 
         Between measured counts linear in the logarithms; above the largest, linear down to no error at the object's own
         count; for errors above all measured ones the lowest measured count, which is safe.
-        Raises ValueError for an error that is negative or not finite.
         """
         target = np.asarray(error, dtype=np.float64)
-        if not np.isfinite(target).all() or (target < 0).any():
-            raise ValueError(f"the tolerated error must be finite and 0 or more, got {error}")
         inside = np.exp(np.interp(-np.log(np.maximum(target, TINY)), -np.log(self.errors), np.log(self.faces)))
         last, finest = self.faces[-1], self.errors[-1]
         beyond = last + (self.initial_faces - last) * (1 - np.minimum(target / finest, 1))
-        found = np.ceil(np.where(target < finest, beyond, inside) - 1e-6).astype(np.int64)  # 1e-6: exp(log(f)) is f
-        return int(found) if found.ndim == 0 else found
+        return np.ceil(np.where(target < finest, beyond, inside) - 1e-6).astype(np.int64)  # 1e-6: exp(log(f)) is f
 
     def error_at(self, faces: ArrayLike) -> np.ndarray:
         """The expected error at a count (k,), by the inverse function; below all counts the coarsest mesh's error."""
@@ -88,19 +78,12 @@ class Curve:
         return Curve(*place, self.faces[kept], self.errors[kept])
 
 
-def read_curves(rows: pd.DataFrame, initial_faces: Mapping[str, int], metric: str = "metro_mean") -> list[Curve]:
-    """The curves in the rows of the lod stage, one per object and method, in the order of their names.
+def read_curves(rows: pd.DataFrame, initial_faces: Mapping[str, int]) -> list[Curve]:
+    """The curves of Metro's mean error in the rows of the lod stage, by object and method, in the order of their names.
 
-    rows: frame with columns item, method, points, faces, metric, value. initial_faces: dict object -> face count.
-    Cells without a mesh are left out. Raises ValueError for missing columns and for objects without a face count.
+    initial_faces: dict object -> face count. Cells without a mesh are left out.
     """
-    missing = {"item", "method", "points", "faces", "metric", "value"} - set(rows.columns)
-    if missing:
-        raise ValueError(f"rows of curves lack the columns {', '.join(sorted(missing))}")
-    rows = pd.DataFrame(rows[(rows["metric"] == metric) & rows["value"].notna() & rows["faces"].notna()])
-    unknown = sorted(set(rows["item"]) - set(initial_faces))
-    if unknown:
-        raise ValueError(f"no face count is given for {', '.join(unknown[:3])}")
+    rows = pd.DataFrame(rows[(rows["metric"] == "metro_mean") & rows["value"].notna() & rows["faces"].notna()])
     curves = []
     for key, group in rows.groupby(["item", "method"]):
         name, method = cast(tuple[str, str], key)
@@ -115,6 +98,7 @@ FEWEST = 4  # a tetrahedron
 HIDDEN = 30  # T3.1.3, empirically determined there
 DECAY = 1.0  # weight decay: from 0.01 to 10 the results differ by less than their intervals
 ITERATIONS = 100  # of the quasi-Newton search: twice as many change as little
+FOCAL = float(1080 / (2 * np.tan(np.radians(60) / 2)))  # pixels: a full-HD screen with a view angle of 60 degrees
 
 
 def network(seed: int) -> Pipeline:
@@ -137,65 +121,53 @@ def linear(seed: int) -> LinearRegression:
 
 KINDS: dict[str, Callable[[int], Any]] = {"network": network, "linear": linear}
 
-Points = ArrayLike | Mapping[str, ArrayLike]  # numbers of salient points, for all or per combination
-
 
 @dataclass(frozen=True)
 class Counts:
     """The model of `fit_counts`: one regressor per combination of channels, whose predictions are averaged."""
 
     regressors: dict[str, Any]  # scikit-learn regressors
-    focal: float
 
     def faces_needed(
-        self, tolerance: ArrayLike, distance: ArrayLike, initial_faces: ArrayLike, points: Points
-    ) -> int | np.ndarray:
-        """The faces that an object needs, averaged over the combinations (T3.1.3): (k,) i8, or an int for numbers.
+        self, tolerance: ArrayLike, distance: ArrayLike, initial_faces: ArrayLike, points: Mapping[str, ArrayLike]
+    ) -> np.ndarray:
+        """(k,) i8 faces that an object needs, averaged over the combinations (T3.1.3): 4 to initial_faces.
 
         tolerance in pixels; distance in bounding-box diagonals of the object; initial_faces of its full mesh; points:
-        the number of salient points, one for all or a dict combination -> number. All may be arrays of one length.
-        Between 4 and initial_faces. Raises ValueError for values that are not finite or not above zero.
+        dict combination -> number of salient points. All may be arrays of one length.
         """
-        points = points if isinstance(points, Mapping) else dict.fromkeys(self.regressors, points)
-        missing = sorted(set(self.regressors) - set(points))
-        if missing:
-            raise ValueError(f"no number of points is given for {', '.join(missing)}")
-        predictions, full = [], np.atleast_1d(initial_faces)
+        predictions = []
         for name, regressor in self.regressors.items():
             inputs = np.broadcast_arrays(*np.atleast_1d(tolerance, distance, initial_faces, points[name]))
             predictions.append(np.exp(np.minimum(regressor.predict(_logs(*inputs)), 0)) * inputs[2])
         found = np.maximum(np.ceil(np.mean(predictions, axis=0) - 1e-6), FEWEST)
-        found = np.minimum(found, full).astype(np.int64)
-        scalar = not any(map(np.ndim, (tolerance, distance, initial_faces, *points.values())))
-        return int(found[0]) if scalar else found
+        return np.minimum(found, np.atleast_1d(initial_faces)).astype(np.int64)
 
 
 def fit_counts(
-    curves: Sequence[Curve], combinations: Sequence[str], kind: str = "network", seed: int = 0,
-    focal: float | None = None,
-) -> Counts:  # fmt: skip
+    curves: Sequence[Curve], combinations: Sequence[str], kind: str, seed: int, focal: float = FOCAL
+) -> Counts:
     """Counts learned from measured curves, one regressor per combination of channels (T3.1.3).
 
     combinations: names of methods, of which those without a curve are left out. kind: `network` or `linear`. Inputs:
     logarithms of the tolerance in pixels, the distance, the initial faces and the points plus one; output: the
     logarithm of the share of the faces. Each measured point of a curve is used at all of DISTANCES, with the tolerance
-    of its error there. Measured errors below FLOOR are left out. Equal seeds give equal models.
-    Raises ValueError for an unknown kind or where no combination has a curve.
+    of its error there. Measured errors below FLOOR are left out. Equal seeds give equal models. focal: in pixels.
+    Raises ValueError where no combination has a curve.
     """
-    if kind not in KINDS:
-        raise ValueError(f"unknown kind {kind!r}: choose one of {', '.join(KINDS)}")
-    focal = focal_length() if focal is None else focal
     regressors = {}
     for name in combinations:
         examples = [_examples(curve, focal) for curve in curves if curve.method == name]
         if sum(len(shares) for _, shares in examples):
             inputs, shares = (np.concatenate(part) for part in zip(*examples, strict=True))
-            regressors[name] = _fitted(KINDS[kind](seed), inputs, shares)
+            with warnings.catch_warnings():  # the limit of iterations is intended: it prevents overfitting
+                warnings.simplefilter("ignore", ConvergenceWarning)
+                regressors[name] = KINDS[kind](seed).fit(inputs, shares)
     if not regressors:
         raise ValueError(
             f"no measured curve above an error of {FLOOR:g} for any of {', '.join(combinations) or 'none'}"
         )
-    return Counts(regressors, focal)
+    return Counts(regressors)
 
 
 def _examples(curve, focal):
@@ -207,31 +179,5 @@ def _examples(curve, focal):
     return _logs(error * focal / distance, distance, initial, points), np.log(faces / curve.initial_faces)
 
 
-def _fitted(regressor, inputs, shares):
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", ConvergenceWarning
-        )  # the limit of iterations is intended: it prevents overfitting
-        return regressor.fit(inputs, shares)
-
-
 def _logs(tolerance, distance, initial, points):
-    for name, values in (("tolerance", tolerance), ("distance", distance), ("initial_faces", initial)):
-        if not np.isfinite(values).all() or (values <= 0).any():
-            raise ValueError(f"{name} must be finite and above 0")
-    if not np.isfinite(points).all() or (points < 0).any():
-        raise ValueError("points must be finite and 0 or more")
     return np.column_stack([np.log(tolerance), np.log(distance), np.log(initial), np.log1p(points)])
-
-
-ROWS, VIEW_ANGLE = 1080, 60.0  # a full-HD screen and a common view angle over its rows, in degrees
-
-
-def focal_length(rows: int = ROWS, view_angle: float = VIEW_ANGLE) -> float:
-    """The focal length in pixels, rows / (2 tan(view_angle / 2)): the size on the screen of one unit at distance one.
-
-    Raises ValueError for fewer than one row or an angle outside 0 to 180 degrees.
-    """
-    if rows < 1 or not 0 < view_angle < 180:
-        raise ValueError(f"a screen cannot have {rows} rows and a view angle of {view_angle} degrees")
-    return float(rows / (2 * np.tan(np.radians(view_angle) / 2)))
