@@ -16,7 +16,7 @@ from stages.report.recorded.networks import PANELS
 from stages.report.recorded.table_4_4 import CLASSES
 from stages.report.recorded.touch_events import PUBLISHED
 from stages.report.topics import build_one
-from tests.report.frames import has_ink, verdicts
+from tests.report.frames import verdicts
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
 GAIN = {"all": 0.0, "selected": 0.05, "selected_control": 0.0, "selected_training": -0.05}
@@ -184,12 +184,6 @@ def test_simulation_is_compared_by_the_number_of_real_touches(every):
 
 
 @pytest.mark.slow
-def test_the_picture_of_simulated_and_real_touches_is_drawn(every):
-    figure = build_one(topic, "figures", "real_touches", every)
-    assert has_ink(figure)
-
-
-@pytest.mark.slow
 def test_selection_simulation_and_the_best_classifier_are_judged_on_real_touches(every, measure):
     found = verdicts(CLAIMS, every)
     assert found.loc["simulation_helps_5", "verdict"] == "supported"
@@ -219,11 +213,6 @@ def test_what_it_takes_has_a_row_a_condition(every):
         "share of the touch heard": ["0.250", "1"], "taxels": ["20", "39"],
         "deviation of an event's time, steps": ["5"],
     }  # fmt: skip
-
-
-def test_the_chart_has_a_line_a_method_and_the_network(every):
-    chart = build_one(topic, "tradeoff", "touch_events_heard", every)
-    assert set(chart.frame["method"]) == set(EVENTS) and set(chart.frame["heard"]) == {0.25, 1.0}
 
 
 def test_grasps_are_counted_one_by_one(every):

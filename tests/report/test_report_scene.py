@@ -168,7 +168,6 @@ def test_the_time_of_drawing_stands_beside_the_faces(measure, measured):
     assert said in table.notes and "costs 20 ms a frame, and drawing them is 2.0 ms faster" in said
     assert "beforehand costs 20 ms, and drawing these levels is 1.0 ms faster" in said
     assert "renders nothing costs 20 ms and saves -20 [" in said
-    build_one(topic, "figures", "random_scenes", results)
 
 
 @pytest.fixture

@@ -16,7 +16,6 @@ FIGURES = {
     "figure_3_10": maps.figure_3_10,
     "figure_3_12": maps.figure_3_12,
     "figure_3_13": maps.figure_3_13,
-    "saliency": maps.saliency,
     "views_seen": maps.build,
 }
 CHARTS = {"attention": maps.by_method}

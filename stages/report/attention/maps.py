@@ -157,20 +157,6 @@ def figure_3_13(results: Results) -> Figure:
     return Figure(figure, {"name": name, "right": "; ".join(right)})
 
 
-def saliency(results: Results) -> Figure:
-    """Saliency and the strongest points."""
-    names = results.choose(results.settings.figure_objects, 6)
-    methods = results.saliency(names[0]).those_of(["itti", "glance"])
-    figure, grid = square_grid(len(methods), len(names), side=1.7, right=0.9)
-    for column, name in zip(grid.T, names, strict=True):
-        mesh, found, points = results.mesh(name), results.saliency(name), results.strong_points(name)
-        for axes, method in zip(column, methods, strict=True):
-            show(axes, mesh, vivid(found[method]), points=points[method])
-    name_panels(grid, names, map(label, methods))
-    colour_bar(figure, [0.945, 0.15, 0.012, 0.7], "saliency over its 98 % quantile")
-    return Figure(figure, {"objects": ", ".join(names), "methods": " above ".join(map(label, methods))})
-
-
 def _nearest(viewpoints: Sequence[Viewpoint], among: Iterable[int]) -> int:
     """The view number of `among` that is nearest to the other figures' viewpoint."""
     return max(among, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])

@@ -16,6 +16,6 @@ TABLES = {
     "table_5_2": partial(networks.printed, "vitac", "table_5_2_vitac_gelsight"),
     "table_5_5": partial(networks.printed, "bigs", "table_5_5_bigs_barrett"),
 }
-FIGURES = {"real_touches": networks.build_figure}
-CHARTS = {"network_sizes": networks.chart, "touch_events_heard": touch_events.chart}
+FIGURES = {}
+CHARTS = {"network_sizes": networks.chart}
 CLAIMS = [*claims.TOUCHES, *claims.NETWORKS, *claims.SERIES]

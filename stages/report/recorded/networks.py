@@ -1,8 +1,8 @@
 """Networks and simulated imprints on recorded touches: accuracies, gains over controls, and costs (T5.4).
 
 `build` has every network for photographs, `printed` the networks of T tables 5.1, 5.2 and 5.5 beside the thesis's
-numbers, and `chart` accuracy against cost. `build_table` and `build_figure` compare real touches alone with real
-touches and simulated imprints; the table is of kNN, the figure of kNN and the small network.
+numbers, and `chart` accuracy against cost. `build_table` compares real touches alone with real touches and simulated
+imprints, by kNN.
 """
 
 from itertools import pairwise
@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from haptic_glance.base.timing import CLOCK
 from haptic_glance.know.split import Split, shared_by
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, GREY, INK, MARKERS, label, place_names, plain_logarithm, plt
+from stages.report.drawing import INK, label, place_names, plain_logarithm, plt
 from stages.report.items import Figure, Table
 from stages.report.networks import MODES, PRINTED, STARTS, origin
 from stages.report.pareto import NOISE, ON, placed, ticks
@@ -128,7 +128,6 @@ SIMULATIONS = {
     "resting_grain": "resting, skin, gain and grain", "resting_small": "resting, objects at 56 %",
 }  # fmt: skip
 SHOWN = "knn"  # the best of the five on real touches
-PANELS = (SHOWN, "deep_learning")  # and the one that simulation might help to train
 
 
 def build_table(results: Results) -> Table:
@@ -145,34 +144,6 @@ def build_table(results: Results) -> Table:
     wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
     words = {"way": _way(*way), "shares": ", ".join(said), "best": _best(frame)}
     return Table(frame, wide, words, Ranking(wide.columns[-1]))
-
-
-def build_figure(results: Results) -> Figure:
-    """Accuracy against the number of real touches in training, with and without simulated imprints."""
-    frame, _ = _accuracies(results)
-    frame = frame[frame["aligned"] == (frame["simulation"] != "none")]
-    kinds = [kind for kind in SIMULATIONS if kind in set(frame["simulation"])]
-    ticks = sorted(set(frame["touches"]))
-    figure, panels = plt.subplots(1, 2, figsize=(9.4, 4.0), sharey=True)
-    for axes, classifier in zip(panels, PANELS, strict=True):
-        for kind, marker, tint in zip(kinds, MARKERS, [INK, *CYCLE], strict=False):
-            mine = frame[(frame["simulation"] == kind) & (frame["classifier"] == classifier)].sort_values("touches")
-            place, real = [ticks.index(count) for count in mine["touches"]], kind == "none"
-            axes.plot(
-                place, 100 * mine["accuracy"], marker=marker, color=tint, lw=2.2 if real else 1.3, ms=4.5,
-                label="real touches alone" if real else SIMULATIONS[kind],
-            )  # fmt: skip
-            if real:
-                axes.fill_between(place, 100 * mine["low"], 100 * mine["high"], color=INK, alpha=0.12, lw=0)
-        axes.axhline(10, color=GREY, lw=0.9, ls=":")
-        axes.text(1.01, 10, "chance", transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
-        axes.set_xticks(range(len(ticks)), ticks)
-        axes.set(title=label(classifier), xlabel="real touches of each class in training", ylim=(0, 100))
-        axes.grid(axis="y")
-    panels[0].set_ylabel("accuracy on real touches, %")
-    explained = panels[0].get_legend_handles_labels()
-    figure.legend(*explained, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=3, fontsize=9)
-    return Figure(figure)
 
 
 def _accuracies(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:

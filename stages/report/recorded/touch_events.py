@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pandas as pd
 
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, GREY, MARKERS, label, plt
-from stages.report.items import Figure, Table
+from stages.report.drawing import label
+from stages.report.items import Table
 from stages.report.results import Results
 from stages.report.tables import Ranking, grouped, number, percent, records, signed, with_interval, within
 
@@ -71,31 +71,6 @@ def conditions(results: Results) -> Table:
     wide = wide.pivot(index=["condition", "level"], columns="name", values="cell")
     wide = wide.reindex(frame.set_index(["condition", "level"]).index.unique()).rename_axis(columns=None).reset_index()
     return Table(frame, wide.assign(condition=wide["condition"].map(CONDITIONS), level=wide["level"].map(number)))
-
-
-def chart(results: Results) -> Figure:
-    """Accuracy against the share of the touch that was heard, within the training part."""
-    frame = pd.DataFrame([
-        {"group": group, "method": method, "heard": heard}
-        | dict(zip(("accuracy", "low", "high"), within(own["value"]), strict=True))
-        for condition, rows in _varied(results) if condition == "heard"
-        for (group, method, heard), own in grouped(rows, ["group", "method", "level"]) if method in SHOWN
-    ])  # fmt: skip
-    figure, panels = plt.subplots(1, len(GROUPS), figsize=(9.4, 3.9), sharey=True)
-    for axes, (group, words) in zip(panels, GROUPS.items(), strict=True):
-        for method, tint, marker in zip(SHOWN, CYCLE, MARKERS, strict=False):
-            own = frame[(frame["group"] == group) & (frame["method"] == method)]
-            across, ends = 100 * own["heard"], 100 * own[["accuracy", "low", "high"]]
-            axes.plot(across, ends["accuracy"], marker=marker, color=tint, lw=1.6, ms=5, label=label(method))
-            axes.fill_between(across, ends["low"], ends["high"], color=tint, alpha=0.13, lw=0)
-        axes.axhline(100 * SPIKING[group], color=GREY, lw=1.1, ls="--", label="TactileSGNet, whole touch")
-        axes.set(title=words, xlabel="share of the touch heard, %", ylim=(0, 100), xlim=(0, 103))
-        axes.grid(True)
-    panels[0].set_ylabel("accuracy, %")
-    explained = panels[0].get_legend_handles_labels()
-    figure.legend(*explained, loc="lower center", bbox_to_anchor=(0.5, 0.98), ncols=len(SHOWN) + 1, fontsize=9)
-    figure.tight_layout()
-    return Figure(figure, frame=frame)
 
 
 def _line(own: pd.DataFrame) -> dict[str, str]:

@@ -10,7 +10,6 @@ TABLES = {
     "face_counts": counts.counts_table,
 }
 FIGURES = {
-    "random_scenes": random.random_figure,
     "scene": counts.frames,
     "faces_by_task": random.needs_figure,
     "face_counts": counts.figure,

@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
 from stages.engine.statistics import interval
 from stages.report.claims import Claim
-from stages.report.drawing import CYCLE, GREY, INK, plain_logarithm, plt
+from stages.report.drawing import CYCLE, INK, plain_logarithm, plt
 from stages.report.effects import side, statistic
 from stages.report.items import Figure, Table
 from stages.report.results import NotRun, Results, some
@@ -192,39 +191,6 @@ def random_table(results: Results) -> Table:
         "drawing": drawing(results), "planning": planning(results),
     }  # fmt: skip
     return Table(pd.DataFrame(frame), shown, words)
-
-
-def random_figure(results: Results) -> Figure:
-    """The saving in each scene, sorted, at an equal displacement and at an equal error; and online beside offline."""
-    wide, _ = plans(results)
-    drawing, panels = plt.subplots(1, 3, figsize=(10.2, 4.0))
-    for plan, marker in (
-        ((OURS, ""), "o"),
-        (("beforehand", "displacement"), "s"),
-        (("every_level", "displacement"), "^"),
-    ):
-        if plan in _keys(wide):
-            _sorted(panels[0], 100 * fewer(wide, plan), COLOURS[plan[0]], NAMES[plan[0]], marker)
-    panels[0].set(ylabel="faces saved over uniform levels, %", title=f"equal {EQUAL['displacement']}")
-    for rival, marker in (("uniform", "o"), ("uniform_size", "s")):
-        _sorted(panels[1], 100 * saving(wide, (rival, "error")), COLOURS[rival], NAMES[rival], marker)
-    panels[1].set(ylabel="faces that ours saves, %", title=f"equal {EQUAL['error']}")
-    _sorted(panels[2], _extra(wide), COLOURS["online"], NAMES["online"])
-    panels[2].axhline(ALLOWED, color=GREY, lw=1, ls=":")
-    panels[2].set(ylabel="more faces than ours, %", title="what foresight is worth")
-    for axes in panels:
-        axes.axhline(0, color=INK, lw=0.8)
-        axes.set(xlabel="scenes, sorted")
-        axes.title.set_fontsize(10.5)
-        axes.grid(axis="y")
-        axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.45, -0.18))
-    drawing.tight_layout(w_pad=2)
-    return Figure(drawing, {"scenes": wide.index.get_level_values("group").nunique(), "allowed": f"{ALLOWED:g}"})
-
-
-def _sorted(axes: Axes, values: pd.Series, tint: str, name: str, marker: str = "o") -> None:
-    label = f"{name}: {with_interval(*interval(values), places=0 if values.mean() > 10 else 1)}"
-    axes.plot(range(1, len(values) + 1), values.sort_values(), marker, ms=4, mew=0, color=tint, label=label)
 
 
 ALLOWED = 5.0  # per cent more faces that an online planner may need
