@@ -4,34 +4,26 @@ Reads data/SET/meshes, data/SET/weights (people's attention), data/SET/salient_p
 data/reference/semantics.csv. Takes pictures of each object from all round, groups the objects by convexity, Gaussian
 curvature and eccentricity and by three levels of meaning, trains a head per task on each network of fixation.methods,
 or a network per task, and projects the maps of all tasks and of their entropy-weighted mean to the vertices. Writes
-data/SET/fixation: NAME.npz (below), tasks.csv (the class of every object in every task, and its measures), elbow.csv
-(sums of squared distances over the number of clusters), heads/METHOD/TASK.npz of frozen and random networks. The rows
-are in reports/measurements/SET/fixation.csv.gz; they also hold the classes and the sums of squared distances.
+data/SET/fixation: NAME.npz (below), heads/METHOD/TASK.npz of frozen and random networks. The rows are in
+reports/measurements/SET/fixation.csv.gz; they also hold the class of every object in every task, its measures, and the
+sums of squared distances over the number of clusters.
 
 NAME.npz has METHOD.TASK (n,) f2, the attention at the vertices in 0..1; METHOD.TASK.views (3, n), that in each of the
-three evaluated views; METHOD.maps (3, t, i, j), their Grad-CAM maps in the order of the tasks in tasks.csv; visible
+three evaluated views; METHOD.maps (3, t, i, j), their Grad-CAM maps in the order of the tasks in the rows; visible
 (3, n), the vertices visible in each of them; seen (n,), the vertices visible in any view.
 """
 
 import dataclasses
 import functools
 import shutil
-import sys
 from collections.abc import Mapping
-from pathlib import Path
 
-import pandas as pd
-
-from haptic_glance.base.files import write_table
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes import Params as Meshes
 
 from . import COLUMNS, Params, attention, backbone, finetune
-from . import backbone as pictures
-from . import backbone as trunk
-from . import finetune as heads
-from .agreement import summary, verdicts
+from .agreement import summary
 from .backbone import TRAINED, Method, available, check
 from .tasks import SEMANTICS, assign_classes, viewpoint_sphere
 
@@ -39,14 +31,6 @@ HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".trunk", ".rates", ".ca
 PICTURES, ALL_PICTURES = "fixation/.pictures/{}.npz", "fixation/.pictures"
 NETWORK, POOLED = "fixation/.networks/{}.npz", "fixation/.pooled"
 TRUNK, RATE = "fixation/.trunk/{}", "fixation/.rates/{}.npz"
-
-
-def measures_of(rows: Rows) -> dict[str, dict[str, float]]:
-    """dict object -> dict measure -> value."""
-    found: dict[str, dict[str, float]] = {}
-    for row in rows:
-        found.setdefault(row["item"], {})[row["metric"]] = row["value"]
-    return found
 
 
 def task_rows(tasks: Mapping[str, Mapping[str, str]], curves: Mapping[str, tuple[dict[int, float], int]]) -> Rows:
@@ -62,17 +46,6 @@ def task_rows(tasks: Mapping[str, Mapping[str, str]], curves: Mapping[str, tuple
     return rows
 
 
-def write_tasks(
-    folder: Path, measures: Mapping[str, Mapping[str, float]], tasks: Mapping[str, Mapping[str, str]], rows: Rows
-) -> None:
-    """Writes tasks.csv and elbow.csv. rows: those of task_rows."""
-    classes = {f"{task}_class": pd.Series(dict(known)) for task, known in tasks.items()}
-    table = pd.DataFrame(measures).T.assign(**classes)
-    write_table(folder / "tasks.csv", table.rename_axis("object").reset_index())
-    elbow = [row | {"ssd": row["value"]} for row in rows if row["metric"] == "ssd"]
-    write_table(folder / "elbow.csv", pd.DataFrame(elbow, columns=["task", "clusters", "ssd", "chosen"]))
-
-
 def train(
     stage: StageRun, method: Method, settings: Params, objects: list[str], tasks: Mapping[str, Mapping[str, str]]
 ) -> None:
@@ -81,7 +54,7 @@ def train(
     if method.mode in TRAINED:
         inputs = [ALL_PICTURES]
         if method.mode == "last_block":
-            stage.each(functools.partial(trunk.cache_trunk, **given), objects, [PICTURES])
+            stage.each(functools.partial(backbone.cache_trunk, **given), objects, [PICTURES])
             inputs = [TRUNK.format(method.name), RATE.format(method.name)]
             choose = functools.partial(finetune.choose_rate, objects=objects, tasks=tasks, **given)
             stage.each(choose, [method.name], inputs[:1])
@@ -93,7 +66,7 @@ def train(
         stage.each(prepare, [method.name], [ALL_PICTURES])
     reads = [PICTURES, NETWORK.format(method.name)]  # only a random method has one
     stage.each(functools.partial(backbone.compute_maps, **given), objects, reads)
-    stage.each(functools.partial(heads.train_head, tasks=tasks, **given), tasks.keys(), [f"{POOLED}/{method.name}"])
+    stage.each(functools.partial(finetune.train_head, tasks=tasks, **given), tasks.keys(), [f"{POOLED}/{method.name}"])
 
 
 def made_by(method: Method) -> list[str]:
@@ -112,13 +85,13 @@ def run(workspace: Workspace) -> None:
     data, each = workspace.data, dataclasses.replace(settings, methods=[])  # what an object or one method depends on
     with StageRun(workspace, "fixation", COLUMNS, inputs=("meshes", "salient_points", "weights")) as stage:
         objects, seed = stage.objects, stage.seed
-        take = functools.partial(pictures.take_pictures, data=data, settings=each)
-        measures = measures_of(stage.each(take, objects, reads=("meshes/{}.npz",)))
+        take = functools.partial(backbone.take_pictures, data=data, settings=each)
+        measures: dict[str, dict[str, float]] = {}  # of each object's shape
+        for row in stage.each(take, objects, reads=("meshes/{}.npz",)):
+            measures.setdefault(row["item"], {})[row["metric"]] = row["value"]
         source = workspace.settings(Meshes).source
         tasks, curves = assign_classes(measures, source, seed, workspace.root / SEMANTICS)
-        classes = task_rows(tasks, curves)
-        stage.rows += classes
-        write_tasks(stage.folder, measures, tasks, classes)
+        stage.rows += task_rows(tasks, curves)
         for method in methods:
             train(stage, method, each, objects, tasks)
         measure = functools.partial(
@@ -129,8 +102,6 @@ def run(workspace: Workspace) -> None:
         stage.each(measure, objects, [*reads, *(path for method in methods for path in made_by(method))])
         stage.rows += [{"method": name, "metric": "accuracy", "note": reason} for name, reason in missing.items()]
         stage.metrics(summary(stage.rows, {task: len(set(known.values())) for task, known in tasks.items()}, seed))
-        for line in verdicts(pd.DataFrame(stage.rows), seed):
-            print(f"fixation: {line}", file=sys.stderr)
         for cache in HIDDEN:
             shutil.rmtree(stage.folder / cache, ignore_errors=True)
     print(f"fixation: {len(objects)} objects, {views} views, tasks {', '.join(tasks)}, {len(methods)} methods")

@@ -52,7 +52,8 @@ def agreement_rows(
             found |= {"distance": least, "distance_mean": mean, "distance_share": least / mesh.diagonal}
             found["distance_maximum"] = centre_distance(mesh.vertices, fixations["density"], values, mask, top=1)[0]
             found["half_share"] = half_share(values[mask], fixations["areas"][mask])
-        rows += [{"view": view, "metric": metric, "value": none_if_nan(value)} for metric, value in found.items()]
+        known = {metric: value if np.isfinite(value) else None for metric, value in found.items()}
+        rows += [{"view": view, "metric": metric, "value": value} for metric, value in known.items()]
     truth = GroundTruth(fixations["amounts"], fixations["density"], fixations["areas"])
     return rows + [
         {"view": ALL_VIEWS, "metric": metric, "value": function(whole, truth)}
@@ -77,11 +78,6 @@ def pearson(one: np.ndarray, other: np.ndarray) -> float:
     one, other = one - one.mean(), other - other.mean()
     size = np.sqrt((one @ one) * (other @ other))
     return float(one @ other / size) if size > 0 else np.nan
-
-
-def none_if_nan(value: float) -> float | None:
-    """The value, or None instead of NaN."""
-    return value if np.isfinite(value) else None
 
 
 def task_correlations(values: np.ndarray, seen: np.ndarray, names: Sequence[str]) -> list[dict]:
@@ -138,22 +134,6 @@ def agreement(frame: pd.DataFrame) -> dict[str, pd.Series]:
     return found
 
 
-def verdicts(frame: pd.DataFrame, seed: int) -> list[str]:
-    """Sentences that compare each control with each model trained on photographs, over the objects."""
-    found = agreement(frame)
-    trained = [name for name in found if name.endswith(("-frozen", "-last_block", "-finetuned"))]
-    controls = [name for name in found if name.endswith("-random") or name in ("random", "centre_prior")]
-    sentences = []
-    for name in trained:
-        for control in controls:
-            if control.endswith("-random") and control.rpartition("-")[0] != name.rpartition("-")[0]:
-                continue
-            mean, low, high = interval(found[name] - found[control], seed=seed)
-            verdict = "loses" if low > 0 else "wins" if high < 0 else "does not differ"
-            sentences.append(f"{control} {verdict} against {name} (PCC {mean:+.3f}, {low:+.3f} to {high:+.3f})")
-    return sentences
-
-
 def half_share(values: np.ndarray, areas: np.ndarray) -> float:
     """The least share of a surface that holds half of a saliency: 0.5 where it is even, near 0 for one small place.
 
@@ -176,8 +156,3 @@ def centre_prior(size: int) -> np.ndarray:
     """(size, size) f8 in 0..1: a Gaussian at the centre of the image."""
     across = np.exp(-(((np.arange(size) - (size - 1) / 2) / (SPREAD * size)) ** 2) / 2)
     return across[:, None] * across
-
-
-def random_saliency(count: int, generator: np.random.Generator) -> np.ndarray:
-    """(count,) f8 in 0..1: an independent random value per vertex."""
-    return generator.random(count)

@@ -18,7 +18,7 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.salient_points.measure import read_saliency
 
 from . import Params
-from .agreement import ALL_VIEWS, agreement_rows, centre_prior, random_saliency, task_correlations
+from .agreement import ALL_VIEWS, agreement_rows, centre_prior, task_correlations
 from .backbone import TRAINED, Method, read_maps, read_pictures
 from .finetune import read_cams, read_head
 from .fusion import entropy, fuse, highest_level
@@ -139,7 +139,7 @@ def baseline_rows(
     rows = ground_truth.rows(
         "control", "centre_prior", prior[ground_truth.evaluated, 0], mean_over_views(prior, ground_truth.seen)[0], None
     )
-    found = {"random": random_saliency(len(mesh.vertices), rng(seed, f"{ground_truth.name} noise"))}
+    found = {"random": rng(seed, f"{ground_truth.name} noise").random(len(mesh.vertices))}
     saliency = read_saliency(data / "salient_points" / f"{ground_truth.name}.npz")
     found |= {rival: saliency[rival].astype(np.float64) for rival in RIVALS if rival in saliency}
     for rival, values in found.items():

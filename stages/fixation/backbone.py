@@ -184,7 +184,8 @@ def folded_network(made: Path, method: Method, source: str, seed: int, state: st
     """
     network = build(method.network, 2, MODES[method.mode], seed, source)
     if state:
-        read_state(made, method.name, network)
+        stored = read_arrays(state_path(made, method.name))
+        network.load_state_dict({key: torch.as_tensor(value) for key, value in stored.items()})
     network.convolutions = fuse(network.convolutions)  # type: ignore[assignment]  # a graph of the same layers
     return network
 
@@ -205,11 +206,6 @@ def read_maps(folder: Path, method: str, name: str) -> tuple[np.ndarray, float]:
     return stored["maps"], float(stored["seconds"])
 
 
-def read_pooled(folder: Path, method: str, name: str) -> np.ndarray:
-    """(v, C) f4: the mean of each map."""
-    return read_arrays(folder / ".pooled" / method / f"{name}.npz")["pooled"]
-
-
 def state_path(folder: Path, name: str) -> Path:
     """The file of a network's weights, for the workers."""
     return folder / ".networks" / f"{name}.npz"
@@ -219,12 +215,6 @@ def write_state(folder: Path, name: str, network: Network) -> None:
     """Stores a network's weights for the workers."""
     state = {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in network.state_dict().items()}
     write_arrays(state_path(folder, name), **state)
-
-
-def read_state(folder: Path, name: str, network: Network) -> None:
-    """Loads the stored weights into a network."""
-    stored = read_arrays(state_path(folder, name))
-    network.load_state_dict({key: torch.as_tensor(value) for key, value in stored.items()})
 
 
 class Tail(Network):

@@ -33,7 +33,6 @@ from .backbone import (
     cached_task,
     network_inputs,
     read_pictures,
-    read_pooled,
     read_trunk,
     to_images,
 )
@@ -239,7 +238,7 @@ def train_head(
 
 def read_features(folder: Path, method: str, known: Mapping[str, str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(class names (k,) of the objects, ids (n,) of the object of each picture, features (n, C) of the pictures)."""
-    parts = [read_pooled(folder, method, name) for name in known]
+    parts = [read_arrays(folder / ".pooled" / method / f"{name}.npz")["pooled"] for name in known]
     return (
         np.array(list(known.values())),
         np.repeat(np.arange(len(parts)), [len(p) for p in parts]),

@@ -51,6 +51,9 @@ class Recording:
     test_objects: tuple[str, ...] = ()
 
 
+BY_OBJECT = Split.RANDOM, Split.OBJECTS
+
+
 def _pressure(path: Path) -> dict[str, Recording]:
     touches = pressure_images(read_pressure_images(path))
     return {"pressure": Recording(touches, (Split.RANDOM, Split.BLOCKS), True)}
@@ -66,29 +69,22 @@ def _grasps(path: Path) -> dict[str, Recording]:
     }
 
 
-def _vitac(path: Path) -> dict[str, Recording]:
-    return {"vitac": Recording(read_vitac(path), (Split.RANDOM, Split.OBJECTS), True)}
-
-
-def _vt60(path: Path) -> dict[str, Recording]:
-    return {"vt60": Recording(read_vt60(path), (Split.RANDOM, Split.OBJECTS), True)}
-
-
 def _bigs(path: Path) -> dict[str, Recording]:
     kinds = {"bigs": read_bigs(path), "bigs_instant": read_bigs(path, instant=True)}
-    return {name: Recording(touches, (Split.RANDOM, Split.OBJECTS), False) for name, touches in kinds.items()}
+    return {name: Recording(touches, BY_OBJECT, False) for name, touches in kinds.items()}
 
 
 def _schunk(path: Path) -> dict[str, Recording]:
     cells = {"schunk": None, "schunk_instant": (27, 6), "schunk_coarse": BIGS}
     kinds = {name: read_schunk(path, number) for name, number in cells.items()}
-    return {name: Recording(touches, (Split.RANDOM, Split.OBJECTS), False) for name, touches in kinds.items()}
+    return {name: Recording(touches, BY_OBJECT, False) for name, touches in kinds.items()}
 
 
 # {kind of recording: reader of {what is recognised: Recording}}
 SOURCES: dict[str, Callable[[Path], dict[str, Recording]]] = {
-    "pressure_images": _pressure, "biotac_grasps": _grasps, "vitac": _vitac, "vt60": _vt60, "bigs": _bigs,
-    "schunk": _schunk,
+    "pressure_images": _pressure, "biotac_grasps": _grasps, "bigs": _bigs, "schunk": _schunk,
+    "vitac": lambda path: {"vitac": Recording(read_vitac(path), BY_OBJECT, True)},
+    "vt60": lambda path: {"vt60": Recording(read_vt60(path), BY_OBJECT, True)},
 }  # fmt: skip
 
 

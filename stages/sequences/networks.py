@@ -111,7 +111,8 @@ class ImageInputs:
 
     def __init__(self, images: np.ndarray, train: np.ndarray) -> None:
         self.images = images
-        histogram = np.sum([np.bincount(part.ravel(), minlength=256) for part in _batches(images, train)], axis=0)
+        parts = np.array_split(train, -(-len(train) // PREDICTION_BATCH))
+        histogram = np.sum([np.bincount(images[part].ravel(), minlength=256) for part in parts], axis=0)
         share = histogram / histogram.sum()
         self.mean = float(share @ np.arange(256))
         self.std = max(float(np.sqrt(share @ (np.arange(256) - self.mean) ** 2)), 1.0)
@@ -182,7 +183,3 @@ def class_probabilities(network: torch.nn.Module, inputs: ImageInputs | NormalIn
     found = torch.cat(parts)
     even = torch.full_like(found, 1 / found.shape[1])
     return torch.where(found.isfinite().all(dim=1, keepdim=True), found, even).numpy()
-
-
-def _batches(images, ids):
-    return (images[part] for part in np.array_split(ids, -(-len(ids) // PREDICTION_BATCH)))

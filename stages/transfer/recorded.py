@@ -296,24 +296,21 @@ def _filling():
 VITAC_LAYOUT = (
     "ViTac: a folder of pictures per cloth, 11t and 11v (or CD0011 and vis0011) for the cloth 11 by touch and camera"
 )
-FOLDERS = {"touch": r"(?:(\d+)t(?:_test)?|CD(\d+))", "camera": r"(?:(\d+)v(?:_test)?|vis(\d+))"}
+TOUCHED = re.compile(r"(\d+)t(?:_test)?|CD(\d+)")  # folders of a cloth by touch
 
 
-def read_vitac(path: str | Path, sense: str = "touch", size: int = SIZE) -> Recorded:
-    """The Recorded of ViTac, sense `touch` or `camera`; classes are cloths by number; groups: the recording.
+def read_vitac(path: str | Path, size: int = SIZE) -> Recorded:
+    """The Recorded of ViTac by touch; classes are cloths by number; groups: the recording.
 
     Pictures are resized to size x size pixels. A group is the larger picture or the film that a picture was cut from,
-    according to its name; photographs of one cloth may all be in one group. Raises ValueError that names what is
-    missing.
+    according to its name. Raises ValueError that names what is missing.
     """
-    if sense not in FOLDERS:
-        raise ValueError(f"unknown sense {sense!r}, known: {', '.join(FOLDERS)}")
     found = {}
     for home in sorted(existing_folder(path, VITAC_LAYOUT).iterdir()):
-        if match := re.fullmatch(FOLDERS[sense], home.name):
+        if match := TOUCHED.fullmatch(home.name):
             found.setdefault(int(match[1] or match[2]), []).append(home)
     if len(found) < 2:
-        raise ValueError(f"{path} holds {len(found)} folders of cloths by {sense}; expected is {VITAC_LAYOUT}")
+        raise ValueError(f"{path} holds {len(found)} folders of cloths by touch; expected is {VITAC_LAYOUT}")
     return collect({str(number): _cloth(number, found[number]) for number in sorted(found)}, size)
 
 
@@ -327,19 +324,16 @@ def _cloth(number, homes):
 
 
 VT60_LAYOUT = "VT-60: touch/NN_CLASS/0I/*.jpg and vision/NN_CLASS/0I/*.jpg, classes 01 to 10, objects 01 to 06 of each"
-SENSES = {"touch": "touch", "camera": "vision"}
 CLASSES, VT60_OBJECTS = 10, 6
 
 
-def read_vt60(path: str | Path, sense: str = "touch", size: int = SIZE) -> Recorded:
-    """The Recorded of VT-60, sense `touch` or `camera`; groups: the object, CLASS/0I, as the authors split it.
+def read_vt60(path: str | Path, size: int = SIZE) -> Recorded:
+    """The Recorded of VT-60 by touch; groups: the object, CLASS/0I, as the authors split it.
 
     Pictures are not cropped, and resized to size x size pixels. Raises ValueError that names the first folder or
     picture missing.
     """
-    if sense not in SENSES:
-        raise ValueError(f"unknown sense {sense!r}, known: {', '.join(SENSES)}")
-    root = existing_folder(existing_folder(path, VT60_LAYOUT) / SENSES[sense], VT60_LAYOUT)
+    root = existing_folder(existing_folder(path, VT60_LAYOUT) / "touch", VT60_LAYOUT)
     files = {}
     for number in range(1, CLASSES + 1):
         home = _class_folder(root, number)

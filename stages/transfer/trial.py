@@ -73,9 +73,13 @@ def process(
         if learning.validation is not None:
             validation_accuracy = _accuracy_on(task, model, touches, split.validation)
         train_accuracy = _accuracy_on(task, model, touches, learned)
-    store(name, folder, model, touches.labels, split.test, found, weights=trial.repetition == 0)
+    truth = touches.labels[split.test]
+    write_arrays(folder / "predictions" / f"{name}.npz", test=split.test, true=truth, scores=found.numpy())
+    if trial.repetition == 0:
+        state = {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in model.state_dict().items()}
+        write_arrays(folder / "networks" / f"{name}.npz", **state)
     values = {
-        "accuracy": accuracy(found, touches.labels[split.test]),
+        "accuracy": accuracy(found, truth),
         "train_accuracy": train_accuracy,
         "validation_accuracy": validation_accuracy,
         "chance": 1 / len(touches.classes),
@@ -110,22 +114,6 @@ def curve_rows(learning: Learning) -> Iterator[dict]:
     for number, values in enumerate(learning.curve if learning.validation is not None else [], start=1):
         for name in ("loss", "train_accuracy", "validation_accuracy"):
             yield {"epoch": number, "metric": f"curve_{name}", "value": values[name]}
-
-
-def store(
-    name: str,
-    folder: Path,
-    model: torch.nn.Module,
-    labels: np.ndarray,
-    test: np.ndarray,
-    found: torch.Tensor,
-    weights: bool,
-) -> None:
-    """Writes predictions/NAME.npz and, if `weights`, networks/NAME.npz."""
-    write_arrays(folder / "predictions" / f"{name}.npz", test=test, true=labels[test], scores=found.numpy())
-    if weights:
-        state = {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in model.state_dict().items()}
-        write_arrays(folder / "networks" / f"{name}.npz", **state)
 
 
 def prepare(trial: Trial, touches: Touches, train: np.ndarray, settings: Params, seed: int) -> tuple[Network, Task]:

@@ -1,10 +1,9 @@
 """Centres of fixation, their distance, and what is judged."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from stages.fixation.agreement import agreement_rows, centre_prior, half_share, summary, task_correlations, verdicts
+from stages.fixation.agreement import agreement_rows, centre_prior, half_share, summary, task_correlations
 from stages.fixation.fusion import subtractive_clusters
 from stages.fixation.places import centre_distance, centres
 
@@ -137,7 +136,7 @@ def test_the_centre_prior_is_highest_in_the_middle():
     assert np.unravel_index(prior.argmax(), prior.shape) == (4, 4) and prior[4, 4] == 1 and (prior == prior.T).all()
 
 
-def test_it_is_said_who_loses():
+def test_models_and_controls_have_their_mean_correlation_in_the_metrics():
     rows = [
         {"item": k, "method": method, "task": task, "view": view, "metric": "pcc", "value": base + slope * k}
         for k in range(6)
@@ -147,9 +146,5 @@ def test_it_is_said_who_loses():
             ("control", "centre_prior", 0.7, 0.02), ("other-random", "ewigc", 0.0, 0.01),
         )
     ]  # fmt: skip
-    said = verdicts(pd.DataFrame(rows), 0)
-    assert len(said) == 2
-    assert any(line.startswith("net-random loses against net-frozen") for line in said)
-    assert any(line.startswith("centre_prior wins against net-frozen") for line in said)
     numbers = summary(rows, {"level_1": 2}, 0)
     assert numbers["pcc"]["net-frozen"]["value"] == pytest.approx(0.425) and numbers["classes"] == {"level_1": 2}

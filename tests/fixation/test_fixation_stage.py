@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
-from haptic_glance.base.files import read_arrays, read_table, sha256, write_arrays, write_mesh, write_text
+from haptic_glance.base.files import read_arrays, sha256, write_arrays, write_mesh, write_text
 from stages.engine.rows import read_rows
 from stages.fixation import Params, backbone
 from stages.fixation import __main__ as stage
@@ -92,13 +92,9 @@ def check_files(folder, rows, n):
     assert stored[f"{METHOD}.maps"].shape == (3, len(kept), 2, 2)
     assert stored["visible"].shape == (3, n) and stored["seen"].mean() > 0.9
     assert {key for key, values in stored.items() if values.ndim == 1 and "." in key} == set(names)
-    tasks = read_table(folder / "tasks.csv").set_index("object")
     level = rows[(rows["metric"] == "class") & (rows["task"] == "level_2")].set_index("item")["label"]
-    assert level.to_dict() == tasks["level_2_class"].to_dict() == {
-        "ball": "round", "egg": "round", "torus": "hollow", "tube": "hollow"
-    }  # fmt: skip
-    elbow = read_table(folder / "elbow.csv")
-    assert elbow["ssd"].tolist() == rows[rows["metric"] == "ssd"]["value"].tolist() and elbow["chosen"].any()
+    assert level.to_dict() == {"ball": "round", "egg": "round", "torus": "hollow", "tube": "hollow"}
+    assert rows.loc[rows["metric"] == "ssd", "value"].gt(0).any() and (rows["chosen"].astype(str) == "True").any()
 
 
 def check_judged(rows):
