@@ -20,6 +20,7 @@ from haptic_glance.look.agreement import GroundTruth, auc, nss
 from haptic_glance.look.marks import check_on_mesh, read_marks
 from haptic_glance.look.points.detectors import height, random_vertices
 from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes import Params as MeshesParams
@@ -103,10 +104,7 @@ def run(workspace: Workspace) -> None:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{metric.method: the mean over the objects}."""
-    values: dict[str, list[float]] = {}
-    for row in rows:
-        values.setdefault(f"{row['metric']}.{row['method']}", []).append(row["value"])
-    return {name: round(float(np.mean(own)), 6) for name, own in values.items()}
+    return named_means((f"{row['metric']}.{row['method']}", row["value"]) for row in rows)
 
 
 if __name__ == "__main__":

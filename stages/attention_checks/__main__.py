@@ -8,9 +8,8 @@ the object (glance_nested).
 
 import functools
 
-import numpy as np
-
 from haptic_glance.look.weights.weights import GLANCE
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
@@ -35,11 +34,11 @@ def run(workspace: Workspace) -> None:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{METHOD, or METHOD.VIEWS: its mean NSS}."""
-    found: dict[str, list[float]] = {}
-    for row in rows:
-        if row["metric"] == "nss":
-            found.setdefault(".".join([row["method"], *filter(None, [row.get("views")])]), []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+    return named_means(
+        (".".join([row["method"], *filter(None, [row.get("views")])]), row["value"])
+        for row in rows
+        if row["metric"] == "nss"
+    )
 
 
 if __name__ == "__main__":

@@ -10,15 +10,13 @@ reports/measurements/SET/coarse_imprints.csv.gz.
 import dataclasses
 import functools
 
-import numpy as np
-
 from haptic_glance.deep.weights import imagenet_state
-from stages.engine.run import Rows, StageRun
+from stages.engine.rows import named_means
+from stages.engine.run import StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes.collect import read_classes
 
 from . import COLUMNS, Params, trial
-from . import trial as press
 from .trial import VARIANTS
 
 
@@ -36,22 +34,14 @@ def run(workspace: Workspace) -> None:
         each = dataclasses.replace(settings, variants=[])  # what an object or a variant depends on
         arrays = sorted({variant.cells for variant in chosen})
         work = functools.partial(
-            press.process_press, data=workspace.data, settings=each, arrays=arrays, seed=stage.seed
+            trial.process_press, data=workspace.data, settings=each, arrays=arrays, seed=stage.seed
         )
         objects = [name for names in members.values() for name in names]
         stage.each(work, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
         train = functools.partial(trial.process, made=stage.folder, members=members, settings=each, seed=stage.seed)
         stage.each(train, settings.variants, reads=["coarse_imprints"])
-        stage.metrics(summary(stage.rows))
+        stage.metrics(named_means((row["setting"], row["value"]) for row in stage.rows))
     print(f"coarse_imprints: {workspace.dataset}, {len(members)} classes, {len(chosen)} variants")
-
-
-def summary(rows: Rows) -> dict[str, float]:
-    """{variant: the mean accuracy}."""
-    found: dict[str, list[float]] = {}
-    for row in rows:
-        found.setdefault(row["setting"], []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import read_table, whole_file
@@ -106,6 +107,14 @@ def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics
     found = (row for row in rows if row["metric"] in metrics)
     cells = (tuple(_shared(row.get(name)) for name in columns) for row in found)
     return pd.DataFrame(cells, columns=list(columns))
+
+
+def named_means(values: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """{name: the mean of its values}, for the gate; six digits."""
+    found: dict[str, list[float]] = {}
+    for name, value in values:
+        found.setdefault(name, []).append(value)
+    return {name: round(float(np.mean(own)), 6) for name, own in found.items()}
 
 
 def _shared(value):

@@ -18,6 +18,7 @@ from haptic_glance.know import CLASSIFIERS
 from haptic_glance.know.classifiers import COMPONENTS
 from haptic_glance.know.split import Split
 from stages.classification.recorded import PALMS, Grasps
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 
 from .splits import SPLITS, split_number
@@ -115,12 +116,12 @@ def recognition_rows(model: Model, grasps: Grasps, repetitions: int, seed: int) 
 
 def summary(rows: Rows) -> dict[str, float]:
     """{metric: number} of a run: the mean accuracy of kNN on all electrodes by task and split."""
-    found: dict[str, list[float]] = {}
     most = max(row["components"] for row in rows if "components" in row)
-    for row in rows:
-        if row.get("classifier") == "knn" and row["components"] == most and row["scaled"] == "training":
-            found.setdefault(f"{row['task']}_{row['split']}", []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+    return named_means(
+        (f"{row['task']}_{row['split']}", row["value"])
+        for row in rows
+        if row.get("classifier") == "knn" and row["components"] == most and row["scaled"] == "training"
+    )
 
 
 def _left_out_rows(model: Model, grasps: Grasps) -> Iterator[dict]:

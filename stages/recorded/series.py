@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from haptic_glance.know.split import Split
 from stages.classification.recorded import open_root
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.transfer.recorded import fingers
 
@@ -172,10 +173,7 @@ def parts(series: TouchSeries) -> Iterator[tuple[str, np.ndarray]]:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{part.method: the share of grasps recognised}."""
-    found: dict[str, list[float]] = {}
-    for row in rows:
-        found.setdefault(f"{row['part']}.{row['method']}", []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+    return named_means((f"{row['part']}.{row['method']}", row["value"]) for row in rows)
 
 
 def _rows(method: str, series: TouchSeries, part: str, out: np.ndarray, repetitions: int, seed: int) -> Iterator[dict]:

@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know.split import Split
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 
 from .series import TouchSeries, spread_taxels
@@ -57,11 +58,8 @@ def process(
 
 def summary(rows: Rows) -> dict[str, float]:
     """{group.method: the accuracy on the publisher's test part}."""
-    found: dict[str, list[float]] = {}
-    for row in rows:
-        if row["metric"] == "accuracy" and row["part"] == "test":
-            found.setdefault(f"{row['group']}.{row['method']}", []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+    scored = (row for row in rows if row["metric"] == "accuracy" and row["part"] == "test")
+    return named_means((f"{row['group']}.{row['method']}", row["value"]) for row in scored)
 
 
 def by_object(labels: np.ndarray, answers: np.ndarray) -> Iterator[dict]:

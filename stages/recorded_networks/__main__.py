@@ -10,11 +10,10 @@ import dataclasses
 import functools
 import sys
 
-import numpy as np
-
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.deep.training import CONVERGED, check_passes
 from haptic_glance.deep.weights import imagenet_state
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.recorded import Params as RecordedParams
@@ -70,13 +69,12 @@ def absent_rows(left_out: list[Trial]) -> Rows:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{data.split.method.mode.weights: the mean accuracy}; the name of trainings to convergence ends with it."""
-    found: dict[str, list[float]] = {}
+    found = []
     for row in rows:
         if row["metric"] == "accuracy" and "item" not in row and row["value"] is not None:
             name = ".".join(row[column] for column in ("data", "split", "method", "mode", "weights"))
-            name += ".converged" if row["passes"] == CONVERGED else ""
-            found.setdefault(name, []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+            found.append((name + (".converged" if row["passes"] == CONVERGED else ""), row["value"]))
+    return named_means(found)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import numpy as np
 from haptic_glance.base.rng import rng
 from haptic_glance.lod.scene.frames import Plan
 from haptic_glance.lod.scene.pictures import picture_error
+from stages.engine.rows import named_means
 
 from .compare import MethodPlan, SceneSetup
 
@@ -125,16 +126,16 @@ def summary(rows: Sequence[dict]) -> dict[str, float]:
     Of several scenes the mean.
     """
     rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all" and row["value"] is not None]
-    found: dict[str, list[float]] = {}
+    found = []
     for row in rows:
         method, matched, metric = row["method"], row["matched"], row["metric"]
         if metric in ("faces", "error", "held") and matched in ("", "error") and "unrendered" not in method:
-            found.setdefault(f"{metric}_{method}", []).append(row["value"])
+            found.append((f"{metric}_{method}", row["value"]))
         if metric.startswith("saved_"):
-            found.setdefault(f"{metric}_{matched}", []).append(row["value"])
+            found.append((f"{metric}_{matched}", row["value"]))
         if (method, matched) == ("ours", "") and metric in OF_OURS:
-            found.setdefault(metric, []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+            found.append((metric, row["value"]))
+    return named_means(found)
 
 
 def _row(setup, found, frame, metric, value):

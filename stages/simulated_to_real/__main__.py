@@ -15,6 +15,7 @@ from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_a
 from haptic_glance.base.rng import rng
 from haptic_glance.know import features
 from stages.classification.recorded import read_pressure_images
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes.collect import read_classes
@@ -88,11 +89,8 @@ def described(images: dict[str, np.ndarray]) -> trial.Touches:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{training.simulation: the mean accuracy of kNN over all numbers of real touches and splits}."""
-    found: dict[str, list[float]] = {}
-    for row in rows:
-        if row["classifier"] == "knn" and row["group"] == "all":
-            found.setdefault(".".join([row["training"], row.get("simulation", "none")]), []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+    asked = (row for row in rows if row["classifier"] == "knn" and row["group"] == "all")
+    return named_means((".".join([row["training"], row.get("simulation", "none")]), row["value"]) for row in asked)
 
 
 if __name__ == "__main__":

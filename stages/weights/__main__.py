@@ -11,11 +11,11 @@ import functools
 import sys
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import read_mesh, write_arrays, write_table
 from haptic_glance.look.weights.convexity import convexity
+from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes import Params as MeshesParams
@@ -90,11 +90,8 @@ def run(workspace: Workspace) -> None:
 
 def accuracies(rows: Rows) -> dict[str, float]:
     """The SVMs' mean accuracy for the gate: dict "TRAINING.VALIDATION" -> value, six digits."""
-    found = {}
-    for row in rows:
-        if row["metric"] == "accuracy":
-            found.setdefault(f"svm.{row['area']}.{row['training']}.{row['validation']}", []).append(row["value"])
-    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+    scored = (row for row in rows if row["metric"] == "accuracy")
+    return named_means((f"svm.{row['area']}.{row['training']}.{row['validation']}", row["value"]) for row in scored)
 
 
 if __name__ == "__main__":
