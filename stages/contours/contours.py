@@ -80,8 +80,8 @@ def sample_contours(
         tried += len(pairs)
         planes = np.concatenate([np.broadcast_to(centre, (len(pairs), 1, 3)), vertices[pairs]], axis=1)
         sequences = follow_many(surface, planes, frames, cells, pitch)
-        accepted += [
-            (pair, _as_bytes(sequence))
+        accepted += [  # imprints, the only large part, as 0..255
+            (pair, replace(sequence, images=np.round(255 * sequence.images).astype(np.uint8)))
             for pair, sequence in zip(pairs, sequences, strict=True)
             if not isinstance(sequence, str)
         ]
@@ -91,11 +91,6 @@ def sample_contours(
     return _stack(accepted, int(frames), cells), statistics | dict(
         zip(("loops", "share", "shrunk"), means, strict=True)
     )
-
-
-def _as_bytes(sequence):
-    """The Sequence with its imprints, the only large part, as 0..255."""
-    return replace(sequence, images=np.round(255 * sequence.images).astype(np.uint8))
 
 
 def _stack(accepted, frames, cells):

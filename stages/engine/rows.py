@@ -105,7 +105,8 @@ def read_rows(path: Path) -> pd.DataFrame:
 def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> pd.DataFrame:
     """Some columns of the rows of some metrics; no other is held in memory, and equal texts are one."""
     found = (row for row in rows if row["metric"] in metrics)
-    cells = (tuple(_shared(row.get(name)) for name in columns) for row in found)
+    values = ([row.get(name) for name in columns] for row in found)
+    cells = (tuple(sys.intern(value) if isinstance(value, str) else value for value in row) for row in values)
     return pd.DataFrame(cells, columns=list(columns))
 
 
@@ -115,10 +116,6 @@ def named_means(values: Iterable[tuple[str, float]]) -> dict[str, float]:
     for name, value in values:
         found.setdefault(name, []).append(value)
     return {name: round(float(np.mean(own)), 6) for name, own in found.items()}
-
-
-def _shared(value):
-    return sys.intern(value) if isinstance(value, str) else value
 
 
 # Objects of the household set whose three sizes normalisation makes equal: 50 objects are 40 shapes.

@@ -21,7 +21,7 @@ ROUNDED = 1e-3  # of the largest value: differences of measurements with six dig
 
 
 def interval(
-    values: ArrayLike, shared: float = 0.0, seed: int = 0, level: float = 0.95, statistic: Statistic = np.mean
+    values: ArrayLike, shared: float = 0.0, seed: int = 0, statistic: Statistic = np.mean
 ) -> tuple[float, float, float]:
     """(mean, low, high): bootstrap percentile interval of the values (k,), NaN left out, widened twice about the mean.
 
@@ -41,7 +41,7 @@ def interval(
     mean = float(statistic(values, axis=0))
     if not _varied(values):
         return mean, np.nan, np.nan
-    return mean, *_ends(mean, _resampled(values, seed, statistic), len(values), shared, level)
+    return mean, *_ends(mean, _resampled(values, seed, statistic), len(values), shared)
 
 
 def _varied(values: np.ndarray) -> bool:
@@ -55,7 +55,7 @@ def _resampled(values: np.ndarray, seed: int, statistic: Statistic) -> np.ndarra
     return np.asarray(statistic(values[picks], axis=1))
 
 
-def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: float) -> tuple[float, float]:
+def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: float = 0.95) -> tuple[float, float]:
     """The ends of the `interval` of n values, from their mean and the means (r,) of their resamples."""
     tail = (1 + level) / 2
     low, high = np.quantile(resampled, [1 - tail, tail])
@@ -75,7 +75,7 @@ def of_units(values: ArrayLike) -> np.ndarray:
     return found[np.isfinite(found)]
 
 
-def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
+def p_value(values: ArrayLike, shared: float = 0.0) -> float:
     """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN without interval.
 
     Not below SMALLEST, which is what RESAMPLES draws can tell.
@@ -83,7 +83,7 @@ def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
     values = of_units(values)
     if not _varied(values):
         return np.nan
-    mean, resampled = float(np.mean(values, axis=0)), _resampled(values, seed, np.mean)
+    mean, resampled = float(np.mean(values, axis=0)), _resampled(values, 0, np.mean)
     levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
     while np.ptp(levels) > SMALLEST:
         low, high = _ends(mean, resampled, len(values), shared, float(levels.mean()))
@@ -254,14 +254,14 @@ def resampled_means(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
         return (counts @ np.where(known, values, 0.0)) / (counts @ known)
 
 
-def expanded_levels(units: int, level: float = 0.95) -> tuple[float, float]:
-    """(low, high) quantiles of a bootstrap of `units` units whose interval has this level in spite of few units.
+def expanded_levels(units: int) -> tuple[float, float]:
+    """(low, high) quantiles of a bootstrap of `units` units whose interval has 95 % in spite of few units.
 
     The plain percentile interval is too narrow by t / z * sqrt(n / (n - 1)). Quantiles farther out mend that, the
     expanded percentile interval of Hesterberg (What teachers should know about the bootstrap, The American Statistician
     2015), and an end may be censored.
     """
-    tail = float(stats.norm.cdf(np.sqrt(units / (units - 1)) * stats.t.ppf((1 - level) / 2, units - 1)))
+    tail = float(stats.norm.cdf(np.sqrt(units / (units - 1)) * stats.t.ppf((1 - 0.95) / 2, units - 1)))
     return tail, 1 - tail
 
 

@@ -253,15 +253,14 @@ def show(
     values: np.ndarray | None = None,
     wires: bool = False,
     points: np.ndarray | None = None,
-    viewpoint: Viewpoint = VIEWPOINT,
     rows: int = 420,
     tints: str = MAP,
 ) -> None:
     """Draws a mesh into matplotlib axes, square and without frame; points (k,) vertex ids become red dots."""
-    image, (top, left) = squared(picture(mesh, values, wires, viewpoint, rows, tints=tints))
+    image, (top, left) = squared(picture(mesh, values, wires, VIEWPOINT, rows, tints=tints))
     axes.imshow(image)
     if points is not None:
-        down, across = visible(mesh, points, viewpoint, rows)
+        down, across = visible(mesh, points, VIEWPOINT, rows)
         axes.plot(across - left, down - top, "o", color="#D81B1B", ms=4.2, mec="white", mew=0.8, clip_on=False)
     axes.set_axis_off()
 

@@ -125,9 +125,9 @@ def blocks(
     return pd.concat(parts, ignore_index=True)
 
 
-def percent(share: float, places: int = 0, gap: str = "–") -> str:
-    """A share in per cent, `gap` where it is unknown."""
-    return f"{100 * share:.{places}f}" if share == share else gap
+def percent(share: float, places: int = 0) -> str:
+    """A share in per cent, a dash where it is unknown."""
+    return f"{100 * share:.{places}f}" if share == share else "–"
 
 
 def everywhere(results: Results, stage: str, what: str = "", **where: object) -> dict[str, pd.DataFrame]:

@@ -92,7 +92,8 @@ def write_glb(
     """
     scene = trimesh.Scene()
     for mesh, name in zip(meshes, names, strict=True):
-        scene.add_geometry(_trimesh(mesh), node_name=name, geom_name=name)
+        shape = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
+        scene.add_geometry(shape, node_name=name, geom_name=name)
     content = export_glb(scene, include_normals=True, tree_postprocessor=edit)
     with whole_file(path) as part:
         part.write_bytes(content)
@@ -133,10 +134,6 @@ def write_scene(
         shown.append(to_gltf(mesh))
         names.append(f"{item}_{placed.name}_{faces}")
     write_glb(path, shown, names)
-
-
-def _trimesh(mesh):
-    return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
 
 
 def _fullest_frame(plan):

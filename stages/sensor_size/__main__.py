@@ -116,12 +116,6 @@ def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
     return tree
 
 
-def smallest_row(classifier: str, cells: int, pitch: float, accuracy: float, again: float) -> dict[str, Any]:
-    """The row of the smallest array that is sufficient."""
-    about = {"classifier": classifier, "cells": cells, "pitch": pitch}
-    return about | {"metric": "smallest_chosen_again", "value": again}
-
-
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
@@ -136,7 +130,9 @@ def run(workspace: Workspace) -> None:
         found = summary(rows, settings.slack, stage.seed)
         stage.metrics({name: one["arrays"] for name, one in found.items()})  # the smallest one is a choice, often luck
         smallest = [{"classifier": name} | one["smallest"] for name, one in found.items()]
-        stage.rows += [smallest_row(**one) for one in smallest]
+        about = ("classifier", "cells", "pitch")
+        again = [{key: one[key] for key in about} | {"value": one["again"]} for one in smallest]
+        stage.rows += [one | {"metric": "smallest_chosen_again"} for one in again]
     for one in smallest:
         print("sensor_size: {classifier} needs {cells} x {cells} cells, {pitch} apart: {accuracy:.3f}".format(**one))
 

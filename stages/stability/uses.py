@@ -98,7 +98,7 @@ def recognise(
     touches = {name: read_arrays(made / FOLDER / f"{name}.npz") for name in objects}
     found: dict[tuple[str, str], list[float]] = {}
     for group in partitions(objects, seed):
-        for method in methods_of(touches[group[0]]):
+        for method in (key.removesuffix(f".{LEARNED}") for key in touches[group[0]] if key.endswith(f".{LEARNED}")):
             learned = [touches[name][f"{method}.{LEARNED}"] for name in group]
             model = classifier("knn", seed).fit(np.concatenate(learned), np.repeat(group, list(map(len, learned))))
             for name in group:
@@ -119,8 +119,3 @@ def partitions(objects: list[str], seed: int) -> Iterator[list[str]]:
     for number in range(PARTITIONS):
         mixed = rng(seed, f"partition {number}").permutation(sorted(objects))
         yield from (part.tolist() for part in np.array_split(mixed, max(len(objects) // SET, 1)))
-
-
-def methods_of(touches: Mapping[str, np.ndarray]) -> list[str]:
-    """The methods whose touches are stored."""
-    return [key.removesuffix(f".{LEARNED}") for key in touches if key.endswith(f".{LEARNED}")]

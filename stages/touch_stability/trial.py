@@ -79,14 +79,11 @@ STORED_IMPRINTS = 4  # touches per perturbation whose imprints are stored for th
 def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
     """The first `count` Touches of an object, with the simplified meshes that exist. data: data/SET."""
     found = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
-    levels = {path.stem: read_mesh(path) for path in files_below(data / "lod" / name) if _is_used_level(path.stem)}
+    paths = [path for path in files_below(data / "lod" / name) if path.stem.rpartition("_")[0] in ("qem", SOFT)]
+    levels = {path.stem: read_mesh(path) for path in paths}
     saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(GLANCE)
     mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), found.images.shape[1:]
     return Touches(name, mesh, found.vertices[:count], cells, float(found.pitch), saliency, levels, seed)
-
-
-def _is_used_level(level):
-    return level.rpartition("_")[0] in ("qem", SOFT)
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, count: int, seed: int) -> Rows:

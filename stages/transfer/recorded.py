@@ -220,7 +220,10 @@ def read_schunk(path: str | Path, cells: tuple[int, int] | None = None) -> Recor
     if not series:
         raise ValueError(f"{path} holds no grasp; expected is {SCHUNK_LAYOUT}")
     grey = as_grey(np.stack(series))
-    pictures = [colour_image(one) if cells is None else fewer_cells(strongest_instant(one), cells) for one in grey]
+    if cells is None:
+        pictures = [colour_image(one) for one in grey]
+    else:
+        pictures = [cv2.resize(strongest_instant(one), cells[::-1], interpolation=cv2.INTER_AREA) for one in grey]
     return Recorded(np.stack(pictures), np.array(labels), names, np.array(groups))
 
 
@@ -237,11 +240,6 @@ def fingers(file: Any) -> list[np.ndarray]:
     if shapes != [(27, 6, SCHUNK_SAMPLES)] * SCHUNK_FINGERS or not np.isfinite(found).all():
         raise ValueError(f"{file}: fingers of {shapes}, not three of {(27, 6, SCHUNK_SAMPLES)}, all finite; remove it")
     return found
-
-
-def fewer_cells(image: np.ndarray, cells: tuple[int, int]) -> np.ndarray:
-    """An image averaged to rows x columns cells."""
-    return cv2.resize(image, cells[::-1], interpolation=cv2.INTER_AREA)
 
 
 CELLS = (12, 11)

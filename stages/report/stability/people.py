@@ -149,7 +149,8 @@ def pairs_table(results: Results) -> Table:
     shown = pd.DataFrame([
         {"disturbances": row.pair, "method": label(row.method),
          "first alone, %": percent(row.first), "second alone, %": percent(row.second),
-         "both, %": percent(row.both), "both less the sum": signed(*_hundredfold(row, "beyond"), places=0),
+         "both, %": percent(row.both),
+         "both less the sum": signed(100 * row.beyond, 100 * row.beyond_low, 100 * row.beyond_high, 0),
          "is": verdict(row.beyond_low, row.beyond_high)}
         for row in records(frame[frame["method"].isin(OF_PAIRS)])
     ])  # fmt: skip
@@ -187,7 +188,3 @@ def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[st
 def verdict(low: float, high: float) -> str:
     """milder or worse than the sum, or additive where the interval covers 0 or there is none."""
     return "milder" if high < 0 else "worse" if low > 0 else "additive"
-
-
-def _hundredfold(row, name):
-    return [100 * getattr(row, key) for key in (name, f"{name}_low", f"{name}_high")]

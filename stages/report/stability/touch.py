@@ -99,11 +99,8 @@ def denoised(results: Results) -> Table:
     named = shown.assign(
         perturbation=shown["perturbation"].map(label), denoiser=shown["denoiser"].map(behind).str.removeprefix("after ")
     )
-    return Table(frame, named.rename_axis(columns=None), {"objects": results.group_text(_group(results))})
-
-
-def _group(results: Results) -> str:
-    return results.measured(STAGE, DENOISED, metric="accuracy")["group"].iloc[0]
+    group = results.measured(STAGE, DENOISED, metric="accuracy")["group"].iloc[0]
+    return Table(frame, named.rename_axis(columns=None), {"objects": results.group_text(group)})
 
 
 def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFrame, pd.DataFrame, str]:
