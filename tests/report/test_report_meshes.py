@@ -218,18 +218,6 @@ def test_ranks_agree_where_the_error_grows_with_the_points(plain, run):
     assert stated(results, "ranks_agree", first=ERROR, second={"metric": "dlap"}).min() > 0.98
 
 
-@pytest.fixture
-def chosen(monkeypatch):
-    """A function of keys to these claims; from then on the table of claims judges these alone."""
-
-    def choose(*keys):
-        claims = [one for one in CLAIMS if one.key in keys]
-        monkeypatch.setattr(levels, "CLAIMS", claims)
-        return claims
-
-    return choose
-
-
 def with_people():
     """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
     rows = measured("gaze", 2)
@@ -241,9 +229,10 @@ def with_people():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("own", [True, False])
-def test_where_people_look_is_judged_and_shown_on_the_meshes_with_gaze(run, own, chosen):
+def test_where_people_look_is_judged_and_shown_on_the_meshes_with_gaze(run, own):
     results = run(with_people()) if own else run(measured(), with_people())
-    found = judge(chosen("glance_keep_gaze", "glance_keep_salient"), results).set_index("key")
+    claims = [one for one in CLAIMS if one.key in ("glance_keep_gaze", "glance_keep_salient")]
+    found = judge(claims, results).set_index("key")
     assert found.loc["glance_keep_gaze", "verdict"] == "supported"
     assert found.loc["glance_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
     assert found.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
