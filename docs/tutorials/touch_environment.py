@@ -21,11 +21,11 @@ from haptic_glance import Layer, Mesh, Surface, forces, gaps_at, sensor_axes
 
 try:
     import gymnasium
-
-    import haptic_glance.know.environment  # noqa: F401 - registers the second environment
 except ModuleNotFoundError:
     gymnasium = None
     print("gymnasium is not installed: the environment goes without its spaces and checks")
+else:
+    import haptic_glance.know.environment  # noqa: F401 - registers the second environment
 
 CELLS, PITCH = (16, 16), 0.001  # metres
 STEP = 0.002  # metres along each axis, at most
@@ -116,9 +116,9 @@ if __name__ == "__main__":
 # Touch until sure
 # ----------------
 #
-# The registered environment ``haptic_glance/TouchUntilSure-v0`` hides one of six basic shapes in a random pose. Each
+# The registered environment ``TouchUntilSure-v0`` hides one of six basic shapes in a random pose. Each
 # touch costs 1, the right name earns 10, and a wrong name costs 10. The planner touches where its belief is expected to
-# gain most. In an unknown pose it hardly beats random places: a learner has room.
+# gain most. In an unknown pose it hardly beats random places: a learning agent can gain much.
 
 if __name__ == "__main__" and gymnasium:
     task = gymnasium.make("haptic_glance/TouchUntilSure-v0")

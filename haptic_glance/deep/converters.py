@@ -56,7 +56,7 @@ GOOGLENET_EPSILON = 1e-3  # of torchvision's GoogLeNet's normalisation layers
 
 
 def convert_googlenet(stored: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
-    """Weights by torchvision's names for images normalised as in haptic_glance.deep, from the stored ones."""
+    """Weights by torchvision's names for images normalised as in haptic_glance.deep.images, from the stored ones."""
     state = {key: value for key, value in stored.items() if not key.startswith("aux")}
     return fold_input(state, "conv1.conv", "conv1.bn", GOOGLENET_EPSILON, GOOGLENET_SCALE, GOOGLENET_SHIFT)
 
@@ -82,7 +82,7 @@ KERAS_EPSILON, TORCH_EPSILON = 1e-3, 1e-5  # added to a variance by normalisatio
 
 
 def convert_keras_resnet50(members: dict[str, bytes]) -> dict[str, torch.Tensor]:
-    """Weights by torchvision's names for images normalised as in haptic_glance.deep.
+    """Weights by torchvision's names for images normalised as in haptic_glance.deep.images.
 
     members: {member of the archive: its bytes} with MODEL and SHARDS. Each convolution's bias is moved into the mean of
     the normalisation after it, the difference of the epsilons into its variance. The first convolution absorbs the

@@ -58,7 +58,7 @@ def augmentation(upright: bool = False) -> AugmentationSequential:
     """Random reflection, translation and scaling of images in 0..1, for training only (T5.3).
 
     Uses torch's random numbers. Pixels that move in from outside repeat the imprint's border, since black, the usual
-    fill value, would mean contact. upright: of pictures, whose objects are upright: reflected left to right alone.
+    fill value, would mean contact. upright: reflect left to right alone, for pictures of upright objects.
     """
     sideways = kornia_augmentation.RandomHorizontalFlip(p=0.5)
     upside_down = [] if upright else [kornia_augmentation.RandomVerticalFlip(p=0.5)]

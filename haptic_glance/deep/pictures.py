@@ -61,7 +61,7 @@ def as_images(raw: np.ndarray, size: int) -> torch.Tensor:
 
 
 def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
-    """Images (k, 3, size, size) f4 of imprints (k, r, c), as by haptic_glance.deep.to_images, with full contact marked.
+    """Images (k, 3, size, size) f4 of imprints (k, r, c), as by `to_images` of .images, with full contact marked.
 
     A flat face pressed against the array gives zeros everywhere (distance 0), which in the thesis also means an absent
     sense: its switch would turn off the touch of a table top. So one corner pixel is raised by one grey step, and the

@@ -1,6 +1,6 @@
 """A task for learning agents, in the interface of Gymnasium: touch an unknown object in an unknown pose until sure.
 
-To import this module registers `haptic_glance/TouchUntilSure-v0`.
+The import of this module registers `haptic_glance/TouchUntilSure-v0`.
 """
 
 from collections.abc import Mapping
@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from haptic_glance.base.extras import from_extra
+from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface
 
@@ -38,14 +39,14 @@ class TouchUntilSure(gymnasium.Env):
     Parameters
     ----------
     meshes : mapping of str to Mesh, optional
-        The known objects, normalised. Six basic shapes by default.
+        The known objects, which are normalised. Six basic shapes by default.
     most : int
         Touches of an episode, at most.
 
     Raises
     ------
     ValueError
-        For fewer than two objects, and for a mesh that cannot be touched.
+        For fewer than two objects, for a mesh that cannot be touched, and for `most` below 1.
     MissingExtra
         Where Gymnasium is not installed.
 
@@ -59,7 +60,9 @@ class TouchUntilSure(gymnasium.Env):
     """
 
     def __init__(self, meshes: Mapping[str, Mesh] | None = None, most: int = MOST) -> None:
-        self.meshes = dict(primitives() if meshes is None else meshes)
+        self.meshes = dict(primitives()) if meshes is None else {name: normalise(mesh) for name, mesh in meshes.items()}
+        if most < 1:
+            raise ValueError(f"an episode needs at least one touch, got most={most}")
         self.library = learn(self.meshes, placed=False, turned=True)
         self.most = most
         self.action_space = Discrete(PLACES)
@@ -74,15 +77,19 @@ class TouchUntilSure(gymnasium.Env):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[dict, dict]:
         """Draws an object, its pose and the places on it; `options={"name": NAME}` chooses the object."""
         super().reset(seed=seed)
-        self.name = str((options or {}).get("name") or self.np_random.choice(self.library.names))
-        mesh, turn = self.meshes[self.name], Rotation.random(rng=self.np_random)
+        name = str((options or {}).get("name") or self.np_random.choice(self.library.names))
+        if name not in self.meshes:
+            raise ValueError(f"unknown object {name!r}: choose one of {', '.join(self.library.names)}")
+        mesh, turn = self.meshes[name], Rotation.random(None, self.np_random)
         surface = Surface(Mesh(turn.apply(mesh.vertices), mesh.faces))
-        self.exploration = Exploration(self.library, surface, self.np_random)
+        self.name, self.exploration = name, Exploration(self.library, surface, self.np_random)
         self.touched = np.zeros(PLACES, dtype=np.int8)
         return self._observation(), self._info()
 
     def step(self, action: int) -> tuple[dict, float, bool, bool, dict]:
         """Touches the place with this number; returns observation, reward, sure, cut off, and info."""
+        if not self.action_space.contains(action):
+            raise ValueError(f"an action is a place from 0 to {PLACES - 1}, got {action!r}")
         self.exploration.touch(self.exploration.candidate(int(action)))
         self.touched[action] = 1
         known = self.exploration.belief.known

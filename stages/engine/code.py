@@ -8,6 +8,7 @@ behind the names that it uses, not on whole packages. Imports must therefore be 
 import ast
 import hashlib
 import json
+import sys
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
@@ -104,34 +105,32 @@ _ASKED: dict[str, Facts] = {}  # {key: Facts} of this process
 
 @cache
 def _facts(path: Path) -> Facts:
-    key = _key(path)
+    content = path.read_bytes()
+    # all that Facts follow from; another Python writes the same tree as another text
+    parts = OWN, str(path.relative_to(ROOT)).encode(), content, repr(sys.version_info[:2]).encode()
+    key = hashlib.sha256(b"\0".join(parts)).hexdigest()[:32]
     kept = _kept().get(key)
-    _ASKED[key] = Facts(**kept) if kept else _work_out(path)
+    _ASKED[key] = Facts(**kept) if kept else _work_out(path, content)
     return _ASKED[key]
-
-
-def _key(path: Path) -> str:
-    """Digest of a file, its place and this module: all that its Facts follow from."""
-    return hashlib.sha256(b"\0".join((OWN, str(path.relative_to(ROOT)).encode(), path.read_bytes()))).hexdigest()[:32]
 
 
 @cache
 def _kept() -> dict[str, dict[str, Any]]:
     """The Facts of an earlier process; none where there was none, or its file is damaged."""
     try:
-        return json.loads((ROOT / KEPT).read_bytes())
+        found = json.loads((ROOT / KEPT).read_bytes())
     except (OSError, ValueError):
         return {}
+    return found if isinstance(found, dict) else {}
 
 
 def keep_facts() -> None:
-    """Keeps the Facts that this process asked for: to parse a hundred files takes each later process a second."""
+    """Keeps the Facts that this process asked for, which spares each later process a second of parsing."""
     write_json(ROOT / KEPT, {key: asdict(facts) for key, facts in sorted(_ASKED.items())})
 
 
-def _work_out(path: Path) -> Facts:
+def _work_out(path: Path, content: bytes) -> Facts:
     """The Facts of a file, from its content."""
-    content = path.read_bytes()
     if path.suffix != ".py":
         return Facts(hashlib.sha256(content).hexdigest()[:16])
     text, here = content.decode(), _package(path)

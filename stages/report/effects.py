@@ -193,7 +193,8 @@ ALIKE = 0.05  # p-value of Cochran's Q below which sets differ
 class Effect:
     """The differences of a claim on one set, indexed by its `over`, in its unit; share: as `Claim.share`.
 
-    refused: the causes of invalid pairs; pairs: the number of all pairs, 0 where the rows of a stage have no check.
+    refused: the causes of invalid pairs; pairs: the number of all pairs, 0 where none of
+    them is invalid.
     """
 
     dataset: str

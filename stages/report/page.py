@@ -29,7 +29,7 @@ from haptic_glance.mesh.mesh import Mesh
 from .drawing import colour_map, label, vivid
 from .items import Figure, Table
 from .marks import has_marks_alone, table, vector
-from .results import NotRun, Results, some
+from .results import NotRun, Results, dataset_text, some
 from .tables import is_numeric
 
 WIDEST = 900  # pixels of a picture on the page
@@ -40,7 +40,7 @@ WORDS = {
     "supported": "yes", "contradicted": "no",
     **dict.fromkeys(("no difference", "mixed", "depends on the reading", "not testable", "open"), "open"),
 }  # fmt: skip
-OLDER = "Rows made by an earlier version of their stage's code:"
+OLDER = "Some rows are older than the code of their stage"
 UP = "../"  # from a page of reports/site to reports/
 
 
@@ -61,8 +61,15 @@ def item_html(item: Table | Figure) -> str:
         behind = folded("The numbers behind it", frame_html(shown, f"Numbers: {item.title}")) if len(shown) else ""
         caption = f"<figcaption>{prose(item.caption)} {links(item.paths)}</figcaption>"
         body = f"<figure>{box('wide', item.title, item.element)}{caption}</figure>{behind}"
-    body += f"<p>{OLDER} {escape(', '.join(older))}.</p>" if (older := item.record.get("older")) else ""
+    body += folded(OLDER, f"<p>{older_text(item.record['older'])}</p>") if "older" in item.record else ""
     return f'<section id="{item.paths[0].parent.name}-{item.name}"><h3>{escape(item.title)}</h3>{body}</section>\n'
+
+
+def older_text(names: Iterable[str]) -> str:
+    """HTML: the files SET/STAGE of such rows, in words, and where their commit stands."""
+    parts = (name.partition("/") for name in names)
+    listed = "; ".join(f"{dataset_text(dataset)} ({stage.replace('_', ' ')})" for dataset, _, stage in parts)
+    return f"{escape(listed)}. A later change may be one of form alone: provenance.json has the commit of each file."
 
 
 def element(item: Figure) -> tuple[str, list]:

@@ -40,15 +40,16 @@ MOST = 60  # methods or sizes that a record lists
 def record_of(item: Table | Figure, results: Results, kind: str) -> dict[str, Any]:
     """The record of an item that was just built; of a figure that was drawn in an earlier run, the one of that run."""
     if isinstance(item, Figure) and not item.drawing.axes:
-        return {"drawn": "in an earlier run", **earlier(results, kind).get(item.name, {}), "sets": item.sets}
+        known = {"drawn": "in an earlier run", **earlier(results, kind).get(item.name, {}), "sets": item.sets}
+        return {key: value for key, value in known.items() if key != "older"} | _older(results, known.get("files", ()))
     frames = [frame for parts in results.sources.values() for frame in parts]
     shown = [item.frame] if item.frame is not None else frames
     named = shown if any("method" in frame for frame in shown) else frames
     found = {"sets": item.sets, "files": sorted(results.sources), "rows": sum(map(len, shown))}
     objects = next(filter(None, (_values(frames, column) for column in OBJECTS)), [])
     found |= {"objects": len(objects), "methods": _values(named, "method")[:MOST]}
-    found |= {"older": older} if (older := [name for name in found["files"] if is_older(results, name)]) else {}
     sizes = {name: _values(frames, name)[:MOST] for name in SIZES}
+    found |= _older(results, found["files"])
     return found | {"sizes": {name: values for name, values in sizes.items() if values}}
 
 
@@ -110,22 +111,28 @@ def path_of(results: Results, name: str) -> Path:
 def code_of(results: Results, name: str) -> tuple[str, str]:
     """(digest of the code that made a file of rows, digest of today's code of its stage); empty where unknown.
 
-    A set that is switched on counts as measured by today's code: DVC runs its stage again when the code has changed,
-    unless somebody says with `dvc commit` that the rows stay equal. A file of another set that has not changed since
-    the last report keeps the digest that provenance.json has for it.
+    Rows of this run's graph count as measured by today's code: DVC runs a stage again when its code has changed, unless
+    somebody says with `dvc commit` that the rows stay equal. Other rows that have not changed since the last report
+    keep the digest that provenance.json has for them.
     """
     dataset, _, stage = name.partition("/")
     path = results.workspace.build / "code" / stage
     today = sha256(path)[:DIGITS] if dataset != BENCH and path.is_file() else ""
     known = results.once("provenance", lambda: _provenance(results)).get(name, {})
-    same = dataset not in results.sets and known.get("sha256") == sha256(path_of(results, name))[:DIGITS]
+    in_run = dataset in results.workspace.params.get("graph", {}).get(stage, ()) and today
+    same = not in_run and known.get("sha256") == sha256(path_of(results, name))[:DIGITS]
     return known.get("code", "") if same else today, today
 
 
-def is_older(results: Results, name: str) -> bool:
-    """Whether a file of rows was made by other code than today's."""
-    made, today = results.once(("code", name), lambda: code_of(results, name))
-    return bool(made and today) and made != today
+def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
+    """{older: those files of rows that other code than today's has made}; empty where there is none."""
+
+    def is_older(name: str) -> bool:
+        made, today = results.once(("code", name), lambda: code_of(results, name))
+        return bool(made and today) and made != today
+
+    older = [name for name in names if is_older(name)]
+    return {"older": older} if older else {}
 
 
 def _provenance(results: Results) -> dict[str, dict[str, str]]:

@@ -18,7 +18,7 @@ ONE_ANSWER = 2.0  # times guessing: a share of the commonest answer that no clas
 MOST = 0.5  # the same share where the number of classes is not known by the name of their group
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
-TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
+TRIAL = ("group", "set", "method", "split", "variant", "classifier", "scaling")
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
 

@@ -125,7 +125,7 @@ def _limited(setup, ours):
     return [replace(_timed(name, "limit", make), note=f"limit of {limit:,} faces") for name, make in plans.items()]
 
 
-MEASURES: dict[str, Callable[[Plan], float]] = {  # means over the frames of the error, and over all pixels
+MEASURES: dict[str, Callable[[Plan], float]] = {  # mean error over the frames, mean displacement over all pixels
     "error": lambda plan: float(plan.errors.mean()),
     "displacement": lambda plan: float(np.concatenate([check.displacements for check in plan.checks]).mean()),
 }

@@ -214,8 +214,8 @@ def tune(
 ) -> Plan:
     """The Plan of `plan_of(factor)` whose `measure` is closest to `target` from above: no more faces than at equality.
 
-    Larger factors must give coarser plans. Where even the coarsest has less error, that one. below: the coarsest Plan
-    found whose `measure` is at most `target`.
+    Larger factors must give coarser plans. The coarsest Plan is returned where even it has less error. below: return
+    the coarsest Plan found whose `measure` is at most `target`.
     """
     kept, other = np.log(SPAN) if below else np.log(SPAN)[::-1]
     found = plan_of(float(np.exp(kept)))

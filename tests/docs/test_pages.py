@@ -81,6 +81,9 @@ def test_the_api_lists_every_name_of_a_package():
         package = import_module(re.search(r"automodule:: (\S+)", text)[1])
         absent = [each for each in package.__all__ if not re.search(rf"\b{each}\b", text)]
         assert not absent, f"{name(path)} lacks {', '.join(absent)}"
+        shown = ", ".join(re.findall(r":members: (.+)", text)).split(", ")
+        gone = [each for each in filter(None, shown) if each not in package.__all__]
+        assert not gone, f"{name(path)} names {', '.join(gone)}, which {package.__name__} lacks"
 
 
 def test_every_name_that_a_page_mentions_exists():

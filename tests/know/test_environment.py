@@ -9,6 +9,7 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 
 from haptic_glance.know import primitives  # noqa: E402
 from haptic_glance.know.environment import REWARD, TouchUntilSure  # noqa: E402
+from haptic_glance.mesh.mesh import Mesh  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +51,21 @@ def test_an_episode_ends_with_a_name_or_after_its_touches(task, belief, monkeypa
         assert cut_off == (belief == "none" and count == 4) and info["known"] == names[belief]
         if sure:
             break
+
+
+def test_bad_input_is_named_and_changes_nothing(task):
+    _, info = task.reset(seed=0)
+    with pytest.raises(ValueError, match="unknown object 'sword': choose one of box, torus"):
+        task.reset(options={"name": "sword"})
+    for action in (-1, 64):
+        with pytest.raises(ValueError, match="a place from 0 to 63"):
+            task.step(action)
+    assert task.step(0)[4]["name"] == info["name"]
+    with pytest.raises(ValueError, match="at least one touch"):
+        TouchUntilSure(most=0)
+
+
+def test_meshes_of_any_size_are_normalised(task):
+    large = {name: Mesh(5 * mesh.vertices, mesh.faces) for name, mesh in task.meshes.items()}
+    other = TouchUntilSure(large)
+    assert other.observation_space.contains(other.reset(seed=0)[0])

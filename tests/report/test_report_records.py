@@ -1,5 +1,6 @@
 """The record beside each table and figure: what it was made of, and that it agrees with the table of the thesis."""
 
+import hashlib
 import shutil
 import subprocess
 from functools import partial
@@ -132,28 +133,32 @@ def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_pat
     assert records.commit(path) == ""
 
 
+TODAY = hashlib.sha256(b"today\n").hexdigest()[:DIGITS]
+
+
 @pytest.mark.parametrize(
-    ("first", "sha", "code", "older"),
+    ("graph", "sha", "known", "made", "older"),
     [
-        ("household", "same", "before", True),
-        ("household", "same", "", False),  # nobody knows
-        ("household", "other", "before", False),  # measured anew
-        ("test", "same", "before", False),  # switched on
+        ({}, "same", "before", "before", True),
+        ({}, "same", None, None, False),  # nobody knows
+        ({}, "other", "before", TODAY, False),  # measured anew
+        ({"lod": ["household"]}, "same", "before", "before", True),  # the run has other sets
+        ({"lod": ["test"]}, "same", "before", TODAY, False),  # the run has it
     ],
 )
-def test_rows_of_earlier_code_are_named_below_their_table(rows, tmp_path, first, sha, code, older):
+def test_rows_of_earlier_code_are_named_below_their_table(rows, tmp_path, graph, sha, known, made, older):
     results = rows()
-    results.sets = [first]
+    results.workspace.params["graph"] = graph
     results.rows("lod", "test")
-    known = {"sha256": sha256(records.path_of(results, "test/lod"))[:DIGITS] if sha == "same" else sha, "code": code}
-    write_json(results.reports / PROVENANCE_FILE, {"packages": {}, "files": {"test/lod": known}})
+    entry = {"sha256": sha256(records.path_of(results, "test/lod"))[:DIGITS] if sha == "same" else sha}
+    entry |= {"code": known} if known else {}
+    write_json(results.reports / PROVENANCE_FILE, {"packages": {}, "files": {"test/lod": entry}})
     write_text(results.workspace.build / "code/lod", "today")
     item = Table(pd.DataFrame({"x": [1]}), name="table", sets=["test"], paths=[tmp_path / "tables/table.csv"])
     item.record = record_of(item, results, "tables")
-    assert ("test/lod" in item_html(item)) == ("older" in item.record) == older
+    assert ("test (lod)" in item_html(item)) == ("older" in item.record) == older
     write_records({"tables": Built([item])}, results, tmp_path)
-    made = read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("code")
-    assert made == (code or None if first == "household" and sha == "same" else records.code_of(results, "test/lod")[1])
+    assert read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("code") == made
 
 
 PROTOCOL = "household_3_1"

@@ -73,10 +73,10 @@ def conspicuity(
     size = tuple(max(side // REDUCTION, 1) for side in view.mask.shape) if size is None else tuple(size)
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
+    maps: dict[str, Channel] = {**CHANNELS, **OTHERS, **SYMMETRIES[check_symmetry(symmetry)]}
     if not view.mask.any():
         return {name: np.zeros(size, dtype=np.float32) for name in names}
     inside = mask_at_size(view.mask, size)
-    maps: dict[str, Channel] = {**CHANNELS, **OTHERS, **SYMMETRIES[check_symmetry(symmetry)]}
     maps = maps if formulas == OURS else printed_channels(maps, formulas)
     return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 

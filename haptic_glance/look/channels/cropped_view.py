@@ -32,9 +32,11 @@ def cropped_view(view: View, filled: bool = True) -> "CroppedView":
 
 
 def checked_rgb(view: View) -> np.ndarray:
-    """The rgb of a view. Raises ValueError when it is not of type uint8."""
+    """The rgb of a view. Raises ValueError when it is not of type uint8, or shows nothing of the object."""
     if view.rgb.dtype != np.uint8:
         raise ValueError(f"the rgb of a view must be of type uint8, got {view.rgb.dtype}")
+    if not view.mask.any():
+        raise ValueError("the view shows nothing of the object, so that it has no channel; `conspicuity` gives zeros")
     return view.rgb
 
 

@@ -42,7 +42,7 @@ class Symmetries:
 
 
 @weak_cache
-def shape_symmetries(mesh: Mesh, strongest: bool = False) -> Symmetries:
+def shape_symmetries(mesh: Mesh, strongest: bool = False, /) -> Symmetries:
     """The Symmetries of a mesh: planes of bilateral and axes of radial symmetry that score at least MIN_SCORE.
 
     strongest: where no plane or no axis scores that much, the best one counts, and all scores are 1.

@@ -83,7 +83,7 @@ def _above_nearest(tree, levels, ranks, radius):
 def ring_maxima(mesh: Mesh, values: np.ndarray, rings: int) -> np.ndarray:
     """(k,) i8 vertex ids where values (n,) is largest within `rings` edges, largest value first.
 
-    Which values count, and which of equal ones is the peak, is as for `local_maxima`.
+    Values count, and equal values have one peak, as in `local_maxima`.
     """
     levels = _levels(mesh, values)
     if not levels.any():

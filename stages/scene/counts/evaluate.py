@@ -253,7 +253,7 @@ def predict_with(model: Counts, cases: Sequence[Case]) -> np.ndarray:
 
 
 def from_one_mesh(exponent: float, cases: Sequence[Case]) -> np.ndarray:
-    """(k,) i8: the power law from the given mesh nearest to half of the object's faces; 4 faces to all."""
+    """(k,) i8: the power law from the given mesh nearest to half of the object's faces."""
     faces, errors = [], []
     for case in cases:
         nearest = np.abs(np.log(case.given.faces / (HALF * case.curve.initial_faces))).argmin()
