@@ -18,7 +18,7 @@ ONE_ANSWER = 2.0  # times guessing: a share of the commonest answer that no clas
 MOST = 0.5  # the same share where the number of classes is not known by the name of their group
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
-TRIAL = ("group", "set", "method", "split", "variant", "classifier", "scaling")
+TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
 
@@ -79,7 +79,7 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
 
 
 def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
-    """(n,) whether the mean accuracy of a row's kind of trial is below guessing; False where guessing is unknown."""
+    """(n,) whether a kind of trial has a mean accuracy below guessing on the data set; False where that is unknown."""
     kinds = [column for column in TRIAL if column in rows]
     lead = (rows["value"] - guess).where(rows["metric"] == "accuracy")
     return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
