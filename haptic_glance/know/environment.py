@@ -19,6 +19,7 @@ from .library import CELLS, learn, primitives
 
 with from_extra():
     import gymnasium
+    from gymnasium.error import ResetNeeded
     from gymnasium.spaces import Box, Dict, Discrete, MultiBinary
 
 REWARD = 10.0  # for the right object, and minus this for a wrong one; each touch costs 1
@@ -83,18 +84,21 @@ class TouchUntilSure(gymnasium.Env):
         mesh, turn = self.meshes[name], Rotation.random(None, self.np_random)
         surface = Surface(Mesh(turn.apply(mesh.vertices), mesh.faces))
         self.name, self.exploration = name, Exploration(self.library, surface, self.np_random)
-        self.touched = np.zeros(PLACES, dtype=np.int8)
+        self.touched, self.ended = np.zeros(PLACES, dtype=np.int8), False
         return self._observation(), self._info()
 
     def step(self, action: int) -> tuple[dict, float, bool, bool, dict]:
         """Touches the place with this number; returns observation, reward, sure, cut off, and info."""
         if not self.action_space.contains(action):
             raise ValueError(f"an action is a place from 0 to {PLACES - 1}, got {action!r}")
+        if self.ended:
+            raise ResetNeeded("the episode has ended: call reset() before the next touch")
         self.exploration.touch(self.exploration.candidate(int(action)))
         self.touched[action] = 1
         known = self.exploration.belief.known
         reward = (REWARD if known == self.name else -REWARD if known else 0.0) - 1.0
         cut_off = not known and len(self.exploration.images) >= self.most
+        self.ended = bool(known) or cut_off
         return self._observation(), reward, bool(known), cut_off, self._info()
 
     def planned(self) -> int:

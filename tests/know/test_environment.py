@@ -51,6 +51,8 @@ def test_an_episode_ends_with_a_name_or_after_its_touches(task, belief, monkeypa
         assert cut_off == (belief == "none" and count == 4) and info["known"] == names[belief]
         if sure:
             break
+    with pytest.raises(gymnasium.error.ResetNeeded, match="call reset"):
+        task.step(0)
 
 
 def test_bad_input_is_named_and_changes_nothing(task):
