@@ -87,11 +87,11 @@ class Learning:
         self.curve, self.best, self.best_pass = list(state["curve"]), state["best"], state["best_pass"]
 
 
-def check_passes(passes: Sequence[str], setting: str) -> None:
-    """Raises ValueError, which names the setting, for passes that are none of PASSES."""
-    unknown = sorted(set(passes) - {*PASSES})
+def check_passes(passes: Sequence[str], setting: str, known: Sequence[str] = PASSES) -> None:
+    """Raises ValueError, which names the setting, for passes that are not known."""
+    unknown = sorted(set(passes) - {*known})
     if unknown or not passes:
-        raise ValueError(f"{setting}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(PASSES)}")
+        raise ValueError(f"{setting}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(known)}")
 
 
 def _rank(values: dict[str, float]) -> tuple[float, float]:

@@ -145,7 +145,8 @@ def plain_logarithm(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None
 def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     """Writes a PNG of PALETTE colours without dates or versions, so that equal runs give equal bytes; the path."""
     drawn = io.BytesIO()
-    figure.savefig(drawn, dpi=dpi, bbox_inches="tight", pad_inches=0.12, metadata={"Software": None})
+    uncompressed = {"compress_level": 0}  # read again at once
+    figure.savefig(drawn, dpi=dpi, bbox_inches="tight", pad_inches=0.12, pil_kwargs=uncompressed)
     plt.close(figure)
     with Image.open(drawn) as image:
         few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)

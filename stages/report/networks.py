@@ -31,7 +31,9 @@ THEIRS = "princeton_six"  # the set of the thesis's classes
 SETS = (THEIRS, None)  # of a claim: that, and the first of the others, the furniture
 OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
 STARTS, MODES = ("imagenet", "random", "random_initial"), ("finetuned", "frozen")
-PASSES = {"printed": "10, as printed", "converged": "until nothing improves"}  # of the trainings, over the touches
+PASSES = {  # of the trainings, over the touches
+    "printed": "10, as printed", "converged": "until nothing improves", "printed_rate": "10, at the printed rate",
+}  # fmt: skip
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
 NETWORK = "mobilenet_v2"
 SEEN = ("size", "touches")  # columns of what a network saw: a claim compares only what saw the same

@@ -12,7 +12,8 @@ COLUMNS = {
     "touches": "imprints of each object, in training and test together",
     "precision": "what the network computed in: float32 or, on a CUDA card, float16",
     "repetition": "the number of the split and of its random numbers",
-    "passes": "printed: as many as the thesis's captions say; converged: until nothing improves on validation touches",
+    "passes": "printed: as many as the thesis's captions say; converged: until nothing improves on validation touches; "
+    "printed_rate: as printed, at the learning rate of T tables 5.3 and 5.4",
     "sense": "of a hybrid network: vision, touch or both",
     "perturbation": "what was disturbed in the input; new_object: learned from as many touches as `severity` says",
     "severity": "how much, in the perturbation's unit",

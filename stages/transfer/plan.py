@@ -15,13 +15,21 @@ from haptic_glance.base.fetch import FetchError
 from haptic_glance.deep.device import choose_device, precision
 from haptic_glance.deep.modes import MODES, frozen_modules, is_range, parse_range
 from haptic_glance.deep.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS, build
-from haptic_glance.deep.training import CONVERGED, PRINTED, check_passes
+from haptic_glance.deep.training import PASSES, PRINTED, check_passes
 from haptic_glance.deep.weights import available_weights, imagenet_state
 from haptic_glance.disturb import imprint, picture
 from stages.engine.statistics import Split, interval_metrics
 
 from . import Params
 from .touches import sensor_arrays
+
+PRINTED_RATE = "printed_rate"
+# Learning rates of T table 5.4. T table 5.3 has one for all networks and modes.
+PRINTED_RATES = {
+    "frozen": dict.fromkeys(("alexnet", "googlenet", "vgg16", "resnet50", "mobilenet_v2"), 1e-4),
+    "finetuned": {"alexnet": 2e-4, "googlenet": 5e-3, "vgg16": 5e-4, "resnet50": 1e-4, "mobilenet_v2": 5e-4},
+}
+PRINTED_COARSE_RATE = 1e-5
 
 
 class Trial(NamedTuple):
@@ -76,7 +84,7 @@ def check(settings: Params) -> None:
         _check_modes(network, modes)
     if min(max(settings.splits.values()), settings.touches - 1, settings.cells, *settings.coarse_cells) < 1:
         raise ValueError("transfer: of one split and of cells there must be 1 or more, of touches 2")
-    check_passes(settings.passes, "transfer.passes")
+    check_passes(settings.passes, "transfer.passes", (*PASSES, PRINTED_RATE))
     if min(settings.patience, settings.most_epochs) < 1:
         raise ValueError("transfer: patience and most_epochs must be 1 or more")
     if settings.size < SMALLEST:
@@ -109,8 +117,8 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
     On the first data all weights and all modes of each network are trained, in every split. On the others, which are
     for comparing resolutions, only ImageNet's weights and no range of layers. A range of layers has no control, nor has
     a network that is `uncontrolled`. random_initial is for frozen networks that have a normalisation: training sets its
-    statistics anew. It is left out on a card, whose half precision rounds features below 1e-8 to nothing. There are no
-    trials where fewer than two classes are left.
+    statistics anew. It is left out on a card, whose half precision rounds features below 1e-8 to nothing. Controls and
+    ranges of layers have no printed rate. There are no trials where fewer than two classes are left.
     """
     members, notes = _members(classes, vertices, settings.touches)
     if len(members["random"]) < 2:
@@ -129,12 +137,19 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
         left_out.append(({"weights": "random_initial"}, note))
     kinds = itertools.product(_kinds(settings, found, weights), splits.items(), settings.passes)
     trials = [Trial(*kind, split, number, passes) for kind, (split, count), passes in kinds for number in range(count)]
+    trials = [trial for trial in trials if trial.passes != PRINTED_RATE or printed_rate(trial, settings)]
     return Plan(trials, members, found, notes + left_out)
 
 
 def main_data(settings: Params) -> str:
     """The data on which everything is measured: the imprints of the first, finest array."""
     return next(iter(sensor_arrays(settings)))
+
+
+def printed_rate(trial: Trial, settings: Params) -> float | None:
+    """The learning rate that T table 5.4 prints for the finest array, T table 5.3 for the others; None without one."""
+    rate = PRINTED_RATES.get(trial.mode, {}).get(trial.network) if trial.weights == "imagenet" else None
+    return rate and (rate if trial.data == main_data(settings) else PRINTED_COARSE_RATE)
 
 
 def fetch_weights(settings: Params) -> tuple[dict[str, str | None], list[tuple[dict, str]]]:
@@ -286,12 +301,13 @@ def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params)
 def summary(rows: list[dict], seed: int) -> dict[str, dict]:
     """{data: {split: {network: {MODE_WEIGHTS: {mean, low, high}}}}} of the accuracy, and the chance of each split.
 
-    The key of trainings until nothing improves ends with _converged.
+    The key of trainings in another way than as printed ends with their passes.
     """
     values, tree = defaultdict(list), {}
     for row in rows:
         if row["metric"] == "accuracy" and not row.get("note"):
-            end = "_converged" if row.get("passes") == CONVERGED else ""
+            passes = row.get("passes") or PRINTED
+            end = f"_{passes}" if passes != PRINTED else ""
             key = row["data"], row["split"], row["method"], f"{row['mode']}_{row['weights']}{end}"
             values[key].append(row["value"])
         if row["metric"] == "chance":

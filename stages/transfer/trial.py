@@ -29,7 +29,7 @@ from stages.engine.statistics import Split
 
 from . import Params
 from .export import network_parts, weight_changes
-from .plan import Trial, by_objects, by_touches, main_data, stratified_split
+from .plan import PRINTED_RATE, Trial, by_objects, by_touches, main_data, printed_rate, stratified_split
 from .touches import Touches, read_touches
 
 
@@ -63,7 +63,7 @@ def process(
             try:
                 model = train_model(task, touches.labels, learned, rate, **training)
             except Diverged as error:
-                searched.unlink()
+                searched.unlink(missing_ok=True)
                 return [{"trial": name, "metric": "accuracy", "value": None, "note": str(error)}]
         found = predict_probabilities(model, task.inputs, split.test)
         rows = [*change_rows(network, model)] if task.model is network else []
@@ -90,7 +90,11 @@ def process(
         "weight_change": float(np.mean([row["value"] for row in rows if "layer" in row] or [0.0])),
     }
     seconds = {"accuracy": watch.seconds}
-    rows += [{"metric": key, "value": value, "seconds": seconds.get(key)} for key, value in values.items()]
+    rows += [
+        {"metric": key, "value": value, "seconds": seconds.get(key)}
+        for key, value in values.items()
+        if value is not None
+    ]
     rows += object_rows(found, touches, split.test, members[trial.split])
     rows += curve_rows(learning)
     searched.unlink(missing_ok=True)
@@ -135,8 +139,14 @@ def split_touches(touches: Touches, trial: Trial, settings: Params, random: np.r
 
 def learning_rate(
     task: Task, labels: np.ndarray, split: Split, trial: Trial, settings: Params, seed: int, searched: Path
-) -> tuple[float, float]:
-    """(rate, validation accuracy) of the best learning rate; `searched` keeps them for an interrupted run."""
+) -> tuple[float, float | None]:
+    """(rate, validation accuracy) of the best learning rate; `searched` keeps them for an interrupted run.
+
+    A printed rate is not searched and has no validation accuracy.
+    """
+    printed = printed_rate(trial, settings)
+    if trial.passes == PRINTED_RATE and printed:
+        return printed, None
     if not searched.exists():
         rates = settings.frozen_rates if trial.mode == "frozen" else settings.finetuned_rates
         training = _settings(settings, settings.search_epochs, seed)

@@ -136,6 +136,17 @@ def test_trainings_until_nothing_improves_stand_below_those_of_the_printed_passe
     assert counts["VGG16"] == 2 and counts["MobileNetV2"] == 6  # a network without any training is named one time
 
 
+def test_trainings_at_the_printed_rate_are_rows_of_their_own_and_a_reading_of_the_claims(measure):
+    late = converged().assign(passes="printed_rate")
+    results = measure("transfer", pd.concat([rows(), late[late["epoch"].isna()]]))
+    shown = table("table_5_4", results).shown
+    mine = shown[shown["network"] == "MobileNetV2"].set_index(["starts from", "filters", "passes"])[SPLITS]
+    assert mine["ImageNet", "frozen", "10, at the printed rate"].startswith("71")
+    assert "until nothing improves" not in set(shown["passes"])
+    claim = next(one for one in transfer.CLAIMS if one.key == "tuned_over_frozen_random")
+    assert claim.readings[-1].changes == {"where": {"passes": "printed_rate"}}
+
+
 def test_table_5_6_has_frozen_layers_by_the_thesis_s_numbers(run):
     made = table("table_5_6", run)
     names = ("1:134", "none", "1:150")

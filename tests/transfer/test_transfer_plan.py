@@ -1,13 +1,14 @@
 """The plan of trainings: networks, splits, and trainings that are left out."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.mesh.mesh import Mesh
 from stages.transfer import plan as planning
-from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, stratified_split
+from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate, stratified_split
 from stages.transfer.touches import choose_vertices
 
 CLASSES = {"animal": ["dog", "horse", "cow"], "chair": ["stool", "bench"], "vase": ["urn"]}
@@ -49,6 +50,24 @@ def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_w
             ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
             ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
         ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("data", "file"), [("imprints32", "5_4_simulated_fsr_128x128"), ("imprints8", "5_3_fsr_16x16")]
+)
+def test_printed_rates_are_those_of_the_thesis_s_tables(small, data, file):
+    table = pd.read_csv(f"data/reference/thesis/table_{file}.csv").set_index("network")
+    for name, row in table.rename(index=lambda name: name.lower().replace("netv2", "net_v2")).iterrows():
+        for mode in ("frozen", "finetuned"):
+            trial = Trial(data, str(name), "imagenet", mode, "random", 0, "printed_rate")
+            assert printed_rate(trial, small.settings()) == row[f"lr_{mode}"]
+
+
+def test_controls_and_ranges_have_no_printed_rate(small, weights):
+    changes = {"weights": ["imagenet", "random"], "passes": ["printed_rate"], "splits": {"random": 1}}
+    networks = {"mobilenet_v2": ["frozen", "18:139"], "efficientnet_lite0": ["frozen"]}
+    trials = plan(CLASSES, ENOUGH, small.settings(networks=networks, coarse_cells=[], **changes)).trials
+    assert [trial.name for trial in trials] == ["imprints32.mobilenet_v2.imagenet.frozen.random.0.printed_rate"]
 
 
 def test_initial_statistics_are_left_out_on_a_card_with_a_note(small, weights, monkeypatch):
@@ -119,7 +138,7 @@ def test_what_is_left_out_is_named(small, weights):
         ({"new_object_touches": [1, 8]}, "less than transfer.touches"),
         ({"new_object_touches": []}, "less than transfer.touches"),
         ({"severities": {"rain": [1.0]}}, "transfer.severities: rain not known"),
-        ({"passes": ["all"]}, "transfer.passes: all not known, choose from printed, converged"),
+        ({"passes": ["all"]}, "transfer.passes: all not known, choose from printed, converged, printed_rate"),
         ({"patience": 0}, "patience and most_epochs must be 1 or more"),
     ],
 )

@@ -156,6 +156,15 @@ def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge
     assert row["passes"] == "converged" and summary([row], 0) == {}
 
 
+def test_a_printed_rate_is_not_searched(folder, small, monkeypatch):
+    monkeypatch.setattr(trial, "search_rate", None)
+    monkeypatch.setattr(trial, "printed_rate", lambda *_: 0.02)
+    rows = train(folder, small.settings(), FROZEN._replace(passes="printed_rate"))
+    values = {row["metric"]: row["value"] for row in rows}
+    assert values["learning_rate"] == 0.02 and "validation_accuracy" not in values and values["epochs"] > 0
+    assert {path.name for path in folder.iterdir()} >= {"imprints", "predictions"}
+
+
 def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
     touches, test = read_touches(folder, CLASSES, "imprints32"), np.array([0, 1, 8, 9, 16, 17])
     scores = torch.tensor([[0.9, 0.1], [0.2, 0.8], [0.9, 0.1], [0.8, 0.2], [0.9, 0.1], [0.7, 0.3]])

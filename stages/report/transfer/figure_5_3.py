@@ -14,7 +14,7 @@ from stages.report.tables import grouped
 TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",
          ("objects", COARSE): "#E69F00"}  # fmt: skip
 CELLS = {FINE: "128 x 128", COARSE: "16 x 16"}
-MARKS = {"printed": "o", "converged": "s"}
+MARKS = {"printed": "o", "converged": "s", "printed_rate": "^"}
 
 
 def build(results: Results) -> Figure:
@@ -55,7 +55,7 @@ def _draw(axes: Axes, frame: pd.DataFrame, networks: list[str], results: Results
     for network, split, data, passes, mean, low, high in frame.itertuples(index=False):
         tint = TINTS[split, data]
         place = networks.index(network) + 0.17 * (list(TINTS).index((split, data)) - 1.5)
-        place += 0.08 * (passes == "converged")
+        place += 0.05 * list(MARKS).index(passes)
         axes.plot([low, high], [place] * 2, color=tint, lw=1.6, alpha=0.5)
         axes.plot(mean, place, MARKS[passes], color=tint, ms=5, mec="white", mew=0.5)
         if passes == "printed" and split == "random" and network in PRINTED:

@@ -97,7 +97,9 @@ def networks_chart(results: Results) -> Figure:
     frame["way"] = frame["mode"].map(label).str.replace(r"^\d+:\d+$", "part of the layers frozen", regex=True)
     mode = frame["mode"].map(label).str.replace(r"^(\d+):(\d+)$", r"layers \1 to \2 frozen", regex=True)
     frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + mode
-    frame.loc[frame["passes"] == "converged", "name"] += ", until nothing improves"
+    frame["name"] += frame["passes"].map(
+        {"printed": ""} | {name: f", {PASSES[name]}" for name in ("converged", "printed_rate")}
+    )
     chart = pareto_chart(
         frame, "mean", title="From sight to touch: what an imprint costs", reference=REFERENCE,
         quality_label="test accuracy, touches at random", colour="network", marker="way",

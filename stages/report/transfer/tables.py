@@ -16,7 +16,7 @@ from scipy.stats import spearmanr
 
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
-from stages.report.claims import Claim, reading
+from stages.report.claims import Claim, Reading, reading
 from stages.report.drawing import label
 from stages.report.effects import statistic
 from stages.report.items import Table
@@ -46,6 +46,7 @@ from stages.report.tables import Ranking, cell_texts, grid, grouped, percent, si
 from stages.report.words import shared_notes
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
+OTHERS = list(PASSES)[1:]
 MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6
 
 
@@ -71,7 +72,7 @@ def networks(results: Results, data: str) -> Table:
         lines.append({
             "objects": source, "network": network, "weights": weights,
             "pretrained": next(iter(mine["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
-            **_both_passes(every, groups, trained, split), "chance": guess,
+            **_other_passes(every, groups, trained, split), "chance": guess,
             "above_chance": cell["accuracy"] - guess, "seen": looked.get((source, split), ""),
             "precision": next(iter(mine["precision"].dropna()), None) if "precision" in mine else None,
             "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if printed else np.nan,
@@ -102,7 +103,7 @@ def frozen_layers(results: Results) -> Table:
         mine = groups.get(every["printed"], rows[:0])
         known = {"objects": source, "frozen_layers": layers, "split": split}
         saw = of_passes(rows[(rows["dataset"] == source) & (rows["split"] == split)])
-        known |= accuracy(mine, split) | _both_passes(every, groups, trained, split)
+        known |= accuracy(mine, split) | _other_passes(every, groups, trained, split)
         lines.append(known | {"thesis": printed, "seen": seen(saw)})
     frame, heads = pd.DataFrame(lines), _heads(rows)
     shown = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"], heads)
@@ -119,16 +120,17 @@ def _trained(results: Results, keys: list[str], **where: str) -> dict[tuple, pd.
     return dict(iter(pd.DataFrame(found).groupby(level=list(range(len(keys)))))) if found else {}
 
 
-def _both_passes(
+def _other_passes(
     keys: dict[str, tuple], groups: dict[tuple, pd.DataFrame], trained: dict[tuple, pd.DataFrame], split: str
 ) -> dict[str, Any]:
-    """Accuracy on the training touches, and the columns of the trainings until nothing improves."""
+    """Accuracy on the training touches, and the columns of the trainings in another way than as printed."""
     course = {passes: trained[key].mean() if key in trained else {} for passes, key in keys.items()}
-    late = groups.get(keys["converged"])
-    cell = accuracy(late, split) if late is not None else dict.fromkeys(CELL, np.nan)
-    values = {f"converged{end}": cell[name] for name, end in CELL.items()}
-    values |= {"training": course["printed"].get("train_accuracy", np.nan)}
-    values |= {"converged_training": course["converged"].get("train_accuracy", np.nan)}
+    values = {"training": course["printed"].get("train_accuracy", np.nan)}
+    for passes in OTHERS:
+        rows = groups.get(keys[passes])
+        cell = accuracy(rows, split) if rows is not None else dict.fromkeys(CELL, np.nan)
+        values |= {f"{passes}{end}": cell[name] for name, end in CELL.items()}
+        values |= {f"{passes}_training": course[passes].get("train_accuracy", np.nan)}
     return values | {"converged_epochs": course["converged"].get("epochs", np.nan)}
 
 
@@ -151,17 +153,19 @@ def _guesses(frame: pd.DataFrame) -> str:
 def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.DataFrame:
     """Accuracies in per cent, a column for each set and split, then on the training touches, then the thesis's.
 
-    A second row of each setting is of trainings until nothing improves, where there are any of these.
+    Further rows of each setting are of trainings in another way, where there are any. Until nothing improves, the row
+    of a setting that the thesis has stays without a value, too.
     """
-    late = {"accuracy": "converged", "low": "converged_low", "high": "converged_high", "training": "converged_training"}
     parts = [cells.assign(passes="printed")]
-    if cells["converged"].notna().any():
-        setting = [cells[name] for name in down]
-        tried = cells[["accuracy", "converged"]].notna().any(axis=1).groupby(setting).transform("any")
-        theirs = cells["thesis"].groupby(setting).transform("max").notna()
-        asked = cells["converged"].notna() | (tried & theirs)
-        again = cells[asked].assign(**{name: cells[own] for name, own in late.items()}, passes="converged")
-        parts.append(again)
+    for passes in OTHERS:
+        ends = {"accuracy": "", "low": "_low", "high": "_high", "training": "_training"}
+        asked = cells[passes].notna()
+        if passes == "converged" and asked.any():
+            setting = [cells[name] for name in down]
+            tried = cells[["accuracy", passes]].notna().any(axis=1).groupby(setting).transform("any")
+            asked |= tried & cells["thesis"].groupby(setting).transform("max").notna()
+        again = {name: cells[f"{passes}{end}"] for name, end in ends.items()}
+        parts.append(cells.assign(**again, passes=passes)[asked])
     every, keys = pd.concat(parts).sort_index(kind="stable"), [*down, "passes"]
     head = [heads[key] for key in zip(every["objects"], every["split"], strict=True) if key in heads]
     wide = grid(every.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
@@ -209,6 +213,7 @@ PHRASES = {
     ("mode", "18:139"): "layers 18 to 139 frozen", ("mode", "1:134"): "layers 1 to 134 frozen",
     ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
     ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
+    ("passes", "printed_rate"): "at the printed learning rate",
 }  # fmt: skip
 SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
 CONVERGED = (  # splits first: objects share the trainings, so that their interval is too narrow
@@ -216,17 +221,19 @@ CONVERGED = (  # splits first: objects share the trainings, so that their interv
     reading("trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
             over=("item",), within=("repetition", *SEEN), shared=0.0),
 )  # fmt: skip
+PRINTED_RATE = (*CONVERGED, reading("at the printed learning rates", where={"passes": "printed_rate"}))
 
 
 def claim(
-    key: str, section: str, sentence: str, column: str, first: str, second: str, margin: float = 0.0, **where: str
-) -> Claim:
+    key: str, section: str, sentence: str, column: str, first: str, second: str, margin: float = 0.0,
+    readings: tuple[Reading, ...] = CONVERGED, **where: str,
+) -> Claim:  # fmt: skip
     """The claim of one value of a column over another. where: what both have in common that differs from SETTING."""
     common = {name: value for name, value in (SETTING | where).items() if name != column}
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
         where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
-        readings=CONVERGED,
+        readings=readings,
     )  # fmt: skip
 
 
@@ -238,15 +245,16 @@ def later_change_less(results: Results, claim: Claim) -> pd.Series:
 
 
 OWN = both(
-    claim("tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.", "mode", "finetuned", "frozen"),
+    claim("tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.", "mode", "finetuned", "frozen",
+          readings=PRINTED_RATE),
     claim("frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
-          "metric", "accuracy", "chance", mode="frozen"),
+          "metric", "accuracy", "chance", readings=PRINTED_RATE, mode="frozen"),
     claim("frozen_coarse_by_chance", "T5.4", "With 16 x 16 sensels frozen filters are hardly better than guessing.",
-          "metric", "chance", "accuracy", GUESS, data=COARSE, mode="frozen"),
+          "metric", "chance", "accuracy", GUESS, readings=PRINTED_RATE, data=COARSE, mode="frozen"),
     claim("fine_over_coarse_frozen", "T5.4", "A finer array makes touch more like sight: frozen filters gain by it.",
-          "data", FINE, COARSE, mode="frozen"),
+          "data", FINE, COARSE, readings=PRINTED_RATE, mode="frozen"),
     claim("fine_over_coarse_tuned", "T5.6", "A finer array makes touch easier to recognise.",
-          "data", FINE, COARSE, mode="finetuned"),
+          "data", FINE, COARSE, readings=PRINTED_RATE, mode="finetuned"),
     claim("seen_over_random_frozen", "T5.4",
           "Vision and touch share features: frozen filters trained on photographs help.",
           "weights", "imagenet", "random", mode="frozen"),
