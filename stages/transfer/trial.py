@@ -142,13 +142,13 @@ def learning_rate(
 ) -> tuple[float, float | None]:
     """(rate, validation accuracy) of the best learning rate; `searched` keeps them for an interrupted run.
 
-    A printed rate is not searched and has no validation accuracy.
+    A rate without rivals, as a printed one, is not searched and has no validation accuracy.
     """
-    printed = printed_rate(trial, settings)
-    if trial.passes == PRINTED_RATE and printed:
-        return printed, None
+    rates = settings.frozen_rates if trial.mode == "frozen" else settings.finetuned_rates
+    printed = printed_rate(trial, settings) if trial.passes == PRINTED_RATE else None
+    if printed or len(rates) == 1:
+        return printed or rates[0], None
     if not searched.exists():
-        rates = settings.frozen_rates if trial.mode == "frozen" else settings.finetuned_rates
         training = _settings(settings, settings.search_epochs, seed)
         write_json(searched, search_rate(task, labels, split.fit, split.validation, rates, **training))
     return read_json(searched)

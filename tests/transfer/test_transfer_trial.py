@@ -156,13 +156,13 @@ def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge
     assert row["passes"] == "converged" and summary([row], 0) == {}
 
 
-def test_a_printed_rate_is_not_searched(folder, small, monkeypatch):
+@pytest.mark.parametrize(("passes", "rates"), [("printed_rate", [0.01, 0.1]), ("printed", [0.02])])
+def test_a_rate_without_rivals_is_not_searched(folder, small, monkeypatch, passes, rates):
     monkeypatch.setattr(trial, "search_rate", None)
     monkeypatch.setattr(trial, "printed_rate", lambda *_: 0.02)
-    rows = train(folder, small.settings(), FROZEN._replace(passes="printed_rate"))
+    rows = train(folder, small.settings(frozen_rates=rates), FROZEN._replace(passes=passes))
     values = {row["metric"]: row["value"] for row in rows}
     assert values["learning_rate"] == 0.02 and "validation_accuracy" not in values and values["epochs"] > 0
-    assert {path.name for path in folder.iterdir()} >= {"imprints", "predictions"}
 
 
 def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
