@@ -156,7 +156,11 @@ def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]],
     head = list(head)
     group = nodes.tgroup("", *(nodes.colspec("", colwidth=w) for w in widths or [1] * len(head)), cols=len(head))
     group += [nodes.thead("", made_row(head)), nodes.tbody("", *(made_row(line) for line in lines))]
-    return nodes.table("", group, classes=["measured-table"])
+    kinds = [
+        "measured-table",
+        *([] if head[0] else ["claims-table"]),
+    ]  # claims stand behind their section, without a title
+    return nodes.table("", group, classes=kinds)
 
 
 def made_row(cells: Iterable[str | nodes.Node]) -> nodes.row:
