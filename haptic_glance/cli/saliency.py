@@ -1,8 +1,8 @@
 """Prints where people look at one mesh, and the places to touch first.
 
-Reads STL, OBJ, PLY, OFF or GLB, or with the extra `pipeline` a point cloud. Prints the salient points, most salient
-first: vertex, position in the file's coordinates, score from 0 to 1 (the saliency around the point, never more than
-that of the point before it). The mesh is left as it is; --out writes a copy coloured by saliency.
+Reads STL, OBJ, PLY, OFF, GLB or glTF, or with the extra `pipeline` a point cloud. Prints the salient points, most
+salient first: vertex, position in the file's coordinates, score from 0 to 1 (the saliency around the point, never more
+than that of the point before it). The mesh is left as it is; --out writes a copy coloured by saliency.
 
 examples:
   haptic-glance saliency scan.stl

@@ -1,8 +1,8 @@
 """Simplifies one mesh and spares the places that people look at.
 
-Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with its colours and textures; from GLB to
-GLB with its materials, but for what is named as dropped. The error is weighted by saliency, so that faces go where
-people look; nothing is frozen but the boundary (unless --free-borders) and borders of materials.
+Reads STL, OBJ, PLY, OFF, GLB or glTF and writes the mesh in its own coordinates, with its colours and textures; from
+glTF to GLB with its materials, but for what is named as dropped. The error is weighted by saliency, so that faces go
+where people look; nothing is frozen but the boundary (unless --free-borders) and borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
 Every mesh of a folder is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
@@ -42,6 +42,7 @@ from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
+from haptic_glance.mesh.gltf import as_glb
 from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
@@ -282,7 +283,7 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     extent = np.ptp(given.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
-    if path.suffix.lower() == ".glb" and (lost := not_read(path.read_bytes())):
+    if lost := not_read(as_glb(path)):
         report(f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}")
     mesh, notes = repaired(given)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))

@@ -1,6 +1,6 @@
 """Touches one mesh with the virtual pressure array; shows and saves what it measures, and where.
 
-Reads STL, OBJ, PLY, OFF or GLB. The mesh is first scaled so that its bounding sphere is 1 unit across.
+Reads STL, OBJ, PLY, OFF, GLB or glTF. The mesh is first scaled so that its bounding sphere is 1 unit across.
 --pitch and --depth are in these units, whose size in units of the file is printed, or lengths such as 1mm. All
 positions, given and written, are in the file's coordinates. Writes into the folder of --out:
   imprints.png  the mesh with numbered places and outlines of the array to scale, and the imprints beside it
@@ -54,7 +54,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     form = argparse.RawDescriptionHelpFormatter
     usage = "%(prog)s MESH [--at PLACE ...] [options]"
     result = argparse.ArgumentParser("haptic-glance touch", usage, first, rest, formatter_class=form)
-    result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF or GLB")
+    result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF, GLB or glTF")
     help_at = "places: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
     result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
     help_cells = "size of the array (default: 16 16)"

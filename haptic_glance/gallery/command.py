@@ -1,7 +1,7 @@
 """Shows a folder of meshes on one page: where people look, fewer faces, what a pressure array feels.
 
-Reads every STL, OBJ, PLY, OFF and GLB of FOLDER, with the extra `pipeline` also point clouds, or one file. Writes into
-the folder of --out:
+Reads every STL, OBJ, PLY, OFF, GLB and glTF of FOLDER, with the extra `pipeline` also point clouds, or one file. Writes
+into the folder of --out:
   index.html    all meshes on a page that needs no network: turnable, with their points, imprints and levels
   NAME/         of each mesh: saliency.ply (a coloured copy), points.csv, its levels, imprints.npz and places.csv
 A file that holds no usable mesh is named, and the others go on; the exit status is then 1.

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
+from haptic_glance.mesh.gltf import SUFFIXES
 from haptic_glance.mesh.mesh import Mesh
 
 from .attributes import closest
@@ -113,8 +114,8 @@ Parts = dict[str, np.ndarray]  # name of a node -> (k,) ids of faces
 
 
 def parts_of(path: Path) -> Parts:
-    """The Parts of a file's mesh, as `haptic_glance.mesh.files` joins them; empty unless it is a GLB."""
-    if path.suffix.lower() != ".glb":
+    """The Parts of a file's mesh, as `haptic_glance.mesh.files` joins them; empty unless it is a GLB or .gltf."""
+    if path.suffix.lower() not in SUFFIXES:
         return {}
     loaded = trimesh.load(path, process=False, skip_materials=True)
     dumped = loaded.dump() if isinstance(loaded, trimesh.Scene) else []

@@ -1,4 +1,4 @@
-"""Reads files of meshes, one or a folder: STL, OBJ, PLY, GLB by trimesh, OFF by our own reader, scans by `clouds`."""
+"""Reads files of meshes, one or a folder: STL, OBJ, PLY, glTF by trimesh, OFF by our own reader, scans by `clouds`."""
 
 import io
 import warnings
@@ -12,7 +12,7 @@ from trimesh.resolvers import FilePathResolver, Resolver
 
 from haptic_glance.base.extras import MissingExtra, about
 
-from . import clouds
+from . import clouds, gltf
 from .axes import AUTO
 from .headers import MeshError, check_header
 from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
@@ -32,19 +32,20 @@ MeshLike = (
     | tuple[ArrayLike, ArrayLike]
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
-FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
+FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 
 def load(path: str | Path) -> Mesh:
     """Reads a mesh file: Mesh(vertices (n, 3) f8, faces (m, 3) i8, colors (n, 3) u1 or None), in the units of the file.
 
     Vertices keep the order of the file, since ground truth refers to them by index. STL and GLB repeat vertices at
-    face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. The parts of a GLB
-    scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
-    become the texture of the mesh. Of a point cloud (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without
-    normals, the vertices are those of the surface that haptic_glance.mesh.clouds makes of it; so they are of a depth
-    image, which a .depth file names together with its camera. A GLB is y up, a .depth file z up. The other formats do
-    not say, but in a comment of ours: `up` is then y or z, whichever the shape suggests (haptic_glance.mesh.upright).
+    face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. A .gltf file is
+    read as the GLB of what it refers to. The parts of a GLB scene are transformed and joined. The materials of a GLB,
+    and those of an OBJ whose material files lie next to it, become the texture of the mesh. Of a point cloud (PLY or
+    OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
+    haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
+    camera. A GLB is y up, a .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or
+    z, whichever the shape suggests (haptic_glance.mesh.upright).
     Raises MeshError with the file and the reason when it holds no usable mesh.
     """
     return settled(load_as_stated(path))
@@ -107,6 +108,8 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
         raise MeshError(f"cannot read {suffix or 'a file without suffix'}: {remedy}")
     if not content:
         raise MeshError("the file is empty")
+    if suffix == ".gltf":
+        content, suffix = gltf.packed(content, resolver), ".glb"
     check_header(content, suffix)
     try:
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has

@@ -82,6 +82,7 @@ def not_read(content: bytes) -> list[str]:
     """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
     tree = _header(content)
     found = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
+    found += [f"picture {one['uri']}, not beside it" for one in _stated_in(tree, "images") if "uri" in one]
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
     with suppress(*MALFORMED):
         for primitive in (one for mesh in _stated_in(tree, "meshes") for one in mesh["primitives"]):

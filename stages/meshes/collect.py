@@ -34,7 +34,7 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
     """
     try:
         content, painted = item.content(), colours != "vertex"
-        needed = painted or item.suffix == DEPTH
+        needed = painted or item.suffix in (DEPTH, ".gltf")
         beside = item.beside() if needed else {}
         there = ZipResolver({name: data for name, data in beside.items() if data})
         parsed = parse(content, item.suffix, there if needed else None, every_colour=painted)

@@ -10,6 +10,7 @@ import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
+from urllib.parse import unquote
 
 import numpy as np
 from trimesh.resolvers import FilePathResolver
@@ -138,12 +139,13 @@ NAMES = {  # what names a file, by the suffix of the file in which it stands
     ".obj": re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.M),
     ".mtl": re.compile(rb"^[ \t]*map_Kd[ \t]+(.+?)\s*$", re.M | re.I),
     ".depth": re.compile(rb'"image"\s*:\s*"([^"]+)"'),
+    ".gltf": re.compile(rb'"uri"\s*:\s*"(?!data:)([^"]+)"'),
     ".ply": re.compile(rb"^comment[ \t]+TextureFile[ \t]+(.+?)\s*$", re.M | re.I),
 }
 
 
 def files_beside(path: Path) -> dict[str, bytes]:
-    """{name: bytes} of the files that a mesh file names, as it spells them: an OBJ and its materials, a PLY, a .depth.
+    """{name: bytes} of the files that an OBJ, its materials, a PLY, a .gltf or a .depth name, as they spell them.
 
     A file that is not there, or not below the folder of the mesh, is empty.
     """
@@ -167,4 +169,5 @@ def files_named(content: bytes, suffix: str, read: Callable[[str], bytes]) -> di
 def _named(content, suffix):
     header = content.partition(b"end_header")[0] if suffix.lower() == ".ply" else content
     pattern = NAMES.get(suffix.lower())
-    return [name.decode("utf-8", "replace") for name in pattern.findall(header)] if pattern else []
+    names = [name.decode("utf-8", "replace") for name in pattern.findall(header)] if pattern else []
+    return [unquote(name) for name in names] if suffix.lower() == ".gltf" else names

@@ -20,6 +20,7 @@ import numpy as np
 
 from haptic_glance.base.fetch import LARGEST, FetchError, fetch_package, read_members, zipped
 from haptic_glance.mesh.files import FORMATS
+from haptic_glance.mesh.gltf import SUFFIXES as GLTF
 from haptic_glance.mesh.headers import MeshError
 
 from . import Params
@@ -145,7 +146,7 @@ def folder(settings: Params) -> list[MeshFile]:
 
 def _folder_file(root, name, path, settings):
     # glTF defines its axis and unit (version 2.0, section 3.4); the other formats define neither.
-    up, unit = ("y", "m") if path.suffix.lower() == ".glb" else (settings.up, settings.unit)
+    up, unit = ("y", "m") if path.suffix.lower() in GLTF else (settings.up, settings.unit)
     file = str(path.relative_to(root))
     beside = Content(partial(files_beside, path))
     return MeshFile(name, file, path.suffix.lower(), Content(path.read_bytes), up, unit, "unknown", beside=beside)

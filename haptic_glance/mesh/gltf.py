@@ -1,0 +1,88 @@
+"""A .gltf file as one GLB, so that both have one reader: buffers and pictures beside the file are packed into it."""
+
+import base64
+import json
+import struct
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+from trimesh.resolvers import FilePathResolver, Resolver
+
+from .headers import MeshError
+
+SUFFIXES = (".glb", ".gltf")
+DATA = "data:"
+KINDS = {b"\x89PNG": "image/png", b"\xff\xd8": "image/jpeg", b"RIFF": "image/webp"}  # of a picture, by its first bytes
+ALIGNED = 4  # bytes, of the parts of a GLB
+
+
+def as_glb(path: Path) -> bytes:
+    """The bytes of a GLB or, as one, of a .gltf file; empty for other suffixes. Raises MeshError as `packed`."""
+    suffix = path.suffix.lower()
+    content = path.read_bytes() if suffix in SUFFIXES else b""
+    return packed(content, FilePathResolver(str(path))) if suffix == ".gltf" else content
+
+
+def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
+    """The bytes of a GLB with what a .gltf file says and refers to (glTF 2.0, section 3.6.1 and 4.4).
+
+    resolver: reads the files beside it; None where there are none. Raises MeshError for what is no glTF, and for a
+    buffer that is not there. A picture that is not there is left out; `materials.not_read` names it.
+    """
+    try:
+        tree = json.loads(content)
+        binary = _pack(tree, resolver)
+    except MeshError:
+        raise
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+        raise MeshError(f"unreadable as GLTF ({type(error).__name__} in its JSON)") from None
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % ALIGNED)
+    length = 12 + 8 + len(text) + 8 + len(binary)
+    head = struct.pack("<4sII", b"glTF", 2, length) + struct.pack("<I4s", len(text), b"JSON")
+    return head + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+
+
+def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytes:
+    """One buffer for all that the tree refers to; the tree refers to that buffer afterwards."""
+    binary, starts = b"", []
+    for buffer in tree.get("buffers", []):
+        data = _read(buffer["uri"], resolver)
+        if data is None:
+            raise MeshError(
+                f"refers to {_name(buffer['uri'])}, which is not beside it: keep both together, or export a .glb"
+            )
+        starts.append(len(binary))
+        binary += _aligned(data)
+    for view in tree.get("bufferViews", []):
+        view |= {"byteOffset": starts[view["buffer"]] + view.get("byteOffset", 0), "buffer": 0}
+    for image in tree.get("images", []):
+        data = _read(image["uri"], resolver) if "uri" in image else None
+        if data is None:
+            continue
+        kind = next((kind for start, kind in KINDS.items() if data.startswith(start)), image.get("mimeType", ""))
+        del image["uri"]
+        image |= {"bufferView": len(tree.setdefault("bufferViews", [])), "mimeType": kind}
+        tree["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data)})
+        binary += _aligned(data)
+    tree["buffers"] = [{"byteLength": len(binary)}]
+    return binary
+
+
+def _read(uri: str, resolver: Resolver | None) -> bytes | None:
+    """The bytes that a URI stands for; None where they are not at hand."""
+    if uri.startswith(DATA):
+        return base64.b64decode(uri.partition(",")[2])
+    try:
+        return resolver and resolver.get(unquote(uri))
+    except (OSError, ValueError, KeyError):  # not there, not below the folder of the file, not in the archive
+        return None
+
+
+def _name(uri: str) -> str:
+    return unquote(uri) if len(uri) < 200 else f"{uri[:20]}..."
+
+
+def _aligned(data: bytes) -> bytes:
+    return data + b"\0" * (-len(data) % ALIGNED)

@@ -1,0 +1,130 @@
+"""A .gltf file, whose buffers and pictures lie beside it, is read as the GLB of the same scene."""
+
+import base64
+import io
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from haptic_glance.cli.simplify import run
+from haptic_glance.lod.topology import parts_of
+from haptic_glance.mesh import MeshError, load
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.gltf import as_glb
+from haptic_glance.mesh.materials import not_read
+from stages.meshes.furniture import files_beside
+
+
+@pytest.fixture(scope="module")
+def glb():
+    """The bytes of a GLB: two balls, one with a picture and one red, the second moved."""
+    packed = io.BytesIO()
+    Image.fromarray(np.arange(192, dtype=np.uint8).reshape(8, 8, 3)).save(packed, "PNG")
+    ball, other = trimesh.creation.icosphere(2), trimesh.creation.icosphere(1)
+    material = PBRMaterial(name="painted", baseColorTexture=Image.open(packed))
+    ball.visual = TextureVisuals(ball.vertices[:, :2] / 4 + 0.5, material=material)
+    other.visual = TextureVisuals(material=PBRMaterial(name="red", baseColorFactor=[255, 0, 0, 255]))
+    scene = trimesh.Scene({"ball": ball})
+    scene.add_geometry(other, "other", transform=trimesh.transformations.translation_matrix([3, 0, 0]))
+    return scene.export(file_type="glb")
+
+
+@pytest.fixture
+def write(glb, tmp_path):
+    """write(place) -> the path of the same scene as a .gltf; place(name, bytes) gives the URI of a part."""
+    size = int.from_bytes(glb[12:16], "little")
+    binary = glb[28 + size :]
+
+    def written(place):
+        tree = json.loads(glb[20 : 20 + size])
+        image = tree["images"][0]
+        view = tree["bufferViews"][image.pop("bufferView")]
+        start = view.get("byteOffset", 0)
+        image["uri"] = place("skin of it.png", binary[start : start + view["byteLength"]])
+        # two buffers, so that offsets move: the last view lies in one of its own
+        last = tree["bufferViews"][-1]
+        end = last.get("byteOffset", 0)
+        tree["bufferViews"][-1] = last | {"buffer": 1, "byteOffset": 0}
+        sides = {"one.bin": binary[: end + 1], "two.bin": binary[end : end + last["byteLength"]]}  # of odd length
+        tree["buffers"] = [{"uri": place(*side), "byteLength": len(side[1])} for side in sides.items()]
+        path = tmp_path / "scene.gltf"
+        path.write_text(json.dumps(tree))
+        return path
+
+    return written
+
+
+@pytest.fixture
+def beside(tmp_path):
+    """Writes a part beside the .gltf; its name has blanks, which a URI has not."""
+
+    def place(name, content):
+        (tmp_path / name).write_bytes(content)
+        return name.replace(" ", "%20")
+
+    return place
+
+
+def embedded(_name, content):
+    return "data:application/octet-stream;base64," + base64.b64encode(content).decode()
+
+
+@pytest.mark.parametrize("where", ["beside", "embedded"])
+def test_it_is_read_as_the_glb_of_the_same_scene(glb, write, beside, where):
+    path = write(beside if where == "beside" else embedded)
+    found, wanted = load(path), parse(glb, ".glb")
+    assert np.array_equal(found.vertices, wanted.vertices) and np.array_equal(found.faces, wanted.faces)
+    assert found.up == wanted.up == "y"
+    for one, other in zip(found.texture.images, wanted.texture.images, strict=True):
+        assert np.array_equal(np.asarray(one), np.asarray(other))
+    made = as_glb(path)
+    starts = [
+        view["byteOffset"] % 4
+        for view in json.loads(made[20 : 20 + int.from_bytes(made[12:16], "little")])["bufferViews"]
+    ]
+    assert not_read(made) == [] and len(made) % 4 == 0 and starts[-2:] == [0, 0]  # glTF 2.0, section 3.6.2.4
+
+
+def test_its_nodes_and_pictures_go_through_simplify(write, beside, tmp_path, capsys):
+    path = write(beside)
+    names = set(parts_of(path))
+    assert len(names) == 2
+    run([str(path), "--levels", "50%", "--out", str(tmp_path / "levels")])
+    [made] = (tmp_path / "levels").glob("*.glb")
+    assert set(parts_of(made)) == names and load(made).texture is not None
+    assert "dropped" not in capsys.readouterr().err
+
+
+def test_what_is_not_beside_it_is_named(write, beside, tmp_path, capsys):
+    path = write(beside)
+    assert set(files_beside(path)) == {"skin of it.png", "one.bin", "two.bin"}
+    (tmp_path / "skin of it.png").unlink()
+    assert len(load(path).faces) == 400
+    assert not_read(as_glb(path)) == ["picture skin%20of%20it.png, not beside it"]
+    (tmp_path / "two.bin").unlink()
+    with pytest.raises(MeshError, match="scene.gltf: refers to two.bin, which is not beside it: keep both together"):
+        load(path)
+    with pytest.raises(MeshError, match="refers to one.bin, which is not beside it"):
+        parse(path.read_bytes(), ".gltf")
+
+
+def test_a_file_outside_of_its_folder_is_not_read(tmp_path, write, beside):
+    folder = tmp_path / "inner"
+    folder.mkdir()
+    path = folder / "scene.gltf"
+    path.write_text(write(beside).read_text().replace("one.bin", "../one.bin"))
+    with pytest.raises(MeshError, match="refers to ../one.bin, which is not beside it"):
+        load(path)
+
+
+@pytest.mark.parametrize(
+    "content", [b"{", b"[]", b"\xff\xfe", b'{"buffers": [{}]}', b'{"bufferViews": [{"buffer": 2}]}']
+)
+def test_what_is_no_gltf_is_refused(content):
+    with pytest.raises(MeshError, match="unreadable as GLTF .* in its JSON"):
+        parse(content, ".gltf")
