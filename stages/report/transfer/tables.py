@@ -156,7 +156,8 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     Further rows of each setting are of trainings in another way, where there are any. Until nothing improves, the row
     of a setting that the thesis has stays without a value, too.
     """
-    parts = [cells.assign(passes="printed")]
+    place = cells.groupby(down, sort=False, dropna=False).ngroup()  # so that the rows of a setting stand together
+    parts = [cells.assign(passes="printed", place=place)]
     for passes in OTHERS:
         ends = {"accuracy": "", "low": "_low", "high": "_high", "training": "_training"}
         asked = cells[passes].notna()
@@ -165,8 +166,8 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
             tried = cells[["accuracy", passes]].notna().any(axis=1).groupby(setting).transform("any")
             asked |= tried & cells["thesis"].groupby(setting).transform("max").notna()
         again = {name: cells[f"{passes}{end}"] for name, end in ends.items()}
-        parts.append(cells.assign(**again, passes=passes)[asked])
-    every, keys = pd.concat(parts).sort_index(kind="stable"), [*down, "passes"]
+        parts.append(cells.assign(**again, passes=passes, place=place)[asked])
+    every, keys = pd.concat(parts).sort_values("place", kind="stable"), [*down, "passes"]
     head = [heads[key] for key in zip(every["objects"], every["split"], strict=True) if key in heads]
     wide = grid(every.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
     thesis = every.groupby(keys, sort=False)["thesis"].max()  # printed beside touches at random alone
