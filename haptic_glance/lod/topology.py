@@ -1,5 +1,6 @@
 """Topology of a surface (loops, components, genus), faults that no simplification may add, and named nodes of a GLB."""
 
+import re
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
@@ -111,6 +112,7 @@ def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
 
 
 Parts = dict[str, np.ndarray]  # name of a node -> (k,) ids of faces
+RANDOM_END = re.compile("_[0-9a-f]{6}$")  # trimesh adds it to the node's name for each of several primitives
 
 
 def parts_of(path: Path) -> Parts:
@@ -124,6 +126,8 @@ def parts_of(path: Path) -> Parts:
         count = len(part.faces) if isinstance(part, trimesh.Trimesh) else 0
         if count:
             name = str(part.metadata.get("node", path.stem))
+            if part.metadata.get("from_gltf_primitive"):
+                name = RANDOM_END.sub("", name)
             parts[name] = np.r_[parts.get(name, np.zeros(0, dtype=np.int64)), start : start + count]
         start += count
     return parts

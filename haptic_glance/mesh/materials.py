@@ -73,7 +73,7 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
 
 
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
-REPEAT = 10497  # the usual wrapS and wrapT
+USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
 
@@ -94,7 +94,7 @@ def not_read(content: bytes) -> list[str]:
                 texture = textures[use["index"]]
                 sampler = samplers[texture["sampler"]] if "sampler" in texture else {}
                 found += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
-                found += [f"{name}.{key}" for key in ("wrapS", "wrapT") if sampler.get(key, REPEAT) != REPEAT]
+                found += [f"{name}.{key}" for key, usual in USUAL_SAMPLER.items() if sampler.get(key, usual) != usual]
                 found += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
     return [name for name in dict.fromkeys(found) if not name.endswith(READ)]
 

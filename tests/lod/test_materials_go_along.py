@@ -118,13 +118,26 @@ def test_what_cannot_be_carried_is_said_and_a_picture_on_other_coordinates_is_le
         varnish["extensions"] = {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}
         varnish["normalTexture"]["scale"] = 0.5
         tree["animations"] = [{"channels": [], "samplers": []}]
+        tree["samplers"] = [{"magFilter": 9728, "wrapS": 33071}]  # the nearest pixel, and no repetition
+        tree["textures"][varnish["normalTexture"]["index"]]["sampler"] = 0
 
     out, said = simplified("out.glb", change)
     assert "dropped from art.glb" in said
     lost = ("KHR_materials_clearcoat", "normalTexture.scale", "animations", "occlusionTexture.texCoord")
+    lost += ("normalTexture.wrapS", "normalTexture.magFilter")
     assert all(name in said for name in lost)
     varnish = named(tree_of(out)[0], "varnish")
     assert "occlusionTexture" not in varnish and "normalTexture" in varnish
+
+
+def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_bytes(simplified):
+    def change(tree):
+        tree["meshes"][0]["primitives"] += tree["meshes"][1]["primitives"]
+        tree["nodes"], tree["scenes"] = [{"name": "art", "mesh": 0}], [{"nodes": [0]}]
+
+    first, second = (simplified(out, change)[0] for out in ("first.glb", "second.glb"))
+    assert {node["name"] for node in tree_of(first)[0]["nodes"] if "mesh" in node} == {"art", "art_1"}
+    assert first.read_bytes() == second.read_bytes()
 
 
 @pytest.mark.parametrize("wrong", [3, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
