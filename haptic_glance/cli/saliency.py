@@ -38,7 +38,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import centre_and_radius
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
-from .simplify import check_outputs
+from .simplify import check_outputs, dropped_from
 
 LONG, FINE = 0.1, 0.02  # shares of the diameter: an edge that is long, and the longest of the finer copy
 COLUMNS = ("rank", "vertex", "x", "y", "z", "score")
@@ -98,7 +98,11 @@ def look_at(chosen: argparse.Namespace) -> None:
     report(chosen, f"{len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}")
     rows = points_of(mesh, found)
     if chosen.weights:
-        write_weights(chosen.weights, upright_for(chosen.weights, mesh)[0], found.saliency)
+        turned, note = upright_for(chosen.weights, mesh)
+        write_weights(chosen.weights, turned, found.saliency)
+        lost = dropped_from(chosen.mesh) if chosen.weights.suffix.lower() == ".glb" else ""
+        for text in filter(None, (note, lost)):
+            report(chosen, text)
     if chosen.out or chosen.picture:
         write(chosen, *finely(bake_texture(mesh), found.saliency, chosen.method), rows)
     elif chosen.points:

@@ -283,11 +283,17 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     extent = np.ptp(given.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
-    if lost := not_read(as_glb(path)):
-        report(f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}")
+    if lost := dropped_from(path):
+        report(lost)
     mesh, notes = repaired(given)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
     return given, mesh
+
+
+def dropped_from(path: Path) -> str:
+    """The sentence that names the parts of a glTF file that a Mesh has no place for; empty without such parts."""
+    lost = not_read(as_glb(path))
+    return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}" if lost else ""
 
 
 def prepare(mesh: Mesh, chosen: Namespace, name: str) -> SimplificationTask:

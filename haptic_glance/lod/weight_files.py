@@ -10,6 +10,8 @@ from scipy.spatial import KDTree
 
 from haptic_glance.base.files import whole_file
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import rotate_to_z_up
+from haptic_glance.mesh.up import with_stated_up
 
 from .export import for_glb
 
@@ -23,7 +25,8 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
     ----------
     path : str or Path
         `.ply`: a vertex property `saliency`, which Blender imports as an attribute. `.glb`: a vertex attribute
-        `_SALIENCY`; textures and texture coordinates are kept. `.usda`: a primvar `saliency` per vertex, OpenUSD.
+        `_SALIENCY`; textures and texture coordinates are kept. `.usda`: a primvar `saliency` per vertex, OpenUSD, which
+        knows y up and z up: other meshes are turned z up.
         `.npz`: arrays `vertices` (n, 3) f4, `indices` (3 m,) u4 and `saliency` (n,) f4 for meshoptimizer.
     mesh : Mesh
         The mesh of n vertices, in the coordinates that the file gets.
@@ -63,7 +66,7 @@ def check_suffix(path: Path) -> None:
 def _ply(mesh: Mesh, weights: np.ndarray) -> bytes:
     plain = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
     plain.vertex_attributes[NAME] = weights
-    return plain.export(file_type="ply")  # type: ignore[return-value]
+    return with_stated_up(plain.export(file_type="ply"), ".ply", mesh.up)  # type: ignore[arg-type]
 
 
 def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
@@ -83,13 +86,14 @@ def _npz(mesh: Mesh, weights: np.ndarray) -> bytes:
 
 
 def _usda(mesh: Mesh, weights: np.ndarray) -> bytes:
+    if mesh.up not in ("y", "z"):
+        mesh = rotate_to_z_up(mesh)
     points = ", ".join(f"({x:.9g}, {y:.9g}, {z:.9g})" for x, y, z in mesh.vertices.tolist())
-    up = "Y" if (mesh.up or "z").lstrip("-") == "y" else "Z"
     return f"""#usda 1.0
 (
     defaultPrim = "mesh"
     metersPerUnit = 1
-    upAxis = "{up}"
+    upAxis = "{mesh.up.upper()}"
 )
 
 def Mesh "mesh"

@@ -12,6 +12,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from haptic_glance import as_mesh, to_trimesh
+from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import run
 from haptic_glance.lod.export import write_any
 from haptic_glance.mesh import load
@@ -138,6 +139,13 @@ def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_by
     first, second = (simplified(out, change)[0] for out in ("first.glb", "second.glb"))
     assert {node["name"] for node in tree_of(first)[0]["nodes"] if "mesh" in node} == {"art", "art_1"}
     assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_glb_of_weights_says_what_it_drops(tmp_path, capsys):
+    (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
+    rewritten(tmp_path / "art.glb", lambda tree: tree.update(animations=[{"channels": [], "samplers": []}]))
+    look_at([str(tmp_path / "art.glb"), "--method", "height", "--weights", str(tmp_path / "weights.glb")])
+    assert "dropped from art.glb, since they cannot be carried over: animations" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("wrong", [3, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])

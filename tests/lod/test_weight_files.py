@@ -3,6 +3,7 @@
 import json
 import re
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import trimesh
 from haptic_glance.cli.saliency import run
 from haptic_glance.gallery.demo import sample
 from haptic_glance.lod import write_weights
-from haptic_glance.mesh import load
+from haptic_glance.mesh import load, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh, Texture
 
 
@@ -66,6 +67,20 @@ def test_usda_has_a_primvar(ball, tmp_path):
     assert len(re.search(r"points = \[(.*)\]", text)[1].split("), (")) == len(mesh.vertices)
 
 
+@pytest.mark.parametrize("up", ["x", "-x", "y", "-y", "z", "-z", "0,0.6,0.8"])
+def test_the_files_say_which_axis_points_up(ball, tmp_path, up):
+    mesh, weights = replace(ball[0], up=up), ball[1]
+    write_weights(tmp_path / "w.ply", mesh, weights)
+    assert load(tmp_path / "w.ply").up == up
+    write_weights(tmp_path / "w.usda", mesh, weights)
+    text = (tmp_path / "w.usda").read_text()
+    rows = re.search(r"points = \[\((.*)\)\]", text)[1].split("), (")
+    vertices = np.array([row.split(", ") for row in rows], dtype=float)
+    stated = re.search('upAxis = "(.)"', text)[1].lower()
+    found = rotate_to_z_up(Mesh(vertices, mesh.faces, up=stated)).vertices
+    np.testing.assert_allclose(found[:, 2], rotate_to_z_up(mesh).vertices[:, 2], atol=1e-6)
+
+
 @pytest.mark.parametrize(("name", "count", "words"), [("w.obj", 162, "written as .glb"), ("w.ply", 3, "do not fit")])
 def test_wrong_files_and_weights_are_named(ball, tmp_path, name, count, words):
     with pytest.raises(ValueError, match=words):
@@ -78,5 +93,7 @@ def test_the_command_writes_the_saliency_of_each_vertex(tmp_path, capsys):
     assert "written" in capsys.readouterr().err
     vertex = trimesh.load(tmp_path / "w.ply", process=False).metadata["_ply_raw"]["vertex"]
     assert vertex["length"] == len(load(sample()).vertices) and vertex["data"]["saliency"].max() == 1
+    run([str(tmp_path / "w.ply"), "--up", "x", "--count", "1", "--weights", str(tmp_path / "w.glb")])
+    assert "turned from x up" in capsys.readouterr().err
     with pytest.raises(ValueError, match="weights are written as"):
         run([str(sample()), "--weights", str(tmp_path / "w.stl")])
