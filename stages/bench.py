@@ -78,6 +78,8 @@ def run(argv: Sequence[str]) -> None:
         archive = options.gaze or Path(GAZE.format(options.set))
         report(f"reading {archive}")
         rows = judged(method, gazed(options.set, archive), options.train)
+        if not {row["item"] for row in rows} & set(scores["item"]):
+            report("the other methods were judged on other objects: no mean compares, and there is no lead")
         scores = pd.concat([scores, pd.DataFrame(rows)])
     methods = leaderboard(scores, options.by)
     if options.json:

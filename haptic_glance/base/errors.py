@@ -27,7 +27,10 @@ def errors_in_one_line(name: str) -> None:
     def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if os.environ.get(DEBUG) or not issubclass(kind, ValueError | FetchError | OSError | KeyboardInterrupt):
             return sys.__excepthook__(kind, error, trace)
+        if issubclass(kind, BrokenPipeError):  # the reader of the output has gone, as after `| head`
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # Python flushes stdout once more at its end
+            return None
         said = "stopped" if issubclass(kind, KeyboardInterrupt) else " ".join(str(error).split())
-        print(f"{name}: {said}{REMEDIES.get(getattr(error, 'errno', 0) or 0, '')}", file=sys.stderr)
+        return print(f"{name}: {said}{REMEDIES.get(getattr(error, 'errno', 0) or 0, '')}", file=sys.stderr)
 
     sys.excepthook = show

@@ -75,6 +75,8 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
                 with WallClock() as watch:
                     made.append(exhibit(file, each, out / each, chosen.up, chosen.count, chosen.levels))
                 report(name, f"{file.name}: {watch.seconds:.1f} s")
+                for target, why in made[-1].missing.items():
+                    report(name, f"{file.name} has no level {target}: {why}")
             except Exception as error:  # one mesh must not cost the others theirs
                 if os.environ.get(DEBUG):
                     raise

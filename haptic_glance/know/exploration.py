@@ -4,14 +4,17 @@ from functools import cached_property
 
 import numpy as np
 
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
+from haptic_glance.touch.surface import as_surface
 
 from .library import CELLS, PITCH, Belief, Expected, Library, sample_places
 
 PLACES = 64  # where the planner may touch
 FRESH = 0.04  # units, a quarter of the array: nearer to a touched place there is little new
 MOST = 30  # touches after which the planner gives up
+SCALE = 4  # the diagonal of a normalised object is 1 to 1.74; that of a damaged one may differ a little more
 WORTHLESS = 1e-3  # nats: a touch that promises less does not help
 
 
@@ -19,11 +22,15 @@ class Exploration:
     """The touches of one object and the belief that follows from them.
 
     Neither the planner nor the belief asks what the object is; the planner knows PLACES places on it, drawn at random.
+    surface: of the object, scaled by `normalise` as the library's objects are. Raises ValueError for another scale.
     """
 
-    def __init__(self, library: Library, surface: Surface, random: np.random.Generator) -> None:
-        self.library, self.surface = library, surface
-        self.candidates = sample_places(surface, PLACES, random)
+    def __init__(self, library: Library, surface: Mesh | Surface, random: np.random.Generator) -> None:
+        self.library, self.surface = library, as_surface(surface)
+        diagonal = self.surface.mesh.diagonal
+        if not 1 / SCALE < diagonal < SCALE:
+            raise ValueError(f"the object's diagonal is {diagonal:.3g}, not about 1 as in the library: normalise it")
+        self.candidates = sample_places(self.surface, PLACES, random)
         self.positions, self.normals = np.zeros((0, 3)), np.zeros((0, 3))  # of the touches so far
         self.images = np.zeros((0, *CELLS), dtype=np.float32)  # what was felt there
         self.beliefs = [library.belief()]

@@ -48,6 +48,15 @@ def test_errors_of_the_disk_end_in_one_line_with_a_remedy(number, remedy, monkey
     assert said.count("\n") == 1
 
 
+def test_a_reader_that_goes_ends_a_command_in_silence():
+    program = "from haptic_glance.base.errors import errors_in_one_line\nerrors_in_one_line('demo')\n"
+    program += "import time\nwhile True: print('x' * 100_000, flush=True), time.sleep(0.01)"
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 1
+
+
 @pytest.mark.parametrize(
     ("code", "number"), [(sqlite3.SQLITE_FULL, errno.ENOSPC), (sqlite3.SQLITE_READONLY, errno.EROFS)]
 )

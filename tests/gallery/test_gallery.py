@@ -146,11 +146,11 @@ def test_a_large_mesh_is_drawn_with_fewer_faces_and_says_so(scans, monkeypatch):
 
 
 def test_json_lists_what_was_made_and_a_level_that_is_infeasible_is_named(scans):
-    _, page, said, _ = gallery(scans, scans.parent / "out", "--json", "--levels", "300,2")
+    _, page, said, reported = gallery(scans, scans.parent / "out", "--json", "--levels", "300,2")
     found = {row["mesh"].split("/")[-1]: row for row in json.loads(said)}
     assert set(found) == {"pear.ply", "pear & co.stl", "broken.obj"} and "error" in found["broken.obj"]
     assert found["pear.ply"]["levels"] == [300] and found["pear.ply"]["faces"] == 1280
-    assert "<li>2: " in page and "pear_300.ply" in page
+    assert "<li>2: " in page and "pear_300.ply" in page and "pear.ply has no level 2: " in reported
 
 
 def test_a_boundary_that_leaves_too_many_faces_is_simplified_too(scans):

@@ -59,6 +59,15 @@ def test_touches_of_a_known_object_end_in_it(library, shapes, name):
     assert not any(belief.known for belief in exploration.beliefs[:-1])
 
 
+def test_an_object_is_explored_as_a_mesh_too_but_in_another_scale_it_is_refused(library, shapes):
+    cone = shapes["cone"]
+    found, again = (Exploration(library, given, rng(3, "cone")) for given in (cone, Surface(cone)))
+    np.testing.assert_array_equal(found.candidates.positions, again.candidates.positions)
+    for scale in (0.1, 100):
+        with pytest.raises(ValueError, match="normalise it"):
+            Exploration(library, Mesh(cone.vertices * scale, cone.faces), rng(3, "cone"))
+
+
 def test_the_gain_is_none_where_the_object_is_known(library, shapes):
     exploration = Exploration(library, Surface(shapes["torus"]), rng(3, "torus"))
     first = library.gains(exploration.belief, exploration.expected)
