@@ -152,7 +152,8 @@ def prepare(argv: Sequence[str]) -> None:
         if missing:
             if dataset not in params.get("sets", []):
                 raise ParamsError(
-                    f"{dataset} is not switched on: `python -m stages.compose 'sets=[{dataset}]'` does so"
+                    f"{dataset} is not switched on: `python -m stages.compose 'sets=[{dataset}]'` does so, "
+                    "and data=SET sweeps another set"
                 )
             print(f"sweep: {', '.join(missing)} first: `dvc repro` makes them", file=sys.stderr, flush=True)
             with results_in(OUT.parent):

@@ -98,7 +98,7 @@ def test_a_set_without_a_section_begins_with_its_other_settings(root):
         ("chanels=itti", "did you mean channels"),
         ("channels=itti,al", "did you mean all"),
         ("classification.repetitons=3", "did you mean classification.repetitions"),
-        ("data=household", "sets=.household."),
+        ("data=household", "sets=.household.* and data=SET sweeps another set"),
     ],
 )
 def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):

@@ -5,7 +5,8 @@ glTF to GLB with its materials, but for what is named as dropped. The error is w
 where people look; nothing is frozen but the boundary (unless --free-borders) and borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
-Every mesh of a folder is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
+Every mesh of a folder is simplified. The nodes of a GLB keep their names; their transforms become part of the vertices.
+A GLB is written y up, as the format has it, without normals: viewers shade it flat until the importer smooths it.
 
 examples:
   haptic-glance simplify bunny.stl --faces 1500 --out small.glb
@@ -37,7 +38,16 @@ from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
 from haptic_glance.lod.measures import NAMES, fewest_faces, format_table, measure_meshes
 from haptic_glance.lod.neighbourhood import NEIGHBOURHOODS, RINGS, neighbourhoods
 from haptic_glance.lod.simplify import BACKEND, BACKENDS
-from haptic_glance.lod.task import PLAIN, SOFT, SimplificationTask, infeasible, number, repaired
+from haptic_glance.lod.task import (
+    FREE_BORDERS,
+    PLAIN,
+    SOFT,
+    SimplificationTask,
+    infeasible,
+    may_free_borders,
+    number,
+    repaired,
+)
 from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
@@ -330,7 +340,10 @@ def reduce(task: SimplificationTask, chosen: Namespace, target: str) -> Mesh | N
             return task.simplified(face_count(target, len(task.mesh.faces), "--faces"))
         found = fewest_faces(task.mesh, task.simplified, task.lowest_target, chosen.tolerance, chosen.seed, report)
     except (InfeasibleTarget, SimplifyError) as error:
-        reason = infeasible(task, error, chosen.neighbourhood) if isinstance(error, InfeasibleTarget) else str(error)
+        if isinstance(error, InfeasibleTarget):
+            reason = infeasible(task, error, chosen.neighbourhood)
+        else:
+            reason = f"{error}, or {FREE_BORDERS}" if may_free_borders(task) else str(error)
         if not chosen.levels:
             raise ValueError(reason) from None
         report(f"no level {target}: {reason}")

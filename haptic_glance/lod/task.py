@@ -222,14 +222,22 @@ def infeasible(task: SimplificationTask, error: InfeasibleTarget, neighbourhood:
     return f"{number(error.faces, 'face')} are infeasible{reason}: {', or '.join(ways)}"
 
 
+FREE_BORDERS = "let the boundary be simplified with --free-borders"
+
+
+def may_free_borders(task: SimplificationTask) -> bool:
+    """Whether the mesh has a boundary that stays, and that the backend could simplify."""
+    able = not task.attributes and task.backend != "pymeshlab"
+    return able and not task.free_borders and len(task.boundary) > 0
+
+
 def remedies(task: SimplificationTask, error: InfeasibleTarget, neighbourhood: str) -> list[str]:
     """The remedies; empty where there is none."""
     total = len(task.mesh.faces)
     possible = smallest_feasible(task.mesh, free_borders=task.free_borders) < total  # with nothing frozen
-    may_free = len(task.boundary) and not task.free_borders and not task.attributes and task.backend != "pymeshlab"
     ways = [f"ask for {number(error.smallest, 'face')} or more"] if error.smallest < total else []
-    if may_free and (possible or smallest_feasible(task.mesh, free_borders=True) < total):
-        ways += ["let the boundary be simplified with --free-borders"]
+    if may_free_borders(task) and (possible or smallest_feasible(task.mesh, free_borders=True) < total):
+        ways += [FREE_BORDERS]
     if error.frozen and possible:
         ways += _thaw(task, neighbourhood)
     return ways + ([] if possible else _mend(task.mesh))

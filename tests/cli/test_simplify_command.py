@@ -13,7 +13,7 @@ from haptic_glance.lod.export import FORMATS, write_any
 from haptic_glance.lod.feasibility import SimplifyError
 from haptic_glance.lod.measures import fewest_faces
 from haptic_glance.lod.perceptual import within_frame
-from haptic_glance.lod.task import repaired
+from haptic_glance.lod.task import SimplificationTask, repaired
 from haptic_glance.look.views import TWELVE, render
 from haptic_glance.mesh import load
 from haptic_glance.mesh.mesh import Mesh, Texture
@@ -234,6 +234,18 @@ def test_nothing_sound_means_the_mesh_itself():
     assert fewest_faces(mesh, fails, 4, 0.01) is mesh
     with pytest.raises(ValueError, match="tolerance"):
         fewest_faces(mesh, fails, 4, np.nan)
+
+
+@pytest.mark.parametrize(("missing", "remedy"), [(0, "more faces$"), (1, "more faces, or let .* --free-borders$")])
+def test_a_faulty_result_of_a_mesh_with_a_boundary_names_both_remedies(tmp_path, monkeypatch, missing, remedy):
+    def fails(task, faces):
+        raise SimplifyError("100 faces leave 2 new folded pairs of faces: ask for more faces")
+
+    monkeypatch.setattr(SimplificationTask, "simplified", fails)
+    ball = trimesh.creation.icosphere(2)
+    trimesh.Trimesh(ball.vertices, ball.faces[missing:]).export(tmp_path / "ball.ply")
+    with pytest.raises(ValueError, match=remedy):
+        run([str(tmp_path / "ball.ply"), "--faces", "100", "--out", str(tmp_path / "small.ply")])
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
