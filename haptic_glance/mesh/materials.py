@@ -85,9 +85,10 @@ def not_read(content: bytes) -> list[str]:
     found += [f"picture {one['uri']}, not beside it" for one in _stated_in(tree, "images") if "uri" in one]
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
     with suppress(*MALFORMED):
-        for primitive in (one for mesh in _stated_in(tree, "meshes") for one in mesh["primitives"]):
-            kept = DERIVED if "material" in primitive else (*DERIVED, "COLOR_0")
-            found += [name for name in primitive["attributes"] if name not in kept]
+        primitives = [primitive for mesh in _stated_in(tree, "meshes") for primitive in mesh["primitives"]]
+        coloured = all("COLOR_0" in one["attributes"] and "material" not in one for one in primitives)
+        kept = (*DERIVED, "COLOR_0") if coloured else DERIVED
+        found += [name for primitive in primitives for name in primitive["attributes"] if name not in kept]
         for material in _stated_in(tree, "materials"):
             found += material.get("extensions", {})
             for name, use in _uses(material):

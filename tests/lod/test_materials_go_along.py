@@ -141,6 +141,16 @@ def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_by
     assert first.read_bytes() == second.read_bytes()
 
 
+@pytest.mark.parametrize("plain", [0, 1])
+def test_colours_that_not_all_parts_have_are_said_to_be_dropped(tmp_path, plain):
+    parts = [trimesh.creation.icosphere(1) for _ in range(2)]
+    for part in parts[plain:]:
+        part.visual.vertex_colors = np.full((len(part.vertices), 4), 200, dtype=np.uint8)
+    (tmp_path / "two.glb").write_bytes(trimesh.Scene(parts).export(file_type="glb"))
+    assert not_read((tmp_path / "two.glb").read_bytes()) == ["COLOR_0"] * plain
+    assert (load(tmp_path / "two.glb").colors is None) == bool(plain)
+
+
 def test_a_glb_of_weights_says_what_it_drops(tmp_path, capsys):
     (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
     rewritten(tmp_path / "art.glb", lambda tree: tree.update(animations=[{"channels": [], "samplers": []}]))
