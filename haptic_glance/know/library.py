@@ -18,7 +18,7 @@ from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
-from haptic_glance.mesh.files import FORMATS
+from haptic_glance.mesh.files import FORMATS, names_of
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.sampling import sample_surface
 from haptic_glance.touch import Surface, press_at, sensor_axes
@@ -276,18 +276,18 @@ def primitives() -> dict[str, Mesh]:
     }
 
 
-def known_objects(folder: Path, most: int = 60) -> tuple[dict[str, Mesh], list[str]]:
+def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], list[str]]:
     """({name: normalised mesh}, what was left out) of the first `most` meshes of a folder, in alphabetical order.
 
     The folder holds files of meshes, or is data/SET/meshes of the pipeline; one that is not there holds none.
     """
-    files = sorted(path for path in folder.glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
+    files = sorted(path for path in Path(folder).glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
     stems = {path.stem for path in files}
     files = [path for path in files if not _is_another_size(path.stem, stems)]
     found, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
-    for path in files[:most]:
+    for path, name in zip(files[:most], names_of(files), strict=False):
         try:
-            found[path.stem] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
+            found[name] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
         except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
             notes.append(f"{path.name}: {error}")
     return found, notes

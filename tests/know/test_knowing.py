@@ -201,3 +201,9 @@ def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes
     few, left_out = known_objects(tmp_path, most=1)
     assert not few and len(left_out) == 4  # the first by name is the broken one
     assert known_objects(tmp_path / "nowhere") == ({}, [])
+
+
+def test_files_that_differ_in_their_suffix_alone_are_two_objects(tmp_path, shapes):
+    for shape, name in (("box", "thing.stl"), ("cone", "thing.ply")):
+        write_any(tmp_path / name, shapes[shape])
+    assert list(known_objects(str(tmp_path))[0]) == ["thing.ply", "thing.stl"]
