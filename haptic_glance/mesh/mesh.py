@@ -103,6 +103,9 @@ class Mesh:
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
         if self.colors is not None:
+            given = np.asarray(self.colors)
+            if given.dtype != np.uint8 and given.size and not 0 <= given.min() <= given.max() <= 255:
+                raise ValueError(f"colors must lie in 0..255, got {given.min()} to {given.max()}")
             colors = _own(self.colors, np.uint8)
             if colors.shape != vertices.shape:
                 raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
@@ -194,7 +197,7 @@ class Mesh:
     def diagonal(self) -> float:
         """Length of the bounding-box diagonal; vertices in no face do not count, but on a mesh without faces."""
         vertices = self.vertices[self.used] if len(self.faces) else self.vertices
-        return float(np.linalg.norm(np.ptp(vertices, axis=0)))
+        return float(np.linalg.norm(np.ptp(vertices, axis=0))) if len(vertices) else 0.0
 
     def rings(self, vertices: np.ndarray, count: int) -> np.ndarray:
         """(n,) boolean: the given vertices and all within `count` edges of them."""
@@ -213,8 +216,10 @@ def content_of(material: Mapping[str, Any] | None) -> list[bytes]:
 
 def _own(values: Any, kind: type) -> np.ndarray:
     """A contiguous array of a type that nobody else can write to."""
+    if not isinstance(values, np.ndarray):
+        return np.array(values, dtype=kind, order="C")  # a copy: a memoryview or a tensor lends its own memory
     found = np.ascontiguousarray(values, dtype=kind)
-    shared = isinstance(values, np.ndarray) and values.flags.writeable and np.may_share_memory(found, values)
+    shared = values.flags.writeable and np.may_share_memory(found, values)
     return found.copy() if shared else found
 
 

@@ -86,3 +86,20 @@ def test_points_are_uniform_within_a_face():
 def test_a_mesh_without_area_is_refused(mesh):
     with pytest.raises(ValueError, match="without area"):
         sample_surface(mesh, np.array([0.5]), np.full((2, 1), 0.5))
+
+
+@pytest.mark.parametrize("value", [300, -1])
+def test_a_colour_that_no_byte_holds_is_refused(value):
+    with pytest.raises(ValueError, match=r"colors must lie in 0\.\.255"):
+        Mesh(np.eye(3), [[0, 1, 2]], np.full((3, 3), value))
+
+
+def test_memory_that_a_caller_lends_is_copied():
+    lent = np.eye(3)
+    mesh = Mesh(memoryview(lent), [[0, 1, 2]])
+    lent[0, 0] = 7
+    assert mesh.vertices[0, 0] == 1
+
+
+def test_a_mesh_without_vertices_has_no_diagonal():
+    assert Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)).diagonal == 0
