@@ -132,8 +132,9 @@ def _inverted(mesh, first, second, closed_edges, flips):
     sizes = np.bincount(part, minlength=parts)
     closed = np.bincount(part, weights=closed_edges, minlength=parts) == sizes
     turn = _undecided(mesh, part, ~closed & (np.bincount(part, weights=flips, minlength=parts) > EVEN * sizes))
-    corners = mesh.vertices[mesh.faces] - mesh.vertices.mean(axis=0)
-    volume = np.bincount(part, weights=np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])))
+    corners, first_face = mesh.vertices[mesh.faces], np.unique(part, return_index=True)[1]
+    own = corners - corners[first_face, :1][part]  # from afar, small volumes would be lost to rounding
+    volume = np.bincount(part, weights=np.einsum("ij,ij->i", own[:, 0], np.cross(own[:, 1], own[:, 2])))
     inside_out = np.flatnonzero(closed & (volume < 0))
     if not len(inside_out):  # nearly always: boxes take a third of the time
         return turn[part]

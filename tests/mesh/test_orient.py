@@ -87,6 +87,15 @@ def test_an_inverted_part_beside_a_sound_one_is_turned_alone():
     assert volume(mesh) == pytest.approx(2 * volume(Mesh(BALL.vertices, BALL.faces)))
 
 
+def test_neither_a_vertex_far_away_nor_a_large_part_decides_the_side_of_a_small_one():
+    stray = np.vstack([BALL.vertices, [[1e12] * 3]])
+    assert orient(Mesh(stray, BALL.faces))[1] == []
+    grain = BALL.vertices * 1e-7 + [0.9, 1.5, 0.9]
+    assert orient(joined((BALL.vertices, BALL.faces), (grain, BALL.faces)))[1] == []
+    notes = orient(joined((BALL.vertices, BALL.faces), (grain, BALL.faces[:, ::-1])))[1]
+    assert notes == ["320 faces turned outwards"]
+
+
 def test_a_moebius_strip_stays_and_is_no_crash():
     steps = np.linspace(0, 2 * np.pi, 20, endpoint=False)
     middle = np.c_[np.cos(steps), np.sin(steps), 0 * steps]
