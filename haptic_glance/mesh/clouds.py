@@ -146,9 +146,9 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
     if depth.ndim != 2:
         raise MeshError(f"a depth image has one channel, this one has shape {depth.shape}")
     rows, columns = depth.shape
-    if not (min(fx, fy, scale) > 0 and 0 <= cx <= columns and 0 <= cy <= rows):
+    if not (all(0 < one < np.inf for one in (fx, fy, scale)) and 0 <= cx <= columns and 0 <= cy <= rows):
         raise MeshError(f"fx={fx}, fy={fy}, cx={cx}, cy={cy}, scale={scale} cannot be of {columns} x {rows} pixels: "
-                        "focal lengths and scale are above 0 and the centre lies in the image")  # fmt: skip
+                        "focal lengths and scale are above 0, finite, and the centre lies in the image")  # fmt: skip
     read = np.isfinite(depth) & (depth > 0)
     if not read.any():
         raise MeshError("the depth image holds no reading: all is 0 or not finite")

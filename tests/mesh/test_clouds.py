@@ -198,6 +198,8 @@ def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):
     [
         (np.zeros((48, 64)), {}, "no reading"),
         (np.ones((48, 64)), {"fx": -1.0}, "fx=-1.0"),
+        (np.ones((48, 64)), {"fy": np.nan}, "fy=nan"),
+        (np.ones((48, 64)), {"fx": np.inf}, "fx=inf"),
         (np.ones((48, 64)), {"cx": 900.0}, "cannot be of 64 x 48 pixels"),
         (np.ones((48, 64, 3)), {}, "one channel"),
     ],
