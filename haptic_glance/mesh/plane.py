@@ -122,7 +122,7 @@ def _refined(mesh, plane, normals, tolerance):
     for _ in range(REFITS):
         along = normals @ plane.normal
         flat = (plane.residuals(mesh.vertices)[mesh.faces].max(axis=1) <= near) & (np.abs(along) > PARALLEL)
-        if not flat.any():
+        if not mesh.face_areas[flat].any():  # none is there, or slivers alone
             break
         plane = Plane.from_estimate(mesh.vertices[mesh.faces[flat, 0]], mesh.face_areas[flat])
         residuals = plane.residuals(mesh.vertices[mesh.faces[flat, 0]])

@@ -121,6 +121,17 @@ def test_a_bare_table_and_one_hardly_larger_than_the_object_come_back_as_they_ar
     assert remove_plane(mesh) is mesh
 
 
+def test_a_plane_through_slivers_alone_is_no_table():
+    """A pleated sheet, whose faces all cross its middle but for some without area."""
+    across, along = np.mgrid[:15, :15]
+    vertices = np.stack([across / 2, along / 2, np.take([0.45, 0, -0.45, 0], across % 4)], axis=2).reshape(-1, 3)
+    ids = 15 * across + along
+    corners = ids[:-1, :-1].reshape(-1, 1)
+    slivers = ids[1::2, :-2].reshape(-1, 1) + [0, 1, 2]
+    pleated = Mesh(vertices, np.concatenate([corners + [0, 15, 16], corners + [0, 16, 1], slivers]))
+    assert remove_plane(pleated) is pleated
+
+
 def test_what_is_left_keeps_its_order_colours_and_texture():
     mesh, own = scan("blob")
     colors = np.arange(3 * len(mesh.vertices)).reshape(-1, 3) % 256
