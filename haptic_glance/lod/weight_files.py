@@ -74,7 +74,8 @@ def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
     scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
     places = KDTree(mesh.vertices)  # a seam of a texture doubles vertices
     for part in scene.geometry.values():
-        part.vertex_attributes[f"_{NAME.upper()}"] = weights[places.query(part.vertices)[1]]
+        own = weights if mesh.texture is None else weights[places.query(part.vertices)[1]]
+        part.vertex_attributes[f"_{NAME.upper()}"] = own
     return scene.export(file_type="glb")  # type: ignore[return-value]
 
 

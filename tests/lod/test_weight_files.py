@@ -48,6 +48,14 @@ def test_glb_has_a_scalar_attribute_that_follows_the_seams_of_a_texture(ball, tm
     assert (accessor["type"], accessor["componentType"]) == ("SCALAR", 5126)
 
 
+def test_vertices_at_one_place_keep_weights_of_their_own(ball, tmp_path):
+    mesh, weights = ball
+    twice = Mesh(np.tile(mesh.vertices, (2, 1)), np.concatenate([mesh.faces, mesh.faces[:, ::-1] + len(mesh.vertices)]))
+    write_weights(tmp_path / "w.glb", twice, np.concatenate([weights, 1 - weights]))
+    [part] = trimesh.load(tmp_path / "w.glb", process=False).geometry.values()
+    np.testing.assert_array_equal(part.vertex_attributes["_SALIENCY"].ravel(), np.concatenate([weights, 1 - weights]))
+
+
 def test_npz_has_the_arrays_of_meshoptimizer(ball, tmp_path):
     mesh, weights = ball
     write_weights(tmp_path / "w.npz", mesh, weights)
