@@ -228,7 +228,8 @@ def empty_queue(size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @helper
 def bucket_of(cost: float) -> Id:
     """The bucket of a cost of 0 or more: the leading bits of the number itself, which grow with it."""
-    return max((np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS), 0)
+    found = (np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS)
+    return min(max(found, 0), BUCKETS - 1)  # infinity and NaN would lie behind the last one
 
 
 @helper
