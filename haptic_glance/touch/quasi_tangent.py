@@ -61,7 +61,7 @@ def quasi_tangent(mesh: Mesh, vertices: ArrayLike) -> tuple[np.ndarray, np.ndarr
     normals *= np.where(np.einsum("ij,ij->i", normals, outward) < 0, -1, 1)[:, None]
     points = mesh.vertices[vertices]
     centres = points + np.einsum("ij,ij->i", places - points, normals)[:, None] * normals
-    return centres, sensor_axes(normals)
+    return centres, sensor_axes(normals, mesh.up)
 
 
 def spans_plane(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.mesh.axes import to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import (
     CONTACTS,
@@ -185,6 +186,15 @@ def test_a_cell_s_pressure_counts_the_planes_that_meet_the_object(shapes):
     for i, j in ((7, 7), (3, 2), (14, 9)):
         met = sum(down[i, j] <= depth + 1e-9 for depth in np.arange(16) * 0.005)
         assert image[i, j] == pytest.approx(1 - met / 16)
+
+
+def test_contours_do_not_depend_on_the_axis_that_points_up():
+    ball = trimesh.creation.icosphere(2)
+    upright = Mesh(ball.vertices * [1, 0.8, 0.6], ball.faces)
+    lying = Mesh(upright.vertices @ to_z_up("y"), ball.faces, up="y")
+    vertices = np.arange(0, len(ball.vertices), 5)
+    expected = contour_imprints(upright, vertices, pitch=0.02)
+    np.testing.assert_array_equal(contour_imprints(lying, vertices, pitch=0.02), expected)
 
 
 def test_a_wall_thinner_than_the_depth_presses_like_a_thick_one(shapes):
