@@ -62,7 +62,7 @@ class Skin:
                 lower = "above 0" if name in POSITIVE else "0 or more"
                 upper = f" and at most {high}" if high < np.inf else ""
                 raise ValueError(f"{name} must be {lower}{upper}, got {value}")
-        if self.seed != int(self.seed) or self.seed < 0:
+        if not isinstance(self.seed, int | np.integer) or self.seed < 0:
             raise ValueError(f"seed must be an integer of 0 or more, got {self.seed}")
 
     def __call__(self, images: ArrayLike, name: str = "", first: int = 0) -> np.ndarray:

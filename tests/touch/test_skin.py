@@ -157,6 +157,8 @@ def test_no_imprints_stay_none():
         ({"dead": "many"}, "dead"),
         ({"seed": -1}, "seed"),
         ({"seed": 0.5}, "seed"),
+        ({"seed": 3.0}, "seed must be an integer"),
+        ({"seed": np.nan}, "seed must be an integer"),
     ],
 )
 def test_values_out_of_range_are_named(change, words):
