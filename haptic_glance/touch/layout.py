@@ -34,7 +34,7 @@ class Layout:
 
     def __post_init__(self) -> None:
         for name, shape in (("positions", (3,)), ("normals", (3,)), ("areas", ())):
-            values = np.asarray(getattr(self, name), dtype=np.float64)
+            values = np.array(getattr(self, name), dtype=np.float64)  # its own, as `cells` is computed once
             if values.shape != (np.size(self.areas), *shape) or not np.isfinite(values).all():
                 raise ValueError(f"layout: {name} must be finite and of shape (n, 3), areas (n,), got {values.shape}")
             object.__setattr__(self, name, values)

@@ -113,6 +113,13 @@ def test_a_layout_off_the_object_touches_nothing(table):
         layout_forces(table, [[0.3, 0, 0]], np.eye(3), LAYER, fingertip(50), load=1.0)
 
 
+def test_a_layout_keeps_its_taxels_when_the_caller_s_arrays_change():
+    positions = np.zeros((1, 3))
+    layout = Layout(positions, [[0, 0, -1]], [1e-6])
+    positions += 1
+    assert not layout.positions.any()
+
+
 @pytest.mark.parametrize(
     "text, words",
     [
