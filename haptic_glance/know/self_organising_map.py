@@ -60,7 +60,7 @@ class SelfOrganisingMap(TransformerMixin, BaseEstimator):
         return np.concatenate(
             [
                 ((neurons**2).sum(axis=1) - 2 * part @ neurons.T).argmin(axis=1)
-                for part in np.array_split(samples, -(-len(samples) // 4096))
+                for part in np.array_split(samples, max(-(-len(samples) // 4096), 1))
             ]
         )
 
