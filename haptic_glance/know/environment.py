@@ -65,7 +65,7 @@ class TouchUntilSure(gymnasium.Env):
         if most < 1:
             raise ValueError(f"an episode needs at least one touch, got most={most}")
         self.library = learn(self.meshes, placed=False, turned=True)
-        self.most = most
+        self.most, self.ended = most, True  # until the first reset
         self.action_space = Discrete(PLACES)
         self.observation_space = Dict({
             "belief": Box(0, 1, (len(self.library.names),)),
@@ -92,7 +92,7 @@ class TouchUntilSure(gymnasium.Env):
         if not self.action_space.contains(action):
             raise ValueError(f"an action is a place from 0 to {PLACES - 1}, got {action!r}")
         if self.ended:
-            raise ResetNeeded("the episode has ended: call reset() before the next touch")
+            raise ResetNeeded("there is no episode, or it has ended: call reset() before the next touch")
         self.exploration.touch(self.exploration.candidate(int(action)))
         self.touched[action] = 1
         known = self.exploration.belief.known
