@@ -56,6 +56,8 @@ def test_little_surface_has_samples_along_it_and_none_is_an_error():
         samples_of_mesh(Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]])))
     with pytest.raises(ValueError, match="different places"):
         samples_of_points(np.zeros((9, 3)), np.tile([0.0, 0, 1], (9, 1)))
+    with pytest.raises(ValueError, match="different places"):
+        samples_of_points(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
 
 
 def noisy(mesh: Mesh) -> Samples:

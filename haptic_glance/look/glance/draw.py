@@ -48,7 +48,7 @@ def samples_of_points(points: np.ndarray, normals: np.ndarray, count: int = COUN
     """
     apart = KDTree(points).query(points, 2)[0][:, 1] ** 2
     area, count = float(apart.sum()) * np.pi / 2, min(count, max(len(points) // 2, 1))  # of evenly spread points
-    if not area > 0:
+    if not 0 < area < np.inf:  # a point alone has its neighbour at infinity
         raise ValueError("the points of a cloud must lie at different places")
     axes, middle = object_axes(points, np.ones(len(points)), points)
     cells = np.floor((points - middle) @ (axes.T / max(CELL * np.sqrt(area / count), SMALLEST)) + ROUNDING)
