@@ -19,8 +19,10 @@ def noise(images: np.ndarray, severity: float, random: np.random.Generator) -> n
 
 def blur(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """A Gaussian blur with a sigma of `severity` of the image's side: out of focus."""
-    sigma = severity * images.shape[1]
-    return np.stack([cv2.GaussianBlur(image, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE) for image in images])
+    sigma, found = severity * images.shape[1], images.copy()
+    for image in found if sigma > 0 else ():
+        image[:] = cv2.GaussianBlur(image, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE)
+    return found
 
 
 def darkness(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
