@@ -34,8 +34,11 @@ def axis_named(up: Axis) -> str:
         vector = np.zeros(0)
     if vector.shape != (3,) or not np.isfinite(vector).all() or not vector.any():
         raise ValueError(f"unknown up axis {up!r}: choose one of {ALLOWED}")
-    vector = vector / np.abs(vector).max()
-    vector = vector / np.linalg.norm(vector)
+    largest = float(np.abs(vector).max())
+    shrunk = vector / largest  # whose square does not overflow
+    size = float(np.linalg.norm(shrunk))
+    if abs(size * largest - 1) > SNAP:  # else it may be a name's own, which stays as it is
+        vector = shrunk / size
     longest = int(np.abs(vector).argmax())
     if np.abs(np.delete(vector, longest)).max() < SNAP:
         return f"{'-' if vector[longest] < 0 else ''}{'xyz'[longest]}"

@@ -2,6 +2,7 @@
 
 import argparse
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -72,6 +73,14 @@ def test_turned_upright_a_mesh_is_z_up_by_its_own_axis():
 
 ALL = "x, y, z, -x, -y, -z, auto, or a vector of three numbers that is not zero, such as 0,1,1"
 NONE = ["w", "", "--y", "0,0,0", "1,2", "1,2,3,4", "nan,0,1", (0, 1), (0, 1, "a"), None, 3, [[0, 0, 1]]]
+
+
+def test_the_name_of_any_axis_names_it_and_a_copy_of_its_mesh_is_equal():
+    random = np.random.default_rng(0)
+    for up in random.normal(size=(300, 3)) * 10 ** random.uniform(-8, 8, (300, 3)):
+        assert axis_named(axis_named(up)) == axis_named(up)
+    leaning = Mesh(BALL.vertices, BALL.faces, up=axis_named([-6.18488455e-03, 6.44222175e-06, -1.03488338e-04]))
+    assert replace(leaning) == leaning
 
 
 @pytest.mark.parametrize("up", NONE, ids=str)
