@@ -19,7 +19,8 @@ class Texture:
     """The paint of a mesh of m faces; a material of one plain colour is an image of one pixel.
 
     uv (m, 3, 2) f8, a pair per face corner: u to the right, v up, (0, 0) the lower left corner of the image, which
-    repeats outside 0..1. image (m,) i8: which of the images a face shows. images: arrays (h, w, 4) u1, RGBA.
+    repeats outside 0..1. image (m,) i8: which of the images a face shows. images: arrays (h, w, 4) u1, RGBA. All are
+    the texture's own, as those of a Mesh are.
     materials: for each image what glTF says of it besides (haptic_glance.mesh.materials.beside_colour), or None.
     """
 
@@ -29,9 +30,10 @@ class Texture:
     materials: tuple[Mapping[str, Any] | None, ...] = ()
 
     def __post_init__(self) -> None:
-        uv = np.ascontiguousarray(self.uv, dtype=np.float64)
-        image = np.ascontiguousarray(self.image, dtype=np.int64)
-        images = tuple(np.ascontiguousarray(one, dtype=np.uint8) for one in self.images)
+        uv, image = _own(self.uv, np.float64), _whole("image", self.image, np.int64)
+        images = tuple(_whole("images", one, np.uint8) for one in self.images)
+        for one in images:
+            one.flags.writeable = False  # so that no further Texture of them copies them again
         if uv.ndim != 3 or uv.shape[1:] != (3, 2) or not np.isfinite(uv).all():
             raise ValueError(f"uv must be finite and of shape (m, 3, 2), got {uv.shape}")
         if image.shape != uv.shape[:1]:
@@ -62,8 +64,8 @@ class Texture:
         shown = self.image[faces]
         for number in np.unique(shown):
             here, (h, w) = shown == number, self.images[number].shape[:2]
-            across, up = np.floor(uv[here] * (w, h)).astype(np.int64).T
-            found[here] = self.images[number][(h - 1 - up) % h, across % w, :3]
+            across, up = (np.floor(uv[here] * (w, h)) % (w, h)).astype(np.int64).T  # of any size, before the cast
+            found[here] = self.images[number][h - 1 - up, across, :3]
         return found
 
 
@@ -221,6 +223,14 @@ def _own(values: Any, kind: type) -> np.ndarray:
     found = np.ascontiguousarray(values, dtype=kind)
     shared = values.flags.writeable and np.may_share_memory(found, values)
     return found.copy() if shared else found
+
+
+def _whole(name: str, values: Any, kind: type) -> np.ndarray:
+    """As `_own`, of whole numbers; ValueError for those that the type does not hold."""
+    found = _own(values, kind)
+    if np.asarray(values).dtype != found.dtype and not np.array_equal(values, found):
+        raise ValueError(f"{name} must be whole numbers of {found.dtype}, got {np.asarray(values).dtype} of others")
+    return found
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.sampling import points_in_faces, sample_surface
 
 
@@ -103,3 +103,26 @@ def test_memory_that_a_caller_lends_is_copied():
 
 def test_a_mesh_without_vertices_has_no_diagonal():
     assert Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)).diagonal == 0
+
+
+def paint(uv=0.0, image=0, colour=255):
+    return Texture(np.full((1, 3, 2), uv), [image], (np.full((2, 2, 4), colour),))
+
+
+def test_a_texture_keeps_its_paint_when_the_caller_s_arrays_change():
+    uv, pixels = np.zeros((1, 3, 2)), np.zeros((1, 1, 4), dtype=np.uint8)
+    texture = Texture(uv, [0], (pixels,))
+    uv += 1
+    pixels += 1
+    assert not texture.uv.any() and not texture.images[0].any()
+
+
+@pytest.mark.parametrize("change", [{"colour": 300}, {"colour": 0.5}, {"image": 0.5}])
+def test_paint_that_its_arrays_cannot_hold_is_refused(change):
+    with pytest.raises(ValueError, match="must be whole numbers"):
+        paint(**change)
+
+
+def test_coordinates_however_large_show_a_pixel():
+    with np.errstate(all="raise"):
+        assert paint(uv=1e20).sample(np.array([0, 0]), np.array([[1e20, -1e20], [-0.25, 1.75]])).tolist() == [[255] * 3] * 2
