@@ -238,6 +238,7 @@ def _depth(away):
 
 
 TEXT = (".xyz", ".pts", ".asc")
+INTENSE = (7, 10)  # numbers a line of a PTS with an intensity and a colour, and with a normal, too
 FORMATS = (*TEXT, ".pcd", ".las")
 UNIT = 0.05  # how far the length of a normal may be from 1
 LARGEST_ORIGIN = 1e-9  # a viewpoint nearer to zero than this was not set by who wrote the file
@@ -246,11 +247,12 @@ LARGEST_ORIGIN = 1e-9  # a viewpoint nearer to zero than this was not set by who
 def read_cloud(content: bytes, suffix: str) -> Cloud:
     """The Cloud of the bytes of a file of FORMATS; its points may be unusable (see haptic_glance.mesh.clouds).
 
-    Text has a point a line: x y z, then three numbers that are a normal if their length is 1 on most lines, and
+    Text has a point a line: x y z, then three numbers that are a normal if their length is 1 on all lines, and
     else a colour of 0..255, then the other of the two; what follows is ignored, so are lines that hold no numbers.
+    Between the place and the colour a PTS may have an intensity, which scanners write.
     """
     if suffix in TEXT:
-        return _text(content)
+        return _text(content, suffix)
     return _pcd(content) if suffix == ".pcd" else _las(content)
 
 
@@ -263,7 +265,7 @@ def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
     return Cloud(np.asarray(loaded.vertices, np.float64), _units(normals), named)
 
 
-def _text(content):
+def _text(content, suffix):
     lines = content.decode("latin-1").replace(",", " ").replace(";", " ").splitlines()
     rows = [line for line in lines if len(line.split()) >= 3 and _is_number(line.split()[0])]
     if not rows:
@@ -271,7 +273,8 @@ def _text(content):
     width = min(len(row.split()) for row in rows)
     values = np.loadtxt(io.StringIO("\n".join(rows)), usecols=range(width), ndmin=2)
     normals = colors = None
-    for start in range(3, min(width, 9) - 2, 3):
+    first = 4 if suffix == ".pts" and width in INTENSE else 3
+    for start in range(first, min(width, first + 6) - 2, 3):
         three = values[:, start : start + 3]
         if normals is None and _units(three) is not None:
             normals = _units(three)

@@ -51,12 +51,14 @@ FILES = {
     "commas.xyz": lambda: b"x,y,z\n" + text(BALL).replace(b" ", b","),
     "normals.xyz": lambda: text(np.hstack([BALL, BALL])),
     "all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS, BALL])),
+    "intense.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS[:, :1], COLORS])),
+    "intense_all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS[:, :1], COLORS, BALL])),
     "ascii.pcd": lambda: pcd(Encoding.ASCII),
     "binary.pcd": lambda: pcd(Encoding.BINARY),
     "packed.pcd": lambda: pcd(Encoding.BINARY_COMPRESSED),
     "air.las": las,
 }
-COLOURED = ("all.pts", "binary.pcd", "packed.pcd", "air.las")
+COLOURED = ("all.pts", "intense.pts", "intense_all.pts", "binary.pcd", "packed.pcd", "air.las")
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -65,7 +67,7 @@ def test_every_format_gives_its_points_colours_and_normals(name):
     assert cloud.points == pytest.approx(BALL, abs=1e-4)
     assert name not in COLOURED or (cloud.colors == COLORS).all()
     assert cloud.normals is None or cloud.normals == pytest.approx(BALL)
-    assert (cloud.normals is not None) == (name in ("normals.xyz", "all.pts"))
+    assert (cloud.normals is not None) == (name in ("normals.xyz", "all.pts", "intense_all.pts"))
 
 
 PLY = trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply")
