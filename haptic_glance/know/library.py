@@ -69,7 +69,7 @@ NEAR = 0.01  # units, one cell of the default array: within it a point belongs t
 
 
 def sample_places(surface: Surface, count: int, random: np.random.Generator) -> Places:
-    """Places of `count` points, drawn uniformly by area; those whose faces have no normal are left out.
+    """Places of `count` points, drawn uniformly by area, so that all lie in faces with a normal.
 
     Raises ValueError for a mesh without area.
     """
