@@ -38,6 +38,11 @@ def test_a_name_that_cannot_run_is_answered_with_ours_or_the_reason(name, messag
         check_name(name)
 
 
+@pytest.mark.parametrize("method", ["height", "random"])
+def test_a_whole_number_of_any_type_is_a_count(method):
+    assert np.array_equal(find_points(ball_mesh(2), method, 3.0), find_points(ball_mesh(2), method, 3))
+
+
 def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_list():
     for name in ("glance", "glance_any_pose", "itti", "thesis_ssim"):
         check_name(name)

@@ -125,8 +125,7 @@ class Looked:
 
     def detect(self, count: int | None = None) -> Detection:
         """The Detection of `count` points, None for those past the method's own threshold; ValueError below 1."""
-        _check(count)
-        found = self.detector.find(self.mesh, self.sight, self.options, count)
+        found = self.detector.find(self.mesh, self.sight, self.options, _check(count))
         if found.saliency is None:
             return found
         scores = scores_of(self.mesh, found.points, found.saliency, self._places)
@@ -136,6 +135,7 @@ class Looked:
 def _check(count):
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")
+    return None if count is None else int(count)
 
 
 def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, places: KDTree | None = None) -> np.ndarray:
