@@ -82,7 +82,8 @@ def for_glb(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trime
 
 def _converted(mesh, name, parts, glb=False) -> trimesh.Trimesh | trimesh.Scene:
     if mesh.texture is None and not parts:
-        return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
+        vertices, faces = mesh.vertices.copy(), mesh.faces.copy()  # which trimesh would share, for its user to change
+        return trimesh.Trimesh(vertices, faces, vertex_colors=mesh.colors, process=False)
     if mesh.texture is None:
         return trimesh.Scene({part: _plain_part(mesh, ids) for part, ids in (parts or {}).items()})
     images, scene = mesh.texture.image, {}

@@ -86,3 +86,11 @@ def test_a_folder_gives_its_meshes_in_order_and_nothing_else(tmp_path):
 def test_files_of_one_stem_are_told_apart(tmp_path):
     files = [tmp_path / name for name in ("a.ply", "a.stl", "b.stl")]
     assert names_of(files) == ["a.ply", "a.stl", "b"]
+
+
+def test_a_change_of_a_trimesh_object_leaves_its_mesh_alone():
+    mesh = as_mesh(trimesh.creation.box())
+    before, made = Mesh(mesh.vertices.copy(), mesh.faces.copy(), up=mesh.up), to_trimesh(mesh)
+    made.vertices[0] += 1
+    made.faces[0] = made.faces[0][::-1]
+    assert mesh == before
