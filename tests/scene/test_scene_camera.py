@@ -5,6 +5,7 @@ import pytest
 
 from haptic_glance.lod.scene import Camera, Placed, Scene, fly
 from haptic_glance.lod.scene.pictures import pixel_box, rays_of, render_level
+from haptic_glance.mesh.mesh import Mesh
 
 
 @pytest.fixture
@@ -85,6 +86,7 @@ def looking(**changes):
         (lambda _, __: fly([[3, 0, 0], [np.inf, 0, 0]], [[0, 0, 0]] * 2, 3, 40, (5, 5)), "keyframes .* must be finite"),
         (lambda all_of, _: Placed("one", (np.nan, 0, 0), 0, 1).pose(all_of["one"]), "one has position .*nan.*: give"),
         (lambda all_of, _: Placed("one", (0, 0, 0), np.nan, 1).pose(all_of["one"]), "one has position .*nan.*: give"),
+        (lambda _, __: Placed("dot", (0, 0, 0), 0, 1).pose(Mesh(np.ones((3, 3)), [[0, 1, 2]])), "dot has no extent"),
         (lambda all_of, make: make((Placed("one", (0, -4, 0.5), 0, 0.5),)).poses(all_of), "frame 0 is inside one"),
         (
             lambda all_of, make: make((Placed("no", (0, 0, 0), 0, 1),)).poses(all_of),

@@ -101,7 +101,8 @@ class Placed:
     def pose(self, mesh: Mesh) -> "Pose":
         """The Pose of this object's mesh.
 
-        Raises ValueError for a size that is not above 0, numbers that are not finite, and a mesh without faces.
+        Raises ValueError for a size that is not above 0, numbers that are not finite, and a mesh without faces or
+        extent.
         """
         if not len(mesh.faces):
             raise ValueError(f"{self.name} has no faces to show")
@@ -111,6 +112,8 @@ class Placed:
             place = f"position {self.position}, turn {self.turn} and size {self.size}"
             raise ValueError(f"{self.name} has {place}: give finite numbers")
         low, high = bounds(mesh)
+        if not (high - low).max() > 0:
+            raise ValueError(f"{self.name} has no extent: all corners of its faces coincide")
         foot = np.array([*((low + high) / 2)[:2], low[2]])
         cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
         turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
