@@ -7,6 +7,7 @@ textures.
 import argparse
 import io
 import re
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -26,7 +27,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import with_stated_up
 
 from .simplify import simplify
-from .topology import Parts
+from .topology import Parts, shading
 
 FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
 PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
@@ -39,7 +40,7 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
 
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
     glb with all that its materials say; ply gets the texture's colour at each vertex instead; off and stl have neither.
-    obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects
+    A glb has normals. obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects
     +y up and metres, but nothing is turned here (haptic_glance.mesh.up.upright_for); the other formats get a comment
     that names the axis. parts: in a glb the nodes, by name. Raises ValueError for another suffix.
     """
@@ -52,12 +53,12 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
         mesh = bake_texture(mesh)
     elif suffix == ".obj" and mesh.texture is not None:  # its materials have no more
         mesh = replace(mesh, texture=replace(mesh.texture, materials=()))
-    loaded = _converted(mesh, path.stem, named, suffix == ".glb")
+    loaded = for_glb(mesh, path.stem, named) if suffix == ".glb" else to_trimesh(mesh, path.stem)
     digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), 1)
     options: dict[str, Any] = {"digits": digits} if suffix in (".obj", ".off") else {}
     if suffix == ".obj":
         options |= {"return_texture": True, "mtl_name": f"{path.stem}.mtl"}
-    exported: Any = loaded.export(file_type=suffix[1:], **options)
+    exported: Any = write_glb(loaded) if suffix == ".glb" else loaded.export(file_type=suffix[1:], **options)
     content, beside = exported if suffix == ".obj" else (exported, {})
     with ExitStack() as stack:  # all are written before the first is moved into place, the mesh itself last
         for name, extra in {path.name: content, **beside}.items():
@@ -75,42 +76,69 @@ def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> tr
     return _converted(mesh, name, parts)
 
 
-def for_glb(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
-    """As `to_trimesh`; the pictures are those of files, which trimesh writes to a glb as they are."""
-    return _converted(mesh, name, parts, True)
+NORMAL = "normal"
 
 
-def _converted(mesh, name, parts, glb=False) -> trimesh.Trimesh | trimesh.Scene:
+def for_glb(
+    mesh: Mesh, name: str = "mesh", parts: Parts | None = None, attributes: Mapping[str, np.ndarray] | None = None
+) -> trimesh.Trimesh | trimesh.Scene:
+    """As `to_trimesh`, with vertices doubled at creases, and normals (haptic_glance.lod.topology.shading), without
+    which glTF is shown flat. The pictures are those of files, which trimesh writes to a glb as they are.
+
+    attributes: {name: (n,)} of the vertices, which those of the result get, too.
+    """
+    faces, vertices, normals = shading(mesh)
+    colors = None if mesh.colors is None else mesh.colors[vertices]
+    carried = {NORMAL: normals} | {key: values[vertices] for key, values in (attributes or {}).items()}
+    return _converted(Mesh(mesh.vertices[vertices], faces, colors, mesh.texture), name, parts, carried)
+
+
+def write_glb(loaded: trimesh.Trimesh | trimesh.Scene) -> bytes:
+    """The bytes of what `for_glb` returns."""
+    return loaded.export(file_type="glb", include_normals=True)  # type: ignore[return-value]
+
+
+def _converted(mesh, name, parts, carried=None) -> trimesh.Trimesh | trimesh.Scene:
     if mesh.texture is None and not parts:
-        vertices, faces = mesh.vertices.copy(), mesh.faces.copy()  # which trimesh would share, for its user to change
-        return trimesh.Trimesh(vertices, faces, vertex_colors=mesh.colors, process=False)
+        return _made(mesh, np.arange(len(mesh.vertices)), mesh.faces.copy(), carried, vertex_colors=mesh.colors)
     if mesh.texture is None:
-        return trimesh.Scene({part: _plain_part(mesh, ids) for part, ids in (parts or {}).items()})
+        return trimesh.Scene({part: _plain_part(mesh, ids, carried) for part, ids in (parts or {}).items()})
     images, scene = mesh.texture.image, {}
     if not parts:
         scene = {f"{name}_{number}": (number, np.flatnonzero(images == number)) for number in np.unique(images)}
     for part, ids in (parts or {}).items():
         for place, number in enumerate(np.unique(images[ids])):
             scene[f"{part}_{place}" if place else part] = number, ids[images[ids] == number]
-    said = {number: _material(mesh.texture, number, glb) for number in {number for number, _ in scene.values()}}
-    return trimesh.Scene({part: _part(mesh, said[number], ids, part) for part, (number, ids) in scene.items()})
+    said = {
+        number: _material(mesh.texture, number, carried is not None)
+        for number in {number for number, _ in scene.values()}
+    }
+    return trimesh.Scene({part: _part(mesh, said[number], ids, part, carried) for part, (number, ids) in scene.items()})
 
 
-def _plain_part(mesh, ids):
+def _plain_part(mesh, ids, carried):
     used, faces = np.unique(mesh.faces[ids], return_inverse=True)
     colors = None if mesh.colors is None else mesh.colors[used]
-    return trimesh.Trimesh(mesh.vertices[used], faces.reshape(-1, 3), vertex_colors=colors, process=False)
+    return _made(mesh, used, faces.reshape(-1, 3), carried, vertex_colors=colors)
 
 
-def _part(mesh, material, ids, name):
+def _made(mesh, vertices, faces, carried, **looks):
+    """A Trimesh of some vertices of the mesh, in arrays of its own, with what they carry."""
+    carried = {key: values[vertices] for key, values in (carried or {}).items()}
+    normals = carried.pop(NORMAL, None)
+    made = trimesh.Trimesh(mesh.vertices[vertices], faces, vertex_normals=normals, process=False, **looks)
+    made.vertex_attributes.update(carried)
+    return made
+
+
+def _part(mesh, material, ids, name, carried):
     """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
     faces = mesh.faces[ids]
     rows = np.column_stack([faces.ravel(), mesh.texture.uv[ids].reshape(-1, 2)])
     found, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     own = PBRMaterial(**{"name": name} | material)
-    vertices = mesh.vertices[faces.ravel()[first]]
     visual = TextureVisuals(uv=found[:, 1:], material=own)
-    return trimesh.Trimesh(vertices, inverse.reshape(-1, 3), visual=visual, process=False)
+    return _made(mesh, faces.ravel()[first], inverse.reshape(-1, 3), carried, visual=visual)
 
 
 def _material(texture, number, glb):

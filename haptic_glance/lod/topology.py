@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 
 from haptic_glance.mesh.gltf import SUFFIXES
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, unit
 
 from .attributes import closest
 from .kernels.mesh import count_faults, face_components, opposites, signed_volumes, split_fans
@@ -98,7 +98,7 @@ def half_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
     Half-edge 3 f + k runs from corner k of face f to the next. Its opposite is -1 unless exactly two faces share it.
     """
     ids = faces.astype(np.int32).ravel()
-    other, non_manifold = opposites(ids, int(faces.max()) + 1, False)
+    other, non_manifold = opposites(ids, int(faces.max(initial=-1)) + 1, False)
     return ids, other, non_manifold
 
 
@@ -109,6 +109,34 @@ def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
     """
     ids, other, _ = half_edges(faces)
     return split_fans(ids, other)[0].reshape(-1, 3).astype(np.int64)
+
+
+CREASE = 0.5  # cosine between two faces, 60 degrees: a sharper edge is drawn as an edge, also on a coarse level
+
+
+def shading(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(faces (m, 3), vertices (k,), normals (k, 3)) to shade a mesh smoothly but for its creases.
+
+    The corners of a vertex that no crease divides share one vertex. The first n vertices are the mesh's own, then come
+    the copies at creases; vertices: the id of each in the mesh. The normals, of length 1, are means of those of the
+    faces by area; where faces have none, they point upwards.
+    """
+    ids, other, _ = half_edges(mesh.faces)
+    inner = np.flatnonzero(other >= 0)
+    normals = mesh.face_normals
+    sharp = np.einsum("ij,ij->i", normals[inner // 3], normals[other[inner] // 3]) < CREASE
+    other[inner[sharp]] = -1
+    fans, count = split_fans(ids, other)
+    vertex = np.zeros(count, dtype=np.int64)
+    vertex[fans] = ids
+    new, first = np.full(count, -1), np.unique(vertex, return_index=True)[1]
+    new[first] = vertex[first]
+    copies = np.flatnonzero(new < 0)
+    new[copies] = len(mesh.vertices) + np.arange(len(copies))
+    corners, vertices = new[fans], np.r_[np.arange(len(mesh.vertices)), vertex[copies]]
+    total = np.stack([np.bincount(corners, np.repeat(one, 3), len(vertices)) for one in mesh.face_crosses.T], axis=1)
+    total[~total.any(axis=1)] = [0.0, 0.0, 1.0]
+    return corners.reshape(-1, 3), vertices, unit(total)
 
 
 Parts = dict[str, np.ndarray]  # name of a node -> (k,) ids of faces

@@ -6,14 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from scipy.spatial import KDTree
 
 from haptic_glance.base.files import whole_file
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import rotate_to_z_up
 from haptic_glance.mesh.up import with_stated_up
 
-from .export import for_glb
+from .export import for_glb, write_glb
 
 NAME = "saliency"
 
@@ -70,13 +69,7 @@ def _ply(mesh: Mesh, weights: np.ndarray) -> bytes:
 
 
 def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
-    loaded = for_glb(mesh)
-    scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
-    places = KDTree(mesh.vertices)  # a seam of a texture doubles vertices
-    for part in scene.geometry.values():
-        own = weights if mesh.texture is None else weights[places.query(part.vertices)[1]]
-        part.vertex_attributes[f"_{NAME.upper()}"] = own
-    return scene.export(file_type="glb")  # type: ignore[return-value]
+    return write_glb(for_glb(mesh, attributes={f"_{NAME.upper()}": weights}))
 
 
 def _npz(mesh: Mesh, weights: np.ndarray) -> bytes:
