@@ -36,6 +36,13 @@ def test_every_figure_is_that_of_its_table(line):
     assert list(texts) == [shown(number, text) for number, text in zip(numbers, texts, strict=True)]
 
 
+def test_the_minutes_of_a_run_are_those_that_the_benchmark_took():
+    [said] = re.findall(r"(\d+) minutes of one core, (\d+) of two", TEXT)
+    metrics = ("processor time", "wall time")
+    rows = [rows_of(ROOT / "reports/bench/pipeline.csv", f"what=all stages metric={name}") for name in metrics]
+    assert [float(text) for text in said] == pytest.approx([number_of(row, "value") / 60 for row in rows], abs=0.5)
+
+
 COUNTED = re.compile(r"(\d+) (?:meshes|point clouds|random sets)")
 COUNTS = [line for line in WITH_FIGURES if COUNTED.search(line) and "claims.csv" in line]
 
