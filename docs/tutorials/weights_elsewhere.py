@@ -63,8 +63,9 @@ compile(BLENDER, "blender.py", "exec")
 # glTF
 # ----
 #
-# glTF asks that attributes of an application begin with an underscore. The GLB has ``_SALIENCY`` beside the positions
-# and the texture coordinates, or without a texture the colours; three.js shows it as ``geometry.attributes._saliency``.
+# glTF asks that attributes of an application begin with an underscore. The GLB has ``_SALIENCY`` beside the positions,
+# the normals and the texture coordinates, or without a texture the colours; three.js shows it as
+# ``geometry.attributes._saliency``.
 
 data = files["glb"].read_bytes()
 header = json.loads(data[20 : 20 + struct.unpack("<I", data[12:16])[0]])

@@ -167,7 +167,7 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
     """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh or another one."""
     given = [path for path in paths if path]
     for path in given:
-        if given.count(path) > 1:
+        if sum(other.resolve() == path.resolve() for other in given) > 1:
             raise ValueError(f"{path} is named for two results: write them to two files")
         if path.is_dir():
             raise ValueError(f"{path} is a folder: name a file")

@@ -103,6 +103,8 @@ class TouchUntilSure(gymnasium.Env):
 
     def planned(self) -> int:
         """The action of the planner, a baseline: the place at which the belief is expected to gain most."""
+        if self.ended:
+            raise ResetNeeded("there is no episode, or it has ended: call reset() before asking for a touch")
         return int(self.exploration.gains().argmax())
 
     def _observation(self) -> dict[str, np.ndarray]:

@@ -40,15 +40,16 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
 
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
     glb with all that its materials say; ply gets the texture's colour at each vertex instead; off and stl have neither.
-    A glb has normals. obj and off have nine digits or more, the others single precision. Coordinates are those of the
-    mesh: glTF expects +y up and metres, but nothing is turned here (haptic_glance.mesh.up.upright_for); the other
-    formats get a comment that names the axis. parts: in a glb the nodes, by name. Raises ValueError for another suffix.
+    A glb has normals, for which creases double vertices, too. obj and off have nine digits or more, the others single
+    precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned here
+    (haptic_glance.mesh.up.upright_for); the other formats get a comment that names the axis. parts: in a glb the nodes,
+    by name. Raises ValueError for another suffix.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise ValueError(f"{path.name}: meshes are written as {', '.join(FORMATS)}, not as {suffix or 'no suffix'}")
-    named = parts if suffix == ".glb" else None
+    named = {name: ids for name, ids in (parts or {}).items() if len(ids)} if suffix == ".glb" else None
     if suffix not in PICTURED:
         mesh = bake_texture(mesh)
     elif suffix == ".obj" and mesh.texture is not None:  # its materials have no more
@@ -82,8 +83,8 @@ NORMAL = "normal"
 def for_glb(
     mesh: Mesh, name: str = "mesh", parts: Parts | None = None, attributes: Mapping[str, np.ndarray] | None = None
 ) -> trimesh.Trimesh | trimesh.Scene:
-    """As `to_trimesh`, with vertices doubled at creases, and normals (haptic_glance.lod.topology.shading), without
-    which glTF is shown flat. The pictures are those of files, which trimesh writes to a glb as they are.
+    """As `to_trimesh`, with normals (haptic_glance.lod.topology.shading), for which creases double vertices: viewers
+    show a glTF without normals flat. The pictures are those of files, which trimesh writes to a glb as they are.
 
     attributes: {name: (n,)} of the vertices, which those of the result get, too.
     """

@@ -1,13 +1,15 @@
 """Topology of a surface (loops, components, genus), faults that no simplification may add, and named nodes of a GLB."""
 
+import io
 import re
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
 import trimesh
+from trimesh.resolvers import FilePathResolver
 
-from haptic_glance.mesh.gltf import SUFFIXES
+from haptic_glance.mesh.gltf import SUFFIXES, as_glb
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from .attributes import closest
@@ -111,15 +113,15 @@ def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
     return split_fans(ids, other)[0].reshape(-1, 3).astype(np.int64)
 
 
-CREASE = 0.5  # cosine between two faces, 60 degrees: a sharper edge is drawn as an edge, also on a coarse level
+CREASE = 0.5 + 1e-6  # cosine between two faces that meet at 60 degrees or more, but for rounding: an edge to be seen
 
 
 def shading(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(faces (m, 3), vertices (k,), normals (k, 3)) to shade a mesh smoothly but for its creases.
 
-    The corners of a vertex that no crease divides share one vertex. The first n vertices are the mesh's own, then come
-    the copies at creases; vertices: the id of each in the mesh. The normals, of length 1, are means of those of the
-    faces by area; where faces have none, they point upwards.
+    The corners of a vertex share one vertex unless a crease or a non-manifold edge or vertex divides them. The first n
+    vertices are the mesh's own, then come the copies; vertices: the id of each in the mesh. The normals, of length 1,
+    are means of those of the faces by area, or (0, 0, 1) where faces have none.
     """
     ids, other, _ = half_edges(mesh.faces)
     inner = np.flatnonzero(other >= 0)
@@ -147,7 +149,8 @@ def parts_of(path: Path) -> Parts:
     """The Parts of a file's mesh, as `haptic_glance.mesh.files` joins them; empty unless it is a GLB or .gltf."""
     if path.suffix.lower() not in SUFFIXES:
         return {}
-    loaded = trimesh.load(path, process=False, skip_materials=True)
+    content, beside = io.BytesIO(as_glb(path)), FilePathResolver(str(path))
+    loaded = trimesh.load(content, file_type="glb", resolver=beside, process=False, skip_materials=True)
     dumped = loaded.dump() if isinstance(loaded, trimesh.Scene) else []
     parts, start = {}, 0
     for part in dumped:

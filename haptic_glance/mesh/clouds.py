@@ -249,7 +249,7 @@ def read_cloud(content: bytes, suffix: str) -> Cloud:
 
     Text has a point a line: x y z, then three numbers that are a normal if their length is 1 on all lines, and
     else a colour of 0..255, then the other of the two; what follows is ignored, so are lines that hold no numbers.
-    Between the place and the colour a PTS may have an intensity, which scanners write.
+    Between the place and the colour a PTS may have an intensity, which scanners write; a normal comes before it.
     """
     if suffix in TEXT:
         return _text(content, suffix)
@@ -273,7 +273,7 @@ def _text(content, suffix):
     width = min(len(row.split()) for row in rows)
     values = np.loadtxt(io.StringIO("\n".join(rows)), usecols=range(width), ndmin=2)
     normals = colors = None
-    first = 4 if suffix == ".pts" and width in INTENSE else 3
+    first = 4 if suffix == ".pts" and width in INTENSE and _units(values[:, 3:6]) is None else 3
     for start in range(first, min(width, first + 6) - 2, 3):
         three = values[:, start : start + 3]
         if normals is None and _units(three) is not None:

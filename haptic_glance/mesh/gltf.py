@@ -5,11 +5,11 @@ import json
 import struct
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
+from urllib.parse import unquote, unquote_to_bytes
 
 from trimesh.resolvers import FilePathResolver, Resolver
 
-from .headers import MeshError
+from .headers import ABSENT, MeshError
 
 SUFFIXES = (".glb", ".gltf")
 DATA = "data:"
@@ -25,7 +25,7 @@ def as_glb(path: Path) -> bytes:
 
 
 def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
-    """The bytes of a GLB with what a .gltf file says and refers to (glTF 2.0, section 3.6.1 and 4.4).
+    """The bytes of a GLB with what a .gltf file says and refers to (glTF 2.0, sections 3.6.1 and 4.4).
 
     resolver: reads the files beside it; None where there are none. Raises MeshError for what is no glTF, and for a
     buffer that is not there. A picture that is not there is left out; `materials.not_read` names it.
@@ -44,22 +44,27 @@ def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
     return head + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
 
 
-def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytes:
+def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytearray:
     """One buffer for all that the tree refers to; the tree refers to that buffer afterwards."""
-    binary, starts = b"", []
+    binary, starts = bytearray(), []
     for buffer in tree.get("buffers", []):
-        data = _read(buffer["uri"], resolver)
+        if "uri" not in buffer and (needed := tree.get("extensionsRequired")):
+            raise MeshError(f"needs {', '.join(needed)}, which is not read: export it without compression")
+        data, name = _read(buffer["uri"], resolver), _name(buffer["uri"])
         if data is None:
-            raise MeshError(
-                f"refers to {_name(buffer['uri'])}, which is not beside it: keep both together, or export a .glb"
-            )
+            raise MeshError(f"refers to {name}, which is not beside it: keep both together, or export a .glb")
+        if len(data) < buffer.get("byteLength", 0):
+            raise MeshError(f"{name} is truncated: {len(data)} of {buffer['byteLength']} bytes")
         starts.append(len(binary))
         binary += _aligned(data)
     for view in tree.get("bufferViews", []):
         view |= {"byteOffset": starts[view["buffer"]] + view.get("byteOffset", 0), "buffer": 0}
     for image in tree.get("images", []):
-        data = _read(image["uri"], resolver) if "uri" in image else None
+        if "uri" not in image:
+            continue
+        data = _read(image["uri"], resolver)
         if data is None:
+            image[ABSENT] = _name(image["uri"])
             continue
         kind = next((kind for start, kind in KINDS.items() if data.startswith(start)), image.get("mimeType", ""))
         del image["uri"]
@@ -72,12 +77,23 @@ def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytes:
 
 def _read(uri: str, resolver: Resolver | None) -> bytes | None:
     """The bytes that a URI stands for; None where they are not at hand."""
-    if uri.startswith(DATA):
-        return base64.b64decode(uri.partition(",")[2])
+    if uri[: len(DATA)].lower() == DATA:
+        head, _, body = uri.partition(",")
+        return base64.b64decode(unquote(body)) if head.lower().endswith(";base64") else unquote_to_bytes(body)
     try:
         return resolver and resolver.get(unquote(uri))
     except (OSError, ValueError, KeyError):  # not there, not below the folder of the file, not in the archive
         return None
+
+
+def names_in(content: bytes) -> list[str]:
+    """The names of the files that a .gltf file refers to; none of what is no glTF."""
+    try:
+        tree = json.loads(content)
+        uris = [one["uri"] for key in ("buffers", "images") for one in tree.get(key, []) if "uri" in one]
+        return [unquote(uri) for uri in uris if uri[: len(DATA)].lower() != DATA]
+    except (ValueError, TypeError, AttributeError):
+        return []
 
 
 def _name(uri: str) -> str:

@@ -8,6 +8,7 @@ import struct
 from PIL import Image
 
 MOST_PRIMITIVES = 20_000  # of a GLB, counted at each node that shows them: the parser needs milliseconds for each
+ABSENT = "absent"  # key of a picture of a glTF that is not at hand: its name
 MAX_TEXTURE = 8192  # pixels, of a square texture
 PLY_BYTES = {b"short": 2, b"ushort": 2, b"int": 4, b"uint": 4, b"float": 4, b"double": 8}
 PLY_BYTES |= {b"int16": 2, b"uint16": 2, b"int32": 4, b"uint32": 4, b"float32": 4, b"float64": 8}
@@ -40,6 +41,8 @@ def _glb(content):
         raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
     if stated > len(content):
         raise MeshError(f"truncated: its header states {stated} numbers, the file has {len(content)} bytes")
+    if any("sparse" in accessor for accessor in tree.get("accessors", [])):
+        raise MeshError("has sparse accessors, which are not read: export it without morph targets, or as .ply")
     if primitives > MOST_PRIMITIVES:
         raise MeshError(
             f"{primitives:,} primitives are more than {MOST_PRIMITIVES:,}: join its parts in the program that wrote it"

@@ -17,7 +17,7 @@ from trimesh.visual import ColorVisuals, TextureVisuals
 from trimesh.visual.color import to_rgba
 from trimesh.visual.material import PBRMaterial, color_image
 
-from .headers import MAX_TEXTURE, MeshError
+from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import Mesh, Texture, content_of
 
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
@@ -82,13 +82,14 @@ def not_read(content: bytes) -> list[str]:
     """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
     tree = _header(content)
     found = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
-    found += [f"picture {one['uri']}, not beside it" for one in _stated_in(tree, "images") if "uri" in one]
+    found += [f"picture {one[ABSENT]}, not beside it" for one in _stated_in(tree, "images") if ABSENT in one]
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
     with suppress(*MALFORMED):
         primitives = [primitive for mesh in _stated_in(tree, "meshes") for primitive in mesh["primitives"]]
         coloured = all("COLOR_0" in one["attributes"] and "material" not in one for one in primitives)
         kept = (*DERIVED, "COLOR_0") if coloured else DERIVED
         found += [name for primitive in primitives for name in primitive["attributes"] if name not in kept]
+        found += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
         for material in _stated_in(tree, "materials"):
             found += material.get("extensions", {})
             for name, use in _uses(material):

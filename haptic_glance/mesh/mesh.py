@@ -227,10 +227,11 @@ def _own(values: Any, kind: type) -> np.ndarray:
 
 def _whole(name: str, values: Any, kind: type) -> np.ndarray:
     """As `_own`, of whole numbers; ValueError for those that the type does not hold."""
-    found = _own(values, kind)
-    if np.asarray(values).dtype != found.dtype and not np.array_equal(values, found):
-        raise ValueError(f"{name} must be whole numbers of {found.dtype}, got {np.asarray(values).dtype} of others")
-    return found
+    given, limits = np.asarray(values), np.iinfo(kind)
+    held = given.dtype == kind or not given.size or limits.min <= given.min() <= given.max() <= limits.max
+    if not held or (given.dtype != kind and (given % 1 != 0).any()):
+        raise ValueError(f"{name} must be whole numbers of {limits.dtype}, got {given.dtype} of others")
+    return _own(values, kind)
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

@@ -10,13 +10,13 @@ import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
-from urllib.parse import unquote
 
 import numpy as np
 from trimesh.resolvers import FilePathResolver
 
 from haptic_glance.base.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
 from haptic_glance.base.files import whole_file
+from haptic_glance.mesh.gltf import names_in
 from haptic_glance.mesh.materials import obj_vertices
 
 PACKAGE = "sweethome3d-furniture_1.8-1_all.deb"
@@ -139,7 +139,6 @@ NAMES = {  # what names a file, by the suffix of the file in which it stands
     ".obj": re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.M),
     ".mtl": re.compile(rb"^[ \t]*map_Kd[ \t]+(.+?)\s*$", re.M | re.I),
     ".depth": re.compile(rb'"image"\s*:\s*"([^"]+)"'),
-    ".gltf": re.compile(rb'"uri"\s*:\s*"(?!data:)([^"]+)"'),
     ".ply": re.compile(rb"^comment[ \t]+TextureFile[ \t]+(.+?)\s*$", re.M | re.I),
 }
 
@@ -167,7 +166,8 @@ def files_named(content: bytes, suffix: str, read: Callable[[str], bytes]) -> di
 
 
 def _named(content, suffix):
+    if suffix.lower() == ".gltf":
+        return names_in(content)
     header = content.partition(b"end_header")[0] if suffix.lower() == ".ply" else content
     pattern = NAMES.get(suffix.lower())
-    names = [name.decode("utf-8", "replace") for name in pattern.findall(header)] if pattern else []
-    return [unquote(name) for name in names] if suffix.lower() == ".gltf" else names
+    return [name.decode("utf-8", "replace") for name in pattern.findall(header)] if pattern else []

@@ -132,7 +132,7 @@ def test_buckets_halve_each_doubling_of_the_cost():
     assert [bucket(2.0**k) for k in (-100, -1, 0, 3)] == [0, 198, 200, 206]
     assert [bucket(1.4999), bucket(1.5), bucket(1.9999), bucket(2.0)] == [200, 201, 201, 202]
     assert bucket(0.0) == bucket(1e-40) == 0 and collapse.BUCKETS == 456
-    assert bucket(3e38) == bucket(1e60) == bucket(np.inf) == bucket(np.nan) == 455
+    assert bucket(3e38) == bucket(1e60) == bucket(np.inf) == bucket(np.nan) == bucket(-np.nan) == 455
 
 
 def plane_sums(mesh, weight, place, vertices):

@@ -49,7 +49,7 @@ REFUSED = {
     "missing_vertex.off": (off(TRIANGLE, [(0, 1, 7)]), "do not exist"),
     "missing_vertex.obj": ((FLAT + "f 1 2 12\n").encode(), "do not exist .*export it as .glb"),
     "scene.dae": (b"<x/>", "cannot read .dae: .*export it as .glb"),
-    "empty.gltf": (b"{}", "no geometry|unreadable"),
+    "empty.gltf": (b"{}", "no geometry"),
     "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist"),
     "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "truncated: its header states"),
     "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),

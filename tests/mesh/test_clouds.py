@@ -52,6 +52,7 @@ FILES = {
     "normals.xyz": lambda: text(np.hstack([BALL, BALL])),
     "all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS, BALL])),
     "intense.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS[:, :1], COLORS])),
+    "weighed.pts": lambda: b"1200\n" + text(np.hstack([BALL, BALL, COLORS[:, :1]])),
     "intense_all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS[:, :1], COLORS, BALL])),
     "ascii.pcd": lambda: pcd(Encoding.ASCII),
     "binary.pcd": lambda: pcd(Encoding.BINARY),
@@ -67,7 +68,7 @@ def test_every_format_gives_its_points_colours_and_normals(name):
     assert cloud.points == pytest.approx(BALL, abs=1e-4)
     assert name not in COLOURED or (cloud.colors == COLORS).all()
     assert cloud.normals is None or cloud.normals == pytest.approx(BALL)
-    assert (cloud.normals is not None) == (name in ("normals.xyz", "all.pts", "intense_all.pts"))
+    assert (cloud.normals is not None) == (name in ("normals.xyz", "all.pts", "weighed.pts", "intense_all.pts"))
 
 
 PLY = trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply")

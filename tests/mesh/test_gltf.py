@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+from urllib.parse import quote
 
 import numpy as np
 import pytest
@@ -50,7 +51,7 @@ def write(glb, tmp_path):
         last = tree["bufferViews"][-1]
         end = last.get("byteOffset", 0)
         tree["bufferViews"][-1] = last | {"buffer": 1, "byteOffset": 0}
-        sides = {"one.bin": binary[: end + 1], "two.bin": binary[end : end + last["byteLength"]]}  # of odd length
+        sides = {"one part.bin": binary[: end + 1], "two.bin": binary[end : end + last["byteLength"]]}  # of odd length
         tree["buffers"] = [{"uri": place(*side), "byteLength": len(side[1])} for side in sides.items()]
         path = tmp_path / "scene.gltf"
         path.write_text(json.dumps(tree))
@@ -74,9 +75,16 @@ def embedded(_name, content):
     return "data:application/octet-stream;base64," + base64.b64encode(content).decode()
 
 
-@pytest.mark.parametrize("where", ["beside", "embedded"])
+def quoted(_name, content):
+    return "DATA:application/octet-stream," + quote(content)
+
+
+PLACES = {"embedded": embedded, "quoted": quoted}
+
+
+@pytest.mark.parametrize("where", ["beside", *PLACES])
 def test_it_is_read_as_the_glb_of_the_same_scene(glb, write, beside, where):
-    path = write(beside if where == "beside" else embedded)
+    path = write(PLACES.get(where, beside))
     found, wanted = load(path), parse(glb, ".glb")
     assert np.array_equal(found.vertices, wanted.vertices) and np.array_equal(found.faces, wanted.faces)
     assert found.up == wanted.up == "y"
@@ -102,14 +110,14 @@ def test_its_nodes_and_pictures_go_through_simplify(write, beside, tmp_path, cap
 
 def test_what_is_not_beside_it_is_named(write, beside, tmp_path, capsys):
     path = write(beside)
-    assert set(files_beside(path)) == {"skin of it.png", "one.bin", "two.bin"}
+    assert set(files_beside(path)) == {"skin of it.png", "one part.bin", "two.bin"}
     (tmp_path / "skin of it.png").unlink()
     assert len(load(path).faces) == 400
-    assert not_read(as_glb(path)) == ["picture skin%20of%20it.png, not beside it"]
+    assert not_read(as_glb(path)) == ["picture skin of it.png, not beside it"]
     (tmp_path / "two.bin").unlink()
     with pytest.raises(MeshError, match="scene.gltf: refers to two.bin, which is not beside it: keep both together"):
         load(path)
-    with pytest.raises(MeshError, match="refers to one.bin, which is not beside it"):
+    with pytest.raises(MeshError, match="refers to one part.bin, which is not beside it"):
         parse(path.read_bytes(), ".gltf")
 
 
@@ -117,8 +125,32 @@ def test_a_file_outside_of_its_folder_is_not_read(tmp_path, write, beside):
     folder = tmp_path / "inner"
     folder.mkdir()
     path = folder / "scene.gltf"
-    path.write_text(write(beside).read_text().replace("one.bin", "../one.bin"))
-    with pytest.raises(MeshError, match="refers to ../one.bin, which is not beside it"):
+    path.write_text(write(beside).read_text().replace("one%20part.bin", "../one%20part.bin"))
+    with pytest.raises(MeshError, match="refers to ../one part.bin, which is not beside it"):
+        load(path)
+
+
+CUT = '{"buffers": [{"uri": "data:,abc", "byteLength": 9}]}'
+PACKED = '{"extensionsRequired": ["EXT_meshopt_compression"], "buffers": [{"byteLength": 9}]}'
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"), [(CUT, "data:,abc is truncated: 3 of 9 bytes"), (PACKED, "needs EXT_meshopt_compression")]
+)
+def test_a_buffer_that_is_cut_or_packed_is_refused(text, reason):
+    with pytest.raises(MeshError, match=reason):
+        parse(text.encode(), ".gltf")
+
+
+def test_morph_targets_are_named_and_sparse_accessors_refused(write):
+    path = write(embedded)
+    tree = json.loads(path.read_text())
+    tree["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
+    path.write_text(json.dumps(tree))
+    assert not_read(as_glb(path)) == ["morph targets"]
+    tree["accessors"][0]["sparse"] = {"count": 1}
+    path.write_text(json.dumps(tree))
+    with pytest.raises(MeshError, match="sparse accessors, which are not read"):
         load(path)
 
 

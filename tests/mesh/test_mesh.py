@@ -121,6 +121,8 @@ def test_a_texture_keeps_its_paint_when_the_caller_s_arrays_change():
 def test_paint_that_its_arrays_cannot_hold_is_refused(change):
     with pytest.raises(ValueError, match="must be whole numbers"):
         paint(**change)
+    with pytest.raises(ValueError, match="must be whole numbers"):
+        Texture(np.zeros((1, 3, 2)), [0], ([[[300, 0, 0, 0]]],))
 
 
 def test_coordinates_however_large_show_a_pixel():

@@ -143,6 +143,9 @@ def test_trainings_at_the_printed_rate_are_rows_of_their_own_and_a_reading_of_th
     mine = shown[shown["network"] == "MobileNetV2"].set_index(["starts from", "filters", "passes"])[SPLITS]
     assert mine["ImageNet", "frozen", "10, at the printed rate"].startswith("71")
     assert "until nothing improves" not in set(shown["passes"])
+    objects = late.assign(split="objects", method="alexnet")
+    alone = table("table_5_4", measure("transfer", pd.concat([rows(), objects[objects["epoch"].isna()]]))).shown
+    assert set(alone[alone["passes"] == "10, at the printed rate"]["training touches, %"]) == {"–"}
     claim = next(one for one in transfer.CLAIMS if one.key == "tuned_over_frozen_random")
     assert claim.readings[-1].changes == {"where": {"passes": "printed_rate"}}
 

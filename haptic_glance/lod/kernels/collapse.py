@@ -212,6 +212,7 @@ def _closes_tetrahedron(corner, opposite, h, apex):
 
 BITS = 1  # of the mantissa: two buckets for each doubling of the cost
 LEAST = 127 - 100  # biased exponent of the cost below which all share a bucket
+HIGHEST = 3e38  # from this cost on all share the last bucket
 NOT_QUEUED = -2
 BUCKETS = (255 - LEAST) << BITS
 
@@ -228,8 +229,9 @@ def empty_queue(size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @helper
 def bucket_of(cost: float) -> Id:
     """The bucket of a cost of 0 or more: the leading bits of the number itself, which grow with it."""
-    found = (np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS)
-    return min(max(found, 0), BUCKETS - 1)  # infinity and NaN would lie behind the last one
+    if not cost < HIGHEST:  # infinity and NaN of either sign, too
+        return BUCKETS - 1
+    return min(max((np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS), 0), BUCKETS - 1)
 
 
 @helper

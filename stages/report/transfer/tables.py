@@ -171,7 +171,7 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     head = [heads[key] for key in zip(every["objects"], every["split"], strict=True) if key in heads]
     wide = grid(every.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
     thesis = every.groupby(keys, sort=False)["thesis"].max()  # printed beside touches at random alone
-    known = every[every["split"] == "random"].groupby(keys, sort=False)["training"].last()
+    known = every["training"].where(every["split"] == "random").groupby([every[key] for key in keys], sort=False).last()
     return wide.assign(**{
         "training touches, %": [percent(share, 1) for share in known],
         "thesis, %": [percent(share, 1) for share in thesis],
