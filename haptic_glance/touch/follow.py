@@ -54,9 +54,8 @@ def walk(cutter: MeshCutter, plane_points: np.ndarray, frames: int, width: float
     tangents = unit(ahead[segment])
     positions = curve.points[segment] + np.maximum(arc_lengths - knots[segment], 0)[:, None] * tangents
     face_normals = cutter.mesh.face_normals[curve.faces]
-    normals = _averaged(
-        face_normals, curve.steps, arc_lengths, width, face_normals[np.minimum(segment, len(face_normals) - 1)]
-    )
+    below = face_normals[np.minimum(segment, len(face_normals) - 1)]
+    normals = _averaged(face_normals, curve.steps, curve.closed, arc_lengths, width, below)
     return ContourPath(positions, _axes(normals, tangents, normal), len(curves), curve.length, curve.length / total)
 
 
@@ -101,21 +100,24 @@ def _nearest(curve, place):
     return curve.steps[:nearest].sum() + share[nearest] * curve.steps[nearest], distances[nearest]
 
 
-def _averaged(face_normals, steps, arc_lengths, width, fallback):
+def _averaged(face_normals, steps, closed, arc_lengths, width, fallback):
     """(frames, 3) unit means of the face normals within `width` of the places, weighted by length.
 
-    Where they cancel out, as on a sheet thinner than the width, it is the normal of the face below (`fallback`), or +z
-    if that face has no normal.
+    Beyond the ends of an open curve nothing counts. Where the normals cancel out, as on a sheet thinner than the width,
+    it is the normal of the face below (`fallback`), or +z if that face has no normal.
     """
     knots = np.append(0.0, np.cumsum(steps))
     sums = np.vstack([np.zeros(3), np.cumsum(face_normals * steps[:, None], axis=0)])
     length, width = knots[-1], min(width, knots[-1] / 2)
+    begin, end = arc_lengths - width, arc_lengths + width
+    if not closed:
+        begin, end = np.maximum(begin, 0), np.minimum(end, length)
 
     def integral(s):
         turns, rest = np.divmod(s, length)
         return turns[:, None] * sums[-1] + np.stack([np.interp(rest, knots, part) for part in sums.T], axis=1)
 
-    mean = (integral(arc_lengths + width) - integral(arc_lengths - width)) / (2 * width)
+    mean = (integral(end) - integral(begin)) / (2 * width)
     mean = np.where(np.linalg.norm(mean, axis=1, keepdims=True) > CANCELLED, mean, fallback)
     return unit(np.where(np.linalg.norm(mean, axis=1, keepdims=True) > CANCELLED, mean, [0.0, 0.0, 1.0]))
 

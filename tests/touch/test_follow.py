@@ -52,6 +52,21 @@ def test_the_normal_turns_over_one_pitch_at_an_edge():
     assert bent.any() and (away[bent] < 0.02 + 1e-9).all() and (away[~bent] > 0.02 - 1e-9).all()
 
 
+def test_beyond_the_ends_of_an_open_curve_no_normal_counts():
+    angles = np.linspace(0, np.pi, 41)
+    rim = np.column_stack([0.5 * np.cos(angles), 0.5 * np.sin(angles)])
+    vertices = np.vstack([np.column_stack([rim, np.full(41, height)]) for height in (-0.3, 0.3)])
+    low = np.arange(40)
+    half = Mesh(
+        vertices, np.vstack([np.column_stack([low, low + 1, low + 41]), np.column_stack([low + 1, low + 42, low + 41])])
+    )
+    found = follow(half, [[0, 0.2, 0], [0.5, 0.01, 0], [-0.5, 0.01, 0]], frames=60, cells=CELLS, pitch=0.05)
+    assert found.length == pytest.approx(np.pi / 2, rel=1e-3)
+    outward = found.positions / np.linalg.norm(found.positions, axis=1, keepdims=True)
+    off = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", found.normals, outward), -1, 1)))
+    assert off.max() < 5  # half of the width, 0.025, is 2.9 degrees of the cylinder, and half of a face 2.25
+
+
 def test_the_longest_loop_is_followed_and_the_others_are_counted():
     plane = [ORIGIN, [0.5, 0, 0.0], [0, 0.5, 0.0]]
     found = follow(RING, plane, cells=CELLS)
