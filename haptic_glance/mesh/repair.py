@@ -32,19 +32,8 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
     ids, notes = np.arange(len(mesh.faces)), []
     a, b, c = mesh.faces.T
     ids, notes = _keep(ids, (a != b) & (b != c) & (c != a), notes, "degenerate")
-    faces = mesh.faces[ids]
-    # Compared up to a cyclic permutation: two faces back to back are a thin sheet, and both stay.
-    rotated = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
-    _, first = np.unique(rotated, axis=0, return_index=True)
-    single = np.zeros(len(faces), dtype=bool)
-    single[first] = True
-    ids, notes = _keep(ids, single, notes, "duplicate")
-    ordered = np.sort(mesh.faces[ids], axis=1)
-    _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
-    if count[count > 1].sum() > BACK_TO_BACK * len(ids):
-        front = np.zeros(len(ids), dtype=bool)
-        front[first] = True
-        ids, notes = _keep(ids, front, notes, "back-to-back")
+    if _repeats(np.sort(mesh.faces[ids], axis=1)):
+        ids, notes = _without_repeats(mesh.faces, ids, notes)
     if len(ids) == 0:
         raise MeshError("no face has three different vertices")
     faces = mesh.faces[ids]
@@ -60,6 +49,31 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
         raise MeshError("the surface is too small for its extent: are there stray parts far from the object?")
     cleaned, turned = orient(cleaned)
     return cleaned, notes + turned
+
+
+def _repeats(rows):
+    """Whether a row occurs twice: sorts in half of the time of np.unique."""
+    ordered = rows[np.lexsort(rows.T)]
+    return (ordered[1:] == ordered[:-1]).all(axis=1).any()
+
+
+def _without_repeats(faces, ids, notes):
+    """(ids, notes) without duplicate faces, and without one of each two back to back where most faces are doubled."""
+    # Compared up to a cyclic permutation: two faces back to back are a thin sheet, and both stay.
+    rotated = np.take_along_axis(faces[ids], (faces[ids].argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    ids, notes = _keep(ids, _is_first(rotated)[0], notes, "duplicate")
+    front, count = _is_first(np.sort(faces[ids], axis=1))
+    if count[count > 1].sum() > BACK_TO_BACK * len(ids):
+        ids, notes = _keep(ids, front, notes, "back-to-back")
+    return ids, notes
+
+
+def _is_first(rows):
+    """((n,) boolean: whether a row is the first of its kind, the number of rows of each kind)."""
+    _, first, count = np.unique(rows, axis=0, return_index=True, return_counts=True)
+    found = np.zeros(len(rows), dtype=bool)
+    found[first] = True
+    return found, count
 
 
 def _keep(ids, good, notes, what):
