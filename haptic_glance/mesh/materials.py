@@ -75,6 +75,7 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
+NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines", 6: "fans of triangles"}  # modes that are not read
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
 
 
@@ -89,6 +90,7 @@ def not_read(content: bytes) -> list[str]:
         coloured = all("COLOR_0" in one["attributes"] and "material" not in one for one in primitives)
         kept = (*DERIVED, "COLOR_0") if coloured else DERIVED
         found += [name for primitive in primitives for name in primitive["attributes"] if name not in kept]
+        found += [NO_SURFACE[one["mode"]] for one in primitives if one.get("mode") in NO_SURFACE]
         found += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
         for material in _stated_in(tree, "materials"):
             found += material.get("extensions", {})

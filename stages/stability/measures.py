@@ -92,7 +92,8 @@ def maps_under_conditions(
         view = render(mesh, viewpoint, size, "raster")
         if conditions.light:
             view = relit(mesh, view, conditions.light, normals)
-        view.rgb[~view.mask] = round(255 * conditions.background)
+        if conditions.background:  # rendered black
+            view.rgb[~view.mask] = round(255 * conditions.background)
         found.append(conspicuity(mesh, view, channels, share, conditions.filled))
         masks.append(mask_at_size(view.mask, share))
     maps = {channel: np.stack([maps[channel] for maps in found]) for channel in channels}

@@ -142,6 +142,15 @@ def test_a_buffer_that_is_cut_or_packed_is_refused(text, reason):
         parse(text.encode(), ".gltf")
 
 
+def test_points_and_lines_beside_the_surface_are_named(write):
+    path = write(embedded)
+    tree = json.loads(path.read_text())
+    attributes = tree["meshes"][0]["primitives"][0]["attributes"]
+    tree["meshes"][0]["primitives"] += [{"mode": mode, "attributes": attributes} for mode in (0, 3)]
+    path.write_text(json.dumps(tree))
+    assert not_read(as_glb(path)) == ["points", "lines"]
+
+
 def test_morph_targets_are_named_and_sparse_accessors_refused(write):
     path = write(embedded)
     tree = json.loads(path.read_text())
