@@ -139,6 +139,10 @@ def by_unit(values: "pd.Series") -> "pd.Series":
     3.8; Ren et al., Nonparametric bootstrapping for hierarchical data, 2010). NaN is left out.
     """
     values = values.dropna()
+    if values.index.nlevels == 1 and values.index.name == "item":
+        units = [unit(str(one)) for one in values.index]
+        distinct = len(set(units)) == len(units)
+        return values.set_axis(units) if distinct else values.groupby(units, sort=False).mean()
     if "item" in values.index.names:
         levels = [values.index.get_level_values(depth) for depth in range(values.index.nlevels)]
         merged = [[unit(str(one)) for one in level] if level.name == "item" else level for level in levels]

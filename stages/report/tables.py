@@ -60,7 +60,9 @@ def with_means(rows: pd.DataFrame) -> pd.DataFrame:
 
 def over_items(rows: pd.DataFrame) -> pd.Series:
     """Column `value`, indexed by `item` where each row is about one: an interval then counts copies of a shape once."""
-    return rows.set_index("item")["value"] if "item" in rows and rows["item"].notna().all() else rows["value"]
+    if "item" not in rows or rows["item"].isna().any():
+        return rows["value"]
+    return pd.Series(rows["value"].to_numpy(), pd.Index(rows["item"], name="item"), name="value")
 
 
 def grouped(frame: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from haptic_glance.know.classifiers import TRAINING
@@ -72,13 +73,14 @@ def accuracies(rows: pd.DataFrame) -> dict[str, float]:
     """
     columns = [column for column in ("dataset", "set", "split", "value") if column in rows]  # of some forty
     measured = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
-    values = measured.set_index("split")["value"]
-    at_random, share = values[values.index == Split.RANDOM], shared_by(Split.RANDOM)
+    splits, values = measured["split"].to_numpy(), measured["value"].to_numpy(float)
+    at_random, share = values[splits == Split.RANDOM], shared_by(Split.RANDOM)
     if "set" in measured and measured["set"].notna().any():
-        at_random, share = measured[measured["split"] == Split.RANDOM].groupby(["dataset", "set"])["value"].mean(), 0.0
+        drawn = measured[splits == Split.RANDOM]
+        at_random, share = drawn.groupby(["dataset", "set"])["value"].mean(), 0.0
     ends = zip(("accuracy", "low", "high"), within(at_random, share), strict=True)
-    others = (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)
-    means = {f"accuracy_{one}": values[values.index == one].mean() for one in others}
+    others = {one: values[splits == one] for one in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
+    means = {f"accuracy_{one}": own.mean() if len(own) else np.nan for one, own in others.items()}
     return {**dict(ends), "repetitions": len(at_random), **means}
 
 

@@ -75,7 +75,8 @@ def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool 
     rows, thesis = with_means(protocol.rows), thesis.rename(index=protocol.samplings)
     run = set(rows["method"])
     names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
-    thesis, groups = thesis.reindex(names), dict(list(grouped(rows, ["method", "classifier"])))
+    measured = grouped(rows[rows["metric"] == "accuracy"], ["method", "classifier"])
+    thesis, groups = thesis.reindex(names), dict(measured)
     return pd.DataFrame(
         [
             {"protocol": protocol.name, "sampling": f"{sampling}{few}", "classifier": classifier}
