@@ -1,5 +1,7 @@
 """Each number of the glance against its formula, worked out another way: dense matrices, all pairs, direct sums."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -78,6 +80,15 @@ def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, de
     )
     around = np.linalg.matrix_power(dense, 18) @ np.abs(coarse)
     for found, wanted in zip(relief(few), (fine, np.abs(fine - coarse), around), strict=True):
+        assert found == pytest.approx(wanted, abs=1e-12)
+    # on a rough surface the mean of this and of how far the point lies below the planes of its neighbours
+    below = ((few.points[None] - few.points[:, None]) * few.normals).sum(axis=2)
+    fine, coarse = (
+        (out + (np.linalg.matrix_power(dense, step) * below).sum(axis=1) / (np.sqrt(step) * spacing)) / 2
+        for step, out in ((1, fine), (6, coarse))
+    )
+    around = np.linalg.matrix_power(dense, 18) @ np.abs(coarse)
+    for found, wanted in zip(relief(replace(few, rough=True)), (fine, np.abs(fine - coarse), around), strict=True):
         assert found == pytest.approx(wanted, abs=1e-12)
 
 

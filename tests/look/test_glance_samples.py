@@ -1,5 +1,7 @@
 """Samples of a surface: even, on the surface, free of noise, and what is read off them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -7,6 +9,7 @@ import trimesh
 from haptic_glance.base.rng import rng
 from haptic_glance.look.glance import COUNT, Samples, samples_of_mesh, samples_of_points
 from haptic_glance.look.glance.denoise import denoised
+from haptic_glance.look.glance.features import relief
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from .conftest import as_mesh, ball_mesh
@@ -74,3 +77,14 @@ def test_noise_is_averaged_away_without_shrinking_what_is_curved(ball):
     assert np.sqrt(samples.shares @ (thickness - samples.shares @ thickness) ** 2) < 0.0025
     assert samples.shares @ np.einsum("ij,ij->i", unit(samples.points - circle), samples.normals) > 0.965
     assert denoised(ball) is ball  # a clean surface is left as it is
+
+
+def test_noise_changes_neither_the_area_nor_how_far_a_sphere_stands_out(ball):
+    mesh = ball_mesh(6, 0.5)
+    samples, surface = noisy(mesh), np.pi
+    assert samples.rough and not ball.rough
+    assert samples.areas.sum() == pytest.approx(surface, rel=0.05)  # the noisy mesh itself has 1.9 times as much
+    curvature, clean = relief(samples)[0] / samples.spacing, relief(ball)[0] / ball.spacing
+    assert samples.shares @ curvature == pytest.approx(ball.shares @ clean, rel=0.1)
+    alone = relief(replace(samples, rough=False))[0] / samples.spacing
+    assert np.std(curvature) < 0.6 * np.std(alone)

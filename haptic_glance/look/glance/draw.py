@@ -18,6 +18,7 @@ SMALLEST = 2.0**-10  # side of a cell: a smaller one, of a mesh with next to no 
 # sides of an edge whose own mean normals are longer than PLAIN get a sample each
 BENT, TWO_SIDES, PLAIN = 0.95, 0.3, 0.95
 ROUGH = 0.55  # share of the surface in bent cells above which it has noise rather than edges
+LEAST_FLAT = 0.05  # of the area in a cell: noise may turn all that lies in it
 LEAST = 1e-9  # of the area per sample: a piece below it is rounding
 
 
@@ -77,7 +78,10 @@ def _gathered(cells, places, normals, areas, axes):
         cell = 2 * cell + side
         cell = (np.cumsum(np.bincount(cell) > 0) - 1)[cell]
         total, normal = _means(cell, normals, areas)
-    return Samples(_means(cell, places, areas)[1], unit(normal), total, axes)
+    # the length of the summed area vectors is the area of the surface without its noise, whose own area may be four
+    # times as large: the sum over a patch depends on the patch's border alone
+    flat = total * np.maximum(length, LEAST_FLAT) if rough else total
+    return Samples(_means(cell, places, areas)[1], unit(normal), flat, axes, bool(rough))
 
 
 def _means(owner, values, areas, count=0):

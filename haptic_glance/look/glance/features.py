@@ -76,12 +76,19 @@ def relief(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     Convexity: how far a point stands out of the mean of its neighbours along its normal, over their distance (the mean
     curvature times a length). Detail: how much this differs between two scales (centre and surround, as in Lee 2005).
+    A rough surface leaves noise in a point's height. There the mean is taken with how far the point lies below its
+    neighbours' tangent planes, which is as much on a curved surface, and the noise of the point cancels.
     """
-    mean, stands_out = samples.points, {}
+    heights = np.einsum("ij,ij->i", samples.normals, samples.points)
+    mean, planes, stands_out = samples.points, np.column_stack([samples.normals, heights]), {}
     for step in range(1, COARSE + 1):
         mean = samples.average @ mean
+        planes = samples.average @ planes if samples.rough else planes
         if step in (FINE, COARSE):
             out = np.einsum("ij,ij->i", samples.normals, samples.points - mean)
+            if samples.rough:
+                below = planes[:, 3] - np.einsum("ij,ij->i", planes[:, :3], samples.points)
+                out = (out + below) / 2
             stands_out[step] = out / (np.sqrt(step) * samples.spacing)
     around = np.abs(stands_out[COARSE])
     for _ in range(AROUND):

@@ -22,13 +22,14 @@ TURNED = 0.3  # added to the cosine between two normals: a point on the other si
 class Samples:
     """points (s, 3) f8, their unit normals (s, 3), outwards, and areas (s,), of one surface with z up.
 
-    axes (3, 3): those of the object, in rows, see `object_axes`.
+    axes (3, 3): those of the object, in rows, see `object_axes`. rough: noise bends the surface in most of its cells.
     """
 
     points: np.ndarray
     normals: np.ndarray
     areas: np.ndarray
     axes: np.ndarray
+    rough: bool = False
 
     @cached_property
     def tree(self) -> KDTree:
