@@ -88,3 +88,11 @@ def test_noise_changes_neither_the_area_nor_how_far_a_sphere_stands_out(ball):
     assert samples.shares @ curvature == pytest.approx(ball.shares @ clean, rel=0.1)
     alone = relief(replace(samples, rough=False))[0] / samples.spacing
     assert np.std(curvature) < 0.6 * np.std(alone)
+
+
+def test_a_sheet_of_two_sides_is_not_taken_for_noise():
+    """Of a doubled wall the normals of a cell cancel out as much as those of a rough surface."""
+    inner, outer = trimesh.creation.icosphere(5, 0.495), trimesh.creation.icosphere(5, 0.5)
+    inner.invert()
+    samples = samples_of_mesh(as_mesh(trimesh.util.concatenate([inner, outer])))
+    assert not samples.rough and samples.areas.sum() == pytest.approx(inner.area + outer.area)

@@ -26,7 +26,7 @@ def denoised(samples: Samples) -> Samples:
     come back as they are.
     """
     normals = samples.average @ samples.normals
-    if np.median(1 - np.einsum("ij,ij->i", normals, samples.normals)) <= ROUGH:
+    if not samples.rough and np.median(1 - np.einsum("ij,ij->i", normals, samples.normals)) <= ROUGH:
         return samples
     for _ in range(AVERAGED - 1):
         normals = samples.average @ unit(normals)
