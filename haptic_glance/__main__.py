@@ -2,12 +2,10 @@
 
 import argparse
 import ast
-import os
 import re
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
@@ -34,7 +32,9 @@ PIPELINE = ("bench", "claim", "front", "gate", "scene")  # modules of stages tha
 def main() -> None:
     """Runs the subcommand that the command line names; a package that is not installed ends in one line."""
     from haptic_glance import __version__ as version
+    from haptic_glance.base.errors import errors_in_one_line
 
+    errors_in_one_line("haptic-glance")
     parser = argparse.ArgumentParser(
         prog="haptic-glance",
         usage="haptic-glance COMMAND ...",
@@ -62,26 +62,15 @@ def main() -> None:
     from haptic_glance.base.extras import MissingExtra, from_extra
 
     try:
-        with from_extra(), quiet_pipe():
-            sys.exit(run(chosen.command, chosen.rest))
+        with from_extra():
+            status = run(chosen.command, chosen.rest)
+            print(end="", flush=True)  # an error has its line and its status here, and neither when Python ends
+            sys.exit(status)
     except MissingExtra as error:
         if {"-h", "--help"} & set(chosen.rest):  # what it does can be read without what it needs
             print(f"usage: haptic-glance {chosen.command} ...\n\n{docstring(names[chosen.command])}\n\n{error}")
             return
         sys.exit(f"haptic-glance {chosen.command}: {error}")
-
-
-@contextmanager
-def quiet_pipe() -> Iterator[None]:
-    """Ends in silence where the reader of the output has gone, as after `| head`."""
-    try:
-        try:
-            yield
-        finally:
-            sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
-        sys.exit(1)
 
 
 def run(command: str, argv: Sequence[str]) -> int:

@@ -31,8 +31,8 @@ def write_digests(folder: Path) -> None:
 def main() -> None:
     """Writes the digests below the current folder."""
     parser = argparse.ArgumentParser(prog="python -m stages.code", description=__doc__)
-    parser.parse_args()
     errors_in_one_line("code")
+    parser.parse_args()
     check_clone()
     write_digests(Path("build/code"))
     keep_facts()

@@ -219,8 +219,8 @@ def main() -> None:
         prog="python -m stages.compose", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("overrides", nargs="*", help="group=option or section.key=value")
-    overrides = parser.parse_args().overrides
     errors_in_one_line("compose")
+    overrides = parser.parse_args().overrides
     check_clone()
     values = compose(overrides)
     missing = absent(values)

@@ -250,8 +250,8 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
     )
     parser.add_argument("dataset", nargs="?", default="", help="a data set that params.yaml names")
     parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
-    given = parser.parse_args()
     errors_in_one_line(stage)
+    given = parser.parse_args()
     check_clone(given.root)
     workspace = Workspace(given.root)
     if stage not in workspace.params["graph"]:

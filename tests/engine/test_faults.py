@@ -48,13 +48,27 @@ def test_errors_of_the_disk_end_in_one_line_with_a_remedy(number, remedy, monkey
     assert said.count("\n") == 1
 
 
-def test_a_reader_that_goes_ends_a_command_in_silence():
-    program = "from haptic_glance.base.errors import errors_in_one_line\nerrors_in_one_line('demo')\n"
-    program += "import time\nwhile True: print('x' * 100_000, flush=True), time.sleep(0.01)"
-    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+@pytest.mark.parametrize(
+    ("output", "status"),
+    [("import time\nwhile True: print('x' * 100_000, flush=True), time.sleep(0.01)", 1), ("input(), print('x')", 0)],
+)
+def test_a_reader_that_goes_ends_a_command_in_silence(output, status):
+    program = f"from haptic_glance.base.errors import errors_in_one_line\nerrors_in_one_line('demo')\n{output}"
+    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    with subprocess.Popen([sys.executable, "-c", program], **pipes, env=buffered, text=True) as process:
         process.stdout.close()
-        assert process.stderr.read() == b""
-    assert process.returncode == 1
+        process.stdin.write("\n")
+        process.stdin.close()
+        assert process.stderr.read() == ""
+    assert process.returncode == status
+
+
+def test_a_broken_pipe_that_is_not_the_output_has_its_line(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
+    errors_in_one_line("demo")
+    sys.excepthook(BrokenPipeError, BrokenPipeError(errno.EPIPE, "Broken pipe"), None)
+    assert capsys.readouterr().err == "demo: [Errno 32] Broken pipe\n"
 
 
 @pytest.mark.parametrize(
