@@ -121,11 +121,11 @@ def shading(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     The corners of a vertex share one vertex unless a crease or a non-manifold edge or vertex divides them. The first n
     vertices are the mesh's own, then come the copies; vertices: the id of each in the mesh. The normals, of length 1,
-    are means of those of the faces by area, or (0, 0, 1) where faces have none.
+    are means of those of the faces by area, or (0, 0, 1) where faces have none. A degenerate face makes no crease.
     """
     ids, other, _ = half_edges(mesh.faces)
     inner = np.flatnonzero(other >= 0)
-    normals = mesh.face_normals
+    normals = _facing(mesh, other)
     sharp = np.einsum("ij,ij->i", normals[inner // 3], normals[other[inner] // 3]) < CREASE
     other[inner[sharp]] = -1
     fans, count = split_fans(ids, other)
@@ -139,6 +139,16 @@ def shading(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     total = np.stack([np.bincount(corners, np.repeat(one, 3), len(vertices)) for one in mesh.face_crosses.T], axis=1)
     total[~total.any(axis=1)] = [0.0, 0.0, 1.0]
     return corners.reshape(-1, 3), vertices, unit(total)
+
+
+def _facing(mesh, other):
+    """(m, 3) unit normals; a degenerate face has that of its neighbour across the longest edge, or zero at a border."""
+    corners, normals = mesh.vertices[mesh.faces], mesh.face_normals.copy()
+    lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    flat = np.flatnonzero(2 * mesh.face_areas <= THIN * mesh.diagonal * lengths.max(axis=1))
+    beside = other[3 * flat + lengths[flat].argmax(axis=1)] // 3
+    normals[flat] = np.where(beside[:, None] < 0, 0, normals[beside])
+    return normals
 
 
 Parts = dict[str, np.ndarray]  # name of a node -> (k,) ids of faces

@@ -42,6 +42,19 @@ def test_a_prism_is_round_where_its_sides_meet_at_less_than_sixty_degrees(sides,
     assert (up > 1 - 1e-9).sum() == 2 * sides and (up < 1e-9).sum() == (copies - 1) * 2 * sides
 
 
+@pytest.mark.parametrize(("shape", "corner", "copies"), [("icosphere", 0, 0), ("box", 0, 17), ("box", 1, 16)])
+def test_a_face_without_area_makes_no_crease_and_hides_none(shape, corner, copies):
+    whole = getattr(trimesh.creation, shape)()
+    a, b, c = np.roll(whole.faces[0], -corner)
+    vertices = [*whole.vertices, whole.vertices[[a, b]].mean(axis=0)]
+    new = len(whole.vertices)
+    mesh = Mesh(vertices, [*whole.faces[1:], (a, new, c), (new, b, c), (a, b, new)])  # the last one has no area
+    faces, ids, normals = shading(mesh)
+    assert len(ids) == len(vertices) + copies
+    limit = 0.95 if shape == "icosphere" else 1 - 1e-9
+    assert np.einsum("ikj,ij->ik", normals[faces], mesh.face_normals)[:-1].min() > limit
+
+
 def test_faces_without_area_and_vertices_without_faces_get_a_normal_of_length_one():
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 0, 0], [5, 5, 5]], [[0, 1, 2]])
     assert np.array_equal(shading(mesh)[2], [[0, 0, 1]] * 4)
