@@ -221,8 +221,14 @@ def _own(values: Any, kind: type) -> np.ndarray:
     if not isinstance(values, np.ndarray):
         return np.array(values, dtype=kind, order="C")  # a copy: a memoryview or a tensor lends its own memory
     found = np.ascontiguousarray(values, dtype=kind)
-    shared = values.flags.writeable and np.may_share_memory(found, values)
-    return found.copy() if shared else found
+    return found.copy() if np.may_share_memory(found, values) and not _frozen(values) else found
+
+
+def _frozen(values: Any) -> bool:
+    """Whether nobody can write to an array, be it through the array that it is a view of."""
+    while isinstance(values, np.ndarray) and not values.flags.writeable:
+        values = values.base
+    return values is None or isinstance(values, bytes)
 
 
 def _whole(name: str, values: Any, kind: type) -> np.ndarray:

@@ -51,6 +51,19 @@ def test_bad_arrays_are_refused_at_the_door(vertices, faces, reason):
         Mesh(vertices, faces)
 
 
+def test_a_mesh_shares_memory_only_with_arrays_that_nobody_can_write_to():
+    base = np.eye(3)
+    view = base.view()
+    view.flags.writeable = False
+    mesh = Mesh(view, [[0, 1, 2]])
+    base[0] = 9
+    assert np.array_equal(mesh.vertices, np.eye(3))
+    base.flags.writeable = False
+    assert np.shares_memory(Mesh(base[:3], [[0, 1, 2]]).vertices, base)
+    stored = np.frombuffer(base.tobytes()).reshape(3, 3)
+    assert np.shares_memory(Mesh(stored, [[0, 1, 2]]).vertices, stored)
+
+
 CORNERS = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 1], [5, 5, 5]], dtype=float)
 THREE = Mesh(CORNERS, [[0, 1, 2], [0, 2, 3], [0, 3, 1]])  # areas 2, 1, 1
 
