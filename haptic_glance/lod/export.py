@@ -8,7 +8,7 @@ import argparse
 import io
 import re
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
@@ -26,6 +26,7 @@ from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import with_stated_up
 
+from .feasibility import InfeasibleTarget, SimplifyError
 from .simplify import simplify
 from .topology import Parts, shading
 
@@ -216,11 +217,20 @@ def level_path(folder: Path, name: str, source: Path, target: str, kind: str | N
     return folder / f"{name}_{target.replace('%', 'pct')}{suffix}"
 
 
-INDEX_LIMIT = 65535  # 16-bit vertex ids
+MOST_SHOWN = 65535 // 3  # faces: the page's script has 16-bit ids of vertices, and each face may have three of its own
 
 
 def shown_mesh(mesh: Mesh, faces: int) -> tuple[Mesh, np.ndarray]:
-    """(mesh, ids): the mesh, simplified where it has more faces; ids: the original vertex nearest to each of its."""
-    large = len(mesh.faces) > faces or len(np.unique(mesh.faces)) > INDEX_LIMIT
-    small = ordered(simplify(mesh, faces) if large else mesh)[0]
+    """(mesh, ids): the mesh, simplified where it has more faces, or more than MOST_SHOWN; ids: the original vertex
+    nearest to each of its."""
+    faces = min(faces, MOST_SHOWN)
+    small = ordered(_fewer(mesh, faces) if len(mesh.faces) > faces else mesh)[0]
     return small, np.asarray(KDTree(mesh.vertices).query(small.vertices)[1])
+
+
+def _fewer(mesh, faces):
+    """The mesh simplified to so many faces; where it has too many parts for that, its largest faces."""
+    for free in (False, True):
+        with suppress(InfeasibleTarget, SimplifyError):
+            return simplify(mesh, faces, free_borders=free)
+    return Mesh(mesh.vertices, mesh.faces[np.argsort(-mesh.face_areas, kind="stable")[:faces]], up=mesh.up)

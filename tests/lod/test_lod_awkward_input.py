@@ -19,6 +19,7 @@ from haptic_glance.lod import (
     smallest_feasible,
 )
 from haptic_glance.lod.errors import vertex_errors
+from haptic_glance.lod.export import shown_mesh
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
 
@@ -187,3 +188,14 @@ def test_no_tip_is_cut_by_more_than_a_thirtieth_unless_the_target_leaves_too_few
     assert vertex_errors(found, mesh)[tips].max() < RADIUS * 2 / 30  # the planes of a tip all run along it
     assert metro(mesh, found)["mean"] < 0.01
     assert len(simplify(mesh, 20).faces) == 20
+
+
+@pytest.mark.parametrize(("count", "asked", "shown"), [(50, 10, 10), (22_000, 10**6, 21_845)])
+def test_parts_too_many_to_simplify_are_shown_by_their_largest_faces(count, asked, shown):
+    """And by few enough for the page, whose ids of vertices have 16 bits."""
+    sizes = np.arange(1, count + 1)
+    vertices = sizes[:, None, None] * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) + [0, 0, 1]
+    leaves = Mesh(vertices.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+    small, _ = shown_mesh(leaves, asked)
+    assert len(small.faces) == shown and len(small.vertices) < 2**16
+    assert np.sort(small.face_areas)[0] == (count - shown + 1) ** 2 / 2
