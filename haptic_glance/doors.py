@@ -197,7 +197,9 @@ def simplify(
     InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
     work = import_module("haptic_glance.lod").simplify
-    asked = f"{100 * faces:.12g}%" if isinstance(faces, float) and 0 < faces < 1 else str(faces)
+    asked = str(faces)
+    if not isinstance(faces, str) and 0 < faces < 1:
+        asked = f"{100 * float(asked):.12g}%"
     count = face_count(asked, len(mesh.faces), "faces")
     given = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
     borders = [False if free_borders is None else free_borders]

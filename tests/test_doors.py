@@ -155,7 +155,7 @@ def test_every_function_takes_a_mesh_in_every_form(body, tmp_path, monkeypatch, 
 
 
 def test_faces_are_a_count_or_a_share(body):
-    for faces in ("25%", 0.25, 320, "320"):
+    for faces in ("25%", 0.25, np.float32(0.25), 320, np.int64(320), "320"):
         assert len(simplify(Mesh(*body), faces).faces) == 320
 
 

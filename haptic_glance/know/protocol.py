@@ -201,17 +201,20 @@ def region_holdout(
     fair: otherwise other objects were touched where this one was not, and its region resembles theirs. Training keeps
     only touches farther than `min_distance`, the array's width, from all of the region. (Four clusters without such a
     gap are nearly as optimistic as a random split, since arrays overlap across their borders.)
+    Raises ValueError that names a class with too few touches to hold one of them out.
     """
     places, train, test = np.asarray(places), [], []
     random = np.random.default_rng(random_state)
     direction = random.normal(size=3) if side else None
     for label in np.unique(truth):
         members = np.flatnonzero(truth == label)
+        if not (held_out := round(HOLDOUT * len(members))):
+            raise ValueError(f"class {label} has {len(members)} touches: a region is held out of 3 or more")
         distances = np.linalg.norm(places[members][:, None] - places[members][None], axis=2)
         order = np.argsort(
             -places[members] @ direction if side else distances[random.integers(len(members))], kind="stable"
         )
-        region, rest = np.split(order, [round(HOLDOUT * len(members))])
+        region, rest = np.split(order, [held_out])
         test.append(members[region])
         train.append(members[rest[(distances[rest][:, region] > min_distance).all(axis=1)]])
     counts = [len(part) for part in train]

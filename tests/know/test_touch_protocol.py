@@ -158,6 +158,12 @@ def test_side_is_held_out_of_all_objects_alike():
         assert np.linalg.norm(known[:, None] - side, axis=2).min() > 0.1
 
 
+def test_a_class_of_which_no_touch_can_be_held_out_is_named():
+    truth = np.repeat([0, 1, 2], [16, 1, 16])
+    with pytest.raises(ValueError, match="class 1 has 1 touches"):
+        protocol.region_holdout(truth, np.arange(33.0)[:, None] * [1, 0, 0], 2.5, 0)
+
+
 @pytest.mark.slow
 def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
     random = np.random.default_rng(0)
