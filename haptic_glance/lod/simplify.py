@@ -77,7 +77,7 @@ def simplify(
             f"a mesh of diagonal {mesh.diagonal:.3g} is out of range: scale it, see haptic_glance.mesh.normalise"
         )
     rings = check_rings(check_keep(mesh, keep), rings)
-    multipliers = None if weights is None else quadric_weights(_check_weights(mesh, weights))
+    multipliers = None if weights is None else quadric_weights(check_weights(mesh, weights))
     counted = check_attributes(mesh, attributes)
     if counted and backend == "pymeshlab":
         raise ValueError("the backend pymeshlab has no attributes in its error: choose fast or qslim")
@@ -152,7 +152,8 @@ def _check_borders(mesh, free, backend, counted):
     return np.broadcast_to(free, len(mesh.vertices))
 
 
-def _check_weights(mesh, weights):
+def check_weights(mesh: Mesh, weights: np.ndarray) -> np.ndarray:
+    """The weights (n,) f8; ValueError unless they are one per vertex and in 0..1."""
     weights = np.asarray(weights, dtype=np.float64)
     if weights.shape != (len(mesh.vertices),):
         raise ValueError(f"weights must be one per vertex, ({len(mesh.vertices)},), got {weights.shape}")

@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
+from haptic_glance.base.extras import about
 from haptic_glance.base.files import whole_file
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import rotate_to_z_up
 from haptic_glance.mesh.up import with_stated_up
 
 from .export import for_glb, write_glb
+from .simplify import check_weights
 
 NAME = "saliency"
 
@@ -35,7 +37,7 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
     Raises
     ------
     ValueError
-        For another suffix, or another number of weights.
+        For another suffix, another number of weights, and weights outside 0..1 or NaN.
 
     Examples
     --------
@@ -47,10 +49,10 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
     ...
     ValueError: triangle.obj: weights are written as .glb, .npz, .ply or .usda
     """
-    path, weights = Path(path), np.asarray(weights, dtype=np.float32)
+    path = Path(path)
     check_suffix(path)
-    if weights.shape != (len(mesh.vertices),):
-        raise ValueError(f"{path.name}: {len(mesh.vertices)} vertices and weights of shape {weights.shape} do not fit")
+    with about(path.name):
+        weights = check_weights(mesh, weights).astype(np.float32)
     with whole_file(path) as part:
         part.write_bytes(WRITERS[path.suffix.lower()](mesh, weights))
 

@@ -89,10 +89,18 @@ def test_the_files_say_which_axis_points_up(ball, tmp_path, up):
     np.testing.assert_allclose(found[:, 2], rotate_to_z_up(mesh).vertices[:, 2], atol=1e-6)
 
 
-@pytest.mark.parametrize(("name", "count", "words"), [("w.obj", 162, "written as .glb"), ("w.ply", 3, "do not fit")])
-def test_wrong_files_and_weights_are_named(ball, tmp_path, name, count, words):
+@pytest.mark.parametrize(
+    ("name", "weights", "words"),
+    [
+        ("w.obj", np.ones(162), "written as .glb"),
+        ("w.ply", np.ones(3), "w.ply: weights must be one per vertex"),
+        ("w.ply", np.full(162, 1.5), r"w.ply: weights must lie in 0\.\.1"),
+        ("w.ply", np.full(162, np.nan), r"w.ply: weights must lie in 0\.\.1"),
+    ],
+)
+def test_wrong_files_and_weights_are_named(ball, tmp_path, name, weights, words):
     with pytest.raises(ValueError, match=words):
-        write_weights(tmp_path / name, ball[0], np.ones(count))
+        write_weights(tmp_path / name, ball[0], weights)
     assert not list(tmp_path.iterdir())
 
 
