@@ -54,7 +54,7 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     stage the sets that it runs on; for stages that begin with files, what tells DVC that these have changed. Raises
     ParamsError that names the nearest right name, and for a set whose files are not there.
     """
-    overrides = [_quoted(override) for override in overrides]
+    overrides = [quoted(override) for override in overrides]
     general = [override for override in overrides if not _set_of(override)]
     common = composed(general)
     values = {key: common[key] for key in SHARED}
@@ -162,7 +162,7 @@ def _set_of(override: str) -> str:
     return first if first in groups()["data"] and "." in override.partition("=")[0] else ""
 
 
-def _quoted(override: str) -> str:
+def quoted(override: str) -> str:
     """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents."""
     try:
         OverridesParser.create().parse_override(override)

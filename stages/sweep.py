@@ -32,15 +32,16 @@ from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import read_json, read_mesh, read_table, write_json, write_table, write_text
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know import evaluate
-from haptic_glance.know.split import Split
+from haptic_glance.know.split import Split, shared_by
+from haptic_glance.lod.task import number
 from haptic_glance.look.points.methods import find_all, method_named, split_runnable
 from haptic_glance.look.points.options import Options
 from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.touch import press_many, touchable
-from stages.compose import composed
+from stages.compose import composed, quoted
 from stages.conspicuity.measure import read_view_maps
 from stages.engine.settings import FILE, ParamsError, check_clone, check_section, conf_folder, load_params, schema_of
-from stages.engine.statistics import interval
+from stages.report.tables import with_interval, within
 
 OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs
@@ -135,10 +136,10 @@ def prepare(argv: Sequence[str]) -> None:
 
     Raises ParamsError that names the nearest right name, and for a set that params.yaml does not switch on.
     """
-    chosen = dict(word.split("=", 1) for word in argv if "=" in word and not word.startswith(("-", "hydra")))
+    chosen = dict(word.split("=", 1) for word in argv if is_override(word) and not word.startswith("hydra"))
     for key, values in chosen.items():
         for value in split_values(values):
-            composed([f"{key}={value}"])
+            composed([quoted(f"{key}={value}")])
     params, bases = load_params(), {}
     for dataset in split_values(chosen.get("data", "household")):
         if dataset in params.get("sets", []):
@@ -172,6 +173,11 @@ def results_in(folder: Path) -> Iterator[None]:
         yield
     finally:
         write_text(FILE, text)
+
+
+def is_override(word: str) -> bool:
+    """Whether a word of the command line sets something, and is no option."""
+    return "=" in word and not word.startswith("-")
 
 
 def split_values(text: str) -> list[str]:
@@ -219,7 +225,7 @@ def gather(folder: Path, out: Path = OUT) -> None:
         repeated = old.set_index(KEYS).index.isin(new.set_index(KEYS).index)
         write_table(out, pd.concat([old.loc[~repeated], new], ignore_index=True))
     print(table(new).to_string(index=False))
-    print(f"sweep: {len(parts)} jobs, {len(new)} rows appended to {out}")
+    print(f"sweep: {number(len(parts), 'job')}, {number(len(new), 'row')} appended to {out}")
 
 
 def table(frame: pd.DataFrame) -> pd.DataFrame:
@@ -227,11 +233,9 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
     kept = frame[(frame.metric == "accuracy") & (frame.split == Split.RANDOM)]
     lines = []
     for key, group in kept.groupby(["job", "group", "method", "classifier"], sort=False):
-        mean, low, high = interval(group.value)
+        accuracy = with_interval(*within(group.value, shared_by(Split.RANDOM)), places=3)
         cells = dict(zip(("job", "set", "method", "classifier"), list(key), strict=True))  # type: ignore[arg-type]
-        lines.append(
-            cells | {"accuracy": f"{mean:.3f} [{low:.3f}, {high:.3f}]", "fit ms": f"{1e3 * group.seconds.mean():.1f}"}
-        )
+        lines.append(cells | {"accuracy": accuracy, "fit ms": f"{1e3 * group.seconds.mean():.1f}"})
     return pd.DataFrame(lines)
 
 
@@ -243,6 +247,7 @@ def main() -> None:
     else:
         check_clone()
         prepare(sys.argv[1:])
+        sys.argv[1:] = [quoted(word) if is_override(word) else word for word in sys.argv[1:]]
     job()
 
 

@@ -36,12 +36,19 @@ def test_rows_are_appended_and_a_repeated_job_replaces_its_own(leave, tmp_path, 
     sweep.gather(leave("third", job_rows("classifier=knn", "knn", 0.6)), out)
     stored = read_table(out)
     assert stored.groupby("classifier").value.mean().to_dict() == pytest.approx({"knn": 0.6, "svm": 0.7})
-    assert len(stored) == 8 and "1 jobs, 4 rows appended" in capsys.readouterr().out
+    assert len(stored) == 8 and "1 job, 4 rows appended" in capsys.readouterr().out
 
 
 def test_the_table_has_one_line_a_job_and_classifier():
     lines = sweep.table(pd.concat([job_rows("a", "knn", 0.5), job_rows("b", "knn", 0.25)]))
     assert lines.job.tolist() == ["a", "b"] and lines.accuracy.tolist()[1].startswith("0.250 [0.2")
+
+
+@pytest.mark.parametrize(("value", "step", "shown"), [(0.99, 0.01, "0.990 [0.961, 1.000]"), (1.0, 0.0, "1.000")])
+def test_an_accuracy_is_at_most_one(value, step, shown):
+    rows = job_rows("a", "knn", value)
+    rows["value"] = value + step * (-1.0) ** rows.repetition
+    assert sweep.table(rows).accuracy.tolist() == [shown]
 
 
 @pytest.fixture
@@ -104,6 +111,18 @@ def test_a_set_without_a_section_begins_with_its_other_settings(root):
 def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):
     with pytest.raises(ParamsError, match=hint):
         sweep.prepare(["-m", override])
+
+
+@pytest.mark.slow
+def test_a_path_with_a_blank_and_an_accent_reaches_the_jobs(root, monkeypatch):
+    words = ["sweep", "-m", "data=household_four", "meshes.folder=/my scans/Möbel (alt)", "classifier=knn,svm"]
+    asked = []
+    monkeypatch.setattr(sweep.sys, "argv", words)
+    monkeypatch.setattr(sweep, "check_clone", lambda: None)
+    monkeypatch.setattr(sweep, "job", lambda: asked.extend(sweep.sys.argv))
+    monkeypatch.setattr(sweep, "errors_in_one_line", lambda name: None)
+    sweep.main()
+    assert asked == [*words[:3], 'meshes.folder="/my scans/Möbel (alt)"', words[4]]
 
 
 @pytest.mark.slow
