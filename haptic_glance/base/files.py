@@ -49,6 +49,15 @@ def said_of(paths: Sequence[Path], before: set[Path]) -> str:
     return "; ".join(f"{kind}: {', '.join(names)}" for kind, names in kinds.items() if names)
 
 
+def check_folder(folder: Path, name: str) -> None:
+    """Raises ValueError, which begins with a name, unless the folder can be written to, or created."""
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{name} is a file: name a folder")
+    there = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        raise ValueError(f"{name}: {there} is not writable")
+
+
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
     """A temporary path beside `path`, moved onto it when the block ends well and removed when it fails.

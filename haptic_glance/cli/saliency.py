@@ -97,6 +97,8 @@ def look_at(chosen: argparse.Namespace) -> None:
     assert found.saliency is not None  # `check` lets no method pass that has none
     report(chosen, f"{len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}")
     rows = points_of(mesh, found)
+    if len(rows) < (chosen.count or 0):
+        report(chosen, f"{len(rows)} of {chosen.count} places: the mesh has no more")
     if chosen.weights:
         turned, note = upright_for(chosen.weights, mesh)
         write_weights(chosen.weights, turned, found.saliency)

@@ -19,7 +19,6 @@ examples:
 
 import argparse
 import json
-import os
 import re
 from argparse import Namespace
 from collections.abc import Sequence
@@ -30,7 +29,7 @@ import numpy as np
 
 from haptic_glance.base import progress
 from haptic_glance.base.extras import MissingExtra, about
-from haptic_glance.base.files import existing, said_of
+from haptic_glance.base.files import check_folder, existing, said_of
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.attribute_quadrics import check_attributes
 from haptic_glance.lod.export import COLORLESS, FORMATS, face_count, level_path, levels, write_any
@@ -131,7 +130,7 @@ def attribute_weights(text: str) -> dict[str, float]:
 def check_paths(chosen: argparse.Namespace) -> None:
     """Raises ValueError where the result or the picture cannot be written, or would overwrite the mesh."""
     if not one_file(chosen):
-        check_folder(chosen)
+        check_folder_of_several(chosen)
     elif chosen.out.suffix.lower() not in FORMATS:
         raise ValueError(f"--out {chosen.out}: meshes are written as {', '.join(FORMATS)}")
     elif chosen.format:
@@ -153,9 +152,10 @@ def targets(chosen: argparse.Namespace) -> list[str]:
     return chosen.levels or [chosen.faces or f"within_{100 * chosen.tolerance:g}%"]
 
 
-def check_folder(chosen: argparse.Namespace) -> None:
+def check_folder_of_several(chosen: argparse.Namespace) -> None:
     """Raises ValueError where --out is no folder, or not another one than that of the meshes."""
-    if chosen.out.is_file() or chosen.out.suffix.lower() in FORMATS:
+    check_folder(chosen.out, f"--out {chosen.out}")
+    if chosen.out.suffix.lower() in FORMATS:
         raise ValueError(f"--out {chosen.out}: name a folder, since there are several results")
     if chosen.out.resolve() == (chosen.mesh if chosen.mesh.is_dir() else chosen.mesh.parent).resolve():
         raise ValueError(f"--out {chosen.out} is the folder of the meshes: name another one")
@@ -171,10 +171,7 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
             raise ValueError(f"{path} is named for two results: write them to two files")
         if path.is_dir():
             raise ValueError(f"{path} is a folder: name a file")
-        if not path.absolute().parent.is_dir():
-            raise ValueError(f"{path}: no such folder {path.parent}")
-        if not os.access(path.absolute().parent, os.W_OK):
-            raise ValueError(f"{path}: the folder {path.parent} is not writable")
+        check_folder(path.parent, f"{path}: {path.parent}")
         if path.exists() and mesh.exists() and path.samefile(mesh):
             raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
 

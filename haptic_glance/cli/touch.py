@@ -22,7 +22,6 @@ import argparse
 import csv
 import io
 import json
-import os
 import re
 from collections.abc import Sequence
 from dataclasses import fields
@@ -33,7 +32,7 @@ import numpy as np
 
 from haptic_glance.base import progress
 from haptic_glance.base.extras import MissingExtra, about, from_extra
-from haptic_glance.base.files import existing, said_of, write_arrays, write_text
+from haptic_glance.base.files import check_folder, existing, said_of, write_arrays, write_text
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.up import add_up
 from haptic_glance.touch.distances import CONTACTS, check_array, distances_at
@@ -103,7 +102,7 @@ def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
     options.skin = parse_skin(options.skin, options.seed)
     options.layer = Layer(**parse_values("--layer", Layer, options.layer))
     options.out = options.out or Path(f"{options.mesh.stem}_imprints")
-    check_folder(options.out)
+    check_folder(options.out, f"--out {options.out}")
     return options
 
 
@@ -163,15 +162,6 @@ def parse_values(option: str, kind: type, text: str | None) -> dict[str, Any]:
         except ValueError:
             raise ValueError(f"{option} {part}: {value!r} is not a number") from None
     return values
-
-
-def check_folder(folder: Path) -> None:
-    """Raises ValueError unless the folder can be written to, or created."""
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"--out {folder} is a file: name a folder")
-    existing = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
-    if not existing.is_dir() or not os.access(existing, os.W_OK):
-        raise ValueError(f"--out {folder}: {existing} is not writable")
 
 
 def _check_load(options):

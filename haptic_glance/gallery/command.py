@@ -19,10 +19,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from haptic_glance.base.errors import DEBUG
-from haptic_glance.base.files import write_text
+from haptic_glance.base.files import check_folder, write_text
 from haptic_glance.base.progress import report
 from haptic_glance.base.timing import WallClock
-from haptic_glance.cli.touch import check_folder
 from haptic_glance.lod.export import levels
 from haptic_glance.mesh.files import mesh_files, names_of
 from haptic_glance.mesh.up import add_up
@@ -64,7 +63,7 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
     chosen: meshes (a file or a folder), up, count, levels, json. Where a person stops it (Ctrl-C), the page shows what
     is done.
     """
-    check_folder(out)
+    check_folder(out, f"--out {out}")
     files = mesh_files(chosen.meshes)
     made: list[Exhibit] = []
     failures: dict[str, str] = {}

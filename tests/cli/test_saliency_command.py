@@ -85,7 +85,7 @@ def test_places_to_touch_are_those_of_the_method(egg, capsys):
     ("options", "reason"),
     [
         (["--out", "x.stl"], r"--out x.stl: a coloured mesh is written as \.glb"),
-        (["--out", "missing/x.ply"], "no such folder"),
+        (["--out", f"{__file__}/x.ply"], "is a file: name a folder"),
         (["--picture", "x.txt"], "pictures are written as"),
         (["--count", "0"], "give 1 or more"),
         (["--method", "guess"], "there is no such method; choose one of glance, "),
@@ -95,6 +95,13 @@ def test_places_to_touch_are_those_of_the_method(egg, capsys):
 def test_what_cannot_be_done_is_named_before_anything_is_computed(egg, options, reason):
     with pytest.raises(ValueError, match=reason):
         run([str(egg), *options])
+
+
+def test_fewer_places_than_asked_for_are_said_and_a_folder_is_made(tmp_path, capsys):
+    (tmp_path / "four.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2")
+    out = tmp_path / "new/folder/look.ply"
+    run([str(tmp_path / "four.off"), "--method", "height", "--count", "9", "--out", str(out)])
+    assert "4 of 9 places: the mesh has no more" in capsys.readouterr().err and out.is_file()
 
 
 def test_a_file_that_cannot_be_read_is_named_and_the_mesh_is_not_overwritten(egg, tmp_path):

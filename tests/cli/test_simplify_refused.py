@@ -36,7 +36,7 @@ def test_the_mesh_itself_is_never_written_over(file, tmp_path, monkeypatch, link
         (["--faces", "many", "--out", "x.glb"], "^--faces='many' is not a face count"),
         (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
         (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
-        (["--faces", "300", "--out", "missing/x.glb"], "no such folder"),
+        (["--faces", "300", "--out", "ball.obj/x.glb"], "ball.obj is a file: name a folder"),
         (["--faces", "300", "--out", "folder.glb"], "is a folder"),
         ([*GLB, "--picture", "x.txt"], "pictures are written as"),
         ([*GLB, "--method", "guess"], "there is no such method; choose one of qem, glance"),
