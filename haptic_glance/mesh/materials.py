@@ -18,7 +18,7 @@ from trimesh.visual.color import to_rgba
 from trimesh.visual.material import PBRMaterial, color_image
 
 from .headers import ABSENT, MAX_TEXTURE, MeshError
-from .mesh import Mesh, Texture, content_of
+from .mesh import MOST_UV, Mesh, Texture, content_of
 
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
 
@@ -241,11 +241,12 @@ def _check_size(image):
 
 
 def _corners(part):
-    """(m, 3, 2) texture coordinates of a part's face corners."""
+    """(m, 3, 2) texture coordinates of a part's face corners; 0 for NaN and for those that no file of ours holds."""
     uv = getattr(part.visual, "uv", None)
     if uv is None or len(uv) != len(part.vertices):
         return np.zeros((len(part.faces), 3, 2))
-    return np.nan_to_num(np.asarray(uv, dtype=np.float64)[:, :2])[part.faces]
+    uv = np.asarray(uv, dtype=np.float64)[:, :2]
+    return np.where(np.abs(uv) <= MOST_UV, uv, 0.0)[part.faces]
 
 
 COLOURS = ("vertex", "own", "palette")  # what meshes.colours may be

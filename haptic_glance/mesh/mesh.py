@@ -13,6 +13,8 @@ from scipy import sparse
 
 from .axes import axis_named
 
+MOST_UV = float(np.finfo(np.float32).max)  # of a texture coordinate, as files hold it
+
 
 @dataclass(frozen=True, eq=False)
 class Texture:
@@ -34,8 +36,10 @@ class Texture:
         images = tuple(_whole("images", one, np.uint8) for one in self.images)
         for one in images:
             one.flags.writeable = False  # so that no further Texture of them copies them again
-        if uv.ndim != 3 or uv.shape[1:] != (3, 2) or not np.isfinite(uv).all():
-            raise ValueError(f"uv must be finite and of shape (m, 3, 2), got {uv.shape}")
+        if uv.ndim != 3 or uv.shape[1:] != (3, 2):
+            raise ValueError(f"uv must be of shape (m, 3, 2), got {uv.shape}")
+        if not (np.abs(uv) <= MOST_UV).all():  # NaN fails as well
+            raise ValueError(f"uv must be finite, and at most {MOST_UV:.3g}")
         if image.shape != uv.shape[:1]:
             raise ValueError(f"image must have shape {uv.shape[:1]}, got {image.shape}")
         if len(image) and not 0 <= image.min() <= image.max() < len(images):

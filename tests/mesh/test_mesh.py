@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 import trimesh
+from PIL import Image
 
+from haptic_glance.mesh.materials import texture_of
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.sampling import points_in_faces, sample_surface
 
@@ -142,3 +144,12 @@ def test_coordinates_however_large_show_a_pixel():
     with np.errstate(all="raise"):
         shown = paint(uv=1e20).sample(np.array([0, 0]), np.array([[1e20, -1e20], [-0.25, 1.75]]))
     assert shown.tolist() == [[255] * 3] * 2
+
+
+def test_coordinates_too_large_for_a_file_are_refused_and_those_of_a_file_become_zero():
+    with pytest.raises(ValueError, match="uv must be finite, and at most"):
+        paint(uv=1e308)
+    picture = trimesh.visual.material.SimpleMaterial(image=Image.new("RGB", (2, 2), "red"))
+    visual = trimesh.visual.TextureVisuals([(1e308, 0.5), (0.5, np.inf), (np.nan, 1e30)], material=picture)
+    read = texture_of([trimesh.Trimesh(np.eye(3), [[0, 1, 2]], visual=visual, process=False)])
+    assert read.uv[0].tolist() == [[0, 0.5], [0.5, 0], [0, 1e30]]
