@@ -1,6 +1,7 @@
 """Disturbances of a mesh: colour, tessellation, scan by depth cameras, pose, holes, winding, noise, order and unit."""
 
 import colorsys
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -11,7 +12,9 @@ from haptic_glance.look.camera import Viewpoint, pixel_rays
 from haptic_glance.look.views import render
 from haptic_glance.look.views.shading import GREY
 from haptic_glance.mesh import Cloud, surface_of
+from haptic_glance.mesh.axes import to_z_up
 from haptic_glance.mesh.clouds import normals_of
+from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Perturbed, in_range
@@ -46,11 +49,12 @@ def clay(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Pertur
 
 
 def _faded(mesh, severity, target):
+    mesh = bake_texture(mesh)
     if mesh.colors is None:
         raise ValueError("has no colours to take away: run it on a set with meshes.colours=own")
     share, colors = in_range(severity, 0, 1, "the share of colour taken away"), mesh.colors.astype(np.float64)
     faded = np.rint((1 - share) * colors + share * target(colors)).astype(np.uint8)
-    return Perturbed(Mesh(mesh.vertices, mesh.faces, faded), mesh.vertices)
+    return Perturbed(replace(mesh, colors=faded), mesh.vertices)
 
 
 def _directions(generator):
@@ -64,8 +68,9 @@ def _colour(hue, saturation):
 
 
 def _painted(mesh, coat):
+    mesh = bake_texture(mesh)
     under = np.full((len(mesh.vertices), 3), GREY) if mesh.colors is None else mesh.colors
-    return Perturbed(Mesh(mesh.vertices, mesh.faces, np.rint(under * coat).astype(np.uint8)), mesh.vertices)
+    return Perturbed(replace(mesh, colors=np.rint(under * coat).astype(np.uint8)), mesh.vertices)
 
 
 # pymeshlab comes without types:
@@ -93,7 +98,7 @@ def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> P
 
     Colours are those of the nearest vertex. Raises ValueError where the surface collapses at this edge length.
     """
-    length = 100 * in_range(severity, 1e-3, 1, "the edge length over the diagonal")
+    length, mesh = 100 * in_range(severity, 1e-3, 1, "the edge length over the diagonal"), bake_texture(mesh)
     with from_extra("a mesh is remeshed by pymeshlab, which "):
         import pymeshlab
 
@@ -109,7 +114,7 @@ def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> P
     if len(faces) == 0 or not np.isfinite(vertices).all():
         raise ValueError(f"no surface is left at edges of {severity:g} of the diagonal: take shorter ones")
     colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(vertices)[1]]
-    return Perturbed(Mesh(vertices, faces, colors), vertices)
+    return Perturbed(Mesh(vertices, faces, colors, up=mesh.up), vertices)
 
 
 ELEVATION = 20.0  # degrees above the horizon: the underside is never seen
@@ -122,9 +127,12 @@ def scan(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturb
     """The surface that depth images reconstruct, `severity` degrees apart around the object: 90 are four, 360 is one.
 
     A camera is as in T3.2.6, its readings are noisy, and what none sees is a hole (haptic_glance.mesh.surface_of).
-    Salient points that lay there count as lost. Raises ValueError where no surface is left.
+    Salient points that lay there count as lost. Raises ValueError where no surface is left, and unless z is up.
     """
+    if mesh.up != "z":
+        raise ValueError(f"is {mesh.up} up, and cameras stand around +z: see haptic_glance.rotate_to_z_up")
     in_range(severity, 10, 360, "the degrees between cameras")
+    mesh = bake_texture(mesh)
     azimuths = generator.uniform(0, 360) + np.arange(0, 360, severity)
     seen = [_points_seen(mesh, Viewpoint(float(azimuth), ELEVATION), generator) for azimuth in azimuths]
     points, normals = (np.concatenate(parts) for parts in zip(*seen, strict=True))
@@ -145,7 +153,7 @@ def _points_seen(mesh, viewpoint, generator):
 
 
 def turn(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
-    """Turned by `severity` degrees about the vertical axis: the views show other sides."""
+    """Turned by `severity` degrees about the axis that points up: the views show other sides."""
     return _rotated(mesh, severity, np.array([0.0, 0.0, 1.0]))
 
 
@@ -156,11 +164,11 @@ def tilt(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturb
 
 
 def _rotated(mesh, degrees, axis):
-    """Rodrigues' rotation about an axis of length one."""
-    angle = np.radians(degrees)
+    """Rodrigues' rotation about an axis of length one, named as if z were up."""
+    angle, axis = np.radians(degrees), axis @ to_z_up(mesh.up)
     cross = np.cross(np.eye(3), axis)  # rows e_i x axis: vertices @ cross = vertices x axis
     spin = np.eye(3) - np.sin(angle) * cross + (1 - np.cos(angle)) * (np.outer(axis, axis) - np.eye(3))
-    return Perturbed(Mesh(mesh.vertices @ spin, mesh.faces, mesh.colors), mesh.vertices)
+    return Perturbed(replace(mesh, vertices=mesh.vertices @ spin), mesh.vertices)
 
 
 PATCHES = 4  # holes per object
@@ -177,10 +185,11 @@ def missing_faces(mesh: Mesh, severity: float, generator: np.random.Generator) -
     middles = mesh.vertices[mesh.faces].mean(axis=1)
     centres = middles[generator.choice(len(middles), PATCHES, p=mesh.face_areas / mesh.face_areas.sum())]
     away = np.linalg.norm(middles[:, None] - centres, axis=2).min(axis=1)
-    faces = mesh.faces[np.sort(np.argsort(away, kind="stable")[lost:])]
-    used, at = np.unique(faces, return_inverse=True)
+    kept = np.sort(np.argsort(away, kind="stable")[lost:])
+    used, at = np.unique(mesh.faces[kept], return_inverse=True)
     colors = None if mesh.colors is None else mesh.colors[used]
-    return Perturbed(Mesh(mesh.vertices[used], at.reshape(-1, 3), colors), mesh.vertices[used])
+    texture = mesh.texture and mesh.texture.of(kept)
+    return Perturbed(Mesh(mesh.vertices[used], at.reshape(-1, 3), colors, texture, mesh.up), mesh.vertices[used])
 
 
 def winding(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
@@ -191,7 +200,7 @@ def winding(mesh: Mesh, severity: float, generator: np.random.Generator) -> Pert
     turned = generator.random(len(mesh.faces)) < in_range(severity, 0, 1, "the share of faces")
     faces = mesh.faces.copy()
     faces[turned] = faces[turned][:, ::-1]
-    return Perturbed(Mesh(mesh.vertices, faces, mesh.colors), mesh.vertices)
+    return Perturbed(replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.turned(turned)), mesh.vertices)
 
 
 def noise(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
@@ -202,7 +211,7 @@ def noise(mesh: Mesh, severity: float, generator: np.random.Generator) -> Pertur
     in_range(severity, 0, 1, "sigma over the diagonal")
     places, at = np.unique(mesh.vertices, axis=0, return_inverse=True)
     steps = severity * mesh.diagonal * generator.standard_normal(places.shape)
-    return Perturbed(Mesh(mesh.vertices + steps[at.ravel()], mesh.faces, mesh.colors), mesh.vertices)
+    return Perturbed(replace(mesh, vertices=mesh.vertices + steps[at.ravel()]), mesh.vertices)
 
 
 def vertex_order(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
@@ -212,7 +221,8 @@ def vertex_order(mesh: Mesh, severity: float, generator: np.random.Generator) ->
     moved = generator.choice(n, int(round(in_range(severity, 0, 1, "the share of vertices") * n)), replace=False)
     old[np.sort(moved)] = moved
     colors = None if mesh.colors is None else mesh.colors[old]
-    return Perturbed(Mesh(mesh.vertices[old], np.argsort(old)[mesh.faces], colors), mesh.vertices[old])
+    shuffled = replace(mesh, vertices=mesh.vertices[old], faces=np.argsort(old)[mesh.faces], colors=colors)
+    return Perturbed(shuffled, mesh.vertices[old])
 
 
 def decimation(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
@@ -225,4 +235,4 @@ def decimation(mesh: Mesh, severity: float, _generator: np.random.Generator) -> 
 def scale(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
     """Coordinates multiplied by `severity`. For a smaller object in the image see image_size."""
     factor = in_range(severity, 1e-12, 1e12, "the factor")
-    return Perturbed(Mesh(mesh.vertices * factor, mesh.faces, mesh.colors), mesh.vertices)
+    return Perturbed(replace(mesh, vertices=mesh.vertices * factor), mesh.vertices)

@@ -10,8 +10,8 @@ from haptic_glance.disturb.perturbed import Conditions
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.views import render
-from haptic_glance.mesh import normalise
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.rays import RayScene
 from stages.stability.measures import corner_normals, maps_under_conditions, relit
 
@@ -191,3 +191,19 @@ def test_a_background_left_in_changes_the_maps_and_smaller_images_give_smaller_o
     assert all(np.abs(black[name] - white[name]).max() > 0.05 for name in black)
     assert maps_under_conditions(pear, ("edge",), Conditions(rows=0.5), SIZE).size == (15, 20)
     assert maps_under_conditions(pear, (), Conditions(), SIZE) is None
+
+
+@pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"scan", "remeshing"}))
+def test_the_axis_that_points_up_and_the_paint_go_along(name, pear):
+    """And the object turns about its own axis."""
+    painted = Texture(np.zeros((len(pear.faces), 3, 2)), np.zeros(len(pear.faces), int), (np.full((1, 1, 4), 90),))
+    lying = Mesh(pear.vertices[:, [0, 2, 1]] * [1, 1, -1], pear.faces, texture=painted, up="y")
+    changed = PERTURBATIONS[name].apply(lying, MILD[name], rng(0, "test")).mesh
+    upright = PERTURBATIONS[name].apply(rotate_to_z_up(lying), MILD[name], rng(0, "test")).mesh
+    assert changed.up == "y" and (changed.texture is not None or changed.colors is not None)
+    assert rotate_to_z_up(changed).vertices == pytest.approx(upright.vertices, abs=1e-6 if name != "noise" else 0.02)
+
+
+def test_cameras_stand_around_z(pear):
+    with pytest.raises(ValueError, match="is y up"):
+        PERTURBATIONS["scan"].apply(Mesh(pear.vertices, pear.faces, up="y"), 180.0, rng(0, "test"))
