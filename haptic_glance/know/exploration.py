@@ -9,12 +9,11 @@ from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import as_surface
 
-from .library import CELLS, PITCH, Belief, Expected, Library, sample_places
+from .library import CELLS, PITCH, Belief, Expected, Library, check_scale, sample_places
 
 PLACES = 64  # where the planner may touch
 FRESH = 0.04  # units, a quarter of the array: nearer to a touched place there is little new
 MOST = 30  # touches after which the planner gives up
-SCALE = 4  # the diagonal of a normalised object is 1 to 1.74; that of a damaged one may differ a little more
 WORTHLESS = 1e-3  # nats: a touch that promises less does not help
 
 
@@ -27,9 +26,7 @@ class Exploration:
 
     def __init__(self, library: Library, surface: Mesh | Surface, random: np.random.Generator) -> None:
         self.library, self.surface = library, as_surface(surface)
-        diagonal = self.surface.mesh.diagonal
-        if not 1 / SCALE < diagonal < SCALE:
-            raise ValueError(f"the object's diagonal is {diagonal:.3g}, not about 1 as in the library: normalise it")
+        check_scale(self.surface.mesh)
         self.candidates = sample_places(self.surface, PLACES, random)
         self.positions, self.normals = np.zeros((0, 3)), np.zeros((0, 3))  # of the touches so far
         self.images = np.zeros((0, *CELLS), dtype=np.float32)  # what was felt there

@@ -106,10 +106,10 @@ AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three width
 
 
 def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned: bool = False) -> "Library":
-    """The Library of meshes {name: mesh}, each scaled by `normalise`; a mesh that was learned before costs nothing.
+    """The Library of meshes {name: mesh} that `normalise` has scaled; a mesh that was learned before costs nothing.
 
     turned: each array is turned at random about its normal, as it lies on an object whose pose is unknown.
-    Raises ValueError for fewer than two, and for a mesh that cannot be touched, with its name.
+    Raises ValueError for fewer than two, and for a mesh that cannot be touched or has another scale, with its name.
     """
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
@@ -240,12 +240,22 @@ def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
     return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed)
 
 
+SCALE = 4  # the diagonal of a normalised object is 1 to 1.74; that of a damaged one may differ a little more
+
+
+def check_scale(mesh: Mesh) -> None:
+    """Raises ValueError for a mesh of another scale than that of `normalise`: the array would feel something else."""
+    if not 1 / SCALE < mesh.diagonal < SCALE:
+        raise ValueError(f"the object's diagonal is {mesh.diagonal:.3g}, not about 1 as in the library: normalise it")
+
+
 @lru_cache(maxsize=256)
 def _learned(one: _Named) -> tuple[np.ndarray, np.ndarray]:
     """(features (TOUCHES, 41), positions (TOUCHES, 3)) of an object."""
     try:
         surface = Surface(one.mesh)
         places = sample_places(surface, TOUCHES, rng(one.seed, one.name))
+        check_scale(one.mesh)
         axes = sensor_axes(places.normals)
         if one.turned:
             axes = turned(axes, 360 * rng(one.seed, f"{one.name} turned").random(TOUCHES))

@@ -85,13 +85,18 @@ def evaluate(
     A row holds classifier, repetition, split (random: the quarter held out; folds: mean over five folds of the rest),
     metric (accuracy), value and seconds (z-transform, components, training and prediction, without the features).
     Repetitions differ in their random split and in the classifier's random numbers.
-    Raises ValueError for too few objects or imprints, invalid images, or an unknown classifier.
+    Raises ValueError for too few objects, imprints or repetitions, invalid images or several sizes of them, or an
+    unknown classifier.
     """
     names = sorted(images_by_object)
     counts = {name: len(images_by_object[name]) for name in names}
     check_counts(counts)
+    if repetitions < 1:
+        raise ValueError(f"repetitions must be 1 or more, got {repetitions}")
     count = min(counts.values())
     samples = np.concatenate([features(images_by_object[name][:count]) for name in names])
+    if len(shapes := {np.shape(images)[1:] for images in images_by_object.values()}) > 1:
+        raise ValueError(f"imprints of several arrays, {sorted(shapes)}, tell objects apart by their size alone")
     prepared = prepare(samples, np.repeat(np.arange(len(names)), count), repetitions, seed)
     rows, _ = evaluate_prepared(prepared, len(names), classifier, seed)
     return [row for row in rows if row["metric"] == "accuracy"]
@@ -218,7 +223,7 @@ def region_holdout(
         test.append(members[region])
         train.append(members[rest[(distances[rest][:, region] > min_distance).all(axis=1)]])
     counts = [len(part) for part in train]
-    if min(counts) == 0 or sum(counts) < COMPONENTS:
+    if min(counts, default=0) == 0 or sum(counts) < COMPONENTS:
         return None
     return np.concatenate(train), np.concatenate(test)
 

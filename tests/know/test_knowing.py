@@ -155,6 +155,8 @@ def test_what_cannot_be_learned_or_felt_is_named(library, shapes):
     flat = Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
     with pytest.raises(ValueError, match="nothing: cannot sample a mesh without area"):
         learn({"ball": shapes["ball"], "nothing": flat})
+    with pytest.raises(ValueError, match="large: the object's diagonal is .* normalise it"):
+        learn({"ball": shapes["ball"], "large": Mesh(100 * shapes["ball"].vertices, shapes["ball"].faces)})
     with pytest.raises(ValueError, match=r"learned with \(16, 16\) cells"):
         library.log_likelihoods(np.zeros((1, 8, 8)), np.zeros((1, 3)))
 

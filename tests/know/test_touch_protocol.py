@@ -195,6 +195,7 @@ def test_located_samples_keep_the_place_behind_the_components():
         ({}, "perceptron of old", "choose one of knn"),
         ({"cup": np.zeros((9, 16, 16))}, "knn", "cup has 9 imprints"),
         ({"cup": np.zeros((20, 4, 4))}, "knn", "at least 8 x 8"),
+        ({"cup": np.zeros((20, 8, 8))}, "knn", "imprints of several arrays"),
     ],
 )
 @pytest.mark.slow
@@ -206,6 +207,8 @@ def test_what_cannot_be_classified_is_named(bumps, change, name, words):
 def test_one_object_and_settings_of_no_classifier_are_named(bumps):
     with pytest.raises(ValueError, match="two objects"):
         evaluate(bumps(("cup",)), "knn")
+    with pytest.raises(ValueError, match="repetitions must be 1 or more, got 0"):
+        evaluate(bumps(), "knn", 0)
     with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
         classifier("knn", 0, "places")
     with pytest.raises(ValueError, match="scaling must be one of training, .*, min_max, got 'none'"):
