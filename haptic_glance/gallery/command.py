@@ -23,6 +23,7 @@ from haptic_glance.base.files import check_folder, write_text
 from haptic_glance.base.progress import report
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.export import levels
+from haptic_glance.lod.task import number
 from haptic_glance.mesh.files import mesh_files, names_of
 from haptic_glance.mesh.up import add_up
 
@@ -115,6 +116,8 @@ def figures(made: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[str,
 def listing(made: Sequence[Exhibit], out: Path) -> str:
     """The results, for people."""
     lines = [
-        f"{one.folder}: {len(one.points)} places, {len(one.levels)} levels, {len(one.touches)} imprints" for one in made
+        f"{one.folder}: {number(len(one.points), 'place')}, {number(len(one.levels), 'level')}, "
+        f"{number(len(one.touches), 'imprint')}"
+        for one in made
     ]
     return "\n".join([*lines, f"open {out / PAGE}"])

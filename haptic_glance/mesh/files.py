@@ -234,6 +234,10 @@ def mesh_files(place: Path) -> list[Path]:
 
 
 def names_of(files: list[Path]) -> list[str]:
-    """A name per file: its own without the suffix, or with it where two files differ in that alone."""
-    stems = [path.stem for path in files]
-    return [path.stem if stems.count(path.stem) == 1 else path.name for path in files]
+    """A name per file: its own without the suffix, or with it, or with the path, where another file has that name."""
+    stems, names = [path.stem for path in files], [path.name for path in files]
+    return [
+        path.stem if stems.count(path.stem) == 1 and path.stem not in names
+        else path.name if names.count(path.name) == 1 else str(path)
+        for path in files
+    ]  # fmt: skip

@@ -86,6 +86,8 @@ def test_a_folder_gives_its_meshes_in_order_and_nothing_else(tmp_path):
 def test_files_of_one_stem_are_told_apart(tmp_path):
     files = [tmp_path / name for name in ("a.ply", "a.stl", "b.stl")]
     assert names_of(files) == ["a.ply", "a.stl", "b"]
+    files = [tmp_path / name for name in ("a.obj", "a.ply", "a.obj.stl", "x/c.stl", "y/c.stl")]
+    assert names_of(files) == ["a.obj", "a.ply", "a.obj.stl", str(files[3]), str(files[4])]
 
 
 def test_a_change_of_a_trimesh_object_leaves_its_mesh_alone():
