@@ -83,6 +83,8 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable
         name, whole = next(iter(given.arguments.items()))
         if not isinstance(getattr(whole, "mesh", whole), Mesh):
             given.arguments[name] = whole = as_mesh(whole)
+        if unit is not None and not any(isinstance(given.arguments[name], str) for name in names):
+            raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
         diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
         for name in names:
             if given.arguments[name] is not None:
@@ -198,7 +200,7 @@ def simplify(
     """
     work = import_module("haptic_glance.lod").simplify
     asked = str(faces)
-    if not isinstance(faces, str) and 0 < faces < 1:
+    if isinstance(faces, float | np.floating) and 0 < faces < 1:
         asked = f"{100 * float(asked):.12g}%"
     count = face_count(asked, len(mesh.faces), "faces")
     given = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
@@ -269,6 +271,12 @@ class Shown:
 
 
 def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
-    """A mesh for a notebook, to be turned; values (n,): such as a saliency, which colour it from violet to yellow."""
+    """A mesh for a notebook, to be turned; values (n,) from 0 on: such as a saliency, which colour it from violet to
+    yellow."""
     given = as_mesh(mesh)
-    return Shown(given if values is None else coloured(given, np.asarray(values, dtype=np.float64)))
+    if values is not None:
+        values = np.asarray(values, dtype=np.float64)
+        if values.shape != (len(given.vertices),) or not ((values >= 0) & (values < np.inf)).all():
+            raise ValueError(f"values must be one per vertex, ({len(given.vertices)},), finite and 0 or more")
+        given = coloured(given, values)
+    return Shown(given)

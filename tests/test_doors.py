@@ -81,6 +81,8 @@ def test_lengths_are_shares_of_the_diameter_or_have_a_unit(body, scale):
         press(mesh, 7, pitch="1mm")
     with pytest.raises(ValueError, match="pitch='wide': give a share"):
         press(mesh, 7, pitch="wide")
+    with pytest.raises(ValueError, match="unit='mm' applies to lengths"):
+        press(mesh, 7, pitch=0.5, unit="mm")
     with pytest.raises(ValueError, match="mm, cm, in, m, not 'yd'"):
         press(mesh, 7, pitch="1mm", unit="yd")
 
@@ -157,6 +159,16 @@ def test_every_function_takes_a_mesh_in_every_form(body, tmp_path, monkeypatch, 
 def test_faces_are_a_count_or_a_share(body):
     for faces in ("25%", 0.25, np.float32(0.25), 320, np.int64(320), "320"):
         assert len(simplify(Mesh(*body), faces).faces) == 320
+    with pytest.raises(ValueError, match="faces='None' is not a face count"):
+        simplify(Mesh(*body), None)
+
+
+def test_values_that_colour_a_mesh_are_one_per_vertex_and_finite(body):
+    mesh = Mesh(*body)
+    assert "iframe" in haptic_glance.show(mesh, np.arange(len(mesh.vertices)))._repr_html_()
+    for values in (np.ones(3), np.full(len(mesh.vertices), np.nan), np.full(len(mesh.vertices), -1)):
+        with pytest.raises(ValueError, match="values must be one per vertex"):
+            haptic_glance.show(mesh, values)
 
 
 def test_a_mistyped_method_is_answered_by_its_neighbour_alone(body):

@@ -89,6 +89,8 @@ def for_glb(
 
     attributes: {name: (n,)} of the vertices, which those of the result get, too.
     """
+    if not len(mesh.faces):
+        raise ValueError("a mesh without faces cannot be written as glb: write .ply")
     faces, vertices, normals = shading(mesh)
     colors = None if mesh.colors is None else mesh.colors[vertices]
     carried = {NORMAL: normals} | {key: values[vertices] for key, values in (attributes or {}).items()}

@@ -71,3 +71,8 @@ def test_a_glb_has_normals_and_is_the_same_mesh_again(tmp_path, named):
     assert len(primitives) == (2 if named else 1) and all("NORMAL" in one for one in primitives)
     again = load(tmp_path / "box.glb")
     assert len(again.vertices) == 8 and np.isclose(again.face_areas.sum(), 6)
+
+
+def test_a_mesh_without_faces_is_no_glb(tmp_path):
+    with pytest.raises(ValueError, match="without faces cannot be written as glb"):
+        write_any(tmp_path / "none.glb", Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
