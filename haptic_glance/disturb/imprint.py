@@ -8,6 +8,8 @@ import numpy as np
 from haptic_glance.base.opencv import cv2
 from haptic_glance.touch import Skin
 
+from .perturbed import in_range
+
 FEW_TOUCHES = "few_touches"  # not a perturbation of the test touches: fewer touches are used for training
 
 
@@ -21,17 +23,19 @@ def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) 
 
 
 def with_square(images: np.ndarray, severity: float, random: np.random.Generator, value: float) -> np.ndarray:
-    """Images (k, n, n, ...) with a square of a value at a random position, `severity` of the area."""
-    size = images.shape[1]
-    side = min(round(size * np.sqrt(severity)), size)
+    """Images (k, r, c, ...) with a square of a value at a random position, `severity` of the area; a rectangle of their
+    proportions where they are none."""
+    sides = np.array(images.shape[1:3])
+    own = np.rint(sides * np.sqrt(in_range(severity, 0, 1, "the share of the area"))).astype(np.int64)
     found = images.copy()
-    for image, (row, column) in zip(found, random.integers(0, size - side + 1, (len(images), 2)), strict=True):
-        image[row : row + side, column : column + side] = value
+    for image, (row, column) in zip(found, random.integers(0, sides - own + 1, (len(images), 2)), strict=True):
+        image[row : row + own[0], column : column + own[1]] = value
     return found
 
 
 def rotation(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """Each imprint rotated about its centre by `severity` degrees to either side; its border pixels are repeated."""
+    in_range(severity, 0, 180, "the turn in degrees")
     rows, columns = images.shape[1:]
     centre, found = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
     for i, side in enumerate(random.choice([-1, 1], len(images))):
@@ -42,8 +46,9 @@ def rotation(images: np.ndarray, severity: float, random: np.random.Generator) -
 
 def resolution(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """The imprint of an array as wide with `severity` sensels a side, each the mean of those it replaces."""
-    cells = int(severity)
-    return np.stack([cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images])
+    cells = int(in_range(severity, 1, min(images.shape[1:]), "the sensels a side"))
+    found = [cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images]
+    return np.reshape(found, (-1, cells, cells))
 
 
 PERTURBATIONS = {
@@ -56,9 +61,20 @@ PERTURBATIONS = {
 }
 
 
+def as_shares(images: np.ndarray) -> np.ndarray:
+    """Images, u1 or floats in 0..1, as f4 in 0..1; ValueError for other values."""
+    found = images.astype(np.float32) / (255 if images.dtype == np.uint8 else 1)
+    if not ((found >= 0) & (found <= 1)).all():  # NaN fails as well
+        raise ValueError("images must be bytes, or numbers in 0..1")
+    return found
+
+
 def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
-    """(k, rows, cols) f4 in 0..1: imprints (k, r, c) u1 under one of PERTURBATIONS."""
-    return np.clip(PERTURBATIONS[name](images.astype(np.float32) / 255, severity, random), 0, 1).astype(np.float32)
+    """(k, rows, cols) f4 in 0..1: imprints (k, r, c), u1 or floats in 0..1, under one of PERTURBATIONS.
+
+    Raises ValueError for other values, and for a severity out of range.
+    """
+    return np.clip(PERTURBATIONS[name](as_shares(images), severity, random), 0, 1).astype(np.float32)
 
 
 def check(severities: Mapping[str, Sequence[float]]) -> None:

@@ -6,7 +6,8 @@ import numpy as np
 
 from haptic_glance.base.opencv import cv2
 
-from .imprint import PERTURBATIONS, check_known, disturb, with_square
+from .imprint import PERTURBATIONS, as_shares, check_known, disturb, with_square
+from .perturbed import in_range
 
 PICTURE, IMPRINT = "picture_", "imprint_"  # prefixes of perturbations: the sense that is damaged
 MISSING = "missing"  # the sense is absent
@@ -14,12 +15,12 @@ MISSING = "missing"  # the sense is absent
 
 def noise(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """Gaussian noise with a sigma of `severity` of full scale, independent in each channel."""
-    return images + random.normal(0, severity, images.shape)
+    return images + random.normal(0, in_range(severity, 0, 10, "sigma over full scale"), images.shape)
 
 
 def blur(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """A Gaussian blur with a sigma of `severity` of the image's side: out of focus."""
-    sigma, found = severity * images.shape[1], images.copy()
+    sigma, found = in_range(severity, 0, 1, "sigma over the side") * images.shape[1], images.copy()
     for image in found if sigma > 0 else ():
         image[:] = cv2.GaussianBlur(image, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE)
     return found
@@ -27,7 +28,7 @@ def blur(images: np.ndarray, severity: float, random: np.random.Generator) -> np
 
 def darkness(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """The light is reduced by the share `severity` and quantised to 256 levels."""
-    return np.round(images * (1 - severity) * 255) / 255
+    return np.round(images * (1 - in_range(severity, 0, 1, "the share of the light")) * 255) / 255
 
 
 def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
@@ -39,13 +40,16 @@ PICTURES = {"noise": noise, "blur": blur, "darkness": darkness, "occlusion": occ
 
 
 def damage_pictures(pictures: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
-    """(k, h, w, 3) f4 in 0..1: pictures (k, h, w, 3) u1 under one of PICTURES."""
-    found = PICTURES[name](pictures.astype(np.float32) / 255, severity, random)
+    """(k, h, w, 3) f4 in 0..1: pictures (k, h, w, 3), u1 or floats in 0..1, under one of PICTURES.
+
+    Raises ValueError for other values, and for a severity out of range.
+    """
+    found = PICTURES[name](as_shares(pictures), severity, random)
     return np.clip(found, 0, 1).astype(np.float32)
 
 
 def damage(raw: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray | None:
-    """Damaged pictures (k, h, w, 3) or imprints (k, r, c) of one sense, u1 to f4 in 0..1, or None where it is missing.
+    """Damaged pictures (k, h, w, 3) or imprints (k, r, c) of one sense, f4 in 0..1, or None where it is missing.
 
     name: `picture_NAME` of PICTURES, `imprint_NAME` of haptic_glance.disturb.imprint, or either with `missing`.
     """

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.disturb.imprint import PERTURBATIONS, disturb
+from haptic_glance.disturb.picture import PICTURES, damage_pictures
 
 SLOPE = np.tile(np.linspace(0, 255, 32).astype(np.uint8), (3, 32, 1))
 SEVERITIES = {  # that harms nothing, mild, harsh
@@ -42,3 +43,31 @@ def test_a_quarter_turn_is_that_of_the_array_and_a_coarse_array_reads_the_mean_o
     upright = np.tile(np.linspace(0, 1, 32)[:, None], (1, 32))
     assert min(np.abs(image - upright).max(), np.abs(image - upright[::-1]).max()) < 0.01
     assert np.allclose(felt("resolution", 8.0)[0, 0], SLOPE[0, 0].reshape(8, 4).mean(axis=1) / 255, atol=1e-3)
+
+
+@pytest.mark.parametrize("name", PERTURBATIONS)
+def test_bytes_and_shares_are_the_same_imprints_and_a_severity_out_of_range_is_refused(name):
+    severity = SEVERITIES[name][1]
+    assert np.array_equal(felt(name, severity, SLOPE.astype(np.float32) / 255), felt(name, severity))
+    assert felt(name, severity, SLOPE[:0]).shape[0] == 0
+    for wrong in (-1.0, np.nan):
+        with pytest.raises(ValueError, match="must (be|lie)"):
+            felt(name, wrong)
+    with pytest.raises(ValueError, match=r"bytes, or numbers in 0\.\.1"):
+        felt(name, severity, SLOPE.astype(np.float32))
+
+
+def test_an_array_that_is_not_square_loses_its_share_anywhere():
+    images = felt("occlusion", 0.25, images=np.zeros((60, 8, 24), np.uint8))
+    assert (images.sum(axis=(1, 2)) == 4 * 12).all()
+    assert images.max(axis=(0, 1)).all() and images.max(axis=(0, 2)).all()
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_picture_takes_shares_and_a_severity_in_range(name):
+    pictures = np.random.default_rng(0).integers(0, 256, (2, 8, 8, 3)).astype(np.uint8)
+    found = [damage_pictures(each, name, 0.1, np.random.default_rng(0)) for each in (pictures, pictures / 255)]
+    assert np.allclose(*found, atol=1e-6)
+    for wrong in (-1.0, np.nan):
+        with pytest.raises(ValueError, match="must lie"):
+            damage_pictures(pictures, name, wrong, np.random.default_rng(0))
