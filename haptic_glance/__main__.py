@@ -60,7 +60,9 @@ def main() -> None:
     sys.argv[1:] = chosen.rest
 
     from haptic_glance.base.extras import MissingExtra, from_extra
+    from haptic_glance.base.progress import report
 
+    warnings.showwarning = lambda message, *_: report(chosen.command, str(message))  # in one line
     try:
         with from_extra():
             status = run(chosen.command, chosen.rest)

@@ -7,6 +7,7 @@ textures.
 import argparse
 import io
 import re
+import warnings
 from collections.abc import Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import replace
@@ -34,6 +35,8 @@ FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
 PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
 COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
+SINGLE = (".glb", ".npz", ".ply", ".stl")  # the formats of single precision
+MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farther is seen to be elsewhere
 
 
 def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
@@ -44,12 +47,14 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     A glb has normals, for which creases double vertices, too. obj and off have nine digits or more, the others single
     precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned here
     (haptic_glance.mesh.up.upright_for); the other formats get a comment that names the axis. parts: in a glb the nodes,
-    by name. Raises ValueError for another suffix.
+    by name. Raises ValueError for another suffix, and for coordinates that the format does not hold; warns where it
+    moves vertices, as those far from the origin.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise ValueError(f"{path.name}: meshes are written as {', '.join(FORMATS)}, not as {suffix or 'no suffix'}")
+    check_precision(path, mesh)
     named = {name: ids for name, ids in (parts or {}).items() if len(ids)} if suffix == ".glb" else None
     if suffix not in PICTURED:
         mesh = bake_texture(mesh)
@@ -67,6 +72,21 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
             part = stack.enter_context(whole_file(path.parent / name))
             data = extra.encode() if isinstance(extra, str) else extra
             part.write_bytes(with_stated_up(data, suffix, mesh.up) if name == path.name else data)
+
+
+def check_precision(path: Path, mesh: Mesh) -> None:
+    """Warns where the path's format moves vertices by more than MOST_MOVED of the diagonal; ValueError for infinity."""
+    if path.suffix.lower() not in SINGLE or not mesh.diagonal:
+        return
+    with np.errstate(over="ignore", under="ignore"):
+        moved = float(np.abs(mesh.vertices - mesh.vertices.astype(np.float32)).max())
+    if not np.isfinite(moved):
+        raise ValueError(f"{path.name}: its coordinates are too large for single precision: scale it, or write .obj")
+    if moved > MOST_MOVED * mesh.diagonal:
+        share, remedy = 100 * moved / mesh.diagonal, "move it to the origin, or write text (.obj, .off, .usda)"
+        warnings.warn(
+            f"{path.name}: single precision moves vertices by {share:.2g} % of the diagonal: {remedy}", stacklevel=3
+        )
 
 
 def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:

@@ -13,7 +13,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import rotate_to_z_up
 from haptic_glance.mesh.up import with_stated_up
 
-from .export import for_glb, write_glb
+from .export import check_precision, for_glb, write_glb
 from .simplify import check_weights
 
 NAME = "saliency"
@@ -53,6 +53,7 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
     check_suffix(path)
     with about(path.name):
         weights = check_weights(mesh, weights).astype(np.float32)
+    check_precision(path, mesh)
     with whole_file(path) as part:
         part.write_bytes(WRITERS[path.suffix.lower()](mesh, weights))
 

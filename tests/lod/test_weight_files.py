@@ -3,6 +3,7 @@
 import json
 import re
 import struct
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ import trimesh
 
 from haptic_glance.cli.saliency import run
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod import write_weights
+from haptic_glance.lod import write_any, write_weights
 from haptic_glance.mesh import load, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh, Texture
 
@@ -102,6 +103,19 @@ def test_wrong_files_and_weights_are_named(ball, tmp_path, name, weights, words)
     with pytest.raises(ValueError, match=words):
         write_weights(tmp_path / name, ball[0], weights)
     assert not list(tmp_path.iterdir())
+
+
+def test_places_that_single_precision_moves_are_warned_of(ball, tmp_path):
+    far = replace(ball[0], vertices=ball[0].vertices + 5e6)
+    for write in (write_any, lambda path, mesh: write_weights(path, mesh, ball[1])):
+        with pytest.warns(UserWarning, match=r"w.ply: single precision moves vertices by \d"):
+            write(tmp_path / "w.ply", far)
+        with pytest.raises(ValueError, match="v.ply: its coordinates are too large for single precision"):
+            write(tmp_path / "v.ply", replace(far, vertices=1e45 * far.vertices))
+    with warnings.catch_warnings(action="error"):
+        write_any(tmp_path / "w.ply", ball[0])
+        write_any(tmp_path / "w.obj", far)
+    assert load(tmp_path / "w.obj").vertices == pytest.approx(far.vertices, abs=1e-6)
 
 
 def test_the_command_writes_the_saliency_of_each_vertex(tmp_path, capsys):
