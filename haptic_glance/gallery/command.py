@@ -45,8 +45,9 @@ def run(argv: Sequence[str]) -> int:
     chosen = command.parse_args(argv)
     if chosen.count < 1:
         raise ValueError(f"--count {chosen.count}: give 1 or more")
-    stem = chosen.meshes.resolve().stem
-    return show("gallery", f"Gallery of {stem}", chosen, chosen.out or Path(f"{stem}_gallery"))
+    place = chosen.meshes.resolve()
+    name = place.name if place.is_dir() else place.stem
+    return show("gallery", f"Gallery of {name}", chosen, chosen.out or Path(f"{name}_gallery"))
 
 
 def parser(name: str, about: str) -> argparse.ArgumentParser:

@@ -202,3 +202,11 @@ def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):
     with pytest.raises(ValueError, match="no mesh in this folder"):
         run([str(tmp_path), "--out", str(tmp_path / "out")])
     assert not (tmp_path / "out").exists()
+
+
+def test_the_page_of_a_folder_has_its_whole_name(tmp_path, monkeypatch):
+    (tmp_path / "scans v1.2").mkdir()
+    asked = []
+    monkeypatch.setattr(command, "show", lambda name, title, chosen, out: asked.append((title, str(out))))
+    run([str(tmp_path / "scans v1.2")])
+    assert asked == [("Gallery of scans v1.2", "scans v1.2_gallery")]
