@@ -23,7 +23,7 @@ studio: $(VENV)/ready ## look at a mesh, simplify it, touch and mark it, on a lo
 test: $(VENV)/ready ## unit and property tests, and beside them the whole pipeline at profile=smoke with its gate
 	@mkdir -p build
 	@$(MAKE) smoke > build/smoke.log 2>&1 & smoke=$$!; rc=0; \
-	pytest -n $$(($$(getconf _NPROCESSORS_ONLN) + 1)) --dist worksteal || rc=$$?; \
+	pytest -n logical --dist worksteal || rc=$$?; \
 	wait $$smoke || { tail -n 40 build/smoke.log; echo "the pipeline at profile=smoke failed: build/smoke.log"; exit 1; }; \
 	tail -n 1 build/smoke.log; exit $$rc
 

@@ -12,12 +12,13 @@ from haptic_glance.gallery import exhibit
 from haptic_glance.know import library
 from haptic_glance.studio.feeling import Sensor
 from haptic_glance.touch import press
-from stages.compose import compose
+from stages.engine.settings import load_params
 from stages.front.space import DEFAULT, WHOLE, WIDTH
 from stages.report.chain import smallest_kept
 
-FRONT = smallest_kept(pd.read_csv(Path(__file__).parents[2] / "reports/tables/front.csv", dtype={"level": str}))
-RUN = compose()["household"]
+ROOT = Path(__file__).parents[2]
+FRONT = smallest_kept(pd.read_csv(ROOT / "reports/tables/front.csv", dtype={"level": str}))
+RUN = load_params(ROOT / "params.yaml")["household"]
 PIPELINE = {
     "points": RUN["salient_points"]["count"],
     "cells": RUN["imprints"]["cells"][0],

@@ -4,13 +4,10 @@ import numpy as np
 import pytest
 
 from haptic_glance.base.weak_cache import weak_cache
-from haptic_glance.look.channels import operators, printed
 from haptic_glance.look.channels.channels import resize_map
 from haptic_glance.look.channels.cropped_view import core, fill
-from haptic_glance.look.channels.kernels import mean_of_other_maxima
-from haptic_glance.look.channels.operators import PEAK, centre_surround, expand, normalise, pyramid
+from haptic_glance.look.channels.operators import normalise
 
-PAIRS = [(2, 5), (2, 6), (3, 6), (3, 7), (4, 7), (4, 8)]
 EVERYWHERE = np.ones((9, 21), dtype=bool)
 
 
@@ -21,24 +18,6 @@ def peaks(places):
     return values
 
 
-@pytest.mark.parametrize(
-    ("places", "others"),
-    [
-        ([((4, 4), 5), ((4, 10), 2), ((4, 16), 1)], 0.3),
-        ([((4, 10), 1), ((0, 0), 0.5), ((4, 16), 0.1)], 0.5),  # peaks at the border count, none under a tenth does
-        ([((4, 4), 1), ((5, 5), 1)], 0),  # one peak, which touches itself at a corner
-        ([((4, 4), 1), ((5, 5), 1), ((4, 16), 1)], 1),
-        ([(np.s_[2:6, 3:9], 1)], 0),  # a plateau is one peak
-    ],
-)
-def test_n_weighs_a_map_by_the_mean_of_its_other_maxima(places, others):
-    values = peaks(places)
-    scaled = values / values.max()
-    assert mean_of_other_maxima(scaled, PEAK) == pytest.approx(others)
-    for same in (values, 8 * values):
-        np.testing.assert_allclose(normalise(same, EVERYWHERE), scaled * (1 - others) ** 2, atol=1e-6)
-
-
 def test_n_is_zero_off_the_object_and_for_flat_or_missing_objects():
     cover = EVERYWHERE.copy()
     cover[:, 12:] = False
@@ -47,36 +26,6 @@ def test_n_is_zero_off_the_object_and_for_flat_or_missing_objects():
     np.testing.assert_allclose(normalise(3 * values + 7, cover), normalise(values, cover), atol=1e-6)
     assert not normalise(np.full(cover.shape, 0.3, np.float32), EVERYWHERE).any()
     assert not normalise(values, np.zeros_like(cover)).any()
-
-
-def test_pyramid_halves_nine_times_blurs_as_a_binomial_and_does_not_drift():
-    slope = np.tile(np.linspace(0, 1, 600, dtype=np.float32), (450, 1))
-    levels = pyramid(slope)
-    assert [levels[s].shape for s in (0, 1, 4, 8)] == [(450, 600), (225, 300), (29, 38), (2, 3)]
-    inner = slice(12, -12)
-    np.testing.assert_allclose(expand(levels, 5, 3)[inner, inner], levels[3][inner, inner], atol=0.01)
-    np.testing.assert_allclose(levels[2][50], slope[200, ::4], atol=4e-3)
-    y, x = np.mgrid[:256, :256] - 128  # a blob of variance v keeps v / (v + (4^s - 1) / 3) of its height at scale s
-    blob = pyramid(np.exp(-(y * y + x * x) / (2 * 60)).astype(np.float32))
-    assert [blob[s].max() for s in (2, 3)] == pytest.approx([60 / 65, 60 / 81], abs=0.02)
-
-
-def test_centre_surround_has_the_six_terms_of_equation_3_1(monkeypatch):
-    terms = []
-    monkeypatch.setattr(operators, "normalise", lambda values, *rest: terms.append(values) or normalise(values, *rest))
-    levels = pyramid(np.random.default_rng(0).random((512, 512)).astype(np.float32))
-    total = centre_surround(levels, {scale: np.ones(levels[scale].shape, dtype=bool) for scale in (2, 3, 4)})
-    assert len(terms) == 6 and sorted(levels) == list(range(9)) and total.shape == (32, 32)
-    for term, (c, s) in zip(terms, PAIRS, strict=True):
-        np.testing.assert_array_equal(term, np.abs(levels[c] - expand(levels, s, c)))
-
-
-def test_the_printed_formulas_find_red_amid_red_and_lose_a_single_peak():
-    levels = pyramid(np.where(np.arange(512) < 256, 0.8, 0).astype(np.float32)[None].repeat(512, axis=0))
-    as_printed, mended = (printed.centre_surround(levels, True, sign)[16] for sign in (-1, 1))
-    assert as_printed[2] > 0.8 and mended[2] < 0.01  # far from the border of the red half
-    values = peaks([((4, 4), 2)])
-    assert not printed.normalise(values, mended=False).any() and printed.normalise(values, mended=True).max() == 1
 
 
 def test_filling_keeps_the_known_and_continues_it_without_a_step():

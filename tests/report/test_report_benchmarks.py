@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.report import stability, touch
+from stages.report import touch
 from stages.report.results import NotRun
 from stages.report.stability import costs
 from stages.report.topics import build_one
@@ -62,12 +62,6 @@ def test_rates_ratios_and_errors_are_those_of_the_bench(bench):
     assert "m0 (psb, 2,000 faces)" in text
 
 
-@pytest.mark.parametrize(("ours", "best"), [(4000.0, ["ours", "ours"]), (900.0, ["ours", "trimesh on embree"])])
-def test_the_fastest_at_each_number_of_cells_stands_out(bench, ours, best):
-    built = table(bench(benched(ours)))
-    assert built.shown.loc[built.best_rows, "method"].tolist() == best
-
-
 @pytest.mark.slow
 def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
     results = bench(benched(tacto=False))
@@ -117,9 +111,3 @@ def test_lines_are_those_of_the_machine_that_measured_last_by_date(measure, monk
     assert list(drawn) == ["maps"] and list(drawn["maps"]["ratio"]) == [0.1, 0.2]
     assert list(drawn["maps"]["place"]) == [0, 1]
     assert words == {"kernels": 1, "commits": 2, "machine": "here", "names": "maps (peer of maps)"}
-
-
-def test_one_commit_is_drawn_and_said(measure):
-    results = measure("bench/history", pd.DataFrame([row("a", 1, "maps", 0.1), row("a", 1, "press", 4.0)]))
-    figure = build_one(stability, "figures", "kernels", results)
-    assert figure.paths[0].exists() and "press (peer of press), maps (peer of maps)" in figure.alt

@@ -61,15 +61,6 @@ def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both
     assert f"It is {smallest_kept(table.frame)['words']}." in table.notes[-1]
 
 
-def test_a_choice_is_said_in_words():
-    looking = pd.Series(LOOKING)
-    assert words(looking) == "thesis, SSIM (twelve views of 900 rows), 40 places, 8 x 8 cells, all faces, 1 touch, kNN"
-    assert (
-        words(pd.Series({"image_rows": None} | BLIND))
-        == "blind touch, 40 places, 8 x 8 cells, 500 faces, 3 touches, kNN"
-    )
-
-
 def test_each_changed_choice_has_its_paired_effect_and_its_cost(measured):
     frame = build_one(chain, "tables", "front_changed", measured).frame.set_index("stage")
     assert list(frame.index) == ["points", "classifier"]

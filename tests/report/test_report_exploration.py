@@ -13,7 +13,6 @@ from stages.report.stability.touch import DENOISED, breaking, curve, harmless, s
 from stages.report.topics import build_one
 from tests.report.frames import verdicts
 
-CHARTS = [("tradeoff", "exploration"), ("figures", "exploration_calibration")]
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
 SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
 
@@ -56,12 +55,6 @@ def test_accuracy_beyond_the_curve_is_never_reached():
     rows = explored().query("split == 'random' and likelihood == 'imprint' and way == 'gain'")
     assert np.isnan(needed(rows, 0.999))
     assert needed(rows, 0.1) == 1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("kind", "name"), CHARTS)
-def test_charts_are_drawn(explorer, kind, name):
-    assert all(path.exists() for path in build_one(exploration, kind, name, explorer).paths)
 
 
 def test_claims_know_the_truth_of_the_rows(explorer):

@@ -129,11 +129,6 @@ def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze
     pd.testing.assert_frame_equal(_fixation.scores(numbers, "pcc"), _fixation.scores(frame, "pcc"))
 
 
-def test_truths_are_named_and_gaze_comes_first(gaze):
-    assert list(_fixation.sources(gaze)) == ["human gaze, 6 meshes", "marks, 4 objects"]
-    assert list(_fixation.sources(gaze, "pcc_tasks")) == ["human gaze, 6 meshes", "household, 4 objects"]
-
-
 @pytest.mark.slow
 def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(written):
     frame = rows("furniture")
@@ -152,13 +147,6 @@ def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(made
     assert row["over_lee_high"] - row["over_lee_low"] < 0.05 < row["high"] - row["low"]
     far = only(made.frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="distance")
     assert far["mean"] == pytest.approx(12, abs=0.2) and far["over_lee"] == pytest.approx(-10, abs=0.2)  # per cent
-
-
-def test_detectors_stand_in_the_order_of_their_correlation(made):
-    for _, group in made.frame[made.frame["metric"] == "pcc"].groupby("truth"):
-        assert group["mean"].is_monotonic_decreasing
-    assert made.shown["detector"].iloc[0] == "glance"
-    assert only(made.shown, truth="marks, 4 objects", detector="noise")["it − random weights, PCC"] == "–"
 
 
 def test_networks_that_are_not_available_are_named_once(written):

@@ -130,16 +130,6 @@ def test_a_longer_middle_is_held_against_the_first_on_the_same_items(stitched, t
     assert "Size ratio 1.6800; the thesis's is 1.4284." in " ".join(made.notes)
 
 
-@pytest.mark.slow
-def test_a_longer_middle_is_drawn_as_far_from_the_first_as_it_was(run, two_middles):
-    made = build_one(hybrid, "tradeoff", "hybrid", two_middles)
-    assert "layers 18:147 shared instead of 18:139" in made.caption
-    kept = pd.read_csv(two_middles.out / "tradeoff/hybrid.csv")
-    assert list(kept.loc[kept["shared_layers"] == LONGER, "network"].unique()) == ["hybrid"]
-    alone = build_one(hybrid, "tradeoff", "hybrid", run)
-    assert has_ink(alone) and "Hollow" not in alone.caption  # one needs no word on another
-
-
 def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(measure):
     own = rows()
     without = own[own["data"] != "hybrid"].assign(dataset="test")  # the first set has none, and hides none

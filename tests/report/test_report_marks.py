@@ -92,14 +92,6 @@ def test_numbers_between_labelled_ticks_stay_numbers(panel):
     assert [text.split(" ")[0] for text in texts(drawing)] == ["1", "3", "4"]
 
 
-def test_panels_side_by_side_share_the_only_label():
-    drawing, (left, right) = plt.subplots(1, 2)
-    right.plot([1], [2], "o")
-    left.set_ylabel("accuracy")
-    assert texts(drawing) == ["1 · accuracy: 2"]
-    plt.close(drawing)
-
-
 def test_the_table_has_a_row_a_mark_and_no_empty_column(panel):
     drawing, axes = panel
     axes.plot([1, 2], [0.5, 0.6], "o", label="kNN")

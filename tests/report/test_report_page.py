@@ -13,11 +13,11 @@ import pandas as pd
 import pytest
 import yaml
 
-from haptic_glance.base.files import write_mesh, write_text
+from haptic_glance.base.files import write_text
 from stages.compose import compose
 from stages.engine import statistics
 from stages.report import items
-from stages.report.__main__ import dataset_line, write_report
+from stages.report.__main__ import write_report
 from stages.report.claims_page import sets_read
 from stages.report.drawing import save
 from stages.report.records import command
@@ -216,11 +216,6 @@ def test_equal_runs_give_equal_bytes_with_any_number_of_workers(own, small):
     params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
     write_report(small.results(own.workspace.root))
     assert [path.read_bytes() for path in files] == before
-
-
-def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
-    write_mesh(root / "data/furniture/meshes/chair.npz", small.ball())
-    assert dataset_line(small.results(root)).endswith("2 objects of the data set test")  # the first that is switched on
 
 
 def axe():

@@ -88,13 +88,6 @@ def test_both_tables_say_why_there_is_no_network(measure, table):
     assert "the thesis's network: no object to learn from." in found.notes
 
 
-def test_a_way_that_was_not_asked_has_no_line(table):
-    rows = [row for row in scene("shelf") if row["method"] != "network"]
-    rows.append({"scene": "shelf", "kind": "pixels", "tolerance": None, "method": "network", "metric": "faces"})
-    found = table(rows).shown
-    assert len(found) == len(scenes.WAYS) - 1 and "the thesis's network" not in set(found["levels chosen by"])
-
-
 BY_KEY = {claim.key: claim for claim in CLAIMS}
 
 

@@ -1,7 +1,6 @@
 """Table 4.9, figure 4.19, the layers, the chart and the claims of whole contours."""
 
 from functools import partial
-from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -85,19 +84,6 @@ def test_chart_charges_each_choice_its_seconds(run):
     assert frame.loc["kNN, 25 x 32 x 32", "cost_ratio"] == 1
     assert frame.loc["CNNs, 25 x 32 x 32", "cost_ratio"] == pytest.approx(12)
     assert frame.loc["CNNs, 25 x 32 x 32", "mean"] == pytest.approx(0.78, abs=0.01)
-
-
-@pytest.mark.slow
-def test_confusions_are_drawn_for_every_strategy_of_the_thesis(measure):
-    found = [
-        {"method": method, "split": split, "classifier": name, "group": one, "predicted": other, "metric": "confusion",
-         "value": 9 * (one == other) + 1}
-        for method, split, name in product(("random", "thesis_ssim", "glance"), SPLITS, MEANS)
-        for one, other in product(CLASSES, CLASSES)
-    ]  # fmt: skip
-    results = measure("sequences", pd.DataFrame(found), "furniture")
-    figure = build_one(sequences, "figures", "figure_4_19", results)
-    assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
 
 
 def test_layers_stand_beside_the_printed_ones(measure):

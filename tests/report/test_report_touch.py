@@ -6,14 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import write_arrays
-from stages.imprints.imprints import Imprints, write_imprints
 from stages.report import touch
-from stages.report.results import SECTION_4_2, SETS_4_2, NotRun
+from stages.report.results import SETS_4_2, NotRun
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, touches
 from stages.report.touch.rows import PRINTED
-from tests.report.frames import has_ink, verdicts
+from tests.report.frames import verdicts
 
 GLANCE = {
     "plain": 0.6, "first_15": 0.5, "locations": 0.8, "first_15_locations": 0.7, "locations_turned": 0.4,
@@ -187,17 +185,6 @@ def test_chart_counts_the_making_of_the_features(glance):
     assert frame.loc["kNN, 41 features", "seconds"] == pytest.approx(0.03)
     assert frame.loc["kNN, pixels", "seconds"] == pytest.approx(0.01)
     assert frame.loc["kNN, 5 touches, map and position", "cost_ratio"] == pytest.approx(1)
-
-
-@pytest.mark.parametrize("dataset, best", [("test", "thesis_ssim"), (SECTION_4_2, "VisAttAll")])
-def test_correlations_are_drawn_for_every_pair(dataset, best, bare, small):
-    random, data = np.random.default_rng(0), bare / "data" / dataset
-    write_arrays(data / "classification/six.random.npz", objects=np.array(["ball", "cube"]))
-    for name in ("ball", "cube"):
-        imprints = Imprints(random.random((5, 8, 8)), np.arange(5), random.random((5, 3)), 0.01)
-        write_imprints(data / f"imprints/{name}.npz", {"random": imprints, best: imprints})
-    figure = build_one(touch, "figures", "figure_4_4", small.results(bare))
-    assert has_ink(figure)
 
 
 def test_bars_are_of_the_samplings_that_ran_with_chance_by_the_objects_of_the_group(root, small, monkeypatch):
