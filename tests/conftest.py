@@ -71,12 +71,14 @@ def make_workspace(tmp_path):
     return make
 
 
+composed_once = functools.cache(compose.composed)
+
+
 @pytest.fixture(scope="module")
 def compose_once():
-    """Hydra composes equal overrides once for a module, since a composition takes 0.4 seconds."""
-    once = functools.cache(compose.composed)
+    """Hydra composes equal overrides once for a process, since a composition takes 0.4 seconds."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compose, "composed", lambda overrides: deepcopy(once(tuple(overrides))))
+        patch.setattr(compose, "composed", lambda overrides: deepcopy(composed_once(tuple(overrides))))
         yield
 
 

@@ -11,6 +11,7 @@ import pytest
 from haptic_glance.look.agreement import METRICS, GroundTruth
 from haptic_glance.mesh.mesh import Mesh
 from stages import bench
+from stages.engine import statistics
 from stages.engine.rows import read_rows
 
 PAGE = (Path(__file__).parents[1] / "docs/judging.md").read_text(encoding="utf-8")
@@ -37,6 +38,14 @@ def counts(training):
     sizes = {mesh.vertices[:, 0].max() for mesh, _ in training}
     return lambda mesh: height(mesh) * (len(sizes) == 2 and mesh.vertices[:, 0].max() not in sizes)
 """
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_resamples():
+    """Most of the time of a judgement goes to the resamples of its intervals."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(statistics, "RESAMPLES", 400)
+        yield
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from omegaconf import OmegaConf
 
-from stages.compose import CONF, _sections, compose, composed, groups, main
+from stages.compose import CONF, _sections, compose, composed, groups, main, own_folder
 from stages.engine.settings import ParamsError, Workspace, check_common, check_section, load_params, schema_of
 from stages.views import Params
 
@@ -98,7 +98,7 @@ def test_a_set_whose_files_are_absent_is_named_and_left_out(tmp_path, monkeypatc
 @pytest.mark.slow
 def test_results_go_to_reports_for_the_published_configuration_alone():
     assert len(IN_README) >= 3
-    outs = [compose(overrides)["out"] for overrides in IN_README]
+    outs = [own_folder(overrides) for overrides in IN_README]
     outs += [compose(["lod.rings=2"])["out"], compose(["sets=[household]", "out=runs/mine"])["out"]]
     assert outs[-2:] == ["runs/own", "runs/mine"] and "reports" not in outs
     assert compose(["parallel=sequential"])["out"] == compose()["out"] == "reports"

@@ -40,7 +40,7 @@ def file(body, tmp_path, request):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:assuming")
-@pytest.mark.parametrize("file", [".stl", ".glb"], indirect=True)
+@pytest.mark.parametrize("file", [".glb"], indirect=True)
 def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, capsys):
     mesh = load(file)
     found = detect(mesh, count=COUNT)

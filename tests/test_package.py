@@ -231,10 +231,9 @@ for name in OWN:
 
 @pytest.mark.slow
 def test_what_a_person_got_wrong_is_one_line_without_a_source_position(ball):
-    for words in (["simplify", ball, "--faces", "9000", "--out", "x.glb"], ["touch", "gone.stl"]):
-        done = run_command(*words, cwd=ball.parent)
-        assert done.returncode == 1 and not done.stdout
-        assert done.stderr.splitlines()[-1].startswith(f"{words[0]}: ") and ".py" not in done.stderr
+    done = run_command("simplify", ball, "--faces", "9000", "--out", "x.glb", cwd=ball.parent)
+    assert done.returncode == 1 and not done.stdout
+    assert done.stderr.splitlines()[-1].startswith("simplify: ") and ".py" not in done.stderr
 
 
 def test_a_missing_module_of_nobodys_is_left_as_it_is():

@@ -118,16 +118,6 @@ def test_borders_between_materials_that_are_given_up_are_counted(simplified, tmp
     assert int(rows(said)["border edges kept"][1]) < int(edges[1])
 
 
-def test_a_soup_of_doubled_faces_is_joined_and_simplified(simplified, tmp_path):
-    mesh = bumpy()
-    corners = np.repeat(mesh.vertices[mesh.faces], 2, axis=0).reshape(-1, 3)
-    write_any(tmp_path / "soup.ply", Mesh(corners, np.arange(len(corners)).reshape(-1, 3)))
-    found, said, told = simplified("--faces", 300, source=tmp_path / "soup.ply")
-    assert len(found.faces) == 300 and found.watertight and rows(said)["faces"][0] == "1,280"
-    assert "1280 duplicate faces removed" in told
-    assert f"{6 * 1280 - len(mesh.vertices):,} coincident vertices merged" in told
-
-
 def test_vertices_are_joined_only_where_that_closes_edges():
     mesh = bumpy()
     assert repaired(mesh)[1] == []
@@ -175,12 +165,6 @@ def test_interrupted_writing_leaves_no_part_of_the_files(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         write_any(tmp_path / "wrapped.obj", textured())
     assert len(written) == 2 and not list(tmp_path.iterdir())
-
-
-def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
-    found, said, _ = simplified("--faces", 90, "--neighbourhood", "fixed", "--keep", 9, "--shrink")
-    assert len(found.faces) <= 90
-    assert int(rows(said)["fewest faces that keep them"][1].replace(",", "")) > 90
 
 
 def test_fewest_faces_are_found_to_two_per_cent():

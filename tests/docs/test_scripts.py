@@ -10,6 +10,7 @@ import pytest
 
 from haptic_glance.base import fetch
 from haptic_glance.base.extras import EXTRAS
+from stages.engine import statistics
 
 plt = pytest.importorskip("matplotlib.pyplot")
 
@@ -49,6 +50,7 @@ def without_network(monkeypatch):
 def test_it_runs_and_draws(path, without_network, monkeypatch, tmp_path):
     drawn = []
     monkeypatch.setattr(plt, "show", lambda: drawn.extend(plt.get_fignums()) or plt.close("all"))
+    monkeypatch.setattr(statistics, "RESAMPLES", 400)  # to which most of the time of a judgement goes
     monkeypatch.chdir(tmp_path)
     plt.switch_backend("agg")
     runpy.run_path(str(path), run_name="__main__")

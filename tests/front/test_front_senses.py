@@ -53,13 +53,6 @@ def test_a_coarse_model_is_learned_and_the_object_itself_is_asked_and_what_was_f
 
 
 @pytest.mark.slow
-def test_looking_costs_more_with_more_pictures(feeler):
-    choices = [choice_of(SMALL | {"method": "itti", "viewpoints": viewpoints}) for viewpoints in ("four", "twelve")]
-    blind, four, twelve = (feeler.feel("one", choice).seconds["looking"] for choice in (BLIND, *choices))
-    assert blind < four < twelve
-
-
-@pytest.mark.slow
 def test_parts_that_cannot_be_so_coarse_keep_the_fewest_faces_they_can(tmp_path):
     balls = [trimesh.creation.icosphere(subdivisions=2) for _ in range(3)]
     for number, ball in enumerate(balls):
