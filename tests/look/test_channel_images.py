@@ -6,7 +6,7 @@ from skimage.filters.rank import entropy as rank_entropy
 from skimage.morphology import footprint_rectangle
 
 from haptic_glance.look.channels import CHANNELS, conspicuity
-from haptic_glance.look.channels.colour import LINEAR, MECHANISMS, RGB_TO_LMS, mechanisms
+from haptic_glance.look.channels.colour import LINEAR, MECHANISMS, RGB_TO_LMS, mechanisms, opponency
 from haptic_glance.look.channels.texture import local_entropy, local_variance
 from haptic_glance.look.views import View, Viewpoint
 from haptic_glance.mesh.mesh import Mesh
@@ -46,6 +46,22 @@ def test_a_bright_dot_stands_out():
     for channel, values in maps(image, "intensity", "dkl", "contrast", "orientation", "edge", "entropy").items():
         assert distance_from(values, 160, 400) < 30, channel  # contrast and entropy see it from all of their window
         assert values.max() > 0.3 or channel in ("edge", "entropy", "orientation")
+
+
+@pytest.mark.parametrize(
+    ("rgb", "answer"),
+    [
+        ((255, 0, 0), (1, 0)),
+        ((0, 255, 0), (-1, 0)),
+        ((0, 0, 255), (0, 1)),
+        ((255, 255, 0), (0, -1)),
+        ((90, 90, 90), (0, 0)),
+        ((255, 153, 0), (0.7 - 0.1, -0.6)),  # R = 1 - 0.3, G = 0.6 - 0.5, Y = 0.8 - 0.2
+    ],
+)
+def test_opponency_by_hand(rgb, answer):
+    planes = opponency(np.full((2, 2, 3), rgb, dtype=np.uint8))
+    np.testing.assert_allclose([plane[0, 0] for plane in planes], answer, atol=1e-6)
 
 
 def test_dkl_is_the_cited_matrix_and_greys_are_luminance_alone():
