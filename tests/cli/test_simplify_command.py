@@ -8,7 +8,7 @@ import trimesh
 from PIL import Image
 
 from haptic_glance.cli.simplify import run
-from haptic_glance.lod import metro, simplify
+from haptic_glance.lod import colour_error, metro, simplify
 from haptic_glance.lod.export import FORMATS, write_any
 from haptic_glance.lod.feasibility import SimplifyError
 from haptic_glance.lod.measures import fewest_faces
@@ -56,6 +56,31 @@ def test_tolerance_gives_a_small_mesh_within_it_or_the_mesh_itself(simplified):
     found, said, told = simplified("--tolerance", "1e-9")
     assert len(found.faces) == 1280 and rows(said)["faces"][1] == "1,280"
     assert "no simplified mesh is within the tolerance" in told
+
+
+def test_attributes_that_count_come_out_closer(simplified, tmp_path):
+    mesh = bumpy()
+    colors = np.repeat(np.where(mesh.vertices[:, [2]] > PLACE[2] + 3, 255, 0), 3, axis=1)
+    painted = Mesh(mesh.vertices, mesh.faces, colors)
+    write_any(tmp_path / "painted.ply", painted)
+    options = "--faces", 400, "--attributes", "colors=1"
+    found, said, _ = simplified(*options, source=tmp_path / "painted.ply", out="out.ply")
+    ours, plain = map(float, rows(said)["colours, of 255"][1:])
+    assert ours < plain / 3 and len(found.faces) == 400
+    assert colour_error(painted, found) == pytest.approx(ours, rel=0.2)
+
+
+@pytest.mark.parametrize("out", ["out.glb", "out.obj"])
+def test_pictures_go_along(simplified, tmp_path, out):
+    mesh = textured()
+    write_any(tmp_path / "wrapped.obj", mesh)
+    found, said, told = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out=out)
+    assert float(rows(said)["colours, of 255"][1]) > 0 and told.count("--attributes uv=1") == 1
+    assert len(found.faces) == 500 and found.watertight
+    assert (found.texture.images[0] == mesh.texture.images[0]).all()
+    standing = found.vertices * [1, -1, 1] if out == "out.obj" else found.vertices[:, [0, 2, 1]]  # a GLB is y up
+    want = 0.5 + (standing[found.faces][..., :2] * [1, -1] - PLACE[:2]) / 100
+    assert np.abs(found.texture.uv - want).max() < 0.02
 
 
 def test_format_without_colours_says_so(simplified, tmp_path):
@@ -118,6 +143,16 @@ def test_borders_between_materials_that_are_given_up_are_counted(simplified, tmp
     assert int(rows(said)["border edges kept"][1]) < int(edges[1])
 
 
+def test_a_soup_of_doubled_faces_is_joined_and_simplified(simplified, tmp_path):
+    mesh = bumpy()
+    corners = np.repeat(mesh.vertices[mesh.faces], 2, axis=0).reshape(-1, 3)
+    write_any(tmp_path / "soup.ply", Mesh(corners, np.arange(len(corners)).reshape(-1, 3)))
+    found, said, told = simplified("--faces", 300, source=tmp_path / "soup.ply")
+    assert len(found.faces) == 300 and found.watertight and rows(said)["faces"][0] == "1,280"
+    assert "1280 duplicate faces removed" in told
+    assert f"{6 * 1280 - len(mesh.vertices):,} coincident vertices merged" in told
+
+
 def test_vertices_are_joined_only_where_that_closes_edges():
     mesh = bumpy()
     assert repaired(mesh)[1] == []
@@ -165,6 +200,12 @@ def test_interrupted_writing_leaves_no_part_of_the_files(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         write_any(tmp_path / "wrapped.obj", textured())
     assert len(written) == 2 and not list(tmp_path.iterdir())
+
+
+def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
+    found, said, _ = simplified("--faces", 90, "--neighbourhood", "fixed", "--keep", 9, "--shrink")
+    assert len(found.faces) <= 90
+    assert int(rows(said)["fewest faces that keep them"][1].replace(",", "")) > 90
 
 
 def test_fewest_faces_are_found_to_two_per_cent():

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 from PIL import Image
 
-from haptic_glance.cli.touch import parser, run
+from haptic_glance.cli.touch import POINT, parser, run
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import pictures, press_many
@@ -82,6 +82,16 @@ def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
     with pytest.raises(ValueError, match="the nearest place is --at") as raised:
         run([str(tmp_path / "far.obj"), "--at", "1000000,1000000,1000002", "--out", str(tmp_path / "off")])
     touched("--at", str(raised.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
+
+
+def test_position_of_a_vertex_feels_as_the_vertex_and_may_be_negative(touched, file):
+    vertices = load(file).vertices
+    lowest = vertices[:, 1].argmin()
+    arrays, table, _, _ = touched("--at", lowest, ",".join(f"{value:.9g}" for value in vertices[lowest]))
+    assert np.allclose(arrays["images"][0], arrays["images"][1], atol=1e-4)
+    assert table["vertex"].fillna(-1).tolist() == [lowest, -1] and table["y"][1] < 0
+    assert np.allclose(table[["x", "y", "z"]], vertices[lowest], atol=1e-4)
+    assert POINT.fullmatch("-.5,1,-2e-3") and not POINT.fullmatch("-5") and not POINT.fullmatch("--at")
 
 
 def test_normals_and_axes_are_those_of_the_file(touched, file):
@@ -300,3 +310,7 @@ def test_window_without_a_display_is_refused_before_any_work(file, tmp_path, mon
 )
 def test_sizes_that_tell_of_a_wrong_unit_are_said(options, words, touched):
     assert touched("--at", 0, *options)[-1].count(words) == 1
+
+
+def test_a_plausible_size_is_not_doubted(touched):
+    assert "right?" not in touched("--at", 0, "--pitch", "0.01", "--unit", "cm", "--load", 1)[-1]

@@ -48,6 +48,13 @@ def test_the_sensor_feels_more_the_deeper_it_goes_and_stops_at_its_backing(envir
     assert loads[4:] == pytest.approx([loads[3]] * 4)
 
 
+def test_a_sensor_that_is_lifted_feels_nothing_and_far_away_the_episode_ends(environment):
+    environment.reset(seed=1)
+    felt, reward, over, _, _ = environment.step([0, 0, 1])
+    assert not felt.any() and reward == -1 and not over
+    assert any(environment.step([0, 0, 1])[2] for _ in range(30))
+
+
 def test_without_gymnasium_a_line_says_so(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     module()

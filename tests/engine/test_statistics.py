@@ -28,6 +28,16 @@ def test_interval_covers_as_often_as_it_says():
         assert np.mean([low < 3 < high for _, low, high in found]) > 0.91
 
 
+def test_few_values_get_a_wider_interval_than_the_plain_percentiles():
+    values = np.random.default_rng(1).normal(size=6)
+    picks = np.random.default_rng(0).integers(6, size=(2000, 6))
+    plain = np.quantile(values[picks].mean(axis=1), [0.025, 0.975])
+    mean, low, high = interval(values)
+    stretch = 2.5706 / 1.9600 * np.sqrt(6 / 5)  # t with five degrees of freedom over z
+    assert mean - low == pytest.approx(stretch * (mean - plain[0]), rel=1e-3)
+    assert high - mean == pytest.approx(stretch * (plain[1] - mean), rel=1e-3)
+
+
 def test_intervals_of_few_values_are_as_wide_as_those_of_student():
     draw, ratios = np.random.default_rng(6), []
     for _ in range(40):
@@ -35,6 +45,12 @@ def test_intervals_of_few_values_are_as_wide_as_those_of_student():
         _, low, high = interval(values)
         ratios.append((high - low) / (2 * stats.t.ppf(0.975, 18) * values.std(ddof=1) / np.sqrt(19)))
     assert np.mean(ratios) == pytest.approx(1, abs=0.012)
+
+
+def test_swapping_the_two_mirrors_the_interval():
+    a, b = np.random.default_rng(3).random((2, 19))
+    mean, low, high = interval(a - b)
+    assert interval(b - a) == pytest.approx((-mean, -high, -low))
 
 
 @pytest.mark.slow

@@ -8,6 +8,28 @@ from stages.fixation.fusion import subtractive_clusters
 from stages.fixation.places import centre_distance, centres
 
 
+@pytest.fixture(scope="module")
+def blobs():
+    """(90, 2) points of three groups of equal spread: 45, 30 and 15 points."""
+    draw = np.random.default_rng(0)
+    return np.concatenate([m + 0.02 * draw.normal(size=(k, 2)) for m, k in (((0, 0), 45), ((1, 0), 30), ((0, 1), 15))])
+
+
+def test_each_group_has_its_centre_the_largest_first_whatever_scale_and_order(blobs):
+    centre = blobs[subtractive_clusters(blobs)]
+    assert np.allclose(centre, [[0, 0], [1, 0], [0, 1]], atol=0.05)
+    order = np.random.default_rng(1).permutation(len(blobs))
+    stretched = (blobs * [3, 50] - 7)[order]
+    assert np.allclose(stretched[subtractive_clusters(stretched)], centre * [3, 50] - 7)
+
+
+def test_one_place_is_one_cluster_and_the_first_has_the_highest_potential_of_the_paper():
+    assert subtractive_clusters(np.ones((5, 3))).tolist() == subtractive_clusters(np.ones((1, 3))).tolist() == [0]
+    points = np.array([[0.0], [0.3], [0.5], [1.0]])
+    potential = np.exp(-4 * (points - points.T) ** 2 / 0.25).sum(axis=1)
+    assert subtractive_clusters(points)[0] == potential.argmax() == 1
+
+
 @pytest.mark.parametrize(("points", "radius"), [(np.zeros((0, 3)), 0.5), ([[np.nan, 0]], 0.5), ([[0.0, 0]], 0)])
 def test_bad_points_are_refused(points, radius):
     with pytest.raises(ValueError):

@@ -5,7 +5,20 @@ import pytest
 
 from haptic_glance.mesh.mesh import Mesh
 from stages.fixation.places import curvature_shares, eccentricity, gaussian_curvature, nearer
-from stages.fixation.tasks import viewpoint_sphere
+from stages.fixation.tasks import evaluated_views, viewpoint_sphere
+
+
+def test_curvature_of_known_shapes_and_its_total_by_gauss_and_bonnet(shapes):
+    assert np.allclose(gaussian_curvature(shapes["ball"]), 4, rtol=0.1)  # 7 % off where five faces meet, not six
+    assert curvature_shares(shapes["ball"]) == (1, 0, 0)
+    for name in ("tube", "flat"):  # what unrolls has none
+        assert np.abs(gaussian_curvature(shapes[name])).max() < 1e-6
+        assert curvature_shares(shapes[name]) == (0, 0, 1)
+    for name, turns in (("ball", 2), ("egg", 2), ("torus", 0)):
+        total = gaussian_curvature(shapes[name]) @ shapes[name].vertex_areas
+        assert total == pytest.approx(2 * np.pi * turns, abs=1e-6)
+    positive, negative, zero = curvature_shares(shapes["torus"])
+    assert positive == pytest.approx(0.5, abs=0.05) and negative == pytest.approx(0.5, abs=0.05) and zero < 0.1
 
 
 def test_measures_ignore_size_turn_order_and_seams(shapes):
@@ -19,6 +32,12 @@ def test_measures_ignore_size_turn_order_and_seams(shapes):
     assert np.allclose(gaussian_curvature(apart), gaussian_curvature(egg)[egg.faces.ravel()])
 
 
+def test_eccentricity_of_a_ball_is_zero_and_of_an_egg_that_of_its_axes(shapes):
+    assert eccentricity(shapes["ball"]) == pytest.approx(0, abs=0.01)
+    axes = np.sqrt(1 - 0.3**2)
+    assert axes - 0.03 < eccentricity(shapes["egg"]) < axes
+
+
 def test_a_mesh_without_area_is_refused_and_a_vertex_in_no_face_counts_for_nothing(shapes):
     for measure in (curvature_shares, eccentricity):
         with pytest.raises(ValueError, match="no face with an area"):
@@ -27,6 +46,13 @@ def test_a_mesh_without_area_is_refused_and_a_vertex_in_no_face_counts_for_nothi
     loose = Mesh(np.r_[ball.vertices, [[9, 9, 9]]], ball.faces)
     assert eccentricity(loose) == pytest.approx(eccentricity(ball)) and curvature_shares(loose) == (1, 0, 0)
     assert np.isfinite(gaussian_curvature(loose)).all()
+
+
+def test_the_thesis_has_218_viewpoints():
+    views = viewpoint_sphere(9, 24)
+    assert len(views) == len(set(views)) == 218
+    three = [views[k] for k in evaluated_views(9, 24)]
+    assert [(v.azimuth, v.elevation) for v in three] == [(0, 0), (120, 0), (240, 0)]
 
 
 @pytest.mark.parametrize(("parallels", "azimuths"), [(2, 9), (0, 9), (3, 8), (3, 0)])

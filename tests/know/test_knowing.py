@@ -9,10 +9,11 @@ import trimesh
 from haptic_glance.base.rng import rng
 from haptic_glance.know import Exploration, Library, known_objects, learn, place_at, primitives, sample_places
 from haptic_glance.know.exploration import FRESH
-from haptic_glance.know.library import TOUCHES
+from haptic_glance.know.library import CELLS, TOUCHES
 from haptic_glance.lod import write_any
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import Surface
+from haptic_glance.touch import Surface, press
+from haptic_glance.touch.places import Places
 
 NAMES = ("ball", "box", "capsule", "cone", "cylinder", "torus")
 TOP = np.array([0.0, 0.6, 0.8])
@@ -177,6 +178,15 @@ def test_a_place_near_a_vertex_is_the_vertex_and_a_large_face_keeps_its_normal(s
     middle = shapes["box"].vertices[shapes["box"].faces[:1]].mean(axis=1)
     place = place_at(box, middle, np.array([0]))
     assert place.vertices[0] == -1 and np.allclose(place.normals[0], shapes["box"].face_normals[0])
+
+
+def test_a_touch_at_a_vertex_is_what_press_feels(library, shapes):
+    mesh = shapes["cone"]
+    exploration = Exploration(library, Surface(mesh), rng(0, "cone"))
+    vertex = int(mesh.faces[0, 0])
+    place = place_at(exploration.surface, mesh.vertices[[vertex]], np.array([0]))
+    assert np.array_equal(exploration.touch(place), press(mesh, vertex, CELLS))
+    assert isinstance(place, Places) and len(exploration.images) == exploration.belief.touches == 1
 
 
 def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes, monkeypatch):

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from skimage.feature import match_template
 
-from haptic_glance.know import draw_combinations, similarity, touch_map
+from haptic_glance.know import concatenate_touches, confusable, draw_combinations, similarity, touch_map
 from haptic_glance.know.features import as_many
 
 RANDOM = np.random.default_rng(0)
@@ -40,10 +41,30 @@ def test_each_imprint_begins_one_combination_of_different_imprints_of_its_object
         draw_combinations(TRUTH, 9, np.random.default_rng(0))
 
 
+def test_joined_numbers_stand_one_touch_after_another():
+    numbers = np.arange(48).reshape(24, 2)
+    assert concatenate_touches(numbers, np.array([[2, 0], [5, 23]])).tolist() == [[4, 5, 0, 1], [10, 11, 46, 47]]
+
+
+def test_similarity_is_a_template_match_at_zero_lag_however_hard_it_was_pressed():
+    expected = [[match_template(one, other)[0, 0] for other in IMAGES] for one in IMAGES]
+    assert np.allclose(similarity(IMAGES), expected)
+    assert np.allclose(similarity(IMAGES[:2], IMAGES[1:]), np.array(expected)[:2, 1:])
+    assert np.allclose(similarity(IMAGES, 0.3 * IMAGES + 0.2), expected)
+    assert np.allclose(np.diag(similarity(IMAGES, 1 - IMAGES)), -1)
+
+
 @pytest.mark.parametrize("value", [0.0, 0.3, 1.0])
 def test_flat_imprints_are_like_each_other_and_like_nothing_else(value):
     images = np.concatenate([IMAGES[:1], np.full((1, 9, 7), value), np.zeros((1, 9, 7))])
     assert np.allclose(similarity(images), [[1, 0, 0], [0, 1, 1], [0, 1, 1]])
+
+
+def test_shared_are_those_that_another_object_has_too():
+    similarities = similarity(np.concatenate([IMAGES[:2], IMAGES[:1], IMAGES[2:4]]))
+    assert confusable(similarities, ["a", "a", "b", "b", "b"]).tolist() == [True, False, True, False, False]
+    assert not confusable(similarities, ["a", "a", "a", "b", "b"]).any()
+    assert not confusable(similarities, ["a", "a", "b", "b", "b"], among=[0, 1, 3]).tolist()[0]
 
 
 def test_what_cannot_be_compared_is_refused():

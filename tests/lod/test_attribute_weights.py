@@ -101,6 +101,14 @@ def wrong_area(mesh, found):
     return (np.abs(mesh.texture.uv[face].mean(axis=1) - found.texture.uv[there].mean(axis=1)).max(axis=1) > 1.5).mean()
 
 
+def test_a_straight_seam_costs_few_vertices():
+    # Its vertices merge with each other, each side by itself: else all 47 of them would stay.
+    mesh = sheet()
+    found = simplify(charted(mesh, centres(mesh)[:, 0] > 0.5), 500, attributes=UV)
+    on = np.flatnonzero(np.abs(found.vertices[:, 0] - 0.5) < 1e-9)
+    assert 2 <= len(on) < 30
+
+
 def test_a_seam_within_one_chart_holds():
     mesh = tube(96, 48)
     uv = mesh.texture.uv.copy()
@@ -148,6 +156,14 @@ def test_what_is_kept_keeps_its_colours():
     new = {tuple(place): tuple(color) for place, color in zip(found.vertices, found.colors, strict=True)}
     there = {tuple(place) for place in mesh.vertices[mesh.rings([500], 2)]}
     assert there <= new.keys() and all(new[place] == old[place] for place in there)
+
+
+def test_salient_places_weigh_more_in_colours_too():
+    mesh = sheet(64, lambda x, y: 127 * (1 + np.sin(40 * x) * np.sin(40 * y)))
+    left = mesh.vertices[:, 0] < 0.5
+    found = simplify(mesh, 1500, weights=left.astype(float), attributes=COLORS)
+    inside = (found.vertices[:, 1] > 0) & (found.vertices[:, 1] < 1)
+    assert (inside & (found.vertices[:, 0] < 0.5)).sum() > 1.5 * (inside & (found.vertices[:, 0] > 0.5)).sum()
 
 
 def test_scale_and_place_change_nothing():

@@ -2,9 +2,11 @@
 
 import numpy as np
 import point_cloud_utils
+import pymeshlab
 import pytest
 import trimesh
 
+from haptic_glance.lod import simplify
 from haptic_glance.lod.errors import metro, salient_error, surface_errors, vertex_errors
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.nearest import SurfaceIndex
@@ -19,6 +21,11 @@ def square(height=0.0, side=1.0):
     return Mesh(corners, [[0, 1, 2], [0, 2, 3]])
 
 
+def test_parallel_planes_are_their_distance_apart():
+    found = metro(square(), square(0.25), 500)
+    assert found == pytest.approx(dict.fromkeys(("mean", "rms", "max"), 0.25 / np.sqrt(2)), rel=1e-12)
+
+
 def test_larger_of_both_directions_counts():
     # All of the small square lies on the large one, not the other way round: the far corner is sqrt(2) / 2 away.
     small, large = square(side=0.5), square()
@@ -27,6 +34,26 @@ def test_larger_of_both_directions_counts():
     for name in ("mean", "rms"):
         assert metro(small, large, 500)[name] == pytest.approx(2 * metro(large, small, 500)[name], rel=0.1)
         assert metro(large, small, 500)[name] > 0.1
+
+
+def test_agrees_with_pymeshlab_within_sampling_error():
+    simple = simplify(SPHERE, 200)
+    theirs = []
+    for sampled, target in ((0, 1), (1, 0)):
+        work = pymeshlab.MeshSet(verbose=False)
+        for mesh in (SPHERE, simple):
+            work.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
+        theirs.append(
+            work.apply_filter(
+                "get_hausdorff_distance", sampledmesh=sampled, targetmesh=target, savesample=False, samplevert=False,
+                sampleedge=False, samplefauxedge=False, sampleface=True, samplenum=20_000,
+                maxdist=pymeshlab.PercentageValue(50),
+            )
+        )  # fmt: skip
+    found = metro(SPHERE, simple, 20_000)
+    for ours, name in (("mean", "mean"), ("rms", "RMS")):
+        assert found[ours] * SPHERE.diagonal == pytest.approx(max(t[name] for t in theirs), rel=0.02)
+    assert found["max"] * SPHERE.diagonal >= 0.95 * max(t["max"] for t in theirs)
 
 
 def test_samples_are_even_by_area():

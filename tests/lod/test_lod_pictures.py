@@ -51,6 +51,14 @@ def test_the_box_changes_nothing(corner):
     assert ssim_error(reference, other, local_moments(reference)) == pytest.approx(1 - whole.mean(), rel=1e-9)
 
 
+def test_constant_shift_has_the_published_value():
+    # Without contrast only the luminance term is left: (2 a b + C1) / (a^2 + b^2 + C1); Wang et al. 2004, eq. 6.
+    a, b, c1 = 100.0, 140.0, (0.01 * 255) ** 2
+    expected = 1 - (2 * a * b + c1) / (a * a + b * b + c1)
+    assert ssim_error(np.full((40, 50), a), np.full((40, 50), b)) == pytest.approx(expected, rel=1e-9)
+    assert ssim_error(np.zeros((20, 20)), np.zeros((20, 20))) == 0
+
+
 def test_bad_arguments_are_named():
     with pytest.raises(ValueError, match="one viewpoint"):
         take_pictures(RING, (), SMALL)

@@ -63,6 +63,14 @@ def test_suppression_takes_the_brightest_pixels_in_turn(image, count, values, st
     assert image[picked.rows, picked.columns].tolist() == values
 
 
+def test_suppression_never_returns_two_points_within_the_radius_and_leaves_the_map_as_it_was(bumpy):
+    before = bumpy.copy()
+    picked = select_by_suppression(bumpy, RADIUS, count=50)
+    pixels = np.stack([picked.rows, picked.columns], axis=1)
+    apart = np.linalg.norm(pixels[:, None] - pixels, axis=2)[np.triu_indices(50, 1)]
+    assert apart.min() > RADIUS and (bumpy == before).all()
+
+
 def test_centroids_are_the_middles_of_the_most_salient_regions_the_brightest_first(bumpy):
     image = np.full((30, 60), 0.01)
     image[5:10, 5:15], image[20:25, 40:50] = 0.6, 0.8

@@ -81,6 +81,12 @@ def test_the_channel_that_shows_the_ground_truth_gets_the_highest_weight_and_a_f
     assert max(weights, key=weights.get) == "right"
 
 
+def test_weights_of_likeness_are_averaged_over_views_and_the_opposite_of_the_ground_truth_gets_none():
+    assert similarity_weights([{"a": 0.5, "b": 0.2}, {}, {"a": 0.9, "b": 0.4}]) == pytest.approx({"a": 0.7, "b": 0.3})
+    opposite = view_similarities({"opposite": (1 - GTS) * MASK}, GTS, MASK)
+    assert opposite["opposite"] < 0 and similarity_weights([opposite]) == {"opposite": 0.0}
+
+
 FLAT = np.zeros(SHAPE)
 
 

@@ -14,8 +14,9 @@ from haptic_glance.base.files import read_arrays, write_arrays
 from stages.engine.statistics import interval
 from stages.report import attention, stability
 from stages.report.attention.claims import against_gaze, agreement, difference, method_text, rivals
+from stages.report.page import pack_viewer
 from stages.report.pareto import attention_seconds
-from stages.report.results import COLOURED, SECTION_3_2, NotRun
+from stages.report.results import COLOURED, ON_BLACK, SECTION_3_2, NotRun
 from stages.report.tables import number
 from stages.report.topics import CLAIMS, build_one
 from stages.report.verdict import judge
@@ -136,6 +137,13 @@ def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(seen
     assert shown["DKL"].startswith("0.50 [") and shown["color"] == "–"
 
 
+def test_methods_on_black_stand_in_the_table_and_in_no_sentence(gaze, marked, measure, small):
+    black = small.judged().query("method == 'itti'")
+    after = table_of("attention_gaze", measure("salient_points", black, ON_BLACK, marked(small.judged())))
+    assert set(after.shown["method"]) - set(gaze.shown["method"]) == {"Itti's attention, black background"}
+    assert after.notes == gaze.notes
+
+
 def test_accuracy_of_the_thesis_stands_beside_its_own_way_only(seen):
     made = table_of("section_3_2_3", seen)
     beside = made.frame.dropna(subset=["thesis_accuracy"])
@@ -214,6 +222,13 @@ def test_claims_on_gaze_follow_from_the_rows(seen):
     assert found["verdict"].to_dict() == VERDICTS
     assert found.loc["svm_per_object", "effect"] == pytest.approx(4)  # in the thesis's way
     assert found.loc["svm_per_object_unseen", "tested_on"].startswith("not run")  # no whole object left out
+
+
+def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root, small):
+    assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["glance", "itti"]
+    for path in (root / "data/test/salient_points").glob("*.npz"):
+        write_arrays(path, **{key: values for key, values in read_arrays(path).items() if key.startswith("height")})
+    assert list(pack_viewer(small.results(root))["objects"][0]["saliency"]) == ["height"]
 
 
 def nested_rows():

@@ -103,6 +103,12 @@ def test_rows_that_were_left_out_hand_on_their_note(measure, small, where, note,
     assert of(measure("classification", frame), key)["tested_on"] == f"not run: {said}"
 
 
+def test_several_values_are_averaged_where_all_were_measured(values):
+    columns = {"item": list("aaabbb"), "method": ["one", "two", "base"] * 2, "value": [1, 3, 1, np.nan, 5, 1]}
+    found = differences(values(**columns), claim(first={"method": ("one", "two")}, second={"method": "base"}))
+    assert found.to_dict() == {"a": 1.0}
+
+
 def test_best_and_worst_rival_are_picked_by_their_means_and_never_the_other_side(values):
     columns = {"item": list("aaaabbbb"), "method": ["mine", "low", "high", "seen"] * 2}
     results = values(**columns, value=[9, 1, 3, 8, 9, 2, 5, 8])
@@ -159,6 +165,21 @@ def test_words_are_written_from_the_fields(root, results, small):
     assert of(results, "knn_best_ours")["tested_on"].endswith("kNN minus the highest of the others")
     small.write_set(root, "six", 4)
     assert of(results, one.key)["tested_on"] == said.replace("six objects", "4 objects (group six)")
+
+
+def frame_of(words, **columns):
+    """A frame of `judge` with these verdicts, each of a primary claim."""
+    found = {"verdict": words, "section": "T3.1", "claim": "Sentence.", "pairs": 5, "of": ""}
+    return pd.DataFrame(found | {"holds": ""} | columns)
+
+
+def test_verdicts_are_counted_with_those_that_hold_among_so_many():
+    words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["mixed"] * 2 + ["open"] * 45
+    said = counted(frame_of(words, holds=["yes"] * 33 + ["no"] * 7 + [""] * 52))
+    words = "30 supported, 10 contradicted, 5 no difference, 2 mixed, 45 open"
+    assert said.startswith(f"Sentences of the thesis (92): {words}. Sentences of this project (0): none.")
+    assert f"that test a sentence elsewhere (92): {words}." in said
+    assert "Of the 40 that are supported or contradicted, 33 hold" in said
 
 
 def spread_about(mean, seed=0, count=12, spread=1.0):
@@ -284,6 +305,12 @@ def test_sets_are_few_units_where_the_largest_has_five_or_fewer(sets_of_rows, co
     assert row["verdict"] == "open" and (row["cause"] == "5 units or fewer a set") == few
 
 
+def test_splits_of_the_same_data_may_never_decide(values):
+    results = values(repetition=range(12), value=spread_about(0.3))
+    row = judge([claim(second=0.0, over=("repetition",), shared=1 / 3)], results).iloc[0]
+    assert row["cause"] == "more splits of the same data would not decide"
+
+
 def test_where_sets_differ_more_sets_are_needed(sets_of_rows):
     far = {name: spread_about(mean, spread=0.5) for name, mean in (("one", 3.0), ("two", 0.1), ("more", 1.0))}
     row = pooled(sets_of_rows(**far), "one", "two", "more")
@@ -335,3 +362,15 @@ def test_chance_calls_as_many_verdicts_as_is_said():
     p_values = [p_value(values) if word != "open" else 0.5 for values, word in zip(noise, words, strict=True)]
     frame = pd.DataFrame({"section": "T9", "p": p_values, "verdict": words})
     assert (holding(frame) == "yes").sum() <= 2  # not one of them is an effect
+
+
+def test_scale_comes_before_margin(values):
+    results = values(item=list("ab"), value=[0.01, 0.02])
+    assert differences(results, claim(second=0, scale=100, margin=1)).tolist() == pytest.approx([2, 3])
+
+
+def test_a_set_without_rows_is_named_and_the_others_decide(sets_of_rows):
+    results = sets_of_rows(one=spread_about(2.0), two=spread_about(2.0, 1))
+    row = pooled(results, "absent", "one", "two")
+    assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
+    assert pooled(results, "absent", "one")["by_set"] == ""

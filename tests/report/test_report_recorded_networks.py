@@ -152,6 +152,16 @@ def test_guessing_is_what_is_right_more_often_and_of_each_kept_object(table, mea
     assert line(real_networks(measured(frame)))["guess"] == pytest.approx(0.3)
 
 
+def test_classical_features_lead_each_split_and_have_neither_gains_nor_guesses_alone(measured, table):
+    first = table.shown.drop_duplicates(["data", "split"])
+    assert set(first["network"]) == {"features and kNN"} and len(first) == len(SETTINGS)
+    assert set(first["over features and kNN"]) == set(first["over random weights"]) == {"–"}
+    absent = {"dataset": "vt60", "data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen"}
+    frame = pd.concat([touches({}, PRESSURE), pd.DataFrame([absent | {"metric": "accuracy"}])])
+    shown = real_networks(measured(frame)).shown
+    assert list(shown["guessing, %"]) == list(shown["starts from"]) == ["–"]
+
+
 WORDS = {
     "frozen_over_guessing": "supported",
     "frozen_by_guessing": "contradicted",
@@ -207,3 +217,8 @@ def test_a_claim_names_the_training_or_the_rival_that_it_lacks(measured):
     alone = {way: level for way, level in levels.items() if way[0] == "resnet50"}
     alone = judge(measured(touches(alone, PRESSURE)), "recorded_resnet_best_pressure_random").iloc[0]
     assert alone["verdict"] == "open" and "no other method than resnet50" in alone["tested_on"]
+
+
+def test_claims_over_repeated_splits_alone_are_widened():
+    shares = {(claim.pairs, claim.share) for claim in CLAIMS}
+    assert shares == {("repetitions", shared_by("random")), ("objects", 0.0), ("networks", 0.0)}

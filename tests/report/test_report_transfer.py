@@ -104,6 +104,19 @@ def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(printed):
     assert line["furniture, unseen objects, 80 px, 5 folds, %"] == "not run" and line["thesis, %"] == "52.4"
 
 
+@pytest.mark.parametrize("name", ["table_5_4", "table_5_6"])
+def test_a_note_says_what_the_networks_of_a_column_saw(measure, name):
+    frame = rows().assign(precision="float32")
+    later = frame["split"] == "random"
+    frame.loc[later, ["size", "touches", "precision"]] = 128, 28, "float16"
+    made = table(name, measure("transfer", frame))
+    notes = " ".join(made.notes)
+    assert "furniture, touches at random: 28 touches an object at 128 px; furniture, unseen obj" in notes
+    assert "furniture, unseen objects: 20 touches an object at 80 px." in notes
+    assert ("Guessing: furniture 16.7 %." in notes) == (name == "table_5_4")
+    assert ("On furniture, MobileNetV2 computed in float16." in made.notes) == (name == "table_5_4")
+
+
 def test_table_5_3_holds_the_coarse_array_alone(run):
     coarse = table("table_5_3", run).frame
     found = only(coarse, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+import pywt
 import torch
+from scipy import stats
 
 from stages.sequences.contourlet import directional_std
 from stages.sequences.networks import (
@@ -104,6 +106,19 @@ def named(values):
 
 def walk(frames=25):
     return np.random.default_rng(0).normal(size=(3, frames, len(CHANNELS)))
+
+
+def test_statistics_of_19_series_are_those_of_scipy_on_the_coefficients_of_pywt():
+    values = walk()
+    ours = named(values)
+    assert len(CHANNELS) == 19 and len(FEATURES) == 228 == len(ours)
+    for k, channel in ((0, "direction0"), (17, "normal_y")):
+        one = values[1, :, k]
+        bands = dict(zip(("detail3", "detail2", "detail1"), pywt.wavedec(one, "db2", "symmetric", 3)[1:], strict=True))
+        for band, numbers in {**bands, "sequence": one}.items():
+            assert ours[f"{channel}.{band}.rms"][1] == pytest.approx(np.sqrt(np.mean(numbers**2)))
+            assert ours[f"{channel}.{band}.std"][1] == pytest.approx(np.std(numbers))
+            assert ours[f"{channel}.{band}.skewness"][1] == pytest.approx(stats.skew(numbers))
 
 
 @pytest.mark.parametrize("level", [0.0, 0.1, -1.0, 1e5])

@@ -24,6 +24,18 @@ UPRIGHT = np.array([ORIGIN, [0.3, 0, 0.05], [0, 0, 0.2]])
 ROTATION = Rotation.from_euler("xyz", [0.4, -1.1, 2.0]).as_matrix()
 
 
+def test_frames_are_equally_spaced_round_a_sphere():
+    found = follow(BALL, LEVEL, frames=10, cells=CELLS)
+    assert found.length == pytest.approx(np.pi, rel=3e-3) and found.loops == 1 and found.share == pytest.approx(1)
+    angles = np.unwrap(np.arctan2(found.positions[:, 1], found.positions[:, 0]))
+    assert np.allclose(angles - angles[0], np.arange(10) * np.pi / 5, atol=0.01)
+    assert np.allclose(found.positions[:, 2], 0, atol=1e-12)
+    assert np.allclose(found.normals, found.positions / 0.5, atol=0.03)
+    assert found.images.shape == (10, *CELLS) and found.images.dtype == np.float32
+    assert found.images.min() == 0 and found.images.max() == 1
+    assert found.normals.shape == found.positions.shape == (10, 3) and (found.pitches == 0.01).all()
+
+
 def test_it_begins_at_the_first_point_and_goes_towards_the_second():
     found = follow(BALL, LEVEL, frames=40, cells=CELLS)
     assert np.linalg.norm(found.positions[0] - LEVEL[1]) < 0.01

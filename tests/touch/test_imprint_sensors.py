@@ -151,6 +151,13 @@ def fan(angles, heights, radius=0.01):
     return Mesh(np.r_[[[0, 0, 0]], ring], faces)
 
 
+def test_the_plane_holds_the_three_closest_neighbours():
+    mesh = fan([0, 120, 240, 60, 180, 300], [-0.001, -0.002, -0.003, 0.004, 0.004, 0.004])
+    centres, axes = quasi_tangent(mesh, [0])
+    assert np.allclose((mesh.vertices[1:4] - centres[0]) @ axes[0, 2], 0, atol=1e-15) and axes[0, 2, 2] > 0
+    assert np.allclose(np.cross(mesh.vertices[0] - centres[0], axes[0, 2]), 0, atol=1e-15)
+
+
 def test_a_third_neighbour_in_one_line_gives_way_to_the_next():
     mesh = fan([0, 180, 0.0001, 90, 270], [0, 0, 0, -0.002, 0.1])
     _, axes = quasi_tangent(mesh, [0])

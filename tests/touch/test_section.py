@@ -42,6 +42,14 @@ def test_points_follow_each_other_within_the_face_named():
         assert set(here) | set(there) == set(face)
 
 
+def test_a_torus_is_cut_in_two_loops():
+    across = section(RING, ORIGIN, X)
+    assert [curve.closed for curve in across] == [True, True]
+    assert [curve.length for curve in across] == pytest.approx([2 * np.pi * 0.15] * 2, rel=5e-3)
+    outer, inner = section(RING, ORIGIN, Z)
+    assert (outer.length, inner.length) == pytest.approx((2 * np.pi * 0.5, 2 * np.pi * 0.2), rel=5e-3)
+
+
 def test_a_plane_through_vertices_and_edges_gives_whole_loops():
     (diagonal,) = section(BOX, ORIGIN, (2, -1, 0))  # through four vertices and two edges of the box
     assert diagonal.closed and diagonal.length == pytest.approx(2 * (6 + np.hypot(2, 4)))

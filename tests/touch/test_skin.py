@@ -64,6 +64,13 @@ def test_defaults_change_nothing_and_separate_touches_have_no_history():
     assert not np.allclose(skin(IMAGES[None])[0, 1:], skin(IMAGES)[1:])
 
 
+@pytest.mark.parametrize("blur", [0.3, 40.0])
+def test_blur_keeps_the_sum_and_flattens(blur):
+    felt = load(Skin(blur=blur))
+    assert np.allclose(felt.sum(axis=(1, 2)), (1 - IMAGES).sum(axis=(1, 2)), rtol=1e-6)
+    assert (felt.std(axis=(1, 2)) < (1 - IMAGES).std(axis=(1, 2))).all()
+
+
 def test_blur_spreads_a_point_by_its_width_alike_both_ways():
     point = np.ones((1, 41, 41))
     point[0, 20, 20] = 0

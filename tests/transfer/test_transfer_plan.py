@@ -1,13 +1,14 @@
 """The plan of trainings: networks, splits, and trainings that are left out."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.mesh.mesh import Mesh
 from stages.transfer import plan as planning
-from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, stratified_split
+from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate, stratified_split
 from stages.transfer.touches import choose_vertices
 
 CLASSES = {"animal": ["dog", "horse", "cow"], "chair": ["stool", "bench"], "vase": ["urn"]}
@@ -49,6 +50,17 @@ def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_w
             ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
             ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
         ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("data", "file"), [("imprints32", "5_4_simulated_fsr_128x128"), ("imprints8", "5_3_fsr_16x16")]
+)
+def test_printed_rates_are_those_of_the_thesis_s_tables(small, data, file):
+    table = pd.read_csv(f"data/reference/thesis/table_{file}.csv").set_index("network")
+    for name, row in table.rename(index=lambda name: name.lower().replace("netv2", "net_v2")).iterrows():
+        for mode in ("frozen", "finetuned"):
+            trial = Trial(data, str(name), "imagenet", mode, "random", 0, "printed_rate")
+            assert printed_rate(trial, small.settings()) == row[f"lr_{mode}"]
 
 
 def test_controls_and_ranges_have_no_printed_rate(small, weights):

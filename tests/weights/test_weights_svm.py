@@ -173,6 +173,13 @@ def test_every_map_becomes_a_column_of_200_by_200():
     np.testing.assert_allclose(features, np.broadcast_to([0.25, 1], features.shape))
 
 
+def test_far_points_are_the_corners_and_then_the_middle():
+    points = np.array([[0, 0], [1, 0], [0, 10], [5, 5], [10, 0], [10, 10], [0, 0]])
+    assert select_far_points(points, 5).tolist() == [0, 5, 2, 4, 3]
+    assert len(select_far_points(points)) == 6  # two are the same
+    assert select_far_points(points[:0]).tolist() == select_far_points(points, 0).tolist() == []
+
+
 @pytest.mark.parametrize(
     ("features", "labels", "max_rows", "message"),
     [
