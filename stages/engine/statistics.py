@@ -51,13 +51,13 @@ def _varied(values: np.ndarray) -> bool:
 
 def _resampled(values: np.ndarray, seed: int, statistic: Statistic) -> np.ndarray:
     """(RESAMPLES,) the statistic of resamples of the values (k,)."""
-    return np.asarray(statistic(values[_picks(len(values), seed)], axis=1))
+    return np.asarray(statistic(values[_picks(RESAMPLES, len(values), seed)], axis=1))
 
 
 @lru_cache(maxsize=16)  # most intervals of a table are over as many values
-def _picks(count: int, seed: int) -> np.ndarray:
-    """(RESAMPLES, count) which of so many values each resample has."""
-    return np.random.default_rng(seed).integers(count, size=(RESAMPLES, count))
+def _picks(resamples: int, count: int, seed: int) -> np.ndarray:
+    """(resamples, count) which of so many values each resample has."""
+    return np.random.default_rng(seed).integers(count, size=(resamples, count))
 
 
 def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: float = 0.95) -> tuple[float, float]:
