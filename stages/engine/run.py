@@ -12,6 +12,8 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
@@ -100,6 +102,8 @@ class StageRun:
         else tells its input apart, such as the hash of a source file.
         """
         values: Mapping[str, Any] = names if isinstance(names, Mapping) else {name: name for name in names}
+        few = _few.get()
+        values = few.of(values) if few else values
         given = process.keywords if isinstance(process, functools.partial) else {}
         function = process.func if isinstance(process, functools.partial) else process
         stage = self.stage if _is_of_stages(function) else ""
@@ -116,6 +120,8 @@ class StageRun:
                 if not self._taken(task, objects, rows):
                     raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
         self.rows += rows
+        if few:
+            few.rows += list(rows)
         return rows
 
     def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
@@ -169,6 +175,31 @@ class StageRun:
                 replace_folder(self.folder, self.target)
         finally:
             self._alone.__exit__(None, None, None)
+
+
+@dataclass
+class Few:
+    """The first `count` items of every call of `StageRun.each`, and their rows: see stages.recheck."""
+
+    count: int
+    rows: list[dict[str, Any]] = field(default_factory=list)
+
+    def of(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The first items of a call."""
+        return dict(islice(values.items(), self.count))
+
+
+_few: ContextVar[Few | None] = ContextVar("few", default=None)
+
+
+@contextmanager
+def first_items(few: Few) -> Iterator[None]:
+    """Inside the block, stages run on their first items alone."""
+    token = _few.set(few)
+    try:
+        yield
+    finally:
+        _few.reset(token)
 
 
 def object_names(workspace: Workspace) -> list[str]:

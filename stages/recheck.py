@@ -1,0 +1,168 @@
+"""Measures a few items of committed rows again and compares them: `python -m stages.recheck SET/STAGE ...`
+
+Rows outside the default run are committed, and the code that made them goes on changing. The report marks rows that
+are older than the code of their stage, but cannot tell a new method from a new form. This command can: it runs the
+stages that the rows depend on in build/recheck, the stage itself on its first items alone, and compares each row with
+the committed one. Prints a line for each method, and keeps the outcome in reports/rechecked.json: where all compared rows
+are equal, the report no longer calls them older. Exits with 1 where rows differ.
+
+Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. Data sets
+that are not fetched by hash must lie where conf/data/SET.yaml says. Earlier items come from the cache.
+"""
+
+import argparse
+import importlib
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import yaml
+
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.files import read_json, sha256, write_json, write_text
+from stages.compose import STARTS, compose
+from stages.engine.code import stage_digest
+from stages.engine.rows import SUFFIX, read_rows, write_rows
+from stages.engine.run import Few, first_items
+from stages.engine.settings import FILE, PUBLISHED, Workspace, check_clone
+
+FOLDER = Path("build/recheck")
+KEPT = "rechecked.json"  # below reports: {SET/STAGE: outcome}
+MEASURED = ("value", "seconds", "clock", "seed", "note")  # every other column tells a row apart
+EQUAL = 2e-5  # relative difference of two numbers that are written with six digits
+
+
+def run(argv: Sequence[str]) -> int:
+    """Checks the files of rows that the command line names; 1 where rows differ."""
+    parser = argparse.ArgumentParser(
+        prog="python -m stages.recheck", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("files", nargs="+", metavar="SET/STAGE", help="rows below reports/measurements")
+    parser.add_argument("--items", type=int, default=2, metavar="N", help="items of the stage (default: 2)")
+    given = parser.parse_args(argv)
+    if given.items < 1:
+        raise ValueError(f"--items {given.items}: give 1 or more")
+    check_clone()
+    moved = 0
+    for name in given.files:
+        found = recheck(name, given.items)
+        print(f"{name}:\n{by_method(found).to_string(index=False)}")
+        keep(name, found)
+        moved += not found["equal"].all()
+    return 1 if moved else 0
+
+
+def recheck(name: str, items: int) -> pd.DataFrame:
+    """The rows of the first items of a stage, committed (`value`) and measured again (`again`), with `equal`.
+
+    name: SET/STAGE. Rows that only one side has are not equal. Raises ValueError where nothing is committed.
+    """
+    dataset, _, stage = name.partition("/")
+    path = Path(PUBLISHED) / "measurements" / dataset / f"{stage}{SUFFIX}"
+    if not path.is_file():
+        known = sorted(f"{one.parent.name}/{one.name.removesuffix(SUFFIX)}" for one in path.parents[1].glob(f"*/*{SUFFIX}"))
+        raise ValueError(f"no {path}; rows are committed of {', '.join(known)}")
+    workspace = prepared(dataset)
+    for earlier in chain(stage):
+        if earlier in workspace.params["graph"] and dataset in workspace.params["graph"][earlier]:
+            _run(earlier, workspace)
+    few = Few(items)
+    with first_items(few):
+        try:
+            _run(stage, workspace)
+        except Exception as error:  # a summary over all items may stumble over a few: the rows are there
+            if not few.rows:
+                raise
+            print(f"recheck: {stage} ended after its items: {error}", file=sys.stderr)
+    again = FOLDER / "rows" / f"{dataset}-{stage}{SUFFIX}"
+    write_rows(again, few.rows, getattr(importlib.import_module(f"stages.{stage}"), "COLUMNS", {}), dataset, workspace.seed)
+    return compared(read_rows(path), read_rows(again))
+
+
+def prepared(dataset: str) -> Workspace:
+    """A workspace below FOLDER whose params.yaml switches one set on; folders of files stay where they are."""
+    values = compose([f"sets=[{dataset}]", f"out={PUBLISHED}"])
+    for section in values[dataset].values():
+        if section.get("folder"):
+            section["folder"] = str(Path(section["folder"]).expanduser().resolve())
+    root = FOLDER / dataset
+    write_text(root / FILE, yaml.safe_dump(values, sort_keys=False))
+    annotations = root / "data/annotations"
+    if not annotations.exists():
+        annotations.parent.mkdir(parents=True, exist_ok=True)
+        annotations.symlink_to(Path("data/annotations").resolve())
+    return Workspace(root, dataset)
+
+
+def chain(stage: str) -> list[str]:
+    """The stages whose folders a stage reads, directly or not, as dvc.yaml has them, each after those it needs."""
+    known = yaml.safe_load(Path("dvc.yaml").read_text(encoding="utf-8"))["stages"]
+    found: dict[str, None] = {}
+
+    def add(name: str) -> None:
+        for dependency in known[name].get("do", known[name]).get("deps", ()):
+            read = re.fullmatch(r"data/\$\{(?:item|key)\}/(\w+)", dependency)
+            if read and read[1] not in found:
+                add(read[1])
+                found[read[1]] = None
+
+    add(stage)
+    return list(found)
+
+
+def _run(stage: str, workspace: Workspace) -> None:
+    importlib.import_module(f"stages.{stage}.__main__").run(workspace)
+
+
+def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
+    """Committed rows beside the same rows measured again; of committed rows, those of the items measured again."""
+    keys = [name for name in committed.columns if name in again.columns and name not in MEASURED]
+    sides = [_numbered(rows, keys) for rows in (committed, again)]
+    both = sides[0].merge(sides[1].rename(columns={"value": "again"}), how="outer", on=[*keys, "number"], indicator="side")
+    measured = [name for name in ("item", "repetition") if name in keys]
+    known = set(sides[1][measured].itertuples(index=False, name=None))
+    of_items = np.array([one in known for one in both[measured].itertuples(index=False, name=None)], dtype=bool)
+    both = both[(both["side"] != "left_only") | of_items]
+    size = both[["value", "again"]].abs().max(axis=1)
+    off = (both["value"] - both["again"]).abs() / size.where(size > 0, 1)
+    same = (off <= EQUAL) | both[["value", "again"]].isna().all(axis=1)
+    return both.assign(off=off, equal=same & (both["side"] == "both"))
+
+
+def _numbered(rows: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+    """The rows with their keys as text, and a number for rows with equal keys."""
+    texts = rows[keys].map(lambda one: "" if one != one else f"{one:g}" if isinstance(one, float) else str(one))
+    return texts.assign(value=rows["value"].astype(float), number=texts.groupby(keys, sort=False).cumcount())
+
+
+def by_method(found: pd.DataFrame) -> pd.DataFrame:
+    """A line a method: rows, how many are equal, how many only one side has, the largest relative difference."""
+    return (
+        found.assign(alone=found["side"] != "both", method=found.get("method", ""))
+        .groupby("method", sort=False)
+        .agg(rows=("equal", "size"), equal=("equal", "sum"), one_side=("alone", "sum"), largest_difference=("off", "max"))
+        .reset_index()
+    )
+
+
+def keep(name: str, found: pd.DataFrame) -> None:
+    """Writes the outcome of a check into reports/rechecked.json, with the hash of the rows and the digest of the code."""
+    path, (dataset, _, stage) = Path(PUBLISHED) / KEPT, name.partition("/")
+    kept = read_json(path) if path.is_file() else {}
+    rows = sha256(Path(PUBLISHED) / "measurements" / dataset / f"{stage}{SUFFIX}")
+    kept[name] = {"rows": rows, "code": stage_digest(stage), "compared": len(found), "equal": int(found["equal"].sum())}
+    write_json(path, dict(sorted(kept.items())))
+
+
+def main() -> None:
+    """Runs the command."""
+    errors_in_one_line("recheck")
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()
