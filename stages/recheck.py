@@ -3,20 +3,20 @@
 Rows outside the default run are committed, and the code that made them goes on changing. The report marks rows that
 are older than the code of their stage, but cannot tell a new method from a new form. This command can: it runs the
 stages that the rows depend on in build/recheck, the stage itself on its first items alone, and compares each row with
-the committed one. Prints a line for each method, and keeps the outcome in reports/rechecked.json: where all compared rows
-are equal, the report no longer calls them older. Exits with 1 where rows differ.
+the committed one. It prints a line for each method, and keeps the outcome in reports/measurements/rechecked.json: where
+all compared rows are equal, the report does not call the file older. Exits with 1 where rows differ.
 
-Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. Data sets
-that are not fetched by hash must lie where conf/data/SET.yaml says. Earlier items come from the cache.
+Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
+that is not fetched by hash must lie where conf/data/SET.yaml says. A second run takes from its cache what has not
+changed.
 """
 
 import argparse
 import importlib
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -24,14 +24,15 @@ import yaml
 
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import read_json, sha256, write_json, write_text
-from stages.compose import STARTS, compose
-from stages.engine.code import stage_digest
-from stages.engine.rows import SUFFIX, read_rows, write_rows
+from stages.code import write_digests
+from stages.compose import compose
+from stages.engine.rows import DIGITS, RECHECKED, SUFFIX, read_rows, write_rows
 from stages.engine.run import Few, first_items
 from stages.engine.settings import FILE, PUBLISHED, Workspace, check_clone
 
 FOLDER = Path("build/recheck")
-KEPT = "rechecked.json"  # below reports: {SET/STAGE: outcome}
+COMMITTED = Path(PUBLISHED) / "measurements"
+CODE = Path("build/code")
 MEASURED = ("value", "seconds", "clock", "seed", "note")  # every other column tells a row apart
 EQUAL = 2e-5  # relative difference of two numbers that are written with six digits
 
@@ -47,6 +48,7 @@ def run(argv: Sequence[str]) -> int:
     if given.items < 1:
         raise ValueError(f"--items {given.items}: give 1 or more")
     check_clone()
+    write_digests(CODE)
     moved = 0
     for name in given.files:
         found = recheck(name, given.items)
@@ -62,10 +64,9 @@ def recheck(name: str, items: int) -> pd.DataFrame:
     name: SET/STAGE. Rows that only one side has are not equal. Raises ValueError where nothing is committed.
     """
     dataset, _, stage = name.partition("/")
-    path = Path(PUBLISHED) / "measurements" / dataset / f"{stage}{SUFFIX}"
-    if not path.is_file():
-        known = sorted(f"{one.parent.name}/{one.name.removesuffix(SUFFIX)}" for one in path.parents[1].glob(f"*/*{SUFFIX}"))
-        raise ValueError(f"no {path}; rows are committed of {', '.join(known)}")
+    if not _file(name).is_file():
+        known = sorted(path.relative_to(COMMITTED).as_posix() for path in COMMITTED.glob(f"*/*{SUFFIX}"))
+        raise ValueError(f"no {_file(name)}; known: {', '.join(path.removesuffix(SUFFIX) for path in known)}")
     workspace = prepared(dataset)
     for earlier in chain(stage):
         if earlier in workspace.params["graph"] and dataset in workspace.params["graph"][earlier]:
@@ -79,8 +80,9 @@ def recheck(name: str, items: int) -> pd.DataFrame:
                 raise
             print(f"recheck: {stage} ended after its items: {error}", file=sys.stderr)
     again = FOLDER / "rows" / f"{dataset}-{stage}{SUFFIX}"
-    write_rows(again, few.rows, getattr(importlib.import_module(f"stages.{stage}"), "COLUMNS", {}), dataset, workspace.seed)
-    return compared(read_rows(path), read_rows(again))
+    columns = getattr(importlib.import_module(f"stages.{stage}"), "COLUMNS", {})
+    write_rows(again, few.rows, columns, dataset, workspace.seed)
+    return compared(read_rows(_file(name)), read_rows(again))
 
 
 def prepared(dataset: str) -> Workspace:
@@ -122,7 +124,8 @@ def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     """Committed rows beside the same rows measured again; of committed rows, those of the items measured again."""
     keys = [name for name in committed.columns if name in again.columns and name not in MEASURED]
     sides = [_numbered(rows, keys) for rows in (committed, again)]
-    both = sides[0].merge(sides[1].rename(columns={"value": "again"}), how="outer", on=[*keys, "number"], indicator="side")
+    sides[1] = sides[1].rename(columns={"value": "again"})
+    both = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
     measured = [name for name in ("item", "repetition") if name in keys]
     known = set(sides[1][measured].itertuples(index=False, name=None))
     of_items = np.array([one in known for one in both[measured].itertuples(index=False, name=None)], dtype=bool)
@@ -141,21 +144,26 @@ def _numbered(rows: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
 
 def by_method(found: pd.DataFrame) -> pd.DataFrame:
     """A line a method: rows, how many are equal, how many only one side has, the largest relative difference."""
-    return (
-        found.assign(alone=found["side"] != "both", method=found.get("method", ""))
-        .groupby("method", sort=False)
-        .agg(rows=("equal", "size"), equal=("equal", "sum"), one_side=("alone", "sum"), largest_difference=("off", "max"))
-        .reset_index()
+    rows = found.assign(alone=found["side"] != "both", method=found.get("method", ""))
+    counted = rows.groupby("method", sort=False).agg(
+        rows=("equal", "size"), equal=("equal", "sum"), one_side=("alone", "sum"), largest_difference=("off", "max")
     )
+    return counted.reset_index()
 
 
 def keep(name: str, found: pd.DataFrame) -> None:
-    """Writes the outcome of a check into reports/rechecked.json, with the hash of the rows and the digest of the code."""
-    path, (dataset, _, stage) = Path(PUBLISHED) / KEPT, name.partition("/")
+    """Writes the outcome of a check beside the rows, with the hash of the rows and the digest of the code."""
+    path, stage = COMMITTED / RECHECKED, name.partition("/")[2]
     kept = read_json(path) if path.is_file() else {}
-    rows = sha256(Path(PUBLISHED) / "measurements" / dataset / f"{stage}{SUFFIX}")
-    kept[name] = {"rows": rows, "code": stage_digest(stage), "compared": len(found), "equal": int(found["equal"].sum())}
+    digests = {"sha256": sha256(_file(name)), "code": sha256(CODE / stage)}
+    kept[name] = {key: digest[:DIGITS] for key, digest in digests.items()} | {
+        "compared": len(found), "equal": int(found["equal"].sum())
+    }  # fmt: skip
     write_json(path, dict(sorted(kept.items())))
+
+
+def _file(name: str) -> Path:
+    return COMMITTED / f"{name}{SUFFIX}"
 
 
 def main() -> None:

@@ -41,6 +41,8 @@ COMMON = {
 FIRST, LAST = ("dataset", "item", "group", "method", "split"), ("metric", "value", "seconds", "clock", "seed", "note")
 NEEDED = ("dataset", "value")  # without one of the others, what compares by it is not run, and says so
 SUFFIX = ".csv.gz"
+RECHECKED = "rechecked.json"  # in reports/measurements, by stages.recheck: {SET/STAGE: outcome}
+DIGITS = 12  # of a hash in the records of rows
 
 
 def write_rows(

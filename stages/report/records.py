@@ -2,8 +2,8 @@
 
 KIND/records.json has a line for each table, figure or chart: its data sets, files of rows, methods, sizes, number of
 objects and number of rows. provenance.json has the hash of each file of rows, the commit of a file that git knows
-unchanged, the digest of the code that made the rows, and the clock of their seconds; constraints.txt of that commit
-pins the packages that measured the rows.
+unchanged, the digest of the code that made the rows, the outcome of `stages.recheck`, and the clock of their seconds;
+constraints.txt of that commit pins the packages that measured the rows.
 headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
 `command` is the shell command that measures the rows of a claim again.
 """
@@ -23,7 +23,7 @@ import pandas as pd
 import yaml
 
 from haptic_glance.base.files import read_json, sha256, write_json, write_text
-from stages.engine.rows import SUFFIX
+from stages.engine.rows import DIGITS, RECHECKED, SUFFIX
 
 from .cells import rows_of
 from .items import Built, Figure, Table
@@ -33,7 +33,6 @@ FILE = "records.json"
 PROVENANCE_FILE = "provenance.json"
 SIZES = ("target", "size", "touches", "cells", "pitch", "imprints", "frames", "image_rows", "tolerance")
 OBJECTS = ("item", "mesh", "scene", "group")  # columns of which the first that has values names the objects
-DIGITS = 12  # of a hash
 MOST = 60  # methods or sizes that a record lists
 
 
@@ -125,14 +124,26 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
 
 
 def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
-    """{older: those files of rows that other code than today's has made}; empty where there is none."""
+    """{older: those files of rows that other code than today's has made}; empty where there is none.
+
+    A file does not count where `stages.recheck` with today's code gave equal rows.
+    """
 
     def is_older(name: str) -> bool:
         made, today = results.once(("code", name), lambda: code_of(results, name))
-        return bool(made and today) and made != today
+        again = rechecked(results, name)
+        same = again.get("code") == today and again["equal"] == again["compared"]
+        return bool(made and today) and made != today and not same
 
     older = [name for name in names if is_older(name)]
     return {"older": older} if older else {}
+
+
+def rechecked(results: Results, name: str) -> dict[str, Any]:
+    """The outcome of the last `stages.recheck` of a file of rows; empty where the rows have changed since."""
+    path = results.workspace.published / "measurements" / RECHECKED
+    known = results.once("rechecked", lambda: read_json(path) if path.is_file() else {}).get(name, {})
+    return known if known.get("sha256") == sha256(path_of(results, name))[:DIGITS] else {}
 
 
 def _provenance(results: Results) -> dict[str, dict[str, str]]:
@@ -144,6 +155,8 @@ def _provenance(results: Results) -> dict[str, dict[str, str]]:
 def _file(results: Results, name: str) -> dict[str, str]:
     path = path_of(results, name)
     found = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
+    if again := rechecked(results, name):
+        found["rechecked"] = f"{again['equal']} of {again['compared']} rows equal with code {again['code']}"
     dataset, _, stage = name.partition("/")
     if dataset != BENCH and "seconds" in results.rows(stage, dataset):
         found["clock"] = results.clock(stage, dataset)

@@ -12,6 +12,7 @@ import pytest
 
 from haptic_glance.base.files import read_json, sha256, write_json, write_text
 from haptic_glance.base.timing import WALL, clock
+from stages.engine.rows import RECHECKED
 from stages.report import records
 from stages.report.drawing import plt
 from stages.report.items import Built, Figure, Table
@@ -159,6 +160,26 @@ def test_rows_of_earlier_code_are_named_below_their_table(rows, tmp_path, graph,
     assert ("test (lod)" in item_html(item)) == ("older" in item.record) == older
     write_records({"tables": Built([item])}, results, tmp_path)
     assert read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("code") == made
+
+
+@pytest.mark.parametrize(
+    ("outcome", "older"),
+    [
+        ({"equal": 5}, False),
+        ({"equal": 4}, True),  # a row differs
+        ({"equal": 5, "code": "another"}, True),  # the code has changed since
+        ({"equal": 5, "sha256": "another"}, True),  # the rows have changed since
+    ],
+)
+def test_rows_of_earlier_code_that_were_measured_again_and_are_equal_are_not_older(rows, outcome, older):
+    results = rows()
+    results.rows("lod", "test")
+    sha = sha256(records.path_of(results, "test/lod"))[:DIGITS]
+    write_json(results.reports / PROVENANCE_FILE, {"files": {"test/lod": {"sha256": sha, "code": "before"}}})
+    write_text(results.workspace.build / "code/lod", "today")
+    known = {"test/lod": {"sha256": sha, "code": TODAY, "compared": 5} | outcome}
+    write_json(results.workspace.published / "measurements" / RECHECKED, known)
+    assert ("older" in record_of(Table(pd.DataFrame({"x": [1]}), sets=["test"]), results, "tables")) == older
 
 
 PROTOCOL = "household_3_1"

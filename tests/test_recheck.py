@@ -1,0 +1,89 @@
+"""Committed rows beside the same rows measured again, of a stage that takes a second."""
+
+import gzip
+import shutil
+
+import pandas as pd
+import pytest
+
+from haptic_glance.base.files import read_json, write_mesh
+from stages import recheck
+from stages.engine.rows import RECHECKED, read_rows
+from stages.recheck import by_method, chain, compared, run
+from stages.views import __main__ as views
+
+SECTION = {"viewpoints": "four", "size": [45, 60], "renderer": "raster", "background": "black", "compare_sets": False}
+
+
+@pytest.fixture
+def committed(shapes, make_workspace, tmp_path, monkeypatch):
+    """The committed rows of the views of two meshes, in a folder that is the current one."""
+    workspace = make_workspace({"views": SECTION})
+    for name in ("torus", "cube"):
+        write_mesh(workspace.data / "meshes" / f"{name}.npz", shapes[name])
+    views.run(workspace)
+    clone = tmp_path / "clone"
+    target = clone / recheck.COMMITTED / "toys/views.csv.gz"
+    target.parent.mkdir(parents=True)
+    shutil.copyfile(workspace.measurements / target.name, target)
+    (clone / "dvc.yaml").touch()
+    monkeypatch.chdir(clone)
+    monkeypatch.setattr(recheck, "prepared", lambda dataset: workspace)
+    monkeypatch.setattr(recheck, "chain", lambda stage: [])
+    return target
+
+
+def outcome(committed):
+    return read_json(committed.parents[1] / RECHECKED)["toys/views"]
+
+
+def test_equal_rows_of_the_first_items_are_kept_as_equal_and_another_value_is_named(committed, capsys):
+    whole = committed.read_bytes()
+    rows = read_rows(committed)
+    own = (rows["item"] == "cube").sum()
+    assert run(["toys/views", "--items", "1"]) == 0
+    assert outcome(committed)["compared"] == outcome(committed)["equal"] == own < len(rows)
+    assert committed.read_bytes() == whole
+    value = rows.loc[rows["item"] == "cube", "value"].iloc[0]
+    committed.write_bytes(gzip.compress(gzip.decompress(whole).replace(f"{value:.6g},".encode(), b"0.9123,", 1)))
+    assert run(["toys/views", "--items", "1"]) == 1
+    assert outcome(committed)["equal"] == own - 1
+    assert f"{own - 1}" in capsys.readouterr().out
+
+
+def test_rows_that_are_not_committed_are_named_with_those_that_are(committed):
+    with pytest.raises(ValueError, match="no reports/measurements/toys/lod.csv.gz; known: toys/views"):
+        run(["toys/lod"])
+    with pytest.raises(ValueError, match="--items 0: give 1 or more"):
+        run(["toys/views", "--items", "0"])
+
+
+def frame(**columns):
+    common = {"dataset": "s", "item": ["a", "a", "b"], "method": ["x", "y", "x"], "metric": "m", "note": ""}
+    return pd.DataFrame(common | {"value": [1.0, 2.0, 3.0], "seconds": 1.0} | columns)
+
+
+@pytest.mark.parametrize(
+    ("again", "equal", "one_side"),
+    [
+        (frame(seconds=9.0, note="other"), [2, 1], [0, 0]),  # what was not measured does not count
+        (frame(value=[1.0 + 1e-6, 2.0, 3.0]), [2, 1], [0, 0]),
+        (frame(value=[1.001, 2.0, 3.0]), [1, 1], [0, 0]),
+        (frame(method=["x", "z", "x"]), [2, 0, 0], [0, 1, 1]),
+        (frame().iloc[:2], [1, 1], [0, 0]),  # object b was not measured again
+        (frame().iloc[[0, 2]], [2, 0], [0, 1]),  # a row of object a is gone
+    ],
+)
+def test_rows_are_compared_by_all_that_tells_them_apart(again, equal, one_side):
+    found = by_method(compared(frame(), again))
+    assert list(found["equal"]) == equal and list(found["one_side"]) == one_side
+
+
+def test_values_that_are_absent_on_both_sides_are_equal():
+    nothing = frame(value=[None, 2.0, 3.0])
+    assert compared(nothing, nothing)["equal"].all() and not compared(nothing, frame())["equal"].all()
+
+
+def test_a_stage_stands_behind_all_that_it_reads():
+    assert chain("lod") == ["meshes", "views", "conspicuity", "weights", "salient_points"]
+    assert chain("meshes") == []
