@@ -8,7 +8,7 @@ import pytest
 
 from haptic_glance.base.files import read_json, write_mesh
 from stages import recheck
-from stages.engine.rows import RECHECKED, read_rows
+from stages.engine.rows import RECHECKED, agrees, read_rows
 from stages.recheck import by_method, chain, compared, run
 from stages.views import __main__ as views
 
@@ -37,18 +37,18 @@ def outcome(committed):
     return read_json(committed.parents[1] / RECHECKED)["toys/views"]
 
 
-def test_equal_rows_of_the_first_items_are_kept_as_equal_and_another_value_is_named(committed, capsys):
+def test_equal_rows_of_the_first_items_are_kept_as_close_and_another_value_is_named(committed, capsys):
     whole = committed.read_bytes()
     rows = read_rows(committed)
     own = (rows["item"] == "cube").sum()
     assert run(["toys/views", "--items", "1"]) == 0
-    assert outcome(committed)["compared"] == outcome(committed)["equal"] == own < len(rows)
+    assert outcome(committed)["compared"] == outcome(committed)["close"] == own < len(rows)
     assert committed.read_bytes() == whole
     value = rows.loc[rows["item"] == "cube", "value"].iloc[0]
     committed.write_bytes(gzip.compress(gzip.decompress(whole).replace(f"{value:.6g},".encode(), b"0.9123,", 1)))
     assert run(["toys/views", "--items", "1"]) == 1
-    assert outcome(committed)["equal"] == own - 1
-    assert f"{own - 1}" in capsys.readouterr().out
+    assert outcome(committed)["close"] == own - 1
+    assert f"raster     {own}      {own - 1}" in capsys.readouterr().out
 
 
 def test_rows_that_are_not_committed_are_named_with_those_that_are(committed):
@@ -64,24 +64,39 @@ def frame(**columns):
 
 
 @pytest.mark.parametrize(
-    ("again", "equal", "one_side"),
+    ("again", "counts"),  # of method x: rows, equal, close, only committed, only again
     [
-        (frame(seconds=9.0, note="other"), [2, 1], [0, 0]),  # what was not measured does not count
-        (frame(value=[1.0 + 1e-6, 2.0, 3.0]), [2, 1], [0, 0]),
-        (frame(value=[1.001, 2.0, 3.0]), [1, 1], [0, 0]),
-        (frame(method=["x", "z", "x"]), [2, 0, 0], [0, 1, 1]),
-        (frame().iloc[:2], [1, 1], [0, 0]),  # object b was not measured again
-        (frame().iloc[[0, 2]], [2, 0], [0, 1]),  # a row of object a is gone
+        (frame(seconds=9.0, note="other", points=3), [2, 2, 2, 0, 0]),  # what tells no rows apart does not count
+        (frame(value=[1.0 + 1e-6, 2.0, 3.0]), [2, 2, 2, 0, 0]),
+        (frame(value=[1.005, 2.0, 3.0]), [2, 1, 2, 0, 0]),
+        (frame(value=[1.02, 2.0, 3.0]), [2, 1, 1, 0, 0]),
+        (frame(value=[None, 2.0, 3.0]), [2, 1, 1, 0, 0]),
+        (frame(metric=["m", "m", "n"]), [1, 1, 1, 1, 1]),
+        (frame().iloc[:2], [1, 1, 1, 0, 0]),  # object b was not measured again
+        (frame().iloc[1:], [1, 1, 1, 1, 0]),  # a row of object a is gone
     ],
 )
-def test_rows_are_compared_by_all_that_tells_them_apart(again, equal, one_side):
-    found = by_method(compared(frame(), again))
-    assert list(found["equal"]) == equal and list(found["one_side"]) == one_side
+def test_rows_are_compared_by_all_that_tells_them_apart(again, counts):
+    found = by_method(compared(frame(), again)).set_index("method").loc["x"]
+    assert list(found[["rows", "equal", "close", "only_committed", "only_again"]]) == counts
 
 
 def test_values_that_are_absent_on_both_sides_are_equal():
     nothing = frame(value=[None, 2.0, 3.0])
-    assert compared(nothing, nothing)["equal"].all() and not compared(nothing, frame())["equal"].all()
+    assert (compared(nothing, nothing)["off"] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("found", "expected"),
+    [
+        ({"compared": 3, "close": 3, "only_committed": 0}, True),
+        ({"compared": 3, "close": 2, "only_committed": 0}, False),
+        ({"compared": 3, "close": 3, "only_committed": 1}, False),
+        ({"compared": 0, "close": 0, "only_committed": 0}, False),
+    ],
+)
+def test_rows_agree_where_all_of_them_were_measured_again_and_are_close(found, expected):
+    assert agrees(found) == expected
 
 
 def test_a_stage_stands_behind_all_that_it_reads():

@@ -45,6 +45,11 @@ RECHECKED = "rechecked.json"  # in reports/measurements, by stages.recheck: {SET
 DIGITS = 12  # of a hash in the records of rows
 
 
+def agrees(outcome: Mapping[str, int]) -> bool:
+    """Whether rows that stages.recheck measured again agree with the committed ones."""
+    return outcome["compared"] == outcome["close"] > 0 == outcome["only_committed"]
+
+
 def write_rows(
     path: Path, rows: Iterable[Mapping[str, Any]], columns: Mapping[str, str], dataset: str, seed: int
 ) -> None:

@@ -23,7 +23,7 @@ import pandas as pd
 import yaml
 
 from haptic_glance.base.files import read_json, sha256, write_json, write_text
-from stages.engine.rows import DIGITS, RECHECKED, SUFFIX
+from stages.engine.rows import DIGITS, RECHECKED, SUFFIX, agrees
 
 from .cells import rows_of
 from .items import Built, Figure, Table
@@ -126,13 +126,13 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
 def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
     """{older: those files of rows that other code than today's has made}; empty where there is none.
 
-    A file does not count where `stages.recheck` with today's code gave equal rows.
+    A file does not count where `stages.recheck` with today's code gave rows that agree.
     """
 
     def is_older(name: str) -> bool:
         made, today = results.once(("code", name), lambda: code_of(results, name))
         again = rechecked(results, name)
-        same = again.get("code") == today and again["equal"] == again["compared"]
+        same = again.get("code") == today and agrees(again)
         return bool(made and today) and made != today and not same
 
     older = [name for name in names if is_older(name)]
@@ -156,7 +156,7 @@ def _file(results: Results, name: str) -> dict[str, str]:
     path = path_of(results, name)
     found = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
     if again := rechecked(results, name):
-        found["rechecked"] = f"{again['equal']} of {again['compared']} rows equal with code {again['code']}"
+        found["rechecked"] = f"{again['close']} of {again['compared']} rows agree with code {again['code']}"
     dataset, _, stage = name.partition("/")
     if dataset != BENCH and "seconds" in results.rows(stage, dataset):
         found["clock"] = results.clock(stage, dataset)
