@@ -6,5 +6,7 @@ import numpy as np
 
 
 def rng(seed: int, name: object) -> np.random.Generator:
-    """A generator for one named item."""
+    """A generator for one named item; ValueError for a negative seed."""
+    if seed < 0:
+        raise ValueError(f"seed {seed} is negative: give 0 or more")
     return np.random.default_rng([seed, zlib.crc32(str(name).encode("utf-8"))])

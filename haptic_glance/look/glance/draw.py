@@ -19,7 +19,7 @@ SMALLEST = 2.0**-10  # side of a cell: a smaller one, of a mesh with next to no 
 BENT, TWO_SIDES, PLAIN = 0.95, 0.3, 0.95
 # share of the surface in bent cells without two plain sides above which it has noise rather than edges and sheets: at
 # most 0.23 of 160 clean objects, 0.43 or more at noise of 0.5 % of the diagonal
-ROUGH = 0.25
+ROUGH_SHARE = 0.25
 LEAST_FLAT = 0.05  # of the area in a cell: noise may turn all that lies in it
 LEAST = 1e-9  # of the area per sample: a piece below it is rounding
 
@@ -75,7 +75,7 @@ def _gathered(cells, places, normals, areas, axes):
         two = 2 * of + apart
         halves = np.linalg.norm(_means(two, normals[bent], areas[bent], 2 * len(few))[1], axis=1).reshape(-1, 2)
         plain = halves.min(axis=1) > PLAIN
-        rough = bool(total[few] @ ~plain > ROUGH * total.sum())
+        rough = bool(total[few] @ ~plain > ROUGH_SHARE * total.sum())
         if not rough:
             side = np.zeros(len(cells), dtype=np.int64)
             side[bent] = apart & (plain | (length[few] < TWO_SIDES))[of]
