@@ -186,9 +186,16 @@ class Results:
         return frame
 
     def clock(self, stage: str, dataset: str | None = None) -> str:
-        """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time in older rows."""
-        said = self._read(stage, dataset).get("clock", pd.Series(dtype=str)).dropna()
-        return said.iloc[0] if len(said) else CLOCK if stage in ALWAYS_PROCESSOR else WALL
+        """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time of older rows.
+
+        Rows of both kinds count as wall time, which tells less.
+        """
+        rows = self._read(stage, dataset)
+        timed = rows[rows["seconds"].notna()] if "seconds" in rows else rows
+        said = timed.get("clock", pd.Series(dtype=str)).dropna()
+        if len(said) and len(said) == len(timed):
+            return said.iloc[0]
+        return CLOCK if stage in ALWAYS_PROCESSOR else WALL
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""

@@ -94,6 +94,9 @@ def test_rows_of_another_item_are_forgotten_and_rows_not_found_are_no_source(row
 def test_the_clock_of_older_rows_is_the_wall(rows):
     assert rows().clock("lod", "test") == WALL
     assert rows(clock=clock()).clock("lod", "test") == clock()
+    assert rows(clock=[clock(), None, clock()]).clock("lod", "test") == WALL  # of both kinds
+    some = rows(clock=[clock(), None, clock()], seconds=[0.1, None, 0.1])
+    assert some.clock("lod", "test") == clock()  # a row without seconds needs no clock
 
 
 def test_a_figure_of_an_earlier_run_keeps_its_record(rows):
