@@ -37,6 +37,7 @@ CODE = Path("build/code")
 MEASURED = ("value", "seconds", "clock", "seed", "note", "asked", "faces", "points", "kept", "rings", "shrunk",
             "infeasible", "smallest_feasible", "map_dimensions")  # every other column tells a row apart  # fmt: skip
 EQUAL, CLOSE = 2e-5, 0.01  # relative differences: of two numbers that are written with six digits; of no account
+ZERO = 1e-9  # smaller numbers count as this, since rounding alone makes them
 
 
 def run(argv: Sequence[str]) -> int:
@@ -137,7 +138,7 @@ def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     both = both[(both["side"] != "left_only") | of_items]
     pair = both[["value", "again"]]
     size = pair.abs().max(axis=1)
-    off = ((pair["value"] - pair["again"]).abs() / size.where(size > 0, 1)).where(~pair.isna().all(axis=1), 0.0)
+    off = ((pair["value"] - pair["again"]).abs() / size.clip(lower=ZERO)).where(~pair.isna().all(axis=1), 0.0)
     return both.assign(off=off.fillna(np.inf).where(both["side"] == "both"))
 
 

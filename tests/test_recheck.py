@@ -9,7 +9,7 @@ import pytest
 from haptic_glance.base.files import read_json, write_mesh
 from stages import recheck
 from stages.engine.rows import RECHECKED, agrees, read_rows
-from stages.recheck import by_method, chain, compared, run
+from stages.recheck import EQUAL, by_method, chain, compared, run
 from stages.views import __main__ as views
 
 SECTION = {"viewpoints": "four", "size": [45, 60], "renderer": "raster", "background": "black", "compare_sets": False}
@@ -71,6 +71,7 @@ def frame(**columns):
         (frame(value=[1.005, 2.0, 3.0]), [2, 1, 2, 0, 0]),
         (frame(value=[1.02, 2.0, 3.0]), [2, 1, 1, 0, 0]),
         (frame(value=[None, 2.0, 3.0]), [2, 1, 1, 0, 0]),
+        (frame(value=[0.0, 2.0, 3.0]), [2, 1, 1, 0, 0]),
         (frame(metric=["m", "m", "n"]), [1, 1, 1, 1, 1]),
         (frame().iloc[:2], [1, 1, 1, 0, 0]),  # object b was not measured again
         (frame().iloc[1:], [1, 1, 1, 1, 0]),  # a row of object a is gone
@@ -81,9 +82,14 @@ def test_rows_are_compared_by_all_that_tells_them_apart(again, counts):
     assert list(found[["rows", "equal", "close", "only_committed", "only_again"]]) == counts
 
 
-def test_values_that_are_absent_on_both_sides_are_equal():
-    nothing = frame(value=[None, 2.0, 3.0])
+def test_values_that_are_absent_on_both_sides_or_zero_but_for_rounding_are_equal():
+    nothing, zero, rounding = (
+        frame(value=[None, 2.0, 3.0]),
+        frame(value=[0.0, 2.0, 3.0]),
+        frame(value=[2e-16, 2.0, 3.0]),
+    )
     assert (compared(nothing, nothing)["off"] == 0).all()
+    assert (compared(zero, rounding)["off"] < EQUAL).all()
 
 
 @pytest.mark.parametrize(
