@@ -34,6 +34,7 @@ from stages.engine.settings import FILE, PUBLISHED, Workspace, check_clone
 FOLDER = Path("build/recheck")
 COMMITTED = Path(PUBLISHED) / "measurements"
 CODE = Path("build/code")
+SHARED = ("annotations", "reference")  # folders of data/ that belong to no set
 MEASURED = ("value", "seconds", "clock", "seed", "note", "asked", "faces", "points", "kept", "rings", "shrunk",
             "infeasible", "smallest_feasible", "map_dimensions")  # every other column tells a row apart  # fmt: skip
 EQUAL, CLOSE = 2e-5, 0.01  # relative differences: of two numbers that are written with six digits; of no account
@@ -96,10 +97,11 @@ def prepared(dataset: str) -> Workspace:
             section["folder"] = str(Path(section["folder"]).expanduser().resolve())
     root = FOLDER / dataset
     write_text(root / FILE, yaml.safe_dump(values, sort_keys=False))
-    annotations = root / "data/annotations"
-    if not annotations.exists():
-        annotations.parent.mkdir(parents=True, exist_ok=True)
-        annotations.symlink_to(Path("data/annotations").resolve())
+    for name in SHARED:
+        shared = root / "data" / name
+        shared.parent.mkdir(parents=True, exist_ok=True)
+        if not shared.exists():
+            shared.symlink_to((Path("data") / name).resolve())
     return Workspace(root, dataset)
 
 
