@@ -126,7 +126,9 @@ def _run(stage: str, workspace: Workspace) -> None:
 
 
 def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
-    """Committed rows beside the same rows measured again; of committed rows, those of the items measured again.
+    """Committed rows beside the same rows measured again; of committed rows, those of the objects measured again.
+
+    Where a row names no object, such as a row of a trial, it counts where another metric of it was measured again.
 
     Columns: the keys, value, again, `off` (the relative difference), and `side`: both, left_only or right_only.
     """
@@ -134,14 +136,19 @@ def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     sides = [_numbered(rows, keys) for rows in (committed, again)]
     sides[1] = sides[1].rename(columns={"value": "again"})
     both = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
-    units = [name for name in ("item", "repetition") if name in keys]
-    known = set(sides[1][units].itertuples(index=False, name=None))
-    of_items = np.array([one in known for one in both[units].itertuples(index=False, name=None)], dtype=bool)
-    both = both[(both["side"] != "left_only") | of_items]
+    known = set(_units(sides[1], keys))
+    both = both[(both["side"] != "left_only") | np.array([unit in known for unit in _units(both, keys)], dtype=bool)]
     pair = both[["value", "again"]]
     size = pair.abs().max(axis=1)
     off = ((pair["value"] - pair["again"]).abs() / size.clip(lower=ZERO)).where(~pair.isna().all(axis=1), 0.0)
     return both.assign(off=off.fillna(np.inf).where(both["side"] == "both"))
+
+
+def _units(rows: pd.DataFrame, keys: list[str]) -> list[tuple[str, ...]]:
+    """For each row its object and repetition or, where it names no object, all that tells it apart but the metric."""
+    whole = [name for name in keys if name != "metric"]
+    texts = rows[whole].to_dict("records")
+    return [(row["item"], row.get("repetition", "")) if row.get("item") else tuple(row.values()) for row in texts]
 
 
 def _numbered(rows: pd.DataFrame, keys: list[str]) -> pd.DataFrame:

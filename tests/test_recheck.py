@@ -10,6 +10,7 @@ from haptic_glance.base.files import read_json, write_mesh
 from stages import recheck
 from stages.engine.rows import RECHECKED, agrees, read_rows
 from stages.recheck import EQUAL, by_method, chain, compared, run
+from stages.recheck import outcome as outcome_of
 from stages.views import __main__ as views
 
 SECTION = {"viewpoints": "four", "size": [45, 60], "renderer": "raster", "background": "black", "compare_sets": False}
@@ -80,6 +81,11 @@ def frame(**columns):
 def test_rows_are_compared_by_all_that_tells_them_apart(again, counts):
     found = by_method(compared(frame(), again)).set_index("method").loc["x"]
     assert list(found[["rows", "equal", "close", "only_committed", "only_again"]]) == counts
+
+
+def test_rows_of_a_trial_count_where_another_metric_of_it_was_measured_again():
+    trials = frame(item="", method="x", repetition=[0, 0, 1], metric=["m", "n", "m"])
+    assert outcome_of(compared(trials, trials.iloc[:1])) == {"compared": 1, "close": 1, "only_committed": 1}
 
 
 def test_values_that_are_absent_on_both_sides_or_zero_but_for_rounding_are_equal():
