@@ -8,8 +8,8 @@ all compared rows agree within 1 %, the report does not call the file older. Exi
 were not measured again. Rows of a metric that the committed file does not have are counted alone.
 
 Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
-that is not fetched by hash must lie where conf/data/SET.yaml says. A second run takes from its cache what has not
-changed.
+that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all of
+them: --items 1000. A second run takes from its cache what has not changed.
 """
 
 import argparse
@@ -81,7 +81,7 @@ def recheck(name: str, items: int) -> pd.DataFrame:
             _run(stage, workspace)
         except Exception as error:  # a summary over all items may stumble over a few: the rows are there
             if not few.rows:
-                raise
+                raise ValueError(f"{name}: {stage} needs more than {items} items, or cannot run: {error}") from error
             print(f"recheck: {stage} ended after its items: {error}", file=sys.stderr)
     again = FOLDER / "rows" / f"{dataset}-{stage}{SUFFIX}"
     columns = getattr(importlib.import_module(f"stages.{stage}"), "COLUMNS", {})
