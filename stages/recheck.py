@@ -8,8 +8,8 @@ all compared rows agree within 1 %, the report does not call the file older. Exi
 were not measured again. Rows of a metric that the committed file does not have are counted alone.
 
 Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
-that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all of
-them: --items 1000. A second run takes from its cache what has not changed.
+that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all
+objects: --items 1000. A second run takes from its cache what has not changed.
 """
 
 import argparse
