@@ -36,6 +36,7 @@ from typing import Any
 
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import read_json, write_json
+from stages.engine.rows import SUFFIX
 from stages.engine.settings import Workspace, check_clone
 from stages.engine.tolerances import Tolerances, compare, read_tolerances, widest_moves
 
@@ -124,8 +125,9 @@ def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
 
 def hold_rows(revision: str, root: Path = Path()) -> str:
     """The message on rows that all equal those of a git revision. SystemExit names each file with other rows."""
-    listed = _git(root, "ls-tree", "-r", "--name-only", revision, "--", ROWS).decode().splitlines()
-    here = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob("*.csv.gz")]
+    known = _git(root, "ls-tree", "-r", "--name-only", revision, "--", ROWS).decode().splitlines()
+    listed = [name for name in known if name.endswith(SUFFIX)]
+    here = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob(f"*{SUFFIX}")]
     said = []
     for name in sorted({*listed, *here}):
         before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in listed else Counter()
