@@ -52,6 +52,24 @@ def test_equal_rows_of_the_first_items_are_kept_as_close_and_another_value_is_na
     assert f"raster     {own}      {own - 1}" in capsys.readouterr().out
 
 
+def test_rows_about_all_items_are_compared_when_all_were_measured_again(committed, monkeypatch):
+    names = gzip.decompress(committed.read_bytes()).decode().splitlines()[0].split(",")
+    values = {"dataset": "toys", "method": "all", "metric": "coverage", "value": "4"}
+    line = ",".join(values.get(name, "") for name in names)
+    committed.write_bytes(gzip.compress(gzip.decompress(committed.read_bytes()) + f"{line}\n".encode()))
+
+    def with_a_row_about_all(workspace):
+        views.run(workspace)
+        shutil.copyfile(committed, workspace.measurements / committed.name)
+
+    monkeypatch.setattr(recheck, "_run", lambda stage, workspace: with_a_row_about_all(workspace))
+    assert run(["toys/views"]) == 0
+    everything = outcome(committed)["compared"]
+    assert everything == len(read_rows(committed))
+    assert run(["toys/views", "--items", "1"]) == 0
+    assert 0 < outcome(committed)["compared"] < everything - 1
+
+
 def test_rows_that_are_not_committed_are_named_with_those_that_are(committed):
     with pytest.raises(ValueError, match="no reports/measurements/toys/lod.csv.gz; known: toys/views"):
         run(["toys/lod"])
