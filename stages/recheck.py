@@ -4,8 +4,9 @@ Rows outside the default run are committed, and the code that made them goes on 
 are older than the code of their stage, but cannot tell a new method from a new form. This command can: it runs the
 stages that the rows depend on in build/recheck, the stage itself on its first items alone, and compares each row with
 the committed one. It prints a line for each method, and keeps the outcome in reports/measurements/rechecked.json: where
-all compared rows agree within 1 %, the report does not call the file older. Exits with 1 where rows differ by more, or
-were not measured again. Rows of a metric that the committed file does not have are counted alone.
+all compared rows agree within 1 %, the report does not call the file older. Rows of a metric that the committed file does
+not have are counted alone. Exits with 1 where rows differ by more or were not measured again, and where a stage stopped
+before its end: the outcome is not kept then.
 
 Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
 that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all
@@ -57,17 +58,23 @@ def run(argv: Sequence[str]) -> int:
     write_digests(CODE)
     moved = 0
     for name in given.files:
-        found = recheck(name, given.items)
+        try:
+            found, ended = recheck(name, given.items)
+        except ValueError as error:  # the other files go on
+            print(f"recheck: {error}", file=sys.stderr)
+            moved += 1
+            continue
         print(f"{name}:\n{by_method(found).to_string(index=False)}")
-        keep(name, found)
-        moved += not agrees(outcome(found))
+        if ended:
+            keep(name, found)
+        moved += not (ended and agrees(outcome(found)))
     return 1 if moved else 0
 
 
-def recheck(name: str, items: int) -> pd.DataFrame:
-    """The rows of the first items of a stage, committed and measured again, as `compared` gives them.
+def recheck(name: str, items: int) -> tuple[pd.DataFrame, bool]:
+    """The rows of the first items of a stage, as `compared` gives them, and whether the stage ran to its end.
 
-    name: SET/STAGE. Raises ValueError where nothing is committed.
+    name: SET/STAGE. Raises ValueError where nothing is committed, or nothing was measured again.
     """
     dataset, _, stage = name.partition("/")
     if not _file(name).is_file():
@@ -77,21 +84,21 @@ def recheck(name: str, items: int) -> pd.DataFrame:
     for earlier in chain(stage):
         if earlier in workspace.params["graph"] and dataset in workspace.params["graph"][earlier]:
             _run(earlier, workspace)
-    few, whole = Counted(items), False
+    few, ended = Counted(items), True
     with first_items(few):
         try:
             _run(stage, workspace)
-            whole = not few.cut
-        except Exception as error:  # a summary over all items may stumble over a few: the rows are there
+        except Exception as error:  # what works on all items together may stumble over a few: some rows are there
             if not few.rows:
                 raise ValueError(f"{name}: {stage} needs more than {items} items, or cannot run: {error}") from error
-            print(f"recheck: {stage} ended after its items: {error}", file=sys.stderr)
-    if whole:  # with rows that are about all items together
-        return compared(read_rows(_file(name)), read_rows(workspace.measurements / f"{stage}{SUFFIX}"))
+            ended = False
+            print(f"recheck: {name} is not kept, {stage} stopped before its end: {error}", file=sys.stderr)
+    if ended and not few.cut:  # with rows that are about all items together
+        return compared(read_rows(_file(name)), read_rows(workspace.measurements / f"{stage}{SUFFIX}")), True
     again = FOLDER / "rows" / f"{dataset}-{stage}{SUFFIX}"
     columns = getattr(importlib.import_module(f"stages.{stage}"), "COLUMNS", {})
     write_rows(again, few.rows, columns, dataset, workspace.seed)
-    return compared(read_rows(_file(name)), read_rows(again))
+    return compared(read_rows(_file(name)), read_rows(again)), ended
 
 
 class Counted(Few):

@@ -70,9 +70,22 @@ def test_rows_about_all_items_are_compared_when_all_were_measured_again(committe
     assert 0 < outcome(committed)["compared"] < everything - 1
 
 
-def test_rows_that_are_not_committed_are_named_with_those_that_are(committed):
-    with pytest.raises(ValueError, match="no reports/measurements/toys/lod.csv.gz; known: toys/views"):
-        run(["toys/lod"])
+def test_a_stage_that_stops_is_not_kept_and_the_next_file_goes_on(committed, monkeypatch, capsys):
+    def stops(stage, workspace):
+        views.run(workspace)
+        raise KeyError("cube")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(recheck, "_run", stops)
+        assert run(["toys/views", "--items", "1"]) == 1
+    assert "toys/views is not kept, views stopped before its end: 'cube'" in capsys.readouterr().err
+    assert not (committed.parents[1] / RECHECKED).exists()
+    assert run(["toys/lod", "toys/views", "--items", "1"]) == 1
+    assert "no reports/measurements/toys/lod.csv.gz; known: toys/views" in capsys.readouterr().err
+    assert outcome(committed)["compared"] > 0
+
+
+def test_a_number_of_items_below_one_is_named(committed):
     with pytest.raises(ValueError, match="--items 0: give 1 or more"):
         run(["toys/views", "--items", "0"])
 

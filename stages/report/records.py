@@ -155,9 +155,12 @@ def _provenance(results: Results) -> dict[str, dict[str, str]]:
 def _file(results: Results, name: str) -> dict[str, str]:
     path = path_of(results, name)
     found = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
-    if again := rechecked(results, name):
-        found["rechecked"] = f"{again['close']} of {again['compared']} rows agree with code {again['code']}"
     dataset, _, stage = name.partition("/")
+    if again := rechecked(results, name):
+        rows = len(results.rows(stage, dataset))
+        found["rechecked"] = (
+            f"{again['close']} of {again['compared']} compared rows, of {rows} in all, agree with code {again['code']}"
+        )
     if dataset != BENCH and "seconds" in results.rows(stage, dataset):
         found["clock"] = results.clock(stage, dataset)
     return {key: value for key, value in found.items() if value}

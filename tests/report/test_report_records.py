@@ -174,7 +174,7 @@ def test_rows_of_earlier_code_are_named_below_their_table(rows, tmp_path, graph,
         ({"sha256": "another"}, True),  # the rows have changed since
     ],
 )
-def test_rows_of_earlier_code_that_were_measured_again_and_agree_are_not_older(rows, outcome, older):
+def test_rows_of_earlier_code_that_were_measured_again_and_agree_are_not_older(rows, tmp_path, outcome, older):
     results = rows()
     results.rows("lod", "test")
     sha = sha256(records.path_of(results, "test/lod"))[:DIGITS]
@@ -182,7 +182,12 @@ def test_rows_of_earlier_code_that_were_measured_again_and_agree_are_not_older(r
     write_text(results.workspace.build / "code/lod", "today")
     known = {"test/lod": {"sha256": sha, "code": TODAY, "compared": 5, "close": 5, "only_committed": 0} | outcome}
     write_json(results.workspace.published / "measurements" / RECHECKED, known)
-    assert ("older" in record_of(Table(pd.DataFrame({"x": [1]}), sets=["test"]), results, "tables")) == older
+    item = Table(pd.DataFrame({"x": [1]}), name="table", sets=["test"], paths=[tmp_path / "tables/table.csv"])
+    item.record = record_of(item, results, "tables")
+    assert ("older" in item.record) == older
+    write_records({"tables": Built([item])}, results, tmp_path)
+    said = read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("rechecked", "")
+    assert said.startswith(f"{outcome.get('close', 5)} of 5 compared rows, of 3 in all,") != ("sha256" in outcome)
 
 
 PROTOCOL = "household_3_1"
