@@ -4,9 +4,9 @@ Rows outside the default run are committed, and the code that made them goes on 
 are older than the code of their stage, but cannot tell a new method from a new form. This command can: it runs the
 stages that the rows depend on in build/recheck, the stage itself on its first items alone, and compares each row with
 the committed one. It prints a line for each method, and keeps the outcome in reports/measurements/rechecked.json: where
-all compared rows agree within 1 %, the report does not call the file older. Rows of a metric that the committed file does
-not have are counted alone. Exits with 1 where rows differ by more or were not measured again, and where a stage stopped
-before its end: the outcome is not kept then.
+all compared rows agree within 1 %, the report does not call the file older. Rows of a metric that the committed file
+does not have are counted alone. Exits with 1 where rows differ by more or were not measured again, and where a stage
+stopped before its end: the outcome is not kept then.
 
 Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
 that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all
