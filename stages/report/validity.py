@@ -19,6 +19,7 @@ MOST = 0.5  # the same share where the number of classes is not known by the nam
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
+SEQUENCES, SUM = ("method", "split", "repetition", "training", "frames", "cells"), "cnn"  # trials by contours
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
 
@@ -76,6 +77,26 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     converged = rows["passes"] == "converged" if "passes" in rows else False
     learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
     return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+
+
+@check("sequences")
+def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of networks whose loss still fell at the end, and which did not know their training sequences.
+
+    The sum of both networks needs both. Rows whose run measured neither are valid: those of the printed size.
+    """
+
+    def of_all() -> pd.Series:
+        every = results.rows(stage, dataset)
+        trial = [column for column in SEQUENCES if column in every]
+        said = every[every["metric"].isin(["train_accuracy", "settled"]) & (every["classifier"] != SUM)]
+        learned = (said["value"] >= SATURATED).groupby([said[column] for column in [*trial, "classifier"]]).any()
+        known = learned.rename("known").reset_index()
+        both = known.groupby(trial, as_index=False)["known"].all().assign(classifier=SUM)
+        found = every[[*trial, "classifier"]].merge(pd.concat([known, both]), how="left")["known"]
+        return pd.Series(found.eq(False).map({True: UNTRAINED, False: ""}).to_numpy(), index=every.index)
+
+    return results.once(("settled", dataset), of_all)[rows.index]
 
 
 def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:

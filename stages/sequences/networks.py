@@ -8,6 +8,8 @@ as 2. Dropout in the tables is the share that is kept, as in mdCNN. Training is 
 the loss stops falling (T4.4.8).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import torch
 
@@ -98,6 +100,7 @@ def layers(network: torch.nn.Module, *inputs: torch.Tensor) -> list[dict]:
 RATE = 0.05  # initial learning rate: the default of mdCNN, the tool of T4.4.8, which has no momentum
 IMAGE_BATCH, NORMAL_BATCH = 10, 16  # sequences per step, T4.4.8
 PATIENCE = 3  # epochs without a lower loss, after which the rate halves
+HALVINGS = 10  # after which the rate is a thousandth of the first and a training ends: nothing improves any more
 PREDICTION_BATCH = 64  # sequences predicted at once
 
 
@@ -143,22 +146,30 @@ class NormalInputs:
         return torch.from_numpy(self.normals[ids])
 
 
+class Trained(NamedTuple):
+    """A network in evaluation mode; passes: how many trained it; settled: whether its loss had stopped falling."""
+
+    network: ImageNet | NormalNet
+    passes: int
+    settled: bool
+
+
 def train_network(
     inputs: ImageInputs | NormalInputs, labels: np.ndarray, train: np.ndarray, classes: int, epochs: int, seed: int
-) -> ImageNet | NormalNet:
-    """A network in evaluation mode, trained on the sequences `train` (n,) of `inputs` with labels (k,) i8.
+) -> Trained:
+    """Trains a network on the sequences `train` (n,) of `inputs` with labels (k,) i8, in at most `epochs` passes.
 
     Minimises the cross-entropy by gradient descent in shuffled batches; an incomplete last batch is left out. mdCNN
     halves the rate when the loss of the *test* data has not fallen for a while. Here the loss of the training data
-    decides, so that no test sequence is used.
+    decides, so that no test sequence is used. The training is settled and ends when the rate has halved HALVINGS times.
     """
     with repeatable(seed):
         network = inputs.network(classes)
         parameters, rate = list(network.parameters()), RATE
         train, targets = np.asarray(train), torch.as_tensor(labels)
-        batch, best, stalled = min(inputs.batch, len(train)), np.inf, 0
+        batch, best, stalled, passes = min(inputs.batch, len(train)), np.inf, 0, 0
         network.train()
-        for _ in range(epochs):
+        while passes < epochs and rate > RATE / 2**HALVINGS:
             shuffled, total = train[torch.randperm(len(train)).numpy()], 0.0
             for start in range(0, len(train) - batch + 1, batch):
                 chosen = shuffled[start : start + batch]
@@ -171,8 +182,8 @@ def train_network(
             stalled = 0 if total < best else stalled + 1
             if stalled >= PATIENCE:
                 rate, stalled = rate / 2, 0
-            best = min(best, total)
-        return network.eval()
+            best, passes = min(best, total), passes + 1
+        return Trained(network.eval(), passes, rate <= RATE / 2**HALVINGS)
 
 
 @torch.no_grad()

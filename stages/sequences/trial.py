@@ -126,7 +126,7 @@ def is_divisible(cells: int, rows: int, columns: int) -> bool:
 # Each split by its word in reports/metrics and in the seeds of the random numbers, on which the results depend.
 SPLITS = {Split.RANDOM: "sequences", Split.OBJECTS: "objects"}
 KINDS = ("networks", "conventional")
-Result = tuple[np.ndarray, float, dict[str, int]]  # predictions for the test part, seconds, further metrics
+Result = tuple[np.ndarray, float, dict[str, float]]  # predictions for the test part, seconds, further metrics
 
 
 class Trial(NamedTuple):
@@ -182,21 +182,27 @@ def process(name: str, folder: Path, data: Path, members: dict[str, list[str]], 
 
 
 def network_results(data: SequenceData, parts: Parts, settings: Params, seed: int) -> dict[str, Result]:
-    """{classifier: Result} of both networks and of the sum of their probabilities."""
-    predictions = {}
+    """{classifier: Result} of both networks and of the sum of their probabilities.
+
+    Metrics: `train_accuracy`; of a network `passes` and `settled`, 1 where its training loss had stopped falling.
+    """
+    found, learned, results = {}, {}, {}
     for name, kind, epochs in (
         ("cnn_images", ImageInputs, settings.image_epochs),
         ("cnn_normals", NormalInputs, settings.normal_epochs),
     ):
         with Stopwatch() as watch:
             inputs = kind(getattr(data, name.removeprefix("cnn_")), parts.train)
-            network = train_network(inputs, data.labels, parts.train, len(data.classes), epochs, seed)
-            predictions[name] = class_probabilities(network, inputs, parts.test), watch
-    summed = np.sum([probabilities for probabilities, _ in predictions.values()], axis=0)
-    results = {
-        name: (probabilities.argmax(axis=1), watch.seconds, {}) for name, (probabilities, watch) in predictions.items()
-    }
-    results["cnn"] = summed.argmax(axis=1), sum(seconds for _, seconds, _ in results.values()), {}
+            trained = train_network(inputs, data.labels, parts.train, len(data.classes), epochs, seed)
+            found[name] = class_probabilities(trained.network, inputs, parts.test)
+        learned[name] = class_probabilities(trained.network, inputs, parts.train)
+        metrics = {"passes": trained.passes, "settled": int(trained.settled)}
+        results[name] = found[name].argmax(axis=1), watch.seconds, metrics
+    seconds = sum(seconds for _, seconds, _ in results.values())
+    results["cnn"] = np.sum(list(found.values()), axis=0).argmax(axis=1), seconds, {}
+    learned["cnn"] = np.sum(list(learned.values()), axis=0)
+    for name, (_, _, metrics) in results.items():
+        metrics["train_accuracy"] = float((learned[name].argmax(axis=1) == data.labels[parts.train]).mean())
     return results
 
 

@@ -76,6 +76,18 @@ def test_larger_run_stands_below_where_there_is_one(measure):
     assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes", "the thesis"]
 
 
+def test_passes_and_known_training_sequences_are_said_of_the_sets_that_measured_them(measure):
+    trained = [
+        {"classifier": name, "metric": metric, "value": value, "frames": 25, "cells": 32, "method": "random"}
+        for name, passes, known in (("cnn_images", 50, 0.999), ("cnn_normals", 85, 0.96), ("cnn_normals", 91, 0.97))
+        for metric, value in (("passes", passes), ("train_accuracy", known))
+    ]
+    trained += [row | {"frames": 13, "value": 7} for row in trained]  # nothing is said of the smaller sequences
+    results = measure("sequences", pd.concat([rows(), pd.DataFrame(trained).assign(dataset="furniture")]))
+    said = " ".join(table_4_9(results).notes)
+    assert "furniture 50 of the 3D network (100 %), 88 of the 1D network (96 %)" in said
+
+
 @pytest.mark.slow
 def test_chart_charges_each_choice_its_seconds(run):
     figure = build_one(sequences, "tradeoff", "sequences", run)

@@ -208,3 +208,14 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     assert causes_in(measure(stage, pd.concat([rows, learned])), stage) == [UNTRAINED, "", "", ""]
     unknown = rows.drop(columns="passes")  # nobody knows how far these were trained
     assert causes_in(measure(stage, unknown), stage) == [UNTRAINED, UNTRAINED, "", UNTRAINED]
+
+
+def test_a_network_of_contours_is_valid_once_it_knows_its_training_part_or_has_settled_and_the_sum_when_both_are(measure):
+    rows = pd.DataFrame({"dataset": "test", "metric": "accuracy", "value": 0.6, "repetition": np.repeat(range(3), 4)})
+    rows = rows.assign(classifier=["cnn_images", "cnn_normals", "cnn", "knn"] * 3)
+    networks = rows[rows["classifier"] != "knn"]
+    learned = networks.assign(metric="train_accuracy", value=[1.0, 0.5, 1.0] + [1.0, 0.9, 1.0] + [0.9, 1.0, 0.9])
+    settled = networks[networks["classifier"] != "cnn"].assign(metric="settled", value=[0, 0] + [0, 1] + [0, 0])
+    found = causes_in(measure("sequences", pd.concat([rows, learned, settled])), "sequences")
+    assert found == ["", UNTRAINED, UNTRAINED, ""] + [""] * 4 + [UNTRAINED, "", UNTRAINED, ""]
+    assert set(causes_in(measure("sequences", rows), "sequences")) == {""}  # a run of the printed size says neither

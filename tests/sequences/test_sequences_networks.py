@@ -8,6 +8,7 @@ from scipy import stats
 
 from stages.sequences.contourlet import directional_std
 from stages.sequences.networks import (
+    HALVINGS,
     ImageInputs,
     ImageNet,
     NormalInputs,
@@ -59,7 +60,7 @@ def test_networks_take_shorter_films_and_smaller_imprints_and_name_what_is_too_s
 @pytest.mark.parametrize(("kind", "name"), KINDS)
 def test_training_learns_classes_that_differ(films, kind, name):
     inputs, labels = kind(films[name], TRAIN), films["labels"]
-    chances = class_probabilities(train_network(inputs, labels, TRAIN, 3, 30, seed=0), inputs, TEST)
+    chances = class_probabilities(train_network(inputs, labels, TRAIN, 3, 30, seed=0).network, inputs, TEST)
     np.testing.assert_allclose(chances.sum(axis=1), 1, rtol=1e-5)
     assert (chances.argmax(axis=1) == labels[TEST]).mean() > 0.9
 
@@ -72,12 +73,25 @@ def test_training_is_repeatable_from_the_training_part_alone_and_leaves_the_call
     before = torch.rand(1)
     torch.manual_seed(5)
     first, again, other = (
-        train_network(kind(values, TRAIN), films["labels"], TRAIN, 3, 1, seed=seed)
+        train_network(kind(values, TRAIN), films["labels"], TRAIN, 3, 1, seed=seed).network
         for values, seed in ((films[name], 1), (changed, 1), (films[name], 2))
     )
     assert torch.rand(1) == before
     assert all(torch.equal(a, b) for a, b in zip(first.parameters(), again.parameters(), strict=True))
     assert not torch.equal(first.fc1.weight, other.fc1.weight)
+
+
+def test_training_ends_when_its_loss_falls_no_more_and_says_so(films, monkeypatch):
+    inputs, few, last = NormalInputs(films["normals"], TRAIN), films["labels"], 400
+    free = train_network(inputs, few, TRAIN, 3, last, seed=0)
+    assert free.settled and 3 * HALVINGS <= free.passes < last
+    cut = train_network(inputs, few, TRAIN, 3, free.passes - 1, seed=0)
+    assert not cut.settled and cut.passes == free.passes - 1
+    monkeypatch.setattr("stages.sequences.networks.HALVINGS", HALVINGS + 8)
+    longer = train_network(inputs, few, TRAIN, 3, last, seed=0)
+    shares = [class_probabilities(one.network, inputs, TEST) for one in (free, longer)]
+    np.testing.assert_allclose(*shares, atol=0.02)  # a longer training would not have moved it
+    assert longer.passes >= free.passes + 3 * 8
 
 
 def test_inputs_are_standardised_by_the_training_part_and_constant_ones_are_finite(films):

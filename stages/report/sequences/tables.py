@@ -78,9 +78,26 @@ def table_4_9(results: Results) -> Table:
     sizes = frame.groupby("objects", sort=False)[["sequences", "chance"]].max()
     counted = ", ".join(f"{int(row.sequences):,} ({dataset_text(row.Index)})" for row in records(sizes))
     chance = ", ".join(f"{dataset_text(row.Index)} {percent(row.chance, 1)} %" for row in records(sizes))
-    words = {"not_run": results.left_out(STAGE), "counted": counted, "chance": chance}
+    words = {"not_run": results.left_out(STAGE), "counted": counted, "chance": chance, "trained": trained(results)}
     best = Ranking(shown.columns[-1], among=["objects", "split"], exempt=[PRINTED])
     return Table(frame, shown, words, best)
+
+
+def trained(results: Results) -> str:
+    """Passes of both networks and the share of training sequences that they know, of the sets that measured it."""
+    found = {}
+    for dataset in results.datasets(STAGE):
+        rows = results.rows(STAGE, dataset)
+        rows = rows[rows["metric"].isin(["passes", "train_accuracy"])]
+        rows = rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]
+        if rows.empty:
+            continue
+        both = rows.pivot_table(index="classifier", columns="metric", values="value", aggfunc="median")
+        found[dataset_text(dataset)] = ", ".join(
+            f"{both.at[network, 'passes']:.0f} of the {words[:2]} network ({percent(both.at[network, 'train_accuracy'])} %)"
+            for network, words in NETWORKS.items()
+        )
+    return "; ".join(f"{name} {words}" for name, words in found.items()) or "not measured"
 
 
 STAGE = "sequences"
