@@ -210,7 +210,7 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     assert causes_in(measure(stage, unknown), stage) == [UNTRAINED, UNTRAINED, "", UNTRAINED]
 
 
-def test_a_network_of_contours_is_valid_once_it_knows_its_training_part_or_has_settled_and_the_sum_when_both_are(measure):
+def test_a_network_of_contours_is_valid_once_it_knows_its_training_part_or_has_settled(measure):
     rows = pd.DataFrame({"dataset": "test", "metric": "accuracy", "value": 0.6, "repetition": np.repeat(range(3), 4)})
     rows = rows.assign(classifier=["cnn_images", "cnn_normals", "cnn", "knn"] * 3)
     networks = rows[rows["classifier"] != "knn"]

@@ -85,19 +85,19 @@ def table_4_9(results: Results) -> Table:
 
 def trained(results: Results) -> str:
     """Passes of both networks and the share of training sequences that they know, of the sets that measured it."""
-    found = {}
+    found = []
     for dataset in results.datasets(STAGE):
         rows = results.rows(STAGE, dataset)
         rows = rows[rows["metric"].isin(["passes", "train_accuracy"])]
         rows = rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]
-        if rows.empty:
-            continue
-        both = rows.pivot_table(index="classifier", columns="metric", values="value", aggfunc="median")
-        found[dataset_text(dataset)] = ", ".join(
-            f"{both.at[network, 'passes']:.0f} of the {words[:2]} network ({percent(both.at[network, 'train_accuracy'])} %)"
-            for network, words in NETWORKS.items()
-        )
-    return "; ".join(f"{name} {words}" for name, words in found.items()) or "not measured"
+        if len(rows):
+            of = rows.groupby(["classifier", "metric"])["value"].median()
+            said = (
+                f"{of[name, 'passes']:.0f} of the {words[:2]} network ({percent(of[name, 'train_accuracy'])} %)"
+                for name, words in NETWORKS.items()
+            )
+            found.append(f"{dataset_text(dataset)} {', '.join(said)}")
+    return "; ".join(found) or "not measured"
 
 
 STAGE = "sequences"
