@@ -95,7 +95,8 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     keys = [*claim.over, *claim.within]
     if claim.statistic != "difference":
         keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
-    sides = [side for side in (claim.first, claim.second) if isinstance(side, Mapping)]
+    named = {"first": claim.first, "second": claim.second}  # a side that counts by its mean has no pairs
+    sides = [side for name, side in named.items() if isinstance(side, Mapping) and name != claim.mean_of]
     found: list[tuple[list[pd.DataFrame], pd.Series]] = []
     for extra in claim.contrast or ({},):
         parts = [_side_rows(results, claim, own, sides[1 - k] if len(sides) > 1 else None, extra)[0]
@@ -186,6 +187,7 @@ def _some(rows: pd.DataFrame, claim: Claim, what: str) -> pd.DataFrame:
 
 
 TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
+PAIR = 2  # units of a set whose spread says nothing
 ALIKE = 0.05  # p-value of Cochran's Q below which sets differ
 
 
@@ -348,6 +350,10 @@ def deciding(claim: Claim, found: Sequence[Effect], results: Results, strict: bo
 
 
 def effect_of(found: Sequence[Effect]) -> Effect | PooledEffect:
-    """The pooled effect of all testable sets with an interval, or that of the only one."""
+    """The pooled effect of all testable sets with an interval, or that of the only one.
+
+    A set of two units is left out beside others: the spread of two is often tiny by luck, and would rule the mean.
+    """
     known = [one for one in found if one.testable and np.isfinite(one.interval[1])]
+    known = [one for one in known if len(known) == 1 or one.most > PAIR] or known
     return PooledEffect(known) if len(known) > 1 else (known or found)[0]

@@ -19,8 +19,8 @@ from .results import NotRun, Results, dataset_text, listed
 from .tables import number
 
 DECIDED = ("supported", "contradicted", "no difference")
-DEPENDS, UNTESTABLE = "depends on the reading", "not testable"
-WORDS = (*DECIDED, "mixed", DEPENDS, UNTESTABLE, "open")
+MIXED, DEPENDS, UNTESTABLE = "mixed", "depends on the reading", "not testable"
+WORDS = (*DECIDED, MIXED, DEPENDS, UNTESTABLE, "open")
 # By unit: what nobody would act on. Stated before the claims were judged by it; other units have none.
 NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
 FEW, HUNDRED = 5, 100  # units
@@ -111,7 +111,7 @@ def _judgements(claim: Claim, results: Results) -> list[Judgement]:
         except NotRun as why:
             absent.append(why)
             continue
-        chosen = deciding(one, found, results, strict=one.dataset != claim.dataset)
+        chosen = deciding(one, found, results, strict=one is not claim)
         judgement = Judgement(name, one, found, missing, chosen)
         if one is claim or (chosen and np.isfinite(effect_of(chosen).interval[1])):
             judgements.append(judgement)
@@ -126,14 +126,17 @@ def word_of(effects: Sequence[Effect], unit: str) -> str:
         return UNTESTABLE
     effect = effect_of(effects)
     if isinstance(effect, PooledEffect) and effect.disagree:
-        return "mixed"
+        return MIXED
     return verdict(*effect.interval[1:], unit)
 
 
 def over_readings(words: Sequence[str]) -> str:
-    """The word of a claim from those of its readings: the first that can be tested, unless another contradicts it."""
+    """The word of a claim from those of its readings: the first that can be tested, unless another contradicts it.
+
+    A reading in which the data sets disagree contradicts a decided word, too.
+    """
     words = [word for word in words if word != UNTESTABLE] or [UNTESTABLE]
-    return DEPENDS if words[0] in DECIDED and {*words} & {*DECIDED} != {words[0]} else words[0]
+    return DEPENDS if words[0] in DECIDED and {*words} & {*DECIDED, MIXED} != {words[0]} else words[0]
 
 
 def _readings(judged_one: Judgement, judgements: Sequence[Judgement]) -> dict[str, str]:

@@ -249,6 +249,7 @@ def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_ro
     (["supported", "open"], "supported"), (["supported", "open", "no difference"], "depends on the reading"),
     (["open", "supported"], "open"), (["mixed", "supported"], "mixed"),
     (["not testable", "supported", "contradicted"], "depends on the reading"),
+    (["supported", "mixed"], "depends on the reading"), (["open", "mixed"], "open"),
     (["not testable", "supported"], "supported"), (["not testable", "not testable"], "not testable"),
 ])  # fmt: skip
 def test_a_verdict_holds_in_each_reading_or_depends_on_the_reading(words, word):
@@ -271,6 +272,25 @@ def test_a_set_without_an_interval_is_told_and_not_pooled(sets_of_rows):
     row = pooled(results, "one", "two")
     assert row["units"] == 12 and row["effect"] == pytest.approx(2.0, abs=1e-3)
     assert row["tested_on"].endswith("no interval of two: all 5 differences are equal")
+
+
+def test_a_set_of_two_units_does_not_rule_the_mean_of_several(sets_of_rows):
+    rows = {"one": spread_about(0.4), "two": np.array([3.0, 3.01])}
+    row = pooled(sets_of_rows(**rows), "one", "two")
+    assert row["verdict"] == "open" and row["units"] == 12 and row["effect"] == pytest.approx(0.4, abs=1e-3)
+    row = pooled(sets_of_rows(two=rows["two"], more=rows["two"] + 1), "two", "more")  # where all sets are so small
+    assert row["units"] == 4
+
+
+def test_a_reading_that_the_printed_set_does_not_have_is_not_judged_by_another_set(sets_of_rows):
+    results = sets_of_rows(one=spread_about(0.1), two=spread_about(2.0))
+    for name, rows in (("one", {"way": "a"}), ("two", {"way": "b"})):
+        path = results.workspace.root / f"reports/measurements/{name}/test.csv.gz"
+        pd.read_csv(path).assign(**rows).to_csv(path, index=False)
+    other = reading("the other way", where={"way": "b"})
+    one = claim(second=0.0, dataset=("one", "two"), printed=1, where={"way": "a"}, readings=(other,))
+    row = judge([one], type(results)(results.workspace, results.settings)).iloc[0]
+    assert row["verdict"] == "open" and "supported" not in str(row["readings"])
 
 
 def test_methods_give_way_to_others_on_all_sets_but_the_first():

@@ -1,6 +1,8 @@
 """What the report says of where networks look (T3.3), on rows and maps whose truth is known."""
 
+import re
 import shutil
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 
@@ -157,7 +159,7 @@ def test_networks_that_are_not_available_are_named_once(written):
 
 
 VERDICTS = {
-    "ewigc_over_lee_vgg16": ("supported", 0.25),
+    "ewigc_over_lee_vgg16": ("supported", 0.25),  # by its frozen filters
     "ewigc_nearer_than_lee": ("supported", 20),
     "ewigc_nearer_than_noise": ("contradicted", -10),
     "ewigc_over_random_weights_resnet50": ("supported", 0.3),
@@ -180,14 +182,16 @@ def test_claims_say_what_the_rows_hold(gaze):
     assert found["effect"].to_dict() == pytest.approx({key: size for key, (_, size) in VERDICTS.items()}, rel=0.05)
     assert (found["pairs"] == 6).all()
     alike = next(claim for claim in topic.CLAIMS if claim.key == "resnet_more_alike")
-    assert differences(gaze, alike).to_numpy() == pytest.approx(np.full(6, 0.2))
+    assert differences(gaze, replace(alike, checked=False)).to_numpy() == pytest.approx(np.full(6, 0.2))
 
 
 def test_claims_turn_with_the_rows_and_name_what_was_not_run(gaze, written):
     results = written(rows(resnet=-0.05, average=0.38))
     for key, effect in (("over_vgg", -0.05), ("nearer_than_vgg", -10), ("nearer_than_vgg_least", -5)):
         found = one(results, f"resnet_{key}")
-        assert found["verdict"] == "contradicted" and found["effect"] == pytest.approx(effect, rel=0.1)
+        told = re.search(r"as written: not testable \+?([-\d.]+)", found["readings"])  # VGG16's layers are random
+        assert float(told[1]) == pytest.approx(effect, rel=0.1)
+        assert found["effect"] == pytest.approx(0, abs=0.3)  # by frozen filters
     assert one(results, "entropy_over_average")["verdict"] == "supported"
     assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
 

@@ -18,12 +18,15 @@ from stages.report.results import SECTION_3_1
 from stages.report.topics import build_one
 from stages.report.validity import (
     AS_PLAIN,
+    FROM_RANDOM,
     GUESSING,
     NO_POINT,
     NO_RING,
+    NOTHING_OUT,
     ONE_CLASS,
     SAME,
     UNIT,
+    UNKNOWN,
     UNTRAINED,
     causes,
     invalid_units,
@@ -208,6 +211,53 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     assert causes_in(measure(stage, pd.concat([rows, learned])), stage) == [UNTRAINED, "", "", ""]
     unknown = rows.drop(columns="passes")  # nobody knows how far these were trained
     assert causes_in(measure(stage, unknown), stage) == [UNTRAINED, UNTRAINED, "", UNTRAINED]
+
+
+def test_a_selection_that_left_nothing_out_is_no_evidence(measure):
+    common = {"dataset": "test", "group": "six", "split": "random", "classifier": "knn", "metric": "accuracy"}
+    rows = pd.DataFrame(common, index=range(6))
+    rows = rows.assign(method=["all", "selected", "selected_control"] * 2, repetition=np.repeat([0, 1], 3), value=0.6)
+    rows = rows.assign(train=75, test=[25, 25, 25, 25, 20, 20])
+    assert causes_in(measure("recorded", rows), "recorded") == ["", NOTHING_OUT, NOTHING_OUT, "", "", ""]
+
+
+def test_an_svm_whose_answers_nobody_counted_is_no_evidence_beside_counted_ones(measure):
+    rows = pd.DataFrame({"dataset": "test", "group": "six", "metric": "accuracy", "value": 0.6, "repetition": 0},
+                        index=range(4))  # fmt: skip
+    rows = rows.assign(classifier=["svm", "svm", "svm", "knn"], scaling=["training"] * 2 + ["min_max", "training"])
+    rows["variant"] = ["plain", "mixed", "mixed", "mixed"]
+    counted = rows.iloc[:1].assign(metric="commonest_share", value=0.2)
+    results = measure("classification", pd.concat([rows, counted]))
+    assert causes_in(results, "classification") == ["", UNKNOWN, "", ""]
+    assert causes_in(measure("classification", rows), "classification") == [""] * 4
+
+
+def test_attention_of_vgg_alone_is_refused_but_not_its_accuracy_or_a_mean_with_another_network(measure):
+    rows = pd.DataFrame({"dataset": "test", "metric": ["pcc", "accuracy", "pcc"], "value": 0.5})
+    rows["method"] = ["vgg16-last_block", "vgg16-last_block", "resnet50-last_block"]
+    results = measure("fixation", rows)
+    alone, both, accuracy = {"metric": "pcc", "method": "vgg16-last_block"}, {"metric": "pcc"}, {"metric": "accuracy"}
+    for where, words in ((alone, [FROM_RANDOM]), (both, ["", ""]), (accuracy, [""])):
+        assert causes(results, "fixation", "test", results.rows("fixation", **where)).tolist() == words
+
+
+def test_an_svm_worse_than_calling_all_background_refuses_its_kind_of_pixels_also_where_it_is_a_mean(measure):
+    kinds = {("image", "one_per_object"): 0.93, ("image", "one_for_all"): 0.9,
+             ("object", "one_per_object"): 0.7, ("object", "one_for_all"): 0.6}  # fmt: skip
+    rows = [{"item": f"o{k}" if training == "one_per_object" else None, "area": area, "training": training,
+             "validation": "pixels", "metric": "accuracy", "value": value + 0.001 * k,
+             "background_alone": 0.91 if area == "image" else 0.5}
+            for (area, training), value in kinds.items()
+            for k in range(4 if training == "one_per_object" else 1)]  # fmt: skip
+    results = measure("weights", pd.DataFrame(rows), "gaze")
+    own = Claim(key="own", section="T3.2.3", sentence="One each.", stage="weights", dataset="gaze", over=("item",),
+                where={"metric": "accuracy", "area": "image"}, first={"training": "one_per_object"},
+                second={"training": "one_for_all"}, mean_of="second")  # fmt: skip
+    on_object = replace(own, key="object", where={"metric": "accuracy", "area": "object"})
+    table = judge([own, on_object], results).set_index("key")
+    assert table["verdict"].to_dict() == {"own": "not testable", "object": "supported"}
+    assert table.loc["own", "validity"] == f"meshes with human gaze: 4 of 4 pairs invalid: {GUESSING} (4)"
+    assert table.loc["object", "effect"] == pytest.approx(10.15)
 
 
 def test_a_network_of_contours_is_valid_once_it_knows_its_training_part_or_has_settled(measure):

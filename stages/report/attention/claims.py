@@ -109,19 +109,25 @@ def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: st
                    unit="NSS")  # fmt: skip
 
 
+ON_OBJECT = reading("on the object's pixels", where={"area": "object"})
+
+
 def svm_per_object(key: str, sentence: str, area: str, own: str, others: str, of: str = "") -> Claim:
     """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
     return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
                    where={"metric": "accuracy", "area": area}, dataset=GAZED,
                    first={"training": "one_per_object", "validation": own},
-                   second={"training": "one_for_all", "validation": others}, of=of)  # fmt: skip
+                   second={"training": "one_for_all", "validation": others}, of=of,
+                   note="each learns from 1,000 pixels, the one for all from few of each object",
+                   readings=(ON_OBJECT,) if area == "image" else ())  # fmt: skip
 
 
 def in_colour(key: str, sentence: str, method: str) -> Claim:
     """A claim that a method finds half of its points or more again on the same object in grey clay."""
-    return Claim(key=key, section="T3.1.5", sentence=sentence, stage="stability", dataset=COLOURED, over=("item",),
+    return Claim(key=key, section="ours", sentence=sentence, stage="stability", dataset=COLOURED, over=("item",),
                  where={"metric": "repeatability", "perturbation": "clay"}, first={"method": method}, second=BROKEN,
-                 unit="points of the share found again", phrases=PHRASES)  # fmt: skip
+                 unit="points of the share found again", phrases=PHRASES,
+                 readings=(reading("the hues alone taken away", where={"perturbation": "grey"}),))  # fmt: skip
 
 
 CLAIMS = [
@@ -138,7 +144,7 @@ CLAIMS = [
               where={"metric": "nss", "method": method}, first={"dataset": "gaze"}, second={"dataset": ON_BLACK})
       for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"),
                                 ("ssim", "weights of table 3.1", "thesis_ssim"))),
-    Claim(key="colour_parts_dkl", section="T3.1.5", stage="conspicuity",
+    Claim(key="colour_parts_dkl", section="ours", stage="conspicuity",
           sentence="Even where objects have several hues, DKL is as close to intensity as in one hue.",
           dataset=COLOURED, over=("item",), where={"metric": "intensity_likeness"},
           first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity", phrases=PHRASES),

@@ -62,6 +62,15 @@ PHRASES = {
 claim = partial(Claim, stage="fixation", dataset=GAZED, over=("item",), scale=1, unit="PCC", phrases=PHRASES)
 
 
+def frozen(**sides: str) -> dict[str, Any]:
+    """The reading with frozen filters, for claims on VGG16, whose tuned rows start from random layers (validity)."""
+    methods = {side: {"method": f"{name}-frozen"} for side, name in sides.items()}
+    return {"readings": (reading("frozen filters, new heads alone", **methods),)}
+
+
+VGG_FROZEN, BOTH_FROZEN = frozen(first="vgg16"), frozen(first="resnet50", second="vgg16")
+
+
 def agrees(
     key: str, said: str, first: Pair, second: Pair, section: str = "T3.3.6", metric: str = "pcc", **more: Any
 ) -> Claim:
@@ -93,7 +102,7 @@ def each_network(
     names |= {one: f"{key}_{one.replace('-', '_')}" for one in FROZEN}
     found = []
     for one, name in names.items():
-        known: dict[str, Any] = {"of": found[0].key if found else ""} | more
+        known: dict[str, Any] = {"of": found[0].key if found else ""} | more | (VGG_FROZEN if one == VGG else {})
         part = section if one in PRINTED else "ours"
         found += in_each_metric(name, sentence, (one, FUSED), other(one), part, **known)
     return found
@@ -103,15 +112,20 @@ def nearer(key: str, sentence: str, near: Pair, far: Pair, of: str = "", **more:
     """The claim that the centres of `near` are nearer: the nearest of a view, the thesis's measure; the mean of all."""
     mean = agrees(key, sentence, far, near, metric="distance_mean", scale=100, unit=DIAMETER, **more)
     letter = reading("maxima to the letter", where={"metric": "distance_maximum"})
-    least = replace(mean, key=f"{key}_least", where={**mean.where, "metric": "distance"}, of=of, readings=(letter,))
+    least = replace(mean, key=f"{key}_least", where={**mean.where, "metric": "distance"}, of=of)
+    least = replace(least, readings=(*mean.readings, letter))
     return [least, replace(mean, of=of or least.key)]
+
+
+MEAN_DISTANCE = reading("mean distance of all pairs", where={"metric": "distance_mean"})
 
 
 def quartile(key: str, sentence: str, near: Pair, far: Pair, which: str, of: str = "") -> Claim:
     """The claim that a quantile of the least distances of all views is lower. which: a statistic of .quantiles."""
     words = which.replace("_", " ").replace("below", "of both")
     return agrees(key, sentence, near, far, metric="distance", scale=100, unit="% of the views", within=("view",),
-                  statistic=which, of=of, note=f"share of views below the {words}")  # fmt: skip
+                  statistic=which, of=of, note=f"share of views below the {words}",
+                  readings=(*(VGG_FROZEN["readings"] if near[0] == VGG else ()), MEAN_DISTANCE))  # fmt: skip
 
 
 def same_place(other: str, words: str, note: str, of: str = "") -> Claim:
@@ -139,7 +153,7 @@ CLAIMS = [
     same_place("middle", "the middle of the picture", "what two views show in the middle", "same_place_over_chance"),
     claim(key="resnet_more_alike", section="T3.3.3", where={"metric": "pcc_tasks"},
           sentence="The tasks' maps of ResNet are more alike than those of VGG16.",
-          first={"method": RESNET}, second={"method": VGG}),
+          first={"method": RESNET}, second={"method": VGG}, **BOTH_FROZEN),
     *in_each_metric("excluded_least", "Attention is less like people's where a network names the object itself or its "
                     "convexity than in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, tuple(NAMED)),
                     "T3.3.3", within=("method",)),
@@ -152,7 +166,7 @@ CLAIMS = [
     *[one for method, name in SHORT.items()
       for one in in_each_metric(f"ewigc_over_rest_{method.partition('-')[0]}", f"Fused Grad-CAM of {name} correlates "
                                 "more with fixations than the models of Lee, Song and Tasse.", (method, FUSED),
-                                ("rival", highest_of(*REST)))],
+                                ("rival", highest_of(*REST)), **(VGG_FROZEN if method == VGG else {}))],
     *in_each_metric("leifman_over_rest", "Leifman's regions of interest correlate more with fixations than the models "
                     "of Lee, Song and Tasse.", ("rival", LEIFMAN), ("rival", highest_of(*REST))),
     *each_network("ewigc_over_lee", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency.", lambda _: LEE,
@@ -190,9 +204,9 @@ CLAIMS = [
     *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
                   lambda _: PRIOR, metrics=OUR_METRICS),
     *in_each_metric("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH,
-                    "ours", metrics=OUR_METRICS),
+                    "ours", metrics=OUR_METRICS, **BOTH_FROZEN),
     *nearer("resnet_nearer_than_vgg", "Fused Grad-CAM of ResNet finds centres nearer to fixations than that of VGG16.",
-            *BOTH, section="ours"),
+            *BOTH, section="ours", **BOTH_FROZEN),
     *[claim(key=key, section="ours", sentence="Noise correlates with gaze where hidden vertices count as zeros.", of=of,
             where={"metric": metric, "view": VIEWS}, first=NOISE._asdict(), second=0)
       for key, metric, of in (("noise_correlates_masked", AS_PRINTED, ""),

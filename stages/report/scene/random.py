@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from stages.engine.statistics import interval
-from stages.report.claims import Claim
+from stages.report.claims import Claim, reading
 from stages.report.drawing import CYCLE, INK, plain_logarithm, plt
 from stages.report.effects import side, statistic
 from stages.report.items import Figure, Table
@@ -347,5 +347,6 @@ CLAIMS = [
     needed(key="felt_over_seen", first=FELT, second=SEEN,
            sentence="To be felt as the full mesh is, an object needs more faces than to be seen from one metre."),
     needed(key="recognised_under_felt", first=FELT, second=KNOWN,
-           sentence="To be recognised by touch, an object needs fewer faces than to be felt as the full mesh is."),
+           sentence="To be recognised by touch, an object needs fewer faces than to be felt within 5 %.",
+           readings=tuple(reading(f"felt within {share:.0%}", first={"condition": share}) for share in (0.02, 0.1))),
 ]  # fmt: skip

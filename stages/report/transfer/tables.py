@@ -222,6 +222,8 @@ CONVERGED = (  # splits first: objects share the trainings, so that their interv
     reading("trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
             over=("item",), within=("repetition", *SEEN), shared=0.0),
 )  # fmt: skip
+INITIAL = reading("until nothing improves, random side with its initial statistics", where={"passes": "converged"},
+                  second={"weights": "random_initial"})  # fmt: skip
 PRINTED_RATE = (*CONVERGED, reading("at the printed learning rates", where={"passes": "printed_rate"}))
 
 
@@ -258,7 +260,7 @@ OWN = both(
           "data", FINE, COARSE, readings=PRINTED_RATE, mode="finetuned"),
     claim("seen_over_random_frozen", "T5.4",
           "Vision and touch share features: frozen filters trained on photographs help.",
-          "weights", "imagenet", "random", mode="frozen"),
+          "weights", "imagenet", "random", readings=(*CONVERGED, INITIAL), mode="frozen"),
     claim("seen_over_random_tuned", "T5.4", "Vision and touch share features: sight is a better start for touch.",
           "weights", "imagenet", "random", mode="finetuned"),
     claim("early_and_late", "T5.5", "Tuning the first and the last layers alone beats frozen filters.",
