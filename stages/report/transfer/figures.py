@@ -11,7 +11,7 @@ from stages.report.items import Figure
 from stages.report.networks import COARSE, FINE, MODES, NETWORK, PASSES, SPLITS, STARTS, THEIRS, everywhere, of_passes
 from stages.report.pareto import pareto_chart
 from stages.report.results import Results, dataset_text, some
-from stages.report.tables import grouped, means, records
+from stages.report.tables import grouped, means
 
 from .figure_5_3 import CELLS
 
@@ -40,8 +40,7 @@ def figure_5_4(results: Results) -> Figure:
         axes.set_yscale("log")
         axes.set_ylabel("mean squared change of weights,\neach layer's scaled to 0..1")
         axes.grid(axis="y")
-    means = [f"{label(row.network)} {row.mean:.2g} ({row.on}, {row.trainings} trainings)" for row in records(printed)]
-    return Figure(figure, {"means": "; ".join(means)}, printed)
+    return Figure(figure, frame=printed)
 
 
 def _draw_networks(axes: Axes, frame: pd.DataFrame) -> None:
