@@ -43,11 +43,12 @@ interval. The words:
   0.03 PCC, 0.05 NSS, 0.01 AUC).
 - *mixed*: the data sets disagree. Each side of zero has a set whose own interval excludes it, or sets of both signs
   differ by Cochran's Q (p below 0.05).
-- *depends on the reading*: another reasonable reading of the protocol decides the claim differently. The column
-  *readings* has the word and the effect in each reading.
+- *depends on the reading*: another reasonable reading of the protocol decides the claim differently, or its data sets
+  disagree. The column *readings* has the word and the effect in each reading.
 - *not testable*: more than a fifth of the pairs is invalid. The column *invalid* counts the causes. Otherwise invalid
   pairs are left out. A pair is invalid where a method found no point, kept less than one ring of a neighbourhood, gave
-  one answer for nearly all samples, or was tuned by a training that stopped while it still improved.
+  one answer for nearly all samples, was less accurate than guessing, left nothing out, started from random layers that
+  the thesis has trained, or was tuned by a training that stopped while it still improved.
 - *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
 
 The set that follows the printed protocol judges a sentence of the thesis. The column *carries over* has the word that
@@ -60,8 +61,8 @@ An interval is a bootstrap over the outermost units: classes with their objects,
 shape are one unit. An interval over objects carries to other objects of this kind. An interval over repetitions is a
 bootstrap over repeated splits of the same imprints, widened for the imprints that the splits share (Nadeau and Bengio
 2003): it is about these few objects alone. Several sets are pooled by random effects; three sets or more that differ
-have the interval of Hartung and Knapp, which carries to other sets. *In each set* says that the interval of each set
-excludes zero on the same side while the pooled interval does not.
+have the interval of Hartung and Knapp, which carries to other sets. A set of two units is left out beside others. *In
+each set* says that the interval of each set excludes zero on the same side while the pooled interval does not.
 
 The column *holds* says whether a decided verdict holds among all claims of its chapter, at a false discovery rate of
 5 % (Benjamini and Hochberg 1995), by p, which follows from the interval. The column *open* says why an open claim is
