@@ -32,7 +32,7 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), datase
                     for number in range(folds):
                         each = level + 0.005 * random.normal(size=len(CLASSES))
                         seconds = SECONDS.get(name, 5.0) * frames / 25
-                        one = common | {"repetition": number, "metric": "accuracy", "group": None}
+                        one = common | {"repetition": number, "training": 0, "metric": "accuracy", "group": None}
                         found.append(one | {"value": each.mean(), "seconds": seconds})
                         if split == "objects":
                             found += [one | {"metric": "accuracy_object", "group": label, "value": value}
@@ -137,3 +137,14 @@ def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is
                            "contradicted")  # fmt: skip
     wanted["contours_cnn_best_unseen"] = "depends on the reading"
     assert judged(everywhere(measure, frame), *wanted)["verdict"].to_dict() == wanted
+
+
+def test_an_untrained_network_spoils_no_other_training_of_its_objects(measure):
+    frame = pd.concat([rows().assign(training=number) for number in range(2)])
+    networks = frame[frame["classifier"].isin(["cnn_images", "cnn_normals"]) & (frame["metric"] == "accuracy")]
+    known = networks.assign(metric="train_accuracy", value=1.0)
+    known.loc[(known["training"] == 0) & (known["repetition"] == 0) & (known["split"] == "objects"), "value"] = 0.5
+    results = everywhere(measure, pd.concat([frame, known]))
+    row = judged(results, "contours_guided_unseen_more").iloc[0]
+    assert row["pairs"] == 18 and row["verdict"] == "supported"
+    assert row["validity"].startswith("psb, 8 classes of 6 objects: 3 of 18 pairs invalid: training stopped before")
