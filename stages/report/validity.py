@@ -99,7 +99,7 @@ def half_random(results: Results, stage: str, dataset: str, rows: pd.DataFrame) 
 
 @check("weights")
 def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Accuracies of SVMs on kinds of pixels where an SVM is right less often than who calls all of them background."""
+    """Accuracies on kinds of pixels where an SVM is right less often than an answer of "background" for all of them."""
     if "background_alone" not in rows or not rows["metric"].eq("accuracy").all():
         return pd.Series("", index=rows.index)
     every = results.rows(stage, dataset, metric="accuracy")
@@ -111,7 +111,7 @@ def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFra
 
 @check("sequences")
 def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of networks whose loss still fell at the end, and which did not know their training sequences.
+    """Rows of networks that did not know their training sequences while their loss still fell at the end.
 
     The sum of both networks needs both. Rows whose run measured neither are valid: those of the printed size.
     """
