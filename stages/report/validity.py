@@ -104,9 +104,9 @@ def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFra
         return pd.Series("", index=rows.index)
     every = results.rows(stage, dataset, metric="accuracy")
     means = every.groupby(["training", "validation", "area"])[["value", "background_alone"]].mean()
-    poor = means.index[means["value"] < means["background_alone"]].droplevel("training")
-    kinds = pd.MultiIndex.from_frame(rows[["validation", "area"]])
-    return pd.Series(kinds.isin(poor), index=rows.index).map({True: GUESSING, False: ""})
+    poor = means[means["value"] < means["background_alone"]].reset_index()
+    kinds, bad = (pd.MultiIndex.from_frame(frame[["validation", "area"]]) for frame in (rows, poor))
+    return pd.Series(kinds.isin(bad), index=rows.index).map({True: GUESSING, False: ""})
 
 
 @check("sequences")
@@ -120,11 +120,12 @@ def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
         every = results.rows(stage, dataset)
         trial = [column for column in SEQUENCES if column in every]
         said = every[every["metric"].isin(["train_accuracy", "settled"]) & (every["classifier"] != SUM)]
-        learned = (said["value"] >= SATURATED).groupby([said[column] for column in [*trial, "classifier"]]).any()
-        known = learned.rename("known").reset_index()
-        both = known.groupby(trial, as_index=False)["known"].all().assign(classifier=SUM)
-        found = every[[*trial, "classifier"]].merge(pd.concat([known, both]), how="left")["known"]
-        return pd.Series(found.eq(False).map({True: UNTRAINED, False: ""}).to_numpy(), index=every.index)
+        said = said.assign(known=said["value"] >= SATURATED)
+        known = said.groupby([*trial, "classifier"], as_index=False)["known"].max()
+        both = known.groupby(trial, as_index=False)["known"].min().assign(classifier=SUM)
+        found = pd.Series(every[[*trial, "classifier"]].merge(pd.concat([known, both]), how="left")["known"])
+        untrained = found.isin([False]).to_numpy()
+        return pd.Series(untrained, index=every.index).map({True: UNTRAINED, False: ""})
 
     return results.once(("settled", dataset), of_all)[rows.index]
 
