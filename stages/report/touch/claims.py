@@ -40,7 +40,7 @@ ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart":
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
 MIXED = (  # five touches; of one touch there is nothing to combine: mixed, its test part would be in training, too
     ("combined before the split", "touches_5_mixed"),
-    ("15 imprints, combined before the split", "first_15_touches_5_mixed"),
+    ("combined before the split, the five from 15 imprints", "first_15_touches_5_mixed"),
 )
 BEFORE_SPLIT = tuple(reading(name, first={"variant": five}) for name, five in MIXED)
 MANY = reading("five times as many combinations", first={"variant": "touches_5_many"},
