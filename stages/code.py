@@ -1,6 +1,6 @@
 """Writes build/code/STAGE for each stage: the files that it imports and a digest of each, what DVC's stages depend on.
 
-A changed comment, docstring or type annotation changes none of them; see stages.engine.code.
+A changed comment, docstring, type annotation or local variable's name changes none of them; see stages.engine.code.
 """
 
 import argparse

@@ -1,4 +1,5 @@
-"""The code that a stage runs: the files that it imports, and a digest of each without comments, docstrings and types.
+"""The code that a stage runs: the files that it imports, and a digest of each without comments, docstrings, types
+and the names of local variables.
 
 A name that a package only hands on is followed to the file that defines it, so that a stage depends on the few files
 behind the names that it uses, not on whole packages. Imports must therefore be free of side effects: a package whose
@@ -9,6 +10,7 @@ import ast
 import hashlib
 import json
 import sys
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
@@ -20,6 +22,7 @@ ROOT = Path(__file__).parents[2]  # the folder that holds the package `stages`
 OWN = Path(__file__).read_bytes()
 PACKAGE = "stages"
 PACKAGES = PACKAGE, "haptic_glance"  # what a stage may import
+LOCAL = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
 def stage_files(stage: str) -> list[Path]:
@@ -53,11 +56,13 @@ def file_digest(path: Path) -> str:
 
 
 def code_text(text: str) -> str:
-    """Python source without comments, docstrings, blank lines and the types of arguments and results.
+    """Python source without comments, docstrings, blank lines, the types of arguments and results, and local names.
 
-    The types of class attributes stay: dataclasses and schemas read them when they run.
+    Local variables get numbers, so that a better name changes nothing; parameters keep theirs, since calls may name
+    them. The types of class attributes stay: dataclasses and schemas read them when they run.
     """
     tree = ast.parse(text)
+    number_locals(tree)
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             body = [part for part in node.body if not _is_text(part) and not _is_for_types(part)]
@@ -69,6 +74,48 @@ def code_text(text: str) -> str:
                 if argument is not None:
                     argument.annotation = None
     return ast.unparse(tree)
+
+
+def number_locals(tree: ast.AST) -> None:
+    """Renames the local variables of a tree to numbers in the order of their appearance, in place."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, LOCAL):
+            inner = list(ast.walk(node))
+            numbers = {name: f"_{number}" for number, name in enumerate(local_names(inner))}
+            for part in inner:
+                for key in ("id", "arg", "name"):  # of a variable, of a lambda's parameter, of `except ... as`
+                    if getattr(part, key, None) in numbers and not isinstance(part, ast.keyword | ast.alias):
+                        setattr(part, key, numbers[getattr(part, key)])
+        else:
+            number_locals(node)
+
+
+def local_names(nodes: Iterable[ast.AST]) -> list[str]:
+    """The names that these nodes of a function or a comprehension bind, in the order of their appearance.
+
+    Without names that an inner function binds by `def`, imports, `global` or `nonlocal`, and without parameters.
+    """
+    bound: dict[str, None] = {}
+    kept: set[str] = set()
+    for node in nodes:
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            bound[node.id] = None
+        elif isinstance(node, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and node.name:
+            bound[node.name] = None
+        elif isinstance(node, ast.Lambda):
+            bound |= {argument.arg: None for argument in node.args.args}
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            arguments = ast.walk(node.args)
+            kept |= {node.name} | {argument.arg for argument in arguments if isinstance(argument, ast.arg)}
+        elif isinstance(node, ast.ClassDef):  # its variables are attributes
+            kept |= {
+                part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+            }
+        elif isinstance(node, ast.Global | ast.Nonlocal):
+            kept |= set(node.names)
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            kept |= {alias.asname or alias.name.split(".")[0] for alias in node.names}
+    return [name for name in bound if name not in kept]
 
 
 @cache

@@ -3,6 +3,7 @@
 import functools
 import multiprocessing
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -230,3 +231,48 @@ def test_words_and_types_do_not_change_the_digest_of_code_and_work_does():
     same = CODE.replace("Doubles", "Two times").replace("# why", "").replace("(x)", "(x: int) -> int")
     assert code_text(CODE) == code_text(same) != code_text(CODE.replace("2 *", "3 *"))
     assert code_text("class A:\n    x: int = 1\n") != code_text("class A:\n    x: str = 1\n")  # dataclasses read these
+
+
+LOCALS = """
+def biggest(items, scale):
+    found = [one * scale for one in items]
+    try:
+        best = max(found)
+    except ValueError as error:
+        raise KeyError(error)
+    return sorted(found, key=lambda one: abs(one - best))
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "same"),
+    [
+        ("found", "products", True),
+        ("one", "item", True),
+        ("best", "largest", True),
+        ("error", "problem", True),
+        ("found", "best", False),  # two variables become one
+        ("best", "abs", False),  # hides a function that is called
+        ("scale", "factor", False),  # callers may name a parameter
+        ("lambda one: abs(one", "lambda one: abs(found", False),
+        ("return sorted(found", "return sorted(items", False),
+    ],
+)
+def test_the_digest_does_not_depend_on_the_names_of_local_variables(old, new, same):
+    changed = re.sub(rf"\b{re.escape(old)}\b", new, LOCALS)
+    assert changed != LOCALS
+    assert (code_text(changed) == code_text(LOCALS)) is same
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def f():\n    global found\n    found = 1\n",
+        "def f():\n    class A:\n        found = 1\n    return A\n",
+        "def f():\n    import found\n    return found\n",
+        "found = 1\n",
+        "class A:\n    found = 1\n",
+    ],
+)
+def test_names_that_others_can_see_change_the_digest(text):
+    assert code_text(text) != code_text(text.replace("found", "kept"))
