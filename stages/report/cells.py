@@ -134,8 +134,8 @@ def _spanned(mean: float, low: float, high: float, style: str) -> str:
 
 
 def _shown(value: float, style: str) -> str:
-    """A number in a format, with commas between thousands and no plus before a zero; else to three digits."""
+    """A number in a format, with commas between thousands and no sign before a zero; else to three digits."""
     if not style:
         return f"{value:,.0f}" if abs(value) >= 1000 else number(value)
     text = format(value, style.replace(",", "").replace(".", ",."))
-    return text if re.search("[1-9]", text) else text.lstrip("+")
+    return text if re.search("[1-9]", text) else text.lstrip("+-")

@@ -129,7 +129,7 @@ def blocks(
 
 def percent(share: float, places: int = 0) -> str:
     """A share in per cent, a dash where it is unknown."""
-    return f"{100 * share:.{places}f}" if share == share else "–"
+    return f"{100 * share:z.{places}f}" if share == share else "–"
 
 
 def everywhere(results: Results, stage: str, what: str = "", **where: object) -> dict[str, pd.DataFrame]:
@@ -163,22 +163,21 @@ def number(value: Any, digits: int = 3) -> str:
     if 0 < abs(value) < 1e-4:
         return f"{value:.{digits - 1}e}"
     places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:.{places}f}"
+    return f"{value:z.{places}f}"  # z: no minus before a zero
 
 
 def with_interval(mean: float, low: float, high: float, scale: float = 1, places: int | None = None) -> str:
     """`mean [low, high]`, or the mean alone where the interval is unknown; "not run" without a mean."""
     if mean != mean:
         return "not run"
-    show = (lambda v: f"{v * scale:.{places}f}") if places is not None else (lambda v: number(v * scale))
+    show = (lambda v: f"{v * scale:z.{places}f}") if places is not None else (lambda v: number(v * scale))
     return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
 def signed(mean: float, low: float, high: float, places: int = 2) -> str:
     """`+0.83 [0.61, 1.05]`."""
-    mean, low, high = (round(value, places) + 0.0 for value in (mean, low, high))  # no minus before a zero
-    span = f" [{low:.{places}f}, {high:.{places}f}]" if low == low else ""
-    return f"{mean:+.{places}f}{span}"
+    span = f" [{low:z.{places}f}, {high:z.{places}f}]" if low == low else ""
+    return f"{mean:+z.{places}f}{span}"
 
 
 def as_text(frame: pd.DataFrame) -> pd.DataFrame:
