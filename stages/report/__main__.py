@@ -79,8 +79,8 @@ def main() -> None:
 def write_report(results: Results) -> None:
     """Builds everything, prints what could not be built, and moves the rest into place at the end."""
     with beside(results.reports, results.out) as out:
-        made = build(results, out)
-    write_json(results.reports / "metrics/report.json", made)
+        metrics = build(results, out)
+    write_json(results.reports / "metrics/report.json", metrics)
     print(f"report: open {results.reports / 'index.html'}")
 
 
@@ -109,36 +109,36 @@ def beside(reports: Path, out: Path) -> Iterator[Path]:
 
 def build(results: Results, out: Path) -> dict[str, Any]:
     """Writes the report below `out`; returns its metrics."""
-    own = results.own_meshes
+    own_meshes = results.own_meshes
     built, (claims, differences) = side_by_side(results)
     remove_older(built, out)
     write_records(built, results, out)
-    not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
-    if own:  # what would need other data sets is left out
+    not_run = {f"{kind}/{name}": why for kind, batch in built.items() for name, why in batch.not_run.items()}
+    if own_meshes:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
-    write_headlines(out, None if own else counts(claims))
+    write_headlines(out, None if own_meshes else counts(claims))
     parts = {**built, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
-    parts |= {"not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
+    parts |= {"not_run": not_run, "sets": results.sets, "own": own_meshes, "meshes": None}
     parts |= {"first": ["pipeline"], "dataset": dataset_line(results)}
     try:
-        parts["meshes"] = None if own else pack_viewer(results)
+        parts["meshes"] = None if own_meshes else pack_viewer(results)
     except NotRun as missing:
         not_run["viewer"] = str(missing)
     pages = write_site(TOPICS, parts, out)
-    if own:
+    if own_meshes:
         write_own_page(results, pages, out)
-    made = {kind: len(found.items) for kind, found in built.items()}
+    totals = {kind: len(batch.items) for kind, batch in built.items()}
     reasons: dict[str, list[str]] = {}
     for name, why in not_run.items():
         reasons.setdefault(why, []).append(name)
     for why, names in reasons.items():
         print(f"report: not run, {why}: {', '.join(names)}")
     print(
-        f"report: {made['tables']} tables, {made['figures']} figures, {made['tradeoff']} charts; claims: "
+        f"report: {totals['tables']} tables, {totals['figures']} figures, {totals['tradeoff']} charts; claims: "
         f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}"
     )
-    return {"claims": counts(claims), **made, "not_run": len(not_run)}
+    return {"claims": counts(claims), **totals, "not_run": len(not_run)}
 
 
 def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame]]:
@@ -148,19 +148,19 @@ def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame
     where = dict(results.workspace.parallel)
     if where.get("backend") == "dask":  # the files that a topic reads are here alone
         where["backend"] = "loky"
-    verdicts, *found = parallel_map(call, jobs, "report", **where)
+    verdicts, *batches = parallel_map(call, jobs, "report", **where)
     built = {kind: Built() for kind in KINDS}
-    for (kind, _), one in zip(parts, found, strict=True):
-        built[kind].items += one.items
-        built[kind].not_run |= one.not_run
+    for (kind, _), batch in zip(parts, batches, strict=True):
+        built[kind].items += batch.items
+        built[kind].not_run |= batch.not_run
     return built, verdicts
 
 
 def remove_older(built: dict[str, Built], out: Path) -> None:
     """Removes results of an earlier run that this one did not make, so that none looks new."""
-    for kind, found in built.items():
+    for kind, batch in built.items():
         (out / kind).mkdir(parents=True, exist_ok=True)
-        for path in set((out / kind).glob("*.*")).difference(*(item.paths for item in found.items)):
+        for path in set((out / kind).glob("*.*")).difference(*(item.paths for item in batch.items)):
             path.unlink()
 
 

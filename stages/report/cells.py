@@ -53,40 +53,40 @@ def filled(text: str, reports: Path) -> tuple[str, list[tuple[str, str]]]:
     sign of the mean.
     """
     sources = [(name, where) for name, where, _ in PLACE.findall(text)]
-    return PLACE.sub(lambda found: _figure(reports, *found.groups()), text), sources
+    return PLACE.sub(lambda match: _figure(reports, *match.groups()), text), sources
 
 
-def _figure(reports: Path, name: str, where: str, what: str) -> str:
+def _figure(reports: Path, name: str, where: str, request: str) -> str:
     """`1.64 [1.41, 1.88]`, `0.4 [0.2, 0.6] higher`, one number, or a name."""
-    found = rows_of(reports / f"{name}.csv", where)
-    if what == ROWS:
-        return f"{len(found):,}"
-    text = text_of(found, what)
-    word = found["verdict"].iloc[0] if name == CLAIMS and "verdict" in found else ""
+    rows = rows_of(reports / f"{name}.csv", where)
+    if request == ROWS:
+        return f"{len(rows):,}"
+    text = text_of(rows, request)
+    word = rows["verdict"].iloc[0] if name == CLAIMS and "verdict" in rows else ""
     return f"{text} ({word})" if word in QUALIFIED else text
 
 
-def text_of(rows: pd.DataFrame, what: str) -> str:
+def text_of(rows: pd.DataFrame, request: str) -> str:
     """The text of what is asked for of the only row, or of all of them; LookupError where it is missing."""
-    columns, words, style = parts_of(what)
+    columns, words, style = parts_of(request)
     try:
         mean, *ends = (number_of(rows, column) for column in columns)
     except ValueError:  # no number
         return label(rows[columns[0]].iloc[0])
-    known = ends and all(end == end for end in ends)
-    low, high = sorted(ends) if known else (float("nan"),) * 2
-    if mean != mean or (words and not known):
-        raise LookupError(f"no {'interval' if mean == mean else 'value'} in {what}")
+    has_ends = ends and all(end == end for end in ends)
+    low, high = sorted(ends) if has_ends else (float("nan"),) * 2
+    if mean != mean or (words and not has_ends):
+        raise LookupError(f"no {'interval' if mean == mean else 'value'} in {request}")
     if words:
         return _difference(mean, low, high, words, style)
     return _shown(mean, style) if low != low else _spanned(mean, low, high, style)
 
 
-def parts_of(what: str) -> tuple[list[str], list[str], str]:
+def parts_of(request: str) -> tuple[list[str], list[str], str]:
     """(columns, the two words for a difference or none, format) of `mean low high NSS higher|NSS lower .2f`."""
-    text, style = WHAT.fullmatch(what.strip()).groups()  # pyright: ignore[reportOptionalMemberAccess]
-    found = re.fullmatch(r"(\S+ \S+ \S+) ([^|]+)\|([^|]+)", text)
-    columns, *words = found.groups() if found else (text,)
+    text, style = WHAT.fullmatch(request.strip()).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    match = re.fullmatch(r"(\S+ \S+ \S+) ([^|]+)\|([^|]+)", text)
+    columns, *words = match.groups() if match else (text,)
     return columns.split(), words, style or ""
 
 
@@ -96,9 +96,9 @@ def rows_of(path: Path, where: str = "") -> pd.DataFrame:
         raise LookupError(f"no {path.name}")
     frame = pd.read_csv(path, dtype=str, keep_default_na=False)
     for column, sign, value in PAIR.findall(where):
-        wanted = value if column in ENDS else column
-        if wanted not in frame:
-            raise LookupError(f"{path.name} has no column {wanted}")
+        name = value if column in ENDS else column
+        if name not in frame:
+            raise LookupError(f"{path.name} has no column {name}")
         if column in ENDS:
             numbers = pd.to_numeric(frame[value]).dropna()
             frame = frame.loc[[ENDS[column](numbers)]] if len(numbers) else frame[:0]
@@ -107,16 +107,16 @@ def rows_of(path: Path, where: str = "") -> pd.DataFrame:
     return frame
 
 
-def number_of(rows: pd.DataFrame, wanted: str) -> float:
+def number_of(rows: pd.DataFrame, term: str) -> float:
     """A number of the only row, or of all rows, such as `median:seconds`; ValueError where a cell holds a word."""
-    prefix, over, column = COLUMN.fullmatch(wanted).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    prefix, over, column = COLUMN.fullmatch(term).groups()  # pyright: ignore[reportOptionalMemberAccess]
     if column not in rows:
         raise LookupError(f"no column {column}")
     if not over and len(rows) != 1:
         raise LookupError(f"{len(rows)} rows, where one is wanted")
     values = [float(cell) for cell in rows[column] if cell]
-    found = OVER_ROWS[over](values) if over and values else next(iter(values), float("nan"))
-    return PREFIXES[prefix](found)
+    value = OVER_ROWS[over](values) if over and values else next(iter(values), float("nan"))
+    return PREFIXES[prefix](value)
 
 
 def _difference(mean: float, low: float, high: float, words: Sequence[str], style: str) -> str:

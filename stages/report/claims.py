@@ -185,10 +185,10 @@ class Claim:
 def _renamed(value: Any, names: Mapping[str, str]) -> Any:
     """A side of a claim, or a part of it, with other names of methods."""
     if isinstance(value, Mapping):
-        return {column: _renamed(wanted, names) for column, wanted in value.items()}
+        return {column: _renamed(part, names) for column, part in value.items()}
     if isinstance(value, Pick):
         return replace(value, names=_renamed(value.names, names))
-    return tuple(_renamed(one, names) for one in value) if isinstance(value, tuple) else names.get(value, value)
+    return tuple(_renamed(entry, names) for entry in value) if isinstance(value, tuple) else names.get(value, value)
 
 
 METRICS = {  # "" where the claim's unit says it
@@ -206,17 +206,17 @@ def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
 
 
 def _sides(claim: Claim, results: Results) -> str:
-    said = _side(claim, results, claim.first)
+    text = _side(claim, results, claim.first)
     if isinstance(claim.second, int | float):
         if claim.second:
-            said = said or str(claim.where.get("metric", "value")).replace("_", " ")
-            said += f" minus {number(claim.scale * claim.second)}"
+            text = text or str(claim.where.get("metric", "value")).replace("_", " ")
+            text += f" minus {number(claim.scale * claim.second)}"
     elif claim.second is not None:
-        said += f" minus {_side(claim, results, claim.second)}"
+        text += f" minus {_side(claim, results, claim.second)}"
     if claim.contrast:
-        one, other = (_side(claim, results, where) for where in claim.contrast)
-        said = f"{said}: {one} minus {other}"
-    return said + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
+        first, second = (_side(claim, results, where) for where in claim.contrast)
+        text = f"{text}: {first} minus {second}"
+    return text + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
 
 
 def _side(claim: Claim, results: Results, side: Side) -> str:
@@ -232,7 +232,7 @@ def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
     if (column, value) in claim.phrases:
         return claim.phrases[column, value]
     if isinstance(value, tuple):
-        return f"mean of {', '.join(_phrase(claim, results, column, one) for one in value)}"
+        return f"mean of {', '.join(_phrase(claim, results, column, part) for part in value)}"
     if value is None:
         return ""
     if column == "group":

@@ -76,8 +76,8 @@ def effect(row: Any) -> str:
 def sets_read(claim: Claim, results: Results) -> list[str]:
     """The data sets that a claim is tested on, and those that a side names instead."""
     named = [side["dataset"] for side in (claim.first, claim.second) if isinstance(side, dict) and "dataset" in side]
-    own = [name for name in sets_of(claim, results) if name]
-    return list(dict.fromkeys(named or own)) if own else []
+    sets = [name for name in sets_of(claim, results) if name]
+    return list(dict.fromkeys(named or sets)) if sets else []
 
 
 def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
@@ -101,7 +101,7 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         "holds": what_holds(sentences(claims)),
         "counted": escape(counted(claims)),
         "causes": escape(open_by_cause(claims)),
-        **{f"{name}s": _options(found) for name, found in values.items()},
+        **{f"{name}s": _options(choices) for name, choices in values.items()},
         "claims": "".join(items),
         "pairs": script_json(pairs),
     }
@@ -117,18 +117,18 @@ def what_holds(once: pd.DataFrame) -> str:
     """A table of sentences by chapter and verdict, each number a link to its sentences. once: as `sentences`."""
     chapters = pd.Series([chapter_of(str(section)) for section in once["section"]], dtype=object)
     words = [word for word in WORDS if (once["verdict"] == word).any()]
-    shown = {"sentences": once["verdict"].notna(), **{word: once["verdict"] == word for word in words}}
+    masks = {"sentences": once["verdict"].notna(), **{word: once["verdict"] == word for word in words}}
 
     def cell(chapter: str, word: str) -> str:
-        count = ((chapters == chapter) & shown[word]).sum()
+        count = ((chapters == chapter) & masks[word]).sum()
         verdict = "" if word == "sentences" else f"&amp;verdict={word.replace(' ', '-')}"
         link = f'<a href="#kind=sentence&amp;chapter={chapter}{verdict}">{count}</a>' if count else "0"
         return f'<td class="number">{link}</td>'
 
-    head = "".join(f'<th scope="col" class="number">{word}</th>' for word in shown)
+    head = "".join(f'<th scope="col" class="number">{word}</th>' for word in masks)
     rows = "".join(
         f'<tr><th scope="row">{escape(CHAPTERS.get(chapter, chapter))}</th>'
-        f"{''.join(cell(chapter, word) for word in shown)}</tr>"
+        f"{''.join(cell(chapter, word) for word in masks)}</tr>"
         for chapter in dict.fromkeys([*CHAPTERS, *chapters])
         if (chapters == chapter).any()
     )
@@ -157,9 +157,9 @@ def _claim_html(
         "Judged again from its rows": f"<code>python -m stages.claim {row.key}</code>",
         "Measured again": command and f"<code>{escape(command)}</code>",
     }
-    said = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
+    terms = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
     over = escape(over_text(row)) if row.pairs else "none"
-    more = f'<dl>{said}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{over}</dd></dl>'
+    more = f'<dl>{terms}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{over}</dd></dl>'
     badge = f'<span class="word {WORDS[row.verdict]}">{row.verdict}</span>'
     summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}</small>"
     marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'
@@ -167,5 +167,5 @@ def _claim_html(
     return f'<li id="{row.key}" {marks}>{folded(summary, more)}</li>\n'
 
 
-def _options(found: dict[str, str]) -> str:
-    return "".join(f'<option value="{escape(value)}">{escape(text)}</option>' for value, text in found.items())
+def _options(choices: dict[str, str]) -> str:
+    return "".join(f'<option value="{escape(value)}">{escape(text)}</option>' for value, text in choices.items())

@@ -118,21 +118,21 @@ def label(name: object) -> str:
     """A method's name in words, with its way of keeping neighbourhoods where there is one, but without `_seen`."""
     text = str(name)
     base, _, way = text.rpartition("-")
-    said = LABELS.get(text) or LABELS.get(text.removesuffix("_seen")) or text.replace("_", " ")
-    return f"{label(base)}, {way}" if way in WAYS else said
+    words = LABELS.get(text) or LABELS.get(text.removesuffix("_seen")) or text.replace("_", " ")
+    return f"{label(base)}, {way}" if way in WAYS else words
 
 
 def start(weights: str) -> str:
     """The weights that a network starts from, in words."""
-    own = {"imagenet": "ImageNet", "random_initial": "random weights, initial statistics"}
-    return own.get(weights) or f"{weights} weights"
+    names = {"imagenet": "ImageNet", "random_initial": "random weights, initial statistics"}
+    return names.get(weights) or f"{weights} weights"
 
 
 def colours(names: Sequence[str]) -> dict[str, str]:
     """dict name -> colour: fixed for the known methods, the cycle for others."""
-    known = {name: METHOD_COLOURS[name] for name in names if name in METHOD_COLOURS}
-    free = cycle(colour for colour in CYCLE if colour not in known.values())
-    return {name: known.get(name) or next(free) for name in names}
+    fixed = {name: METHOD_COLOURS[name] for name in names if name in METHOD_COLOURS}
+    free = cycle(colour for colour in CYCLE if colour not in fixed.values())
+    return {name: fixed.get(name) or next(free) for name in names}
 
 
 def plain_logarithm(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
@@ -144,11 +144,11 @@ def plain_logarithm(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None
 
 def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     """Writes a PNG of PALETTE colours without dates or versions, so that equal runs give equal bytes; the path."""
-    drawn = io.BytesIO()
+    buffer = io.BytesIO()
     uncompressed = {"compress_level": 0}  # read again at once
-    figure.savefig(drawn, dpi=dpi, bbox_inches="tight", pad_inches=0.12, pil_kwargs=uncompressed)
+    figure.savefig(buffer, dpi=dpi, bbox_inches="tight", pad_inches=0.12, pil_kwargs=uncompressed)
     plt.close(figure)
-    with Image.open(drawn) as image:
+    with Image.open(buffer) as image:
         few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
     with whole_file(path) as part:
         few.save(part, "PNG", optimize=True)
@@ -178,14 +178,14 @@ def picture(
     values (n,) in 0..1 colour the vertices by the map `tints`; wires draws the edges.
     """
     side = rows * smoothing
-    seen, face, weights, light = _surface(mesh, viewpoint, side)
+    pixels, face, weights, light = _surface(mesh, viewpoint, side)
     base = CLAY if values is None else colour_map(np.einsum("ij,ij->i", weights, values[mesh.faces[face]]), tints)
     shaded = base * light[:, None]
     if wires:
         near = _edge_distance(mesh, face, weights) * pixels_per_unit(side)
         shaded = np.where((near < 0.4 * smoothing)[:, None], WIRE, shaded)
     image = np.ones((side * side, 3))
-    image[seen] = np.clip(shaded, 0, 1)
+    image[pixels] = np.clip(shaded, 0, 1)
     return image.reshape(rows, smoothing, rows, smoothing, 3).mean(axis=(1, 3))
 
 
@@ -346,10 +346,10 @@ def place_names(
         probe, spot = axes.text(0, 0, text, fontsize=SIZE), to_pixels(point)
         extent = probe.get_window_extent()
         probe.remove()
-        found = _nearest(axes, (extent.width, extent.height), spot, taken, strokes, scale)
-        if found is None:
+        best = _nearest(axes, (extent.width, extent.height), spot, taken, strokes, scale)
+        if best is None:
             continue
-        gap, box = found
+        gap, box = best
         taken.append(box)
         place = {"xytext": ((box.x0 - spot[0]) / scale, (box.y0 - spot[1]) / scale), "textcoords": "offset points"}
         if gap >= FAR:

@@ -35,53 +35,55 @@ def differences(results: Results, claim: Claim) -> pd.Series:
     """The differences of a claim on one set, in its unit, indexed by its `over`; NotRun where nothing can be paired."""
     if claim.statistic not in STATISTICS:
         import_module(f"{__package__}.topics")  # a worker has not imported the topic that registers it
-    found = STATISTICS[claim.statistic](results, claim).dropna()
-    return claim.scale * some(found, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
+    values = STATISTICS[claim.statistic](results, claim).dropna()
+    return claim.scale * some(values, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
 
 
 @statistic("difference")
 def difference(results: Results, claim: Claim) -> pd.Series:
     """First side minus second, with all that the fields of a Claim say."""
-    found = [_difference(results, claim, where) for where in claim.contrast or ({},)]
-    return found[0] - found[1] if claim.contrast else found[0]
+    parts = [_difference(results, claim, where) for where in claim.contrast or ({},)]
+    return parts[0] - parts[1] if claim.contrast else parts[0]
 
 
 @statistic("beyond_chance")
 def beyond_chance(results: Results, claim: Claim) -> pd.Series:
     """First side minus second, both scaled so that guessing is 0 and certainty 1; their groups tell the chance."""
     scores, sides = [], (claim.first, claim.other)
-    for one, other in (sides, sides[::-1]):
-        guess = 1 / results.classes(str({**claim.where, **one}["group"]), claim.sets[0])
-        scores.append((side(results, claim, one, other) - guess) / (1 - guess))
+    for selection, other in (sides, sides[::-1]):
+        guess = 1 / results.classes(str({**claim.where, **selection}["group"]), claim.sets[0])
+        scores.append((side(results, claim, selection, other) - guess) / (1 - guess))
     return scores[0] - scores[1]
 
 
-def side(results: Results, claim: Claim, own: Side, other: Side | float | None, extra: Side | None = None) -> pd.Series:
+def side(
+    results: Results, claim: Claim, selection: Side, other: Side | float | None, extra: Side | None = None
+) -> pd.Series:
     """Values of one side, indexed by over and within; of several named values the mean of those measured.
 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
-    rows, several = _side_rows(results, claim, own, other, extra)
+    rows, several = _side_rows(results, claim, selection, other, extra)
     keys = [*claim.over, *claim.within]
     if not keys:
         return rows["value"]
     if several:
         table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
-        found = table.dropna().mean(axis=1)
+        values = table.dropna().mean(axis=1)
     else:
-        found = rows.groupby(keys, sort=False)["value"].mean()
-    return found.drop(invalid_pairs(results, claim, rows).index, errors="ignore")
+        values = rows.groupby(keys, sort=False)["value"].mean()
+    return values.drop(invalid_pairs(results, claim, rows).index, errors="ignore")
 
 
 def invalid_pairs(results: Results, claim: Claim, rows: pd.DataFrame, keys: Sequence[str] = ()) -> pd.Series:
     """Causes of the pairs of a claim of which one of the rows is invalid, indexed by keys, else by over and within."""
     if not claim.checked or claim.stage not in CHECKS:
         return pd.Series(dtype=object)
-    found = causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
-    found = found[found != ""]
-    if found.empty:
-        return found
-    return found.groupby([rows[key] for key in keys or (*claim.over, *claim.within)], sort=False).first()
+    reasons = causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
+    reasons = reasons[reasons != ""]
+    if reasons.empty:
+        return reasons
+    return reasons.groupby([rows[key] for key in keys or (*claim.over, *claim.within)], sort=False).first()
 
 
 def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
@@ -97,20 +99,20 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
         keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
     named = {"first": claim.first, "second": claim.second}  # a side that counts by its mean has no pairs
     sides = [side for name, side in named.items() if isinstance(side, Mapping) and name != claim.mean_of]
-    found: list[tuple[list[pd.DataFrame], pd.Series]] = []
+    contrasts: list[tuple[list[pd.DataFrame], pd.Series]] = []
     for extra in claim.contrast or ({},):
-        parts = [_side_rows(results, claim, own, sides[1 - k] if len(sides) > 1 else None, extra)[0]
-                 for k, own in enumerate(sides)]  # fmt: skip
+        parts = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)[0]
+                 for k, selection in enumerate(sides)]  # fmt: skip
         bad = [invalid_pairs(results, claim, part, keys) for part in parts]
         if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
             first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
-            both = pd.concat({"first": first, "second": second}, axis=1, join="inner")
-            bad.append(pd.Series(SAME, index=both.index[_same_mesh(claim, both)], dtype=object))
-        found.append((parts, pd.concat(bad)))
-    if all(bad.empty for _, bad in found):
+            joined = pd.concat({"first": first, "second": second}, axis=1, join="inner")
+            bad.append(pd.Series(SAME, index=joined.index[_same_mesh(claim, joined)], dtype=object))
+        contrasts.append((parts, pd.concat(bad)))
+    if all(bad.empty for _, bad in contrasts):
         return pd.Series(dtype=object), 0
-    common = [set.intersection(*(_pairs(part, keys) for part in parts)) for parts, _ in found]
-    valid = (bad[~bad.index.duplicated()] for _, bad in found)
+    common = [set.intersection(*(_pairs(part, keys) for part in parts)) for parts, _ in contrasts]
+    valid = (bad[~bad.index.duplicated()] for _, bad in contrasts)
     refused = [bad[[pair in pairs for pair in bad.index]] for pairs, bad in zip(common, valid, strict=True)]
     return pd.concat(refused), sum(map(len, common))
 
@@ -120,27 +122,27 @@ def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
     return set(rows[keys[0]]) if len(keys) == 1 else set(zip(*(rows[key] for key in keys), strict=True))
 
 
-def _same_mesh(claim: Claim, both: pd.DataFrame) -> pd.Series:
+def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
     """(pairs,) whether two simplifications have errors that are equal to the last digit, and not zero."""
     if claim.stage != "lod" or not claim.checked:
-        return pd.Series(False, index=both.index)
-    return (both["first"] == both["second"]) & (both["first"] > 0)
+        return pd.Series(False, index=joined.index)
+    return (joined["first"] == joined["second"]) & (joined["first"] > 0)
 
 
 def _side_rows(
-    results: Results, claim: Claim, own: Side, other: Side | float | None, extra: Side | None
+    results: Results, claim: Claim, selection: Side, other: Side | float | None, extra: Side | None
 ) -> tuple[pd.DataFrame, list[str]]:
     """(rows of one side, columns over whose several values the side is a mean)."""
-    where = {**claim.where, **(extra or {}), **own}
+    where = {**claim.where, **(extra or {}), **selection}
     dataset = where.pop("dataset", claim.sets[0])
-    picks = {column: wanted for column, wanted in where.items() if isinstance(wanted, Pick)}
-    patterns = {column: wanted for column, wanted in where.items() if isinstance(wanted, str) and "*" in wanted}
-    plain = {column: wanted for column, wanted in where.items() if column not in picks | patterns}
+    picks = {column: value for column, value in where.items() if isinstance(value, Pick)}
+    patterns = {column: value for column, value in where.items() if isinstance(value, str) and "*" in value}
+    plain = {column: value for column, value in where.items() if column not in picks | patterns}
     rows = results.measured(claim.stage, dataset, **plain)
-    for column, wanted in patterns.items():
-        rows = _some(rows[[fnmatch(str(name), wanted) for name in rows[column]]], claim, f"{column} like {wanted}")
-    for column, wanted in picks.items():
-        rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
+    for column, value in patterns.items():
+        rows = _some(rows[[fnmatch(str(name), value) for name in rows[column]]], claim, f"{column} like {value}")
+    for column, value in picks.items():
+        rows = rows[rows[column] == _picked(rows, claim, column, value, other)]
     keys = (*claim.over, *claim.within)
     for column in keys:
         if column not in rows:
@@ -150,40 +152,40 @@ def _side_rows(
 
 def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
     if isinstance(claim.second, int | float):
-        found = side(results, claim, claim.first, None, extra) - claim.second
+        values = side(results, claim, claim.first, None, extra) - claim.second
     else:
         pooled = replace(claim, over=(), within=())  # all rows of a side, also those about no unit
         first, second = (
-            side(results, pooled if claim.mean_of == name else claim, own, other, extra)
-            for name, own, other in (("first", claim.first, claim.other), ("second", claim.other, claim.first))
+            side(results, pooled if claim.mean_of == name else claim, selection, other, extra)
+            for name, selection, other in (("first", claim.first, claim.other), ("second", claim.other, claim.first))
         )
         if claim.mean_of:
-            found = first.mean() - second if claim.mean_of == "first" else first - second.mean()
+            values = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
             joined = pd.concat({"first": first, "second": second}, axis=1, join="inner").dropna()
             joined = joined[~_same_mesh(claim, joined)]
-            names = " and ".join(" ".join(map(either, one.values())) for one in (claim.first, claim.other))
+            names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
             some(joined, f"no pairs of {names}", claim.stage, runnable=False)
-            found = joined["first"] - joined["second"]
+            values = joined["first"] - joined["second"]
             if claim.relative:
                 middle = (joined["first"] + joined["second"]) / 2
-                found /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
-    return found.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else found
+                values /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
+    return values.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else values
 
 
 def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
-    taken = other.get(column) if isinstance(other, dict) else None
-    out = [*pick.but, *listed(taken or ())]
-    rows = rows[[not any(fnmatch(str(name), str(one)) for one in out) for name in rows[column]]]
+    rival = other.get(column) if isinstance(other, dict) else None
+    out = [*pick.but, *listed(rival or ())]
+    rows = rows[[not any(fnmatch(str(name), str(pattern)) for pattern in out) for name in rows[column]]]
     rows = rows[rows[column].isin(pick.names)] if pick.names else rows
     _some(rows, claim, f"other {column} than {either(out)}" if out else column)
     table = rows.pivot_table(index=[*claim.over, *claim.within], columns=column, values="value", sort=False)
-    found = (table if table.dropna().empty else table.dropna()).mean()  # over the pairs that all of them have
-    return found.idxmin() if pick.lowest else found.idxmax()
+    averages = (table if table.dropna().empty else table.dropna()).mean()  # over the pairs that all of them have
+    return averages.idxmin() if pick.lowest else averages.idxmax()
 
 
-def _some(rows: pd.DataFrame, claim: Claim, what: str) -> pd.DataFrame:
-    return some(rows, f"no {what} is among those that {claim.stage} measured", claim.stage, runnable=False)
+def _some(rows: pd.DataFrame, claim: Claim, subject: str) -> pd.DataFrame:
+    return some(rows, f"no {subject} is among those that {claim.stage} measured", claim.stage, runnable=False)
 
 
 TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
@@ -262,7 +264,7 @@ class PooledEffect:
     @cached_property
     def pooled(self) -> Pooled:
         """By random effects."""
-        return pool(*zip(*((one.interval[0], one.error, one.freedom) for one in self.sets), strict=True))
+        return pool(*zip(*((effect.interval[0], effect.error, effect.freedom) for effect in self.sets), strict=True))
 
     @property
     def interval(self) -> tuple[float, float, float]:
@@ -277,23 +279,23 @@ class PooledEffect:
     @property
     def in_each(self) -> bool:
         """Whether the interval of each set excludes zero on the same side."""
-        _, low, high = np.transpose([one.interval for one in self.sets])
+        _, low, high = np.transpose([effect.interval for effect in self.sets])
         return bool((low > 0).all() or (high < 0).all())
 
     @property
     def units(self) -> pd.Series:
         """The differences of the units of all sets."""
-        return pd.concat([one.units for one in self.sets])
+        return pd.concat([effect.units for effect in self.sets])
 
     @property
     def most(self) -> int:
         """The number of units of the largest set."""
-        return max(one.most for one in self.sets)
+        return max(effect.most for effect in self.sets)
 
     @property
     def disagree(self) -> bool:
         """Whether each side of zero has a set whose own interval excludes it, or sets of both signs differ by Q."""
-        means, low, high = np.transpose([one.interval for one in self.sets])
+        means, low, high = np.transpose([effect.interval for effect in self.sets])
         both_signs = means.min() < 0 < means.max()
         return bool((low > 0).any() and (high < 0).any()) or (both_signs and self.pooled.differ < ALIKE)
 
@@ -308,10 +310,10 @@ def sets_of(claim: Claim, results: Results) -> list[str | None]:
 
     Where no set has such rows, None stays, and is what a run would measure.
     """
-    there = results.datasets(claim.stage)
-    others = [name for name in there if name not in claim.sets]
-    found = [name or next(iter(others), None) for name in claim.sets]
-    return [name for name in found if name or not there]
+    datasets = results.datasets(claim.stage)
+    unnamed = [name for name in datasets if name not in claim.sets]
+    names = [name or next(iter(unnamed), None) for name in claim.sets]
+    return [name for name in names if name or not datasets]
 
 
 def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
@@ -319,16 +321,16 @@ def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
 
     NotRun where none was: of a set that has rows of the stage, else of one that a run would measure.
     """
-    found, missing = [], {}
+    measured, missing = [], {}
     for name in sets_of(claim, results):
         try:
-            found.append(_effect(claim.on(name), results, name or ""))
+            measured.append(_effect(claim.on(name), results, name or ""))
         except NotRun as error:
             missing[name or ""] = error
-    if not found:
-        there = results.datasets(claim.stage)
-        raise max(missing.items(), key=lambda one: (one[0] in there, one[1].runnable))[1]
-    return found, list(missing)
+    if not measured:
+        datasets = results.datasets(claim.stage)
+        raise max(missing.items(), key=lambda entry: (entry[0] in datasets, entry[1].runnable))[1]
+    return measured, list(missing)
 
 
 def _effect(claim: Claim, results: Results, name: str) -> Effect:
@@ -340,20 +342,22 @@ def _effect(claim: Claim, results: Results, name: str) -> Effect:
     return Effect(name, values, claim.share, tuple(causes), pairs)
 
 
-def deciding(claim: Claim, found: Sequence[Effect], results: Results, strict: bool = False) -> list[Effect]:
+def deciding(claim: Claim, measured: Sequence[Effect], results: Results, strict: bool = False) -> list[Effect]:
     """The effects that give the verdict: those on sets as printed, else the first that was measured.
 
     strict: only those on sets as printed, of which there may be none.
     """
     printed = sets_of(claim, results)[: claim.judging]
-    return [one for one in found if (one.dataset or None) in printed] or ([] if strict else list(found[:1]))
+    return [effect for effect in measured if (effect.dataset or None) in printed] or (
+        [] if strict else list(measured[:1])
+    )
 
 
-def effect_of(found: Sequence[Effect]) -> Effect | PooledEffect:
+def effect_of(measured: Sequence[Effect]) -> Effect | PooledEffect:
     """The pooled effect of all testable sets with an interval, or that of the only one.
 
     A set of two units is left out beside others: the spread of two is often tiny by luck, and would rule the mean.
     """
-    known = [one for one in found if one.testable and np.isfinite(one.interval[1])]
-    known = [one for one in known if len(known) == 1 or one.most > PAIR] or known
-    return PooledEffect(known) if len(known) > 1 else (known or found)[0]
+    usable = [effect for effect in measured if effect.testable and np.isfinite(effect.interval[1])]
+    usable = [effect for effect in usable if len(usable) == 1 or effect.most > PAIR] or usable
+    return PooledEffect(usable) if len(usable) > 1 else (usable or measured)[0]

@@ -43,9 +43,9 @@ class Mark:
     @property
     def text(self) -> str:
         """`kNN · noise: 0.1 · accuracy: 0.61 [0.55, 0.67]`."""
-        said = [": ".join(filter(None, side)) for side in (self.x, self.y)]
-        said[-1] += f" {self.interval}" if self.interval else ""
-        return " · ".join(filter(None, [self.panel, self.series, *said]))
+        parts = [": ".join(filter(None, side)) for side in (self.x, self.y)]
+        parts[-1] += f" {self.interval}" if self.interval else ""
+        return " · ".join(filter(None, [self.panel, self.series, *parts]))
 
 
 def marks(drawing: Drawing) -> list[Mark]:
@@ -54,12 +54,12 @@ def marks(drawing: Drawing) -> list[Mark]:
     return list(chain.from_iterable(_of_panel(axes, plots) for axes in plots))
 
 
-def table(found: Sequence[Mark]) -> pd.DataFrame:
+def table(all_marks: Sequence[Mark]) -> pd.DataFrame:
     """The marks as a frame of strings; columns that say nothing are left out."""
-    names = [{mark.x[0] for mark in found}, {mark.y[0] for mark in found}]
-    x, y = (one.pop() or side if len(one) == 1 else side for side, one in zip("xy", names, strict=True))
+    names = [{mark.x[0] for mark in all_marks}, {mark.y[0] for mark in all_marks}]
+    x, y = (labels.pop() or side if len(labels) == 1 else side for side, labels in zip("xy", names, strict=True))
     x = f"{x} (across)" if x == y else x
-    rows = [(mark.panel, mark.series, mark.x[1], mark.y[1], mark.interval) for mark in found]
+    rows = [(mark.panel, mark.series, mark.x[1], mark.y[1], mark.interval) for mark in all_marks]
     frame = pd.DataFrame(rows, columns=["panel", "series", x, y, "95 % interval"])
     return frame[[column for column in frame if (frame[column] != "").any()]]
 
@@ -79,10 +79,12 @@ def _of_panel(axes: Axes, plots: Sequence[Axes]) -> Iterator[Mark]:
 
 def _axis_name(axes: Axes, plots: Sequence[Axes], side: str) -> str:
     """The label of an axis, or, of panels side by side, the only one that is written."""
-    own = getattr(axes, f"get_{side}label")()
+    text = getattr(axes, f"get_{side}label")()
     shared = getattr(axes.figure, f"_sup{side}label", None)
-    written = {getattr(one, f"get_{side}label")() for one in plots} - {""} | ({shared.get_text()} if shared else set())
-    return " ".join((own or (written.pop() if len(written) == 1 else "")).split())
+    written = {getattr(panel, f"get_{side}label")() for panel in plots} - {""} | (
+        {shared.get_text()} if shared else set()
+    )
+    return " ".join((text or (written.pop() if len(written) == 1 else "")).split())
 
 
 def _series(axes: Axes) -> Iterator[tuple[str, np.ndarray, bool]]:
@@ -123,7 +125,7 @@ def _spans(axes: Axes) -> Iterator[tuple[int, float, float, float]]:
     lines = [
         np.asarray(line.get_xydata(), dtype=float) for line in axes.lines if line.get_transform() == axes.transData
     ]
-    bars = [part for found in axes.collections if isinstance(found, LineCollection) for part in found.get_segments()]
+    bars = [part for group in axes.collections if isinstance(group, LineCollection) for part in group.get_segments()]
     for ends in [*lines, *bars]:
         if len(ends) == 2:
             for along in (0, 1):
@@ -197,21 +199,21 @@ def vector(drawing: Drawing, name: str, alt: str) -> tuple[str, list[Mark]]:
     drawing.set_dpi(72)  # then a pixel is a typographic point, the unit of matplotlib's SVG
     drawing.draw_without_rendering()
     box = drawing.get_tightbbox().padded(PAD)
-    found, written = marks(drawing), io.StringIO()
+    all_marks, written = marks(drawing), io.StringIO()
     with plt.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
         drawing.savefig(written, format="svg", bbox_inches=box, transparent=True, metadata={"Date": None})
     width, height = 72 * box.width, 72 * box.height
-    spots = [(mark.spot[0] - 72 * box.x0, height - (mark.spot[1] - 72 * box.y0)) for mark in found]
-    return _inline(written.getvalue(), (width, height), alt, _hits(found, spots)), found
+    spots = [(mark.spot[0] - 72 * box.x0, height - (mark.spot[1] - 72 * box.y0)) for mark in all_marks]
+    return _inline(written.getvalue(), (width, height), alt, _hits(all_marks, spots)), all_marks
 
 
-def _hits(found: Sequence[Mark], spots: Sequence[tuple[float, float]]) -> str:
+def _hits(all_marks: Sequence[Mark], spots: Sequence[tuple[float, float]]) -> str:
     """Circles that cannot be seen, each with what it says; none where they are too many to be told apart."""
-    if len(found) > MOST_PATHS:
+    if len(all_marks) > MOST_PATHS:
         return ""
     circles = (
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{HIT}"><title>{escape(mark.text)}</title></circle>'
-        for mark, (x, y) in zip(found, spots, strict=True)
+        for mark, (x, y) in zip(all_marks, spots, strict=True)
     )
     return f'<g class="hits">{"".join(circles)}</g>'
 
@@ -221,7 +223,7 @@ def _inline(text: str, size: tuple[float, float], alt: str, hits: str) -> str:
     body = text.partition("<g id=")[1] + text.partition("<g id=")[2].rpartition("</svg>")[0]
     body = re.sub(r"<!--.*?-->|<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     used = set(USED.findall(body))
-    body = re.sub(r' id="([^"]+)"', lambda found: found[0] if found[1] in used else "", body)
+    body = re.sub(r' id="([^"]+)"', lambda match: match[0] if match[1] in used else "", body)
     body = re.sub(r'(?<= )(?:d|x|y|width|height|transform|points)="[^"]*"', _shorter, body)
     body = re.sub(r"'DejaVu Sans'(?:, sans-serif)?", FONTS, body)
     body = HEX.sub(_follows_page, re.sub(r"\n\s*", "\n", body)).replace("xlink:href", "href")
@@ -230,11 +232,11 @@ def _inline(text: str, size: tuple[float, float], alt: str, hits: str) -> str:
     return f'{head} width="{SCALE * width:.0f}" height="{SCALE * height:.0f}">{body}{hits}</svg>'
 
 
-def _shorter(found: re.Match[str]) -> str:
-    return re.sub(r"(\.\d\d)\d+", r"\1", found[0])
+def _shorter(match: re.Match[str]) -> str:
+    return re.sub(r"(\.\d\d)\d+", r"\1", match[0])
 
 
-def _follows_page(found: re.Match[str]) -> str:
+def _follows_page(match: re.Match[str]) -> str:
     """A colour as a variable of the style sheet, which a dark page sets; on a light one the colour is exact."""
-    colour = found[0]
+    colour = match[0]
     return f"var(--{INK[colour]}, {colour})" if colour in INK else f"var(--s-{colour[1:]}, {colour})"

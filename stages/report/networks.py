@@ -50,8 +50,8 @@ def measured(results: Results, dataset: str | None = None, passes: str = "printe
 
 def everywhere(results: Results, *passes: str, metric: str = "accuracy", **where: Any) -> dict[str, pd.DataFrame]:
     """{set: accuracies}: of all sets that have them; NotRun where none has. passes: printed without any."""
-    found = tables.everywhere(results, "transfer", metric=metric, **where)
-    kept = {source: mine for source, rows in found.items() if len(mine := of_passes(rows, *passes))}
+    by_set = tables.everywhere(results, "transfer", metric=metric, **where)
+    kept = {source: accuracies for source, rows in by_set.items() if len(accuracies := of_passes(rows, *passes))}
     if not kept:
         raise NotRun(f"no training with passes {' or '.join(passes)}", "transfer", runnable=False)
     return kept
@@ -59,9 +59,9 @@ def everywhere(results: Results, *passes: str, metric: str = "accuracy", **where
 
 def of_passes(rows: pd.DataFrame, *passes: str) -> pd.DataFrame:
     """The rows of trainings with some of PASSES, printed without any; rows that do not say theirs are printed."""
-    known = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
-    known["passes"] = known["passes"].fillna("printed")
-    return known[known["passes"].isin(passes or ("printed",))]
+    filled = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
+    filled["passes"] = filled["passes"].fillna("printed")
+    return filled[filled["passes"].isin(passes or ("printed",))]
 
 
 def shared(split: str, dataset: str | None = None) -> float:
@@ -76,9 +76,9 @@ def mean(values: pd.Series, split: str, dataset: str | None = None) -> tuple[flo
 
 def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:
     """{accuracy, low, high, values} of the rows of one setting on one set."""
-    mine = rows[rows["split"] == split]
-    ends = mean(mine["value"], split, next(iter(mine["dataset"]), None))
-    return dict(zip(("accuracy", "low", "high", "values"), (*ends, len(mine)), strict=True))
+    trials = rows[rows["split"] == split]
+    ends = mean(trials["value"], split, next(iter(trials["dataset"]), None))
+    return dict(zip(("accuracy", "low", "high", "values"), (*ends, len(trials)), strict=True))
 
 
 def seen(rows: pd.DataFrame) -> str:
@@ -89,28 +89,28 @@ def seen(rows: pd.DataFrame) -> str:
 
 def origin(weights: str, pretrained: str | None) -> str:
     """The weights that a network starts from, and the part of ImageNet's weights that they have."""
-    said = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
-    return f"{start(weights)} ({said})" if said else start(weights)
+    part = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
+    return f"{start(weights)} ({part})" if part else start(weights)
 
 
-def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[Claim]:
+def both(*claims: Claim, items: str = "touches", verb: str = "touched") -> list[Claim]:
     """Each claim with items drawn at random, as in the thesis, and on objects left out, whose folds are the pairs.
 
-    Of a sentence of the thesis, the second is secondary: it asks whether the sentence carries over. items, done: what
+    Of a sentence of the thesis, the second is secondary: it asks whether the sentence carries over. items, verb: what
     was drawn, and what was never done to the objects.
     """
-    found = []
+    variants = []
     for claim, split in product(claims, SPLITS):
         unseen = split == "objects"
         words = {("split", split): SPLITS[split].replace("touches", items)}
         words |= {("over", "repetition"): "folds"} if unseen else {}
-        found.append(replace(
+        variants.append(replace(
             claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
-            sentence=f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence,
+            sentence=f"{claim.sentence[:-1]}, on objects never {verb} too." if unseen else claim.sentence,
             shared=partial(shared, split), phrases={**claim.phrases, **words},
             of=claim.of or (f"{claim.key}_random" if unseen and not claim.own else ""),
         ))  # fmt: skip
-    return found
+    return variants
 
 
 DARK = 55  # per cent from which a number is written in white
@@ -128,10 +128,10 @@ def draw_matrices(
     size = (side * len(columns) + 1.4, side * len(rows) + 0.8)
     figure, grid = plt.subplots(len(rows), len(columns), figsize=size, squeeze=False)
     for panels, (key, words) in zip(grid, rows.items(), strict=True):
-        mine = frame[(frame[down] == key).all(axis=1)]
+        matrices = frame[(frame[down] == key).all(axis=1)]
         for axes, value in zip(panels, columns, strict=True):
-            _draw(axes, mine[mine[across] == value], classes)
-        panels[0].set_yticks(range(count), [f"{one} {k}" for k, one in enumerate(classes, start=1)], fontsize=7.5)
+            _draw(axes, matrices[matrices[across] == value], classes)
+        panels[0].set_yticks(range(count), [f"{name} {k}" for k, name in enumerate(classes, start=1)], fontsize=7.5)
         panels[0].set_ylabel(words, fontsize=9)
     for top, bottom, words in zip(grid[0], grid[-1], columns.values(), strict=True):
         top.set_title(words, pad=6)

@@ -29,16 +29,16 @@ def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
     """Writes OUT/index.html and a folder of files a mesh below OUT/site; pages: the names of the site's other pages."""
     for path in filter(Path.is_dir, (out / "site").iterdir()):
         shutil.rmtree(path)
-    made, missing = [], dict(_refused(results))
+    exhibits, missing = [], dict(_refused(results))
     for name in results.objects:
         try:
-            made.append(exhibit_of(results, name, out / "site" / name))
+            exhibits.append(exhibit_of(results, name, out / "site" / name))
         except NotRun as error:
             missing[name] = str(error)
     links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
     more = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
     folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
-    text = build_page("Your meshes", made, missing, [f"haptic-glance gallery {folder}"], out, more)
+    text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {folder}"], out, more)
     write_text(out / "index.html", text)
 
 
@@ -47,9 +47,9 @@ def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
 
     Levels and imprints that were not made are named among the missing.
     """
-    mesh, found = results.mesh(name), results.saliency(name)
-    model = MODEL if MODEL in found else found.those_of(list(found))[0]
-    saliency, vertices = found[model], results.points(name)[model][:COUNT]
+    mesh, by_method = results.mesh(name), results.saliency(name)
+    model = MODEL if MODEL in by_method else by_method.those_of(list(by_method))[0]
+    saliency, vertices = by_method[model], results.points(name)[model][:COUNT]
     points = points_of(mesh, Detection(vertices, None, saliency, scores_of(mesh, vertices, saliency)))
     folder.mkdir(parents=True)
     write_any(folder / "saliency.ply", coloured(mesh, saliency))

@@ -145,10 +145,10 @@ def frame_html(frame: pd.DataFrame, title: str, words: str = "", bold: Iterable[
 def small_picture(path: Path, widest: int = WIDEST) -> str:
     """base64 of a picture as WebP, no wider than so many pixels. The PNG is linked beside it."""
     with Image.open(path) as opened:
-        shown = opened.convert("RGB")
-    shown.thumbnail((widest, max(widest, shown.height)), Image.Resampling.LANCZOS)
+        rgb = opened.convert("RGB")
+    rgb.thumbnail((widest, max(widest, rgb.height)), Image.Resampling.LANCZOS)
     packed = io.BytesIO()
-    shown.save(packed, "WEBP", quality=60, method=4)  # 6 takes fifteen times as long for one per cent
+    rgb.save(packed, "WEBP", quality=60, method=4)  # 6 takes fifteen times as long for one per cent
     return base64.b64encode(packed.getvalue()).decode("ascii")
 
 
@@ -187,16 +187,16 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     original, found = results.mesh(name), results.points(name)
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
     place = KDTree(full.vertices)
-    shown = [method for method in METHODS if method in found] or list(found)
+    methods = [method for method in METHODS if method in found] or list(found)
     saliency = {
         method: (label(method), vivid(values)[nearest])
         for method, values in results.saliency(name).items()
-        if method in shown
+        if method in methods
     }
     points = {
         method: (label(method), np.asarray(place.query(original.vertices[found])[1]))
         for method, found in results.strong_points(name).items()
-        if method in shown
+        if method in methods
     }
     ladders = {}
     for method in results.settings.viewer_lod_methods:

@@ -78,8 +78,8 @@ def placed(
     spread = np.ptp(rows.reindex(columns=["low", "high"]).to_numpy(float), axis=1) / (2 * NORMAL)
     resampled = qualities + off * np.nan_to_num(spread)
     share = np.mean([pareto_front(*pair, better) for pair in zip(costs, resampled, strict=True)], axis=0)
-    said = np.select([share >= CERTAIN, share > 1 - CERTAIN], [ON, PERHAPS], OFF)
-    return rows.assign(front_share=share, on_front=said)
+    words = np.select([share >= CERTAIN, share > 1 - CERTAIN], [ON, PERHAPS], OFF)
+    return rows.assign(front_share=share, on_front=words)
 
 
 def noise_of(low: pd.Series, high: pd.Series) -> np.ndarray:
@@ -114,10 +114,10 @@ def pareto_chart(
     legend gives. better: "high" for accuracies, "low" for errors. NotRun where the reference was not measured.
     """
     rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
-    known = rows.loc[rows["name"] == reference, cost]
-    if len(known) != 1 or not known.iloc[0] > 0:
+    base = rows.loc[rows["name"] == reference, cost]
+    if len(base) != 1 or not base.iloc[0] > 0:
         raise NotRun(f"the reference {reference} is not measured", "report", runnable=False)
-    unit = float(known.iloc[0])
+    unit = float(base.iloc[0])
     rows["cost_ratio"] = rows[cost] / unit
     noise = rows["noise"].to_numpy() if "noise" in rows else noise_by(clock)
     rows = placed(rows, "cost_ratio", quality, better, noise, units)
@@ -148,15 +148,15 @@ def pareto_chart(
         if not tints:
             named = _names(front if colour and marker and len(rows) > FEW else rows, quality, better)
             place_names(axes, named, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, certain, quality))
-    said, maybe = _listed(certain), _listed(rows.loc[rows["on_front"] == PERHAPS].sort_values("cost_ratio"))
+    names, maybe = _listed(certain), _listed(rows.loc[rows["on_front"] == PERHAPS].sort_values("cost_ratio"))
     moved = f"; the costs vary by {100 * np.mean(noise):.2g} %" if clock else ""
     first = f"{unit:.3g} s in the median case ({clock})" if clock else f"{unit:,.0f} {counted}"
     words = {
         "title": title,
-        "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {said}.",
+        "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {names}.",
         "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. On the line, with a dark rim: the "
         "choices that no other beats in at least 95 % of the resamples (of the units behind the "
-        f"intervals{moved}): {said}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
+        f"intervals{moved}): {names}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
         "Bars: 95 % intervals.",
     }
     return Figure(drawing, words, rows)
@@ -213,14 +213,14 @@ def _legend(axes: Axes, titles: Sequence[str]) -> None:
 def _finding(front: pd.DataFrame, quality: str) -> str:
     """The best choice, and the cheapest within its interval; front: from the cheapest to the best."""
     best = front.iloc[-1]
-    said = f"Best: {best['name']}" + (f" ({number(best[quality])})" if best[quality] else "")
+    text = f"Best: {best['name']}" + (f" ({number(best[quality])})" if best[quality] else "")
     if "low" not in front or len(front) < 2:
-        return said
+        return text
     near = front[:-1][front[quality][:-1].between(best["low"], best["high"])]
     if near.empty:
-        return said
+        return text
     share = near.iloc[0]["cost_ratio"] / best["cost_ratio"]
-    return f"{said}. In its interval, at {number(100 * share, 2)} % of its cost: {near.iloc[0]['name']}"
+    return f"{text}. In its interval, at {number(100 * share, 2)} % of its cost: {near.iloc[0]['name']}"
 
 
 def ticks(span: float) -> Locator:
@@ -242,8 +242,8 @@ def _names(rows: pd.DataFrame, quality: str, better: str) -> list[tuple[str, Spo
 
 def _lines(rows: pd.DataFrame, front: pd.DataFrame, quality: str) -> list[tuple[Spot, Spot]]:
     """The two ends of each drawn line: the intervals, and the steps of the front."""
-    known = rows.dropna(subset=["low", "high"]) if "low" in rows else rows[:0]
-    bars = [((row["cost_ratio"], row["low"]), (row["cost_ratio"], row["high"])) for _, row in known.iterrows()]
+    bounded = rows.dropna(subset=["low", "high"]) if "low" in rows else rows[:0]
+    bars = [((row["cost_ratio"], row["low"]), (row["cost_ratio"], row["high"])) for _, row in bounded.iterrows()]
     across, up = front[["cost_ratio", quality]].to_numpy().repeat(2, axis=0).T
     return [*bars, *pairwise(zip(across[1:], up[:-1], strict=True))]
 

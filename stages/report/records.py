@@ -39,24 +39,24 @@ MOST = 60  # methods or sizes that a record lists
 def record_of(item: Table | Figure, results: Results, kind: str) -> dict[str, Any]:
     """The record of an item that was just built; of a figure that was drawn in an earlier run, the one of that run."""
     if isinstance(item, Figure) and not item.drawing.axes:
-        known = {"drawn": "in an earlier run", **earlier(results, kind).get(item.name, {}), "sets": item.sets}
-        return {key: value for key, value in known.items() if key != "older"} | _older(results, known.get("files", ()))
+        past = {"drawn": "in an earlier run", **earlier(results, kind).get(item.name, {}), "sets": item.sets}
+        return {key: value for key, value in past.items() if key != "older"} | _older(results, past.get("files", ()))
     frames = [frame for parts in results.sources.values() for frame in parts]
     shown = [item.frame] if item.frame is not None else frames
     named = shown if any("method" in frame for frame in shown) else frames
-    found = {"sets": item.sets, "files": sorted(results.sources), "rows": sum(map(len, shown))}
+    record = {"sets": item.sets, "files": sorted(results.sources), "rows": sum(map(len, shown))}
     objects = next(filter(None, (_values(frames, column) for column in OBJECTS)), [])
-    found |= {"objects": len(objects), "methods": _values(named, "method")[:MOST]}
+    record |= {"objects": len(objects), "methods": _values(named, "method")[:MOST]}
     sizes = {name: _values(frames, name)[:MOST] for name in SIZES}
-    found |= _older(results, found["files"])
-    return found | {"sizes": {name: values for name, values in sizes.items() if values}}
+    record |= _older(results, record["files"])
+    return record | {"sizes": {name: values for name, values in sizes.items() if values}}
 
 
 def _values(frames: Iterable[pd.DataFrame], column: str) -> list[str]:
     """The different values of a column, as text, in order."""
-    found = {f"{value:g}" if isinstance(value, float) else str(value)
+    texts = {f"{value:g}" if isinstance(value, float) else str(value)
              for frame in frames if column in frame for value in frame[column].dropna().unique()}  # fmt: skip
-    return sorted(found)
+    return sorted(texts)
 
 
 def earlier(results: Results, kind: str) -> dict[str, Any]:
@@ -68,8 +68,8 @@ def earlier(results: Results, kind: str) -> dict[str, Any]:
 def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
     """Writes OUT/KIND/records.json of each kind, and OUT/provenance.json of the files of rows that they name."""
     files: set[str] = set()
-    for kind, found in built.items():
-        records = {item.name: item.record for item in found.items}
+    for kind, batch in built.items():
+        records = {item.name: item.record for item in batch.items}
         files |= {name for record in records.values() for name in record.get("files", ())}
         _write_parts(out / kind / FILE, {"items": records})
     rows = {name: _file(results, name) for name in files}
@@ -78,12 +78,12 @@ def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
 
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that the project asks for, as far as they are installed."""
-    found = {"python": python_version()}
+    packages = {"python": python_version()}
     for requirement in requires("haptic-glance") or ():
         name = re.split(r"[^\w.-]", requirement)[0].lower()
         with suppress(PackageNotFoundError):
-            found[name] = version(name)
-    return found
+            packages[name] = version(name)
+    return packages
 
 
 def _write_parts(path: Path, parts: Mapping[str, Mapping[str, Any]]) -> None:
@@ -117,10 +117,10 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
     dataset, _, stage = name.partition("/")
     path = results.workspace.build / "code" / stage
     today = sha256(path)[:DIGITS] if dataset != BENCH and path.is_file() else ""
-    known = results.once("provenance", lambda: _provenance(results)).get(name, {})
+    entry = results.once("provenance", lambda: _provenance(results)).get(name, {})
     in_run = dataset in results.workspace.params.get("graph", {}).get(stage, ()) and today
-    same = not in_run and known.get("sha256") == sha256(path_of(results, name))[:DIGITS]
-    return known.get("code", "") if same else today, today
+    same = not in_run and entry.get("sha256") == sha256(path_of(results, name))[:DIGITS]
+    return entry.get("code", "") if same else today, today
 
 
 def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
@@ -130,10 +130,10 @@ def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
     """
 
     def is_older(name: str) -> bool:
-        made, today = results.once(("code", name), lambda: code_of(results, name))
+        code, today = results.once(("code", name), lambda: code_of(results, name))
         again = rechecked(results, name)
         same = again.get("code") == today and agrees(again)
-        return bool(made and today) and made != today and not same
+        return bool(code and today) and code != today and not same
 
     older = [name for name in names if is_older(name)]
     return {"older": older} if older else {}
@@ -142,8 +142,8 @@ def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
 def rechecked(results: Results, name: str) -> dict[str, Any]:
     """The outcome of the last `stages.recheck` of a file of rows; empty where the rows have changed since."""
     path = results.workspace.published / "measurements" / RECHECKED
-    known = results.once("rechecked", lambda: read_json(path) if path.is_file() else {}).get(name, {})
-    return known if known.get("sha256") == sha256(path_of(results, name))[:DIGITS] else {}
+    outcome = results.once("rechecked", lambda: read_json(path) if path.is_file() else {}).get(name, {})
+    return outcome if outcome.get("sha256") == sha256(path_of(results, name))[:DIGITS] else {}
 
 
 def _provenance(results: Results) -> dict[str, dict[str, str]]:
@@ -154,16 +154,16 @@ def _provenance(results: Results) -> dict[str, dict[str, str]]:
 
 def _file(results: Results, name: str) -> dict[str, str]:
     path = path_of(results, name)
-    found = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
+    entry = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
     dataset, _, stage = name.partition("/")
     if again := rechecked(results, name):
         rows = len(results.rows(stage, dataset))
-        found["rechecked"] = (
+        entry["rechecked"] = (
             f"{again['close']} of {again['compared']} compared rows, of {rows} in all, agree with code {again['code']}"
         )
     if dataset != BENCH and "seconds" in results.rows(stage, dataset):
-        found["clock"] = results.clock(stage, dataset)
-    return {key: value for key, value in found.items() if value}
+        entry["clock"] = results.clock(stage, dataset)
+    return {key: value for key, value in entry.items() if value}
 
 
 @cache
@@ -201,13 +201,13 @@ def write_headlines(out: Path, verdicts: Mapping[str, int] | None) -> None:
 
     verdicts: None for a folder of a person's own meshes, which the claims of the thesis are not about.
     """
-    found: dict[str, float] = {}
+    headlines: dict[str, float] = {}
     for name, (file, where, column) in HEADLINES.items():
         with suppress(LookupError):
-            found[name] = float(rows_of(out / f"{file}.csv", where)[column].iloc[0])
+            headlines[name] = float(rows_of(out / f"{file}.csv", where)[column].iloc[0])
     if verdicts is not None:
-        found |= {f"claims_{word}": verdicts.get(word, 0) for word in ("supported", "contradicted", "open")}
-    write_json(out / HEADLINES_FILE, found)
+        headlines |= {f"claims_{word}": verdicts.get(word, 0) for word in ("supported", "contradicted", "open")}
+    write_json(out / HEADLINES_FILE, headlines)
 
 
 COMPOSE = "python -m stages.compose"
@@ -223,8 +223,8 @@ def switch(conf: Path, dataset: str, stage: str) -> str:
     if dataset in defaults and stage in _read(conf / f"data/{dataset}.yaml").get("stages", ()):
         return ""
     for path in sorted((conf / "experiment").glob("*.yaml")):
-        chosen = _read(path)
-        if dataset in chosen.get("sets", ()) and stage in chosen.get("stages", [stage]):
+        experiment = _read(path)
+        if dataset in experiment.get("sets", ()) and stage in experiment.get("stages", [stage]):
             return f"experiment={path.stem}"
     return f"'sets=[{dataset}]'"
 
@@ -235,7 +235,7 @@ def command(conf: Path, stage: str, sets: Iterable[str]) -> str:
     together: dict[str, list[str]] = {}
     for name in sets:
         together.setdefault(switch(conf, name, stage), []).append(f"{stage}@{name}")
-    parts = (f"{COMPOSE} {chosen}".rstrip() + f" && dvc repro {' '.join(names)}" for chosen, names in together.items())
+    parts = (f"{COMPOSE} {option}".rstrip() + f" && dvc repro {' '.join(names)}" for option, names in together.items())
     return " && ".join(parts) + " report"
 
 

@@ -60,30 +60,30 @@ def dataset_text(name: str) -> str:
 class NotRun(Exception):
     """A measurement that is absent; the message says what is missing and, where a run would help, of which stage."""
 
-    def __init__(self, what: str, stage: str, runnable: bool = True) -> None:
-        super().__init__(f"{what}: run `dvc repro {stage}`" if runnable else what)
+    def __init__(self, message: str, stage: str, runnable: bool = True) -> None:
+        super().__init__(f"{message}: run `dvc repro {stage}`" if runnable else message)
         self.runnable = runnable
 
 
-def some(found: Found, what: str, stage: str, runnable: bool = True) -> Found:
-    """Returns the findings; raises NotRun of `what` where there are none."""
-    if not len(found):
-        raise NotRun(what, stage, runnable)
-    return found
+def some(findings: Found, message: str, stage: str, runnable: bool = True) -> Found:
+    """Returns the findings; raises NotRun of `message` where there are none."""
+    if not len(findings):
+        raise NotRun(message, stage, runnable)
+    return findings
 
 
-def there(path: Path, what: str, stage: str, runnable: bool = True) -> Path:
-    """The path of a file; NotRun of `what` where it is not there."""
+def there(path: Path, message: str, stage: str, runnable: bool = True) -> Path:
+    """The path of a file; NotRun of `message` where it is not there."""
     if not path.exists():
-        raise NotRun(what, stage, runnable)
+        raise NotRun(message, stage, runnable)
     return path
 
 
 class ByMethod(dict):
     """The findings of a stage by method; a method that it did not run raises NotRun."""
 
-    def __init__(self, stage: str, found: dict[str, np.ndarray]) -> None:
-        super().__init__(found)
+    def __init__(self, stage: str, findings: dict[str, np.ndarray]) -> None:
+        super().__init__(findings)
         self.stage = stage
 
     def __missing__(self, method: str) -> np.ndarray:
@@ -91,8 +91,8 @@ class ByMethod(dict):
 
     def those_of(self, methods: Iterable[str]) -> list[str]:
         """The methods that were run, in the order given; NotRun where there is none."""
-        found = [method for method in methods if method in self]
-        return found or [self[method] for method in methods]
+        names = [method for method in methods if method in self]
+        return names or [self[method] for method in methods]
 
 
 RECENT = 32  # answers that are kept: the two sides of a claim are asked for again and again
@@ -124,9 +124,9 @@ class Results:
     @classmethod
     def published(cls, workspace: Workspace, settings: Params) -> "Results":
         """The published results of a root, whatever its params.yaml switches on."""
-        found = cls(workspace, settings)
-        found.reports, found.sets = workspace.published, load_params(conf_folder() / "config.yaml")["sets"]
-        return found
+        results = cls(workspace, settings)
+        results.reports, results.sets = workspace.published, load_params(conf_folder() / "config.yaml")["sets"]
+        return results
 
     def datasets(self, stage: str) -> list[str]:
         """The sets that have rows of a stage, `in_order`."""
@@ -148,7 +148,7 @@ class Results:
         none is left; with the stage's own note on why it left them out, where there is one.
         """
         dataset = self._first(stage, dataset)
-        query = stage, dataset, *((column, wanted is None, *listed(wanted)) for column, wanted in where.items())
+        query = stage, dataset, *((column, value is None, *listed(value)) for column, value in where.items())
         if query not in self._recent:
             self._recent[query] = self._filtered(stage, dataset, where)
             if len(self._recent) > RECENT:
@@ -161,19 +161,19 @@ class Results:
     def _filtered(self, stage: str, dataset: str, where: Mapping[str, object]) -> pd.DataFrame:
         """The rows of `rows`; each column's values are compared one time, not its cells."""
         frame = self._read(stage, dataset)
-        chosen = np.arange(len(frame))
-        for column, wanted in where.items():
+        positions = np.arange(len(frame))
+        for column, value in where.items():
             if column in frame:
-                chosen = chosen[self._accepted(stage, dataset, column, wanted, chosen)]
-                if len(chosen):
+                positions = positions[self._accepted(stage, dataset, column, value, positions)]
+                if len(positions):
                     continue
             notes = self.notes(stage, dataset, **where)
             if notes:
                 raise NotRun("; ".join(notes[:2]), stage, runnable=False)
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
-            raise NotRun(f"{column} {either(wanted)} is not among those that {stage} measured", stage, runnable=False)
-        return frame.iloc[chosen] if where else frame
+            raise NotRun(f"{column} {either(value)} is not among those that {stage} measured", stage, runnable=False)
+        return frame.iloc[positions] if where else frame
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
         """As `rows`, only those that have a value; NotRun where there is none."""
@@ -192,9 +192,9 @@ class Results:
         """
         rows = self._read(stage, dataset)
         timed = rows[rows["seconds"].notna()] if "seconds" in rows else rows
-        said = timed.get("clock", pd.Series(dtype=str)).dropna()
-        if len(said) and len(said) == len(timed):
-            return said.iloc[0]
+        clocks = timed.get("clock", pd.Series(dtype=str)).dropna()
+        if len(clocks) and len(clocks) == len(timed):
+            return clocks.iloc[0]
         return CLOCK if stage in ALWAYS_PROCESSOR else WALL
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
@@ -204,10 +204,10 @@ class Results:
         if "note" not in frame or "value" not in frame:
             return []
         noted = (frame["value"].isna() & frame["note"].notna()).to_numpy()
-        for column, wanted in where.items():
+        for column, value in where.items():
             if column in frame:
                 empty = self._accepted(stage, dataset, column, None)
-                noted = noted & (self._accepted(stage, dataset, column, wanted) | empty)
+                noted = noted & (self._accepted(stage, dataset, column, value) | empty)
         return list(dict.fromkeys(frame.loc[noted, "note"]))
 
     def left_out(self, stage: str, dataset: str | None = None, **where: object) -> str:
@@ -215,7 +215,7 @@ class Results:
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
     def _accepted(
-        self, stage: str, dataset: str, column: str, wanted: object, among: np.ndarray | slice = slice(None)
+        self, stage: str, dataset: str, column: str, value: object, among: np.ndarray | slice = slice(None)
     ) -> np.ndarray:
         """(n,) bool: which rows of a stage on one set have a wanted value in a column; compares each value one time.
 
@@ -224,8 +224,8 @@ class Results:
         codes, values = self.once(
             ("values", stage, dataset, column), lambda: pd.factorize(self._read(stage, dataset)[column])
         )
-        known = np.zeros(len(values), dtype=bool) if wanted is None else values.isin(listed(wanted))
-        return np.append(known, wanted is None)[codes[among]]  # the code of an empty cell is -1
+        accepted = np.zeros(len(values), dtype=bool) if value is None else values.isin(listed(value))
+        return np.append(accepted, value is None)[codes[among]]  # the code of an empty cell is -1
 
     def _first(self, stage: str, dataset: str | None) -> str:
         return dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
@@ -253,10 +253,10 @@ class Results:
         """Rows of reports/bench/NAME.csv (or .csv.gz): what `make bench` measured; times are ratios to a named peer."""
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
-        what = f"no bench/{name}.csv: `make bench` writes it"
-        found = self._table(there(self.bench_path(name), what, BENCH, runnable=False), read_table)
-        self.sources.setdefault(f"{BENCH}/{name}", []).append(found)
-        return found
+        message = f"no bench/{name}.csv: `make bench` writes it"
+        rows = self._table(there(self.bench_path(name), message, BENCH, runnable=False), read_table)
+        self.sources.setdefault(f"{BENCH}/{name}", []).append(rows)
+        return rows
 
     def bench_path(self, name: str) -> Path:
         """reports/bench/NAME.csv, or .csv.gz where the table is compressed."""
@@ -291,11 +291,11 @@ class Results:
 
     def folder(self, stage: str, dataset: str | None = None) -> Path:
         """data/SET/STAGE; NotRun when it is not there. dataset: None for the first set that has it."""
-        found = self.in_order({path.parent.name for path in self.data.glob(f"*/{stage}") if path.is_dir()})
-        if dataset not in found and (dataset or not found):
+        datasets = self.in_order({path.parent.name for path in self.data.glob(f"*/{stage}") if path.is_dir()})
+        if dataset not in datasets and (dataset or not datasets):
             raise NotRun(f"no data/{dataset or 'SET'}/{stage}", stage)
-        self.read.add(dataset or found[0])
-        return self.data / (dataset or found[0]) / stage
+        self.read.add(dataset or datasets[0])
+        return self.data / (dataset or datasets[0]) / stage
 
     def table(self, stage: str, name: str, dataset: str | None = None) -> pd.DataFrame:
         """A side table of a stage, data/SET/STAGE/NAME."""
@@ -315,9 +315,9 @@ class Results:
     def choose(self, preferred: Sequence[str], count: int, stage: str = "salient_points") -> list[str]:
         """Up to `count` objects that `stage` has data for: the preferred ones first, then by the alphabet."""
         folder = self.folder(stage)
-        ready = [name for name in self.objects if (folder / f"{name}.npz").exists() or files_below(folder / name)]
-        some(ready, f"no objects in {stage}", stage)
-        return sorted(ready, key=lambda name: [*preferred, name].index(name))[:count]
+        names = [name for name in self.objects if (folder / f"{name}.npz").exists() or files_below(folder / name)]
+        some(names, f"no objects in {stage}", stage)
+        return sorted(names, key=lambda name: [*preferred, name].index(name))[:count]
 
     def mesh(self, name: str, dataset: str | None = None) -> Mesh:
         """The original mesh of an object."""
@@ -337,29 +337,29 @@ class Results:
 
     def imprints(self, name: str, dataset: str | None = None) -> ByMethod:
         """dict method -> (k, rows, cols) imprints in 0..1."""
-        found = read_imprints(self._path("imprints", name, dataset))
-        return ByMethod("imprints", {method: touches.images for method, touches in found.items()})
+        by_method = read_imprints(self._path("imprints", name, dataset))
+        return ByMethod("imprints", {method: touches.images for method, touches in by_method.items()})
 
     def maps(
-        self, name: str, wanted: Sequence[str] | None = None, dataset: str | None = None
+        self, name: str, channels: Sequence[str] | None = None, dataset: str | None = None
     ) -> tuple[np.ndarray, np.ndarray, list[Viewpoint], list[str]]:
         """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of an object.
 
-        wanted: the channels, in this order; NotRun where one was not computed. None: those that were.
+        channels: the channels, in this order; NotRun where one was not computed. None: those that were.
         """
         maps, mask, viewpoints, stored = read_maps(self._path("conspicuity", name, dataset))
-        if wanted is None:
+        if channels is None:
             return maps, mask, viewpoints, stored
-        missing = [channel for channel in wanted if channel not in stored]
+        missing = [channel for channel in channels if channel not in stored]
         if missing:
             raise NotRun(f"no maps of {', '.join(missing)}", "conspicuity", runnable=False)
-        return maps[:, [stored.index(channel) for channel in wanted]], mask, viewpoints, list(wanted)
+        return maps[:, [stored.index(channel) for channel in channels]], mask, viewpoints, list(channels)
 
     def ground_truth(self, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
         """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training)."""
         path = self.folder("weights", dataset) / "ground_truth" / f"{name}.npz"
-        what = f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run"
-        return read_arrays(there(path, what, "weights"))
+        message = f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run"
+        return read_arrays(there(path, message, "weights"))
 
     def learned(self, name: str, mesh: Mesh, dataset: str | None = None):
         """The weights that may be applied to this object: a
@@ -370,17 +370,17 @@ class Results:
 
     def with_ground_truth(self, preferred: Sequence[str], count: int) -> list[str]:
         """Up to `count` objects that have ground truth and salient points: the preferred ones first."""
-        ready = {path.stem for path in (self.folder("weights") / "ground_truth").glob("*.npz")}
-        some(ready, "no object has ground truth", "weights")
-        found = [name for name in self.choose(preferred, len(self.objects)) if name in ready]
-        return some(found, "no object with ground truth has salient points", "salient_points")[:count]
+        truths = {path.stem for path in (self.folder("weights") / "ground_truth").glob("*.npz")}
+        some(truths, "no object has ground truth", "weights")
+        names = [name for name in self.choose(preferred, len(self.objects)) if name in truths]
+        return some(names, "no object with ground truth has salient points", "salient_points")[:count]
 
     def lods(self, name: str, method: str, dataset: str | None = None) -> list[tuple[str, Mesh]]:
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
         paths = [path for path in files_below(self.folder("lod", dataset) / name) if path.match(f"{method}_*.npz")]
         some(paths, f"no lod/{name}/{method}_*.npz", "lod")
-        found = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
-        return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))
+        levels = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
+        return sorted(levels, key=lambda item: (-len(item[1].faces), item[0]))
 
     def in_order(self, names: set[str]) -> list[str]:
         """Names of data sets: those that are switched on, then the others by the alphabet, but for one's own meshes."""
@@ -392,11 +392,11 @@ class Results:
         return there(path, f"no {path.name} in data/{path.parent.parent.name}/{stage}", stage)
 
 
-def listed(wanted: object) -> list:
+def listed(value: object) -> list:
     """One value or several, as a list."""
-    return list(wanted) if isinstance(wanted, list | tuple | set | frozenset) else [wanted]
+    return list(value) if isinstance(value, list | tuple | set | frozenset) else [value]
 
 
-def either(wanted: object) -> str:
+def either(value: object) -> str:
     """One value or several, in words: `knn or svm`."""
-    return " or ".join(map(str, listed(wanted)))
+    return " or ".join(map(str, listed(value)))

@@ -73,31 +73,31 @@ ANSWER = '<li><h3>{asked}</h3><p>{answer} <a href="{address}">{kind}</a></p></li
 def findings_html(claims: pd.DataFrame, differences: pd.DataFrame) -> str:
     """The cards of those FINDINGS that were measured."""
     rows = {str(row.key): row for row in claims.dropna(subset=["low"]).itertuples()}
-    cards = [_card(one, rows[one.key], differences) for one in FINDINGS if one.key in rows]
+    cards = [_card(finding, rows[finding.key], differences) for finding in FINDINGS if finding.key in rows]
     if not cards:
         return ""
     thesis = sentences(claims[claims["section"] != "ours"])
-    found = counts(thesis)
-    rest = UNCLEAR.format(count=len(thesis), untestable=found[UNTESTABLE] + found[DEPENDS], **found)
-    return f'<section id="findings"><h2>Five findings</h2><ul class="cards">{"".join(cards)}{rest}</ul></section>\n'
+    tally = counts(thesis)
+    unclear = UNCLEAR.format(count=len(thesis), untestable=tally[UNTESTABLE] + tally[DEPENDS], **tally)
+    return f'<section id="findings"><h2>Five findings</h2><ul class="cards">{"".join(cards)}{unclear}</ul></section>\n'
 
 
-def _card(one: Finding, row, differences: pd.DataFrame) -> str:
-    title = one.title if row.verdict == one.verdict else f"{row.claim} ({row.verdict})"
-    mean, *ends = (one.of(value) for value in (row.effect, row.low, row.high))
+def _card(finding: Finding, row, differences: pd.DataFrame) -> str:
+    title = finding.title if row.verdict == finding.verdict else f"{row.claim} ({row.verdict})"
+    mean, *ends = (finding.of(value) for value in (row.effect, row.low, row.high))
     low, high = sorted(ends)
-    figure = with_interval(mean, low, high, places=one.places)
-    signed = "+" if mean > 0 and one.shown == "" else ""
-    found = differences[(differences["key"] == one.key) & differences["judged"]]
-    alt = f"{title}: {figure} {one.unit}; a dot for each of {len(found)} {row.over}"
-    values = dict(zip(found["pair"].astype(str), map(one.of, found["difference"]), strict=True))
-    drawing = strip(values, (mean, low, high), one.of(0.0), one.unit)
-    chart = box("wide", f"{title}, chart", vector(drawing, one.key, alt)[0])
-    links = f'<a href="site/claims.html#{one.key}">The claim</a> '
-    links += f'<a href="site/{one.topic}.html">{one.topic.capitalize()}</a>'
+    figure = with_interval(mean, low, high, places=finding.places)
+    signed = "+" if mean > 0 and finding.shown == "" else ""
+    pairs = differences[(differences["key"] == finding.key) & differences["judged"]]
+    alt = f"{title}: {figure} {finding.unit}; a dot for each of {len(pairs)} {row.over}"
+    values = dict(zip(pairs["pair"].astype(str), map(finding.of, pairs["difference"]), strict=True))
+    drawing = strip(values, (mean, low, high), finding.of(0.0), finding.unit)
+    chart = box("wide", f"{title}, chart", vector(drawing, finding.key, alt)[0])
+    links = f'<a href="site/claims.html#{finding.key}">The claim</a> '
+    links += f'<a href="site/{finding.topic}.html">{finding.topic.capitalize()}</a>'
     return (
-        f'<li><h3>{escape(title)}</h3><p class="figure"><strong>{signed}{figure}</strong> {escape(one.unit)}</p>{chart}'
-        f'<p class="help">{row.pairs} {escape(row.over)}, 95 % interval. {links}</p></li>'
+        f'<li><h3>{escape(title)}</h3><p class="figure"><strong>{signed}{figure}</strong> {escape(finding.unit)}</p>'
+        f'{chart}<p class="help">{row.pairs} {escape(row.over)}, 95 % interval. {links}</p></li>'
     )
 
 
@@ -129,25 +129,25 @@ def questions(reports: Path, link: Callable[[str, str], str]) -> list[tuple[str,
 
     link: from the first source of an answer, (KIND/NAME or claims, which row), to the address of its table.
     """
-    found = []
-    for asked, answer in re.findall(r"^# (.+)\n\n((?:.+\n?)+)", part("questions.md"), flags=re.MULTILINE):
+    answers = []
+    for question, answer in re.findall(r"^# (.+)\n\n((?:.+\n?)+)", part("questions.md"), flags=re.MULTILINE):
         try:
             text, sources = filled(" ".join(answer.split()), reports)
         except LookupError:
             continue
-        found.append((asked, prose(text), link(*sources[0])))
-    return found
+        answers.append((question, prose(text), link(*sources[0])))
+    return answers
 
 
-def questions_html(found: Sequence[tuple[str, str, str]]) -> str:
+def questions_html(answers: Sequence[tuple[str, str, str]]) -> str:
     """The section of questions, each answered in a sentence with a link to its table."""
-    kinds = ("Claim" if CLAIMS in address else "Table" for _, _, address in found)
+    kinds = ("Claim" if CLAIMS in address else "Table" for _, _, address in answers)
     items = (
-        ANSWER.format(asked=escape(asked), answer=answer, address=address, kind=kind)
-        for (asked, answer, address), kind in zip(found, kinds, strict=True)
+        ANSWER.format(asked=escape(question), answer=answer, address=address, kind=kind)
+        for (question, answer, address), kind in zip(answers, kinds, strict=True)
     )
     section = f'<section id="questions"><h2>What people ask</h2><ul class="cards two">{"".join(items)}</ul></section>\n'
-    return section if found else ""
+    return section if answers else ""
 
 
 HOME, FOLDER = "index.html", "site"
@@ -183,9 +183,9 @@ def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) 
 def page(names: Sequence[str], name: str, lead: str, main: str, scripts: Sequence[str]) -> str:
     """A whole page; names: of all pages but the front page, which has none itself."""
     up, down = ("../", "") if name else ("", f"{FOLDER}/")
-    addresses = {f"{up}{HOME}": "Haptic Glance"} | {f"{down}{other}.html": other.capitalize() for other in names}
-    here = f"{name}.html" if name else HOME
-    mark = {here: ' aria-current="page"'}
+    addresses = {f"{up}{HOME}": "Haptic Glance"} | {f"{down}{topic}.html": topic.capitalize() for topic in names}
+    current = f"{name}.html" if name else HOME
+    mark = {current: ' aria-current="page"'}
     links = (f'<a href="{address}"{mark.get(address, "")}>{text}</a>' for address, text in addresses.items())
     words = {
         "style": part("page.css") + part("site.css"),
@@ -208,24 +208,24 @@ def topic_mains(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path)
             yield name_of(module), main
 
 
-def topic_main(module: ModuleType, parts: dict[str, Any], mine: Sequence[Table | Figure], out: Path) -> str:
+def topic_main(module: ModuleType, parts: dict[str, Any], items: Sequence[Table | Figure], out: Path) -> str:
     """The findings of a topic, its claims, charts and tables; those of sets that are off can be unfolded.
 
     out: the folder whose tables, charts and claims are written already; the figures of what was found are theirs.
     """
     claims = parts["claims"][parts["claims"]["key"].isin([claim.key for claim in module.CLAIMS])]
-    others = [item for item in mine if item.sets and not set(item.sets) & set(parts["sets"])]
-    if not mine and claims.empty:
+    others = [item for item in items if item.sets and not set(item.sets) & set(parts["sets"])]
+    if not items and claims.empty:
         return ""
-    found = [] if parts["own"] else findings(module, out)  # which are about other data sets
-    text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in found)
+    paragraphs = [] if parts["own"] else findings(module, out)  # which are about other data sets
+    text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in paragraphs)
     text = f'<section id="found" class="found"><h2>What was found</h2>{text}</section>\n' if text else ""
-    shown = [item for item in mine if item not in others]
+    shown = [item for item in items if item not in others]
     if len(claims):
-        said = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
-        text += f'<p>{len(claims)} <a href="{CLAIMS}.html">claims</a>: {said}.</p>\n'
+        verdicts = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
+        text += f'<p>{len(claims)} <a href="{CLAIMS}.html">claims</a>: {verdicts}.</p>\n'
     contents = "".join(f'<li><a href="#{anchor(item)}">{escape(item.title)}</a></li>' for item in [*shown, *others])
-    text += f'<nav aria-label="On this page" class="contents"><ul>{contents}</ul></nav>\n' if len(mine) > 2 else ""
+    text += f'<nav aria-label="On this page" class="contents"><ul>{contents}</ul></nav>\n' if len(items) > 2 else ""
     text += items_html(shown)
     if others:
         sets = ", ".join(dict.fromkeys(dataset_text(name) for item in others for name in item.sets))
@@ -245,29 +245,29 @@ def items_html(items: Sequence[Table | Figure]) -> str:
 def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, str], out: Path) -> str:
     """The text of the front page below its head."""
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
-    drawn = {item.name: item for item in items if isinstance(item, Figure)}
+    figures = {item.name: item for item in items if isinstance(item, Figure)}
     topics = {f"{item.paths[0].parent.name}/{item.name}": item for item in items}
-    own, not_run, meshes = parts["own"], parts["not_run"], parts["meshes"]
+    own_meshes, not_run, meshes = parts["own"], parts["not_run"], parts["meshes"]
 
     def link(source: str, where: str) -> str:
         if source == CLAIMS:
             return f"{FOLDER}/{CLAIMS}.html#{where.partition('=')[2]}"
         return f"{FOLDER}/{topics[source].topic}.html#{anchor(topics[source])}"
 
-    chart = next((drawn[name] for name in CHARTS if name in drawn), None)
+    chart = next((figures[name] for name in CHARTS if name in figures), None)
     partly = {f"tables/{item.name}": "in part, as its cells say" for item in parts["tables"].items if lacks_cells(item)}
     reasons: dict[str, list[str]] = {}
     for name, why in (not_run | partly).items():
         reasons.setdefault(why, []).append(f"<code>{escape(name)}</code>")
     missing = "".join(f"<li>{', '.join(names)}: {prose(why)}</li>" for why, names in reasons.items())
     words = {
-        "heading": "Your meshes" if own else "The pipeline on one object",
+        "heading": "Your meshes" if own_meshes else "The pipeline on one object",
         "what": prose(" ".join(WHAT.split())),
         "dataset": prose(parts["dataset"]),
-        "pictures": "".join(image(drawn[name], WIDE) for name in parts["first"] if name in drawn),
-        "findings": "" if own else findings_html(parts["claims"], parts["differences"]),
-        "questions": "" if own else questions_html(questions(out, link)),
-        "chart": "" if own or chart is None else chart_html(chart),
+        "pictures": "".join(image(figures[name], WIDE) for name in parts["first"] if name in figures),
+        "findings": "" if own_meshes else findings_html(parts["claims"], parts["differences"]),
+        "questions": "" if own_meshes else questions_html(questions(out, link)),
+        "chart": "" if own_meshes or chart is None else chart_html(chart),
         "viewer": part("viewer.html") if meshes else f"<p>not run: {escape(not_run.get('viewer', ''))}</p>",
         "meshes": script_json(meshes) if meshes else "null",
         "topics": "".join(

@@ -35,11 +35,11 @@ def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: floa
     For values within 0..top, such as rates and errors: the interval is cut there. Seconds are the median, since the
     first piece of work of a process also loads its libraries.
     """
-    found, names = [], (*by, "mean", "low", "high", "values", "seconds")
+    summaries, names = [], (*by, "mean", "low", "high", "values", "seconds")
     for key, rows in grouped(frame.dropna(subset=["value"]), by):
         numbers = (*within(over_items(rows), shared, top=top), len(rows), rows["seconds"].median())
-        found.append(dict(zip(names, (*key, *numbers), strict=True)))
-    return found
+        summaries.append(dict(zip(names, (*key, *numbers), strict=True)))
+    return summaries
 
 
 def scaled(rows: pd.DataFrame, scaling: str = TRAINING) -> pd.DataFrame:
@@ -50,12 +50,12 @@ def scaled(rows: pd.DataFrame, scaling: str = TRAINING) -> pd.DataFrame:
 def with_means(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows, and behind them the means over the classifiers of MEANS where each of these was run."""
     columns = ("dataset", "set", "repetition", "group", "method", "variant", "split", "metric", "scaling")
-    keys, found = [name for name in columns if name in rows], [rows]
+    keys, parts = [name for name in columns if name in rows], [rows]
     for name, classifiers in MEANS.items():
-        own = rows[rows["classifier"].isin(classifiers)].groupby(keys, dropna=False, sort=False)
-        means = own.agg({"value": "mean", "classifier": "nunique"}).reset_index()
-        found.append(means[means["classifier"] == len(classifiers)].assign(classifier=name))
-    return pd.concat(found, ignore_index=True)
+        groups = rows[rows["classifier"].isin(classifiers)].groupby(keys, dropna=False, sort=False)
+        means = groups.agg({"value": "mean", "classifier": "nunique"}).reset_index()
+        parts.append(means[means["classifier"] == len(classifiers)].assign(classifier=name))
+    return pd.concat(parts, ignore_index=True)
 
 
 def over_items(rows: pd.DataFrame) -> pd.Series:
@@ -132,20 +132,20 @@ def percent(share: float, places: int = 0) -> str:
     return f"{100 * share:z.{places}f}" if share == share else "–"
 
 
-def everywhere(results: Results, stage: str, what: str = "", **where: object) -> dict[str, pd.DataFrame]:
+def everywhere(results: Results, stage: str, message: str = "", **where: object) -> dict[str, pd.DataFrame]:
     """{set: its rows as `Results.measured` reads them}: of all sets that have such rows.
 
-    Raises NotRun where none has: of `what`, or as the last set that was looked at.
+    Raises NotRun where none has: of `message`, or as the last set that was looked at.
     """
-    found, absent = {}, NotRun(what or f"no measurements of {stage}", stage)
+    by_set, absent = {}, NotRun(message or f"no measurements of {stage}", stage)
     for dataset in results.datasets(stage):
         try:
-            found[dataset] = results.measured(stage, dataset, **where)
+            by_set[dataset] = results.measured(stage, dataset, **where)
         except NotRun as missing:
-            absent = absent if what else missing
-    if not found:
+            absent = absent if message else missing
+    if not by_set:
         raise absent
-    return found
+    return by_set
 
 
 WORDS = ("not run", "infeasible", "")  # that stand in columns of numbers
@@ -234,5 +234,5 @@ class Ranking:
 
 def leading(cell: str) -> float:
     """The first number of a cell; NaN of one that starts with a word or a dash."""
-    found = FIRST.match(cell)
-    return float(found[1].replace(",", "").replace("−", "-")) if found else np.nan
+    match = FIRST.match(cell)
+    return float(match[1].replace(",", "").replace("−", "-")) if match else np.nan

@@ -35,8 +35,8 @@ def check(stage: str) -> Callable[[Check], Check]:
 
 def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
-    known = CHECKS.get(stage)
-    return known(results, stage, dataset, rows) if known else pd.Series("", index=rows.index)
+    checker = CHECKS.get(stage)
+    return checker(results, stage, dataset, rows) if checker else pd.Series("", index=rows.index)
 
 
 @check("lod")
@@ -46,9 +46,9 @@ def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.Dat
         return pd.Series("", index=rows.index)
 
     def of_all() -> pd.Series:
-        every = results.rows(stage, dataset)
-        found = invalid_units(every).reindex(pd.MultiIndex.from_frame(every[UNIT])).fillna("")
-        return pd.Series(found.to_numpy(), index=every.index, dtype=object)
+        all_rows = results.rows(stage, dataset)
+        reasons = invalid_units(all_rows).reindex(pd.MultiIndex.from_frame(all_rows[UNIT])).fillna("")
+        return pd.Series(reasons.to_numpy(), index=all_rows.index, dtype=object)
 
     return results.once(("invalid units", dataset), of_all)[rows.index]
 
@@ -59,20 +59,20 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
     """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
 
     def of_all() -> pd.Series:
-        every = results.rows(stage, dataset)
-        guess = pd.Series(float("nan"), index=every.index)
-        if "group" in every:
-            guess = 1 / every["group"].map(
+        all_rows = results.rows(stage, dataset)
+        guess = pd.Series(float("nan"), index=all_rows.index)
+        if "group" in all_rows:
+            guess = 1 / all_rows["group"].map(
                 lambda group: NUMBERS.get(str(group).partition("_")[0])
             )  # four of four_drawn
-        share = _beside(results, stage, dataset, every, "commonest_share")
-        found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
-        if share.notna().any() and "classifier" in every:  # an older run counted the answers of some trials alone
-            narrow = every["classifier"].eq(DEAF) & (every["scaling"] != WIDE if "scaling" in every else True)
-            found[share.isna() & narrow & every["metric"].eq("accuracy")] = UNKNOWN
-        found[_below(every, guess)] = GUESSING
-        found[_whole(every)] = NOTHING_OUT
-        return found
+        share = _beside(results, stage, dataset, all_rows, "commonest_share")
+        reasons = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
+        if share.notna().any() and "classifier" in all_rows:  # an older run counted the answers of some trials alone
+            narrow = all_rows["classifier"].eq(DEAF) & (all_rows["scaling"] != WIDE if "scaling" in all_rows else True)
+            reasons[share.isna() & narrow & all_rows["metric"].eq("accuracy")] = UNKNOWN
+        reasons[_below(all_rows, guess)] = GUESSING
+        reasons[_whole(all_rows)] = NOTHING_OUT
+        return reasons
 
     return results.once(("several answers", stage, dataset), of_all)[rows.index]
 
@@ -102,8 +102,8 @@ def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFra
     """Accuracies on kinds of pixels where an SVM is right less often than an answer of "background" for all of them."""
     if "background_alone" not in rows or not rows["metric"].eq("accuracy").all():
         return pd.Series("", index=rows.index)
-    every = results.rows(stage, dataset, metric="accuracy")
-    means = every.groupby(["training", "validation", "area"])[["value", "background_alone"]].mean()
+    all_rows = results.rows(stage, dataset, metric="accuracy")
+    means = all_rows.groupby(["training", "validation", "area"])[["value", "background_alone"]].mean()
     poor = means[means["value"] < means["background_alone"]].reset_index()
     kinds, bad = (pd.MultiIndex.from_frame(frame[["validation", "area"]]) for frame in (rows, poor))
     return pd.Series(kinds.isin(bad), index=rows.index).map({True: GUESSING, False: ""})
@@ -117,15 +117,15 @@ def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     """
 
     def of_all() -> pd.Series:
-        every = results.rows(stage, dataset)
-        trial = [column for column in SEQUENCES if column in every]
-        said = every[every["metric"].isin(["train_accuracy", "settled"]) & (every["classifier"] != SUM)]
-        said = said.assign(known=said["value"] >= SATURATED)
-        known = said.groupby([*trial, "classifier"], as_index=False)["known"].max()
-        both = known.groupby(trial, as_index=False)["known"].min().assign(classifier=SUM)
-        found = pd.Series(every[[*trial, "classifier"]].merge(pd.concat([known, both]), how="left")["known"])
-        untrained = found.isin([False]).to_numpy()
-        return pd.Series(untrained, index=every.index).map({True: UNTRAINED, False: ""})
+        all_rows = results.rows(stage, dataset)
+        trial = [column for column in SEQUENCES if column in all_rows]
+        evidence = all_rows[all_rows["metric"].isin(["train_accuracy", "settled"]) & (all_rows["classifier"] != SUM)]
+        evidence = evidence.assign(known=evidence["value"] >= SATURATED)
+        networks = evidence.groupby([*trial, "classifier"], as_index=False)["known"].max()
+        sums = networks.groupby(trial, as_index=False)["known"].min().assign(classifier=SUM)
+        learned = pd.Series(all_rows[[*trial, "classifier"]].merge(pd.concat([networks, sums]), how="left")["known"])
+        untrained = learned.isin([False]).to_numpy()
+        return pd.Series(untrained, index=all_rows.index).map({True: UNTRAINED, False: ""})
 
     return results.once(("settled", dataset), of_all)[rows.index]
 
@@ -150,17 +150,17 @@ def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
 def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
     """(n,) another metric of the same trials, NaN where it was not measured."""
     try:
-        other = results.measured(stage, dataset, metric=metric)
+        measured = results.measured(stage, dataset, metric=metric)
     except NotRun:
         return pd.Series(float("nan"), index=rows.index)
 
     def of_all() -> pd.Series:
-        known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
-        every = results.rows(stage, dataset)[keys]
-        return pd.Series(every.merge(known, on=keys, how="left")["_beside"].to_numpy(), index=every.index)
+        values = measured.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
+        all_rows = results.rows(stage, dataset)[keys]
+        return pd.Series(all_rows.merge(values, on=keys, how="left")["_beside"].to_numpy(), index=all_rows.index)
 
     apart = {"metric", "value", "seconds", "note", "imprints", "clock"}
-    keys = [column for column in rows if column in other and column not in apart]
+    keys = [column for column in rows if column in measured and column not in apart]
     return results.once(("beside", stage, dataset, metric, *keys), of_all)[rows.index]
 
 
@@ -171,18 +171,18 @@ def invalid_units(rows: pd.DataFrame) -> pd.Series:
     where all its errors equal plain QEM's, or where the kept points have less than one ring in the mean. Units without
     a mesh, and those of plain simplification, are neither valid nor invalid.
     """
-    made = rows[rows["value"].notna() & ~rows["method"].isin([PLAIN, QSLIM])]
-    units = made.drop_duplicates(UNIT).set_index(UNIT)
+    meshes = rows[rows["value"].notna() & ~rows["method"].isin([PLAIN, QSLIM])]
+    units = meshes.drop_duplicates(UNIT).set_index(UNIT)
     keeps = ~units.index.get_level_values("method").str.endswith("-soft")  # the others weigh the error
     causes = {
         NO_POINT: keeps & (units["points"] == 0),
         AS_PLAIN: units.index.isin(as_plain(rows)),
         NO_RING: keeps & (units["rings"].fillna(0) < 1),
     }
-    found = pd.Series(pd.NA, units.index, dtype="object", name="cause")
+    reasons = pd.Series(pd.NA, units.index, dtype="object", name="cause")
     for cause, invalid in causes.items():
-        found = found.mask(found.isna() & invalid, cause)
-    return found.dropna()
+        reasons = reasons.mask(reasons.isna() & invalid, cause)
+    return reasons.dropna()
 
 
 def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
@@ -190,6 +190,6 @@ def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
     keys = ["item", "target", "metric"]
     errors = rows[rows["value"].notna() & (rows["metric"] != "faces")]
     plain = errors.loc[errors["method"] == PLAIN, [*keys, "value"]]
-    both = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
-    same = (both["value"] == both["value_plain"]).groupby([both[key] for key in UNIT]).all()
+    joined = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
+    same = (joined["value"] == joined["value_plain"]).groupby([joined[key] for key in UNIT]).all()
     return pd.MultiIndex.from_frame(same.index[same].to_frame())

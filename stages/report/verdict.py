@@ -63,21 +63,21 @@ def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.
     rows, pairs, first = [], [], {}
     for claim in claims:
         primary = claim.of or first.setdefault((claim.own, claim.sentence), claim.key)
-        said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
-        said["of"] = primary if primary != claim.key else ""
+        row = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
+        row["of"] = primary if primary != claim.key else ""
         try:
             judgements = _judgements(claim, results)
         except NotRun as absent:
             unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {absent}", "cause": CAUSES[0]}
-            rows.append(said | unmeasured | {"verdict": "open"})
+            rows.append(row | unmeasured | {"verdict": "open"})
             continue
-        judged_one = next((one for one in judgements if one.word != UNTESTABLE), judgements[0])
-        rows.append(said | _numbers(judged_one) | _words(judged_one, results) | _readings(judged_one, judgements))
-        for one in judged_one.found:
-            start = f"{one.dataset}/" if len(claim.sets) > 1 else ""
-            named = (start + "/".join(map(str, listed(pair))) for pair in one.differences.index)
-            decides = one in judged_one.chosen
-            pairs += ((claim.key, name, value, decides) for name, value in zip(named, one.differences, strict=True))
+        judged_one = next((entry for entry in judgements if entry.word != UNTESTABLE), judgements[0])
+        rows.append(row | _numbers(judged_one) | _words(judged_one, results) | _readings(judged_one, judgements))
+        for entry in judged_one.found:
+            start = f"{entry.dataset}/" if len(claim.sets) > 1 else ""
+            named = (start + "/".join(map(str, listed(pair))) for pair in entry.differences.index)
+            decides = entry in judged_one.chosen
+            pairs += ((claim.key, name, value, decides) for name, value in zip(named, entry.differences, strict=True))
     frame = pd.DataFrame(rows, columns=COLUMNS)
     frame["holds"] = holding(frame)
     return frame, pd.DataFrame(pairs, columns=["key", "pair", "difference", "judged"])
@@ -105,15 +105,15 @@ def _judgements(claim: Claim, results: Results) -> list[Judgement]:
     A reading on data sets of its own was run where the first of them was.
     """
     judgements, absent = [], []
-    for name, one in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
+    for name, variant in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
         try:
-            found, missing = effects(one, results)
+            measured, missing = effects(variant, results)
         except NotRun as why:
             absent.append(why)
             continue
-        chosen = deciding(one, found, results, strict=one is not claim)
-        judgement = Judgement(name, one, found, missing, chosen)
-        if one is claim or (chosen and np.isfinite(effect_of(chosen).interval[1])):
+        chosen = deciding(variant, measured, results, strict=variant is not claim)
+        judgement = Judgement(name, variant, measured, missing, chosen)
+        if variant is claim or (chosen and np.isfinite(effect_of(chosen).interval[1])):
             judgements.append(judgement)
     if not judgements:
         raise absent[0]
@@ -122,7 +122,7 @@ def _judgements(claim: Claim, results: Results) -> list[Judgement]:
 
 def word_of(effects: Sequence[Effect], unit: str) -> str:
     """The word that the effects on one set or several come to."""
-    if not any(one.testable for one in effects):
+    if not any(single.testable for single in effects):
         return UNTESTABLE
     effect = effect_of(effects)
     if isinstance(effect, PooledEffect) and effect.disagree:
@@ -143,9 +143,9 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement]) -> dict[st
     """Columns verdict and readings: the word and the effect in each reading, the judged one first."""
     if len(judgements) == 1 and judged_one.name == "as written":
         return {}
-    ordered = sorted(judgements, key=lambda one: one is not judged_one)
-    texts = [f"{one.name}: {one.word} {_interval_text(effect_of(one.chosen))}" for one in ordered]
-    return {"verdict": over_readings([one.word for one in judgements]), "readings": "; ".join(texts)}
+    ordered = sorted(judgements, key=lambda reading: reading is not judged_one)
+    texts = [f"{reading.name}: {reading.word} {_interval_text(effect_of(reading.chosen))}" for reading in ordered]
+    return {"verdict": over_readings([reading.word for reading in judgements]), "readings": "; ".join(texts)}
 
 
 def _numbers(judgement: Judgement) -> dict[str, object]:
@@ -153,11 +153,11 @@ def _numbers(judgement: Judgement) -> dict[str, object]:
     effect, word, claim = effect_of(judgement.chosen), judgement.word, judgement.claim
     mean, low, high = effect.interval
     pooled = isinstance(effect, PooledEffect)
-    found = {"verdict": word, "effect": mean, "low": low, "high": high, "p": effect.p_value, "over": claim.pairs}
-    found |= {"units": len(effect.units), "shared": np.nan if pooled else effect.share}
-    found |= {"pairs": sum(len(one.differences) for one in judgement.chosen)}
-    found |= {"i2": effect.pooled.i2} if pooled else {}
-    return found | _open(claim, effect) if word == "open" else found
+    columns = {"verdict": word, "effect": mean, "low": low, "high": high, "p": effect.p_value, "over": claim.pairs}
+    columns |= {"units": len(effect.units), "shared": np.nan if pooled else effect.share}
+    columns |= {"pairs": sum(len(single.differences) for single in judgement.chosen)}
+    columns |= {"i2": effect.pooled.i2} if pooled else {}
+    return columns | _open(claim, effect) if word == "open" else columns
 
 
 def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
@@ -172,38 +172,38 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
     split = isinstance(effect, Effect) and effect.share > 0
     rank = 2 if effect.most <= FEW else 3 if count < HUNDRED else 4 if np.isfinite(count) else 5 if split else 6
     sets = isinstance(effect, PooledEffect) and effect.pooled.between > 0
-    known = {"needed": count, "needed_of": "data sets" if sets else claim.units} if np.isfinite(count) else {}
-    return {"cause": CAUSES[rank], **known}
+    need = {"needed": count, "needed_of": "data sets" if sets else claim.units} if np.isfinite(count) else {}
+    return {"cause": CAUSES[rank], **need}
 
 
 def _words(judgement: Judgement, results: Results) -> dict[str, str]:
     """Columns tested_on, by_set, carries and validity."""
-    claim, found, chosen = judgement.claim, judgement.found, judgement.chosen
+    claim, measured, chosen = judgement.claim, judgement.found, judgement.chosen
     missing = [] if results.own_meshes else judgement.missing
-    words = tested_on(claim, results, [one.dataset for one in chosen])
+    words = tested_on(claim, results, [effect.dataset for effect in chosen])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
-    refused = [f"{dataset_text(one.dataset)}: {one.validity}" for one in found if one.validity]
-    for one in chosen:
-        if np.isnan(one.interval[1]):
-            count = len(one.differences)
+    refused = [f"{dataset_text(effect.dataset)}: {effect.validity}" for effect in measured if effect.validity]
+    for effect in chosen:
+        if np.isnan(effect.interval[1]):
+            count = len(effect.differences)
             why = f"all {count} differences are equal" if count > 1 else "fewer than two differences"
-            words += f"; no interval{f' of {dataset_text(one.dataset)}' if len(found) > 1 else ''}: {why}"
+            words += f"; no interval{f' of {dataset_text(effect.dataset)}' if len(measured) > 1 else ''}: {why}"
     return {
-        "tested_on": words, "validity": "; ".join(refused), "carries": _carries(claim, chosen, found),
-        "by_set": "; ".join(map(_set_text, found)) if len(found) > 1 else "",
+        "tested_on": words, "validity": "; ".join(refused), "carries": _carries(claim, chosen, measured),
+        "by_set": "; ".join(map(_set_text, measured)) if len(measured) > 1 else "",
     }  # fmt: skip
 
 
-def _carries(claim: Claim, chosen: Sequence[Effect], found: Sequence[Effect]) -> str:
+def _carries(claim: Claim, chosen: Sequence[Effect], measured: Sequence[Effect]) -> str:
     """`supported +1.2 [0.4, 2.0]`: the word and the pooled effect of all sets.
 
     Empty where all sets were judged, unless the pooled effect is open and each set by itself is decided the same way.
     """
-    effect, word = effect_of(found), word_of(found, claim.unit)
+    effect, word = effect_of(measured), word_of(measured, claim.unit)
     if not isinstance(effect, PooledEffect):
         return ""
     alike = word == "open" and effect.in_each
-    if len(found) == len(chosen) and not alike:
+    if len(measured) == len(chosen) and not alike:
         return ""
     word += f", {verdict(*effect.sets[0].interval[1:])} in each set" if alike else ""
     return f"{word} {_interval_text(effect)}"
@@ -257,8 +257,8 @@ def counted(claims: pd.DataFrame) -> str:
 
 def open_by_cause(claims: pd.DataFrame) -> str:
     """A sentence: of the open verdicts, how many there are of each of CAUSES."""
-    found = _tally(claims.loc[claims["verdict"] == "open", "cause"], CAUSES)
-    return f"Open verdicts by cause: {', '.join(f'{cause} {count}' for cause, count in found.items() if count)}."
+    tally = _tally(claims.loc[claims["verdict"] == "open", "cause"], CAUSES)
+    return f"Open verdicts by cause: {', '.join(f'{cause} {count}' for cause, count in tally.items() if count)}."
 
 
 def _said(frame: pd.DataFrame) -> str:

@@ -51,11 +51,11 @@ def shared_notes(package: str | None, name: str) -> str:
 def findings(topic: ModuleType, reports: Path) -> list[str]:
     """The paragraphs of TOPIC/findings.md, in Markdown, with their figures; without those that lack a figure."""
     text = resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
-    found = []
+    paragraphs = []
     for paragraph in text.strip().split("\n\n"):
         with suppress(LookupError):
-            found.append(filled(_joined(paragraph), reports)[0])
-    return found
+            paragraphs.append(filled(_joined(paragraph), reports)[0])
+    return paragraphs
 
 
 @cache
@@ -84,8 +84,8 @@ class Kept(Figure):
 
 def last_drawn(results: Results, name: str, stage: str) -> Kept:
     """The figure as it was drawn last time; NotRun where it never was."""
-    here = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
-    words = here / f"figures/{name}.json"
+    folder = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
+    words = folder / f"figures/{name}.json"
     why = f"no figures/{name}.png: run the stage {stage} on its data set"
     there(words.with_suffix(".png"), why, stage, runnable=False)
     return Kept(Drawing(), read_json(there(words, why, stage, runnable=False)))
@@ -101,7 +101,7 @@ def as_printed(build: Callable[[Results], Figure], dataset: str, results: Result
         return Kept(figure.drawing, figure.words, dpi=figure.dpi)
     if not results.own_meshes:
         with suppress(NotRun):
-            found = last_drawn(results, build.__name__, stage)
+            former = last_drawn(results, build.__name__, stage)
             results.read.add(dataset)
-            return found
+            return former
     return build(results)

@@ -41,9 +41,9 @@ def method_text(method: str) -> str:
 
 def scores(rows: pd.DataFrame, metric: str) -> pd.DataFrame:
     """Frame objects x methods of one metric; NotRun where it was not measured."""
-    found = rows[rows["metric"] == metric].dropna(subset=["value"])
-    some(found, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
-    return found[~found["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
+    judged = rows[rows["metric"] == metric].dropna(subset=["value"])
+    some(judged, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
+    return judged[~judged["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
 
 
 def difference(rows: pd.DataFrame, metric: str, first: str, second: str) -> pd.Series:
@@ -73,15 +73,15 @@ def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
 
     95 % intervals over the objects. In order of NSS, the human ceiling first.
     """
-    tables, found = {metric: scores(rows, metric) for metric in metrics}, []
+    tables, lines = {metric: scores(rows, metric) for metric in metrics}, []
     order = map(str, tables["nss"].mean().sort_values(ascending=False).index)
     for method in sorted(order, key=lambda name: name != HUMAN):
         for metric, table in tables.items():
             if method in table:
                 line = {"method": method, "has_seen": has_seen(method), "metric": metric}
                 line |= {"objects": table[method].count(), **dict(zip(MEAN, interval(table[method]), strict=True))}
-                found.append(line | (gain(table, OURS, method) if metric in ALONE and method != HUMAN else {}))
-    return pd.DataFrame(found)
+                lines.append(line | (gain(table, OURS, method) if metric in ALONE and method != HUMAN else {}))
+    return pd.DataFrame(lines)
 
 
 BEST_RIVAL = highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))
@@ -112,12 +112,12 @@ def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: st
 ON_OBJECT = reading("on the object's pixels", where={"area": "object"})
 
 
-def svm_per_object(key: str, sentence: str, area: str, own: str, others: str, of: str = "") -> Claim:
-    """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
+def svm_per_object(key: str, sentence: str, area: str, alone: str, joint: str, of: str = "") -> Claim:
+    """A claim that an object's own SVM is more accurate than the one for all; alone, joint: how each was validated."""
     return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
                    where={"metric": "accuracy", "area": area}, dataset=GAZED,
-                   first={"training": "one_per_object", "validation": own},
-                   second={"training": "one_for_all", "validation": others}, of=of,
+                   first={"training": "one_per_object", "validation": alone},
+                   second={"training": "one_for_all", "validation": joint}, of=of,
                    note="each learns from 1,000 pixels, the one for all from few of each object",
                    readings=(ON_OBJECT,) if area == "image" else ())  # fmt: skip
 
@@ -163,10 +163,10 @@ CLAIMS = [
     *(
         on_gaze(key=f"best_over_{fixed}", section="T3.2.4", stage="attention_checks", scale=1, unit="NSS",
                 dataset=GAZED,
-                sentence=f"The most salient of 62 viewpoints show where people look better than {said} do.",
+                sentence=f"The most salient of 62 viewpoints show where people look better than {views} do.",
                 where={"method": "equal", "metric": "nss"},
                 first={"views": "best"}, second={"views": fixed}, of="best_over_four" if fixed != "four" else "")
-        for fixed, said in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
+        for fixed, views in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
     ),
     on_gaze(key="gaze_choices_flatter_glance", section="ours", stage="attention_checks", scale=1, unit="NSS",
             sentence="Features and ridge that were chosen on the judged objects flatter the glance.",
@@ -207,8 +207,8 @@ def against_marks(results: Results) -> Table:
     """The marks on this run's own objects."""
     rows = results.measured("salient_points")
     dataset, count = rows["dataset"].iloc[0], rows.loc[rows["metric"] == "nss", "item"].nunique()
-    other = f"The truth is what comes with the data set {dataset}."
-    truth = shared_notes(__package__, "marks") if dataset == MARKED else other
+    default = f"The truth is what comes with the data set {dataset}."
+    truth = shared_notes(__package__, "marks") if dataset == MARKED else default
     return _table(results, rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
 
 
@@ -237,12 +237,12 @@ def _table(
             line[MEANS[row.metric]] = f"{row.mean:.{1 if row.metric == COUNTED else 2}f}"
         if row.gain == row.gain:
             line[f"ours − it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
-    said = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
-    words = words | {"said": said, "reading": shared_notes(__package__, "reading")}
-    found = pd.DataFrame(lines.values())
+    findings = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
+    words = words | {"said": findings, "reading": shared_notes(__package__, "reading")}
+    cells = pd.DataFrame(lines.values())
     truth_and_peeking = [method_text(name) for name in lines if name == HUMAN or has_seen(name)]
     answer = [name for name in columns if name not in MEANS.values() or name == MEANS[COUNTED]]
-    return Table(frame, found, words, Ranking("NSS", exempt=truth_and_peeking), answer)
+    return Table(frame, cells, words, Ranking("NSS", exempt=truth_and_peeking), answer)
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
@@ -261,7 +261,7 @@ def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
     yield f"The best other method that has not seen the object is {label(best)}: ours − it {_and(gains)}."
     for metric, name in ALONE.items():
         others = rivals(rows, metric)
-        left = [label(other) for other in others if not interval(difference(rows, metric, OURS, other))[1] > 0]
+        left = [label(rival) for rival in others if not interval(difference(rows, metric, OURS, rival))[1] > 0]
         named = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
         yield (
             f"In {name} ours is higher than {len(others) - len(left)} of the {len(others)} others that have not seen "
@@ -284,12 +284,12 @@ def _learned(rows: pd.DataFrame) -> Iterator[str]:
 
 def _peeking(rows: pd.DataFrame) -> Iterator[str]:
     """The gain of the same method from having seen the object: the leak of the thesis's way of testing."""
-    found = []
-    for clean, seen in PEEKED.items():
+    gains = []
+    for clean, peeked in PEEKED.items():
         with suppress(NotRun):
-            found.append(f"{label(clean)} {signed(*interval(difference(rows, 'nss', seen, clean)))}")
-    if found:
-        yield f"* has seen the object: learned from its own truth too. What that adds in NSS: {'; '.join(found)}."
+            gains.append(f"{label(clean)} {signed(*interval(difference(rows, 'nss', peeked, clean)))}")
+    if gains:
+        yield f"* has seen the object: learned from its own truth too. What that adds in NSS: {'; '.join(gains)}."
 
 
 def _and(parts: list[str]) -> str:

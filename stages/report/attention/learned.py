@@ -98,13 +98,13 @@ def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:
 
 def _over_objects(group: pd.DataFrame) -> dict[str, float]:
     """One learned weight from all objects, with its interval over the objects' own values."""
-    own = own_values(group)
-    _, low, high = interval(own)
+    parts = own_values(group)
+    _, low, high = interval(parts)
     return {
         "mean": group.loc[group["item"].isna(), "value"].iloc[0],
         "low": low,
         "high": high,
-        "objects": max(len(own), 1),
+        "objects": max(len(parts), 1),
     }
 
 
@@ -122,19 +122,21 @@ def least_weight(results: Results, claim: Claim) -> pd.Series:
     channel = side.pop("channel")
     rows = results.measured(claim.stage, claim.sets[0], **side)
     of_all = rows[rows["item"].isna() & (rows["channel"] != channel)].set_index("channel")["value"]
-    own = {name: own_values(rows[rows["channel"] == name]) for name in (of_all.idxmin(), channel)}
-    lowest, first = own.values()
+    weights = {name: own_values(rows[rows["channel"] == name]) for name in (of_all.idxmin(), channel)}
+    lowest, first = weights.values()
     return lowest - first
 
 
 def _ranks(frame: pd.DataFrame) -> str:
     """How alike the channels' order is to the thesis's, in words."""
-    said = []
+    ranks = []
     for (dataset, method), group in grouped(frame.dropna(subset=["thesis"]), ["dataset", "method"]):
         rank = group["mean"].corr(group["thesis"], method="spearman")
         best = group.set_index("channel")["mean"].idxmax()
-        said.append(f"{KINDS[method]}, {dataset_text(dataset)}: {label(best)} comes first, rank correlation {rank:.2f}")
-    return "; ".join(said)
+        ranks.append(
+            f"{KINDS[method]}, {dataset_text(dataset)}: {label(best)} comes first, rank correlation {rank:.2f}"
+        )
+    return "; ".join(ranks)
 
 
 def section_3_2_3(results: Results) -> Table:
@@ -149,13 +151,13 @@ def section_3_2_3(results: Results) -> Table:
     thesis = results.thesis("section_3_2_3_svm_accuracy").replace({"training": THESIS})
     thesis = thesis.assign(area="image", validation="pixels").set_index(KEYS[1:])  # its way
     frame = frame.join(thesis[["accuracy", "std"]].add_prefix("thesis_"), on=KEYS[1:])
-    said = [
+    findings = [
         f"{dataset_text(row.dataset)}, {TRAINING[row.training]}, the thesis's way: {100 * row.accuracy:.1f} %; the "
         f"background alone gives {100 * row.background_alone:.1f} %."
         for row in records(frame.dropna(subset=["thesis_accuracy"]))
     ]
     shown = pd.DataFrame(map(_shown, records(frame)))
-    return Table(frame, shown, {"said": "\n".join(said)})  # no ranking: the ways to test differ, not the SVMs
+    return Table(frame, shown, {"said": "\n".join(findings)})  # no ranking: the ways to test differ, not the SVMs
 
 
 def _shown(row: Any) -> dict[str, str | int]:
@@ -180,15 +182,15 @@ def nested(results: Results) -> Table:
     rows = results.rows("attention_checks", "gaze")
     values = {way: rows[rows["method"] == f"{OURS}_{way}"] for way in (ONCE, NESTED)}
     some(values[NESTED], "no glance with nested choices", "attention_checks", runnable=False)
-    tables = {way: own.pivot_table(index="item", columns="metric", values="value") for way, own in values.items()}
-    found, line = [], {"model": label(OURS)}
+    tables = {way: part.pivot_table(index="item", columns="metric", values="value") for way, part in values.items()}
+    entries, line = [], {"model": label(OURS)}
     for metric, words in ALONE.items():
         once, nested = (tables[way][metric] for way in (ONCE, NESTED))
         numbers = {"once": interval(once), "nested": interval(nested), "once_over_nested": interval(once - nested)}
-        found += [
-            {"model": OURS, "metric": metric, "what": what, "objects": len(once)}
+        entries += [
+            {"model": OURS, "metric": metric, "what": kind, "objects": len(once)}
             | dict(zip(("mean", "low", "high"), ends, strict=True))
-            for what, ends in numbers.items()
+            for kind, ends in numbers.items()
         ]
         line[f"chosen once, {words}"] = with_interval(*numbers["once"], places=3)
         line[f"without the object, {words}"] = with_interval(*numbers["nested"], places=3)
@@ -197,7 +199,7 @@ def nested(results: Results) -> Table:
     line["features"] = f"{features.min():.0f} to {features.max():.0f} (once: {tables[ONCE]['features'].max():.0f})"
     line["ridge"] = number(tables[NESTED]["ridge"].median())
     line["in every choice"] = ", ".join(_always(values[NESTED]))
-    return Table(pd.DataFrame(found), pd.DataFrame([line]), {"count": len(features)})
+    return Table(pd.DataFrame(entries), pd.DataFrame([line]), {"count": len(features)})
 
 
 def _always(rows: pd.DataFrame) -> list[str]:
@@ -215,27 +217,27 @@ def annotations(results: Results) -> Table:
     """Agreement of the passes beside random points, and with gaze beside height; intervals over the objects."""
     sets = results.datasets("annotations") or [None]  # without any, the reader says what is missing
     rows = pd.concat([results.rows("annotations", dataset) for dataset in sets])
-    found, shown = [], []
+    entries, shown = [], []
     for (dataset, metric), group in grouped(rows, ["dataset", "metric"]):
         table = group.pivot(index="item", columns="method", values="value")
-        other = "random" if metric == "found" else "height"
+        control = "random" if metric == "found" else "height"
         cells = {
-            name: dict(zip(MEAN, interval(table[name]), strict=True)) | gain(table, name, other)
+            name: dict(zip(MEAN, interval(table[name]), strict=True)) | gain(table, name, control)
             for name in map(str, table)
         }
         about = {"dataset": dataset, "metric": metric}
-        found += [about | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
+        entries += [about | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
         shown.append({
             "objects": f"{len(table)} {'household objects' if dataset == 'household' else dataset_text(dataset)}",
             "measure": METRICS[metric],
             "three passes": _text(cells.get("passes", {}), metric),
             "one pass alone": _text(cells["one"], metric) if "one" in cells else "–",
-            "beside": BESIDE[other],
-            "gets": _text(cells.get(other, {}), metric),
+            "beside": BESIDE[control],
+            "gets": _text(cells.get(control, {}), metric),
             "passes − that": _text(cells.get("passes", {}), metric, GAIN),
         })  # fmt: skip
     # no ranking: a row is a question, not a method
-    return Table(pd.DataFrame(found), pd.DataFrame(shown), {"extremes": _extremes(rows)})
+    return Table(pd.DataFrame(entries), pd.DataFrame(shown), {"extremes": _extremes(rows)})
 
 
 def _text(cell: dict[str, float], metric: str, names: Sequence[str] = MEAN) -> str:

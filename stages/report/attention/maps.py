@@ -96,8 +96,8 @@ def figure_3_10(results: Results) -> Figure:
         values = maps[view, stored.index(channel)]
         top = float(values[mask].max())
         axes.imshow(np.where(mask, values / (top or 1.0), np.nan)[part], cmap=MAP, vmin=0, vmax=1)
-        said = f"up to {top:.2f}" if top else "nothing: one colour" if channel in COLOUR else "nothing"
-        axes.set_title(f"{label(channel)}\n{said}", fontsize=9, fontweight="normal", loc="center")
+        peak = f"up to {top:.2f}" if top else "nothing: one colour" if channel in COLOUR else "nothing"
+        axes.set_title(f"{label(channel)}\n{peak}", fontsize=9, fontweight="normal", loc="center")
     for axes in grid.flat:
         axes.set_axis_off()
     figure.subplots_adjust(wspace=0.04, hspace=0.12)
@@ -113,9 +113,9 @@ def figure_3_12(results: Results) -> Figure:
     methods = results.saliency(names[0]).those_of(["itti", "VisAttAll", "guided_ed", "guided_ssim", "glance"])
     figure, grid = square_grid(len(names), len(methods) + 1, side=1.7, right=0.9)
     for row, name in zip(grid, names, strict=True):
-        mesh, ground_truth, found = results.mesh(name), results.ground_truth(name), results.saliency(name)
+        mesh, ground_truth, saliency = results.mesh(name), results.ground_truth(name), results.saliency(name)
         for axes, method in zip(row, methods, strict=False):
-            show(axes, mesh, vivid(found[method]))
+            show(axes, mesh, vivid(saliency[method]))
         show(row[-1], mesh, vivid(ground_truth["density"]), points=ground_truth["points"])
     name_panels(grid, [*map(label, methods), "ground truth"], names)
     colour_bar(figure, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile")
@@ -130,14 +130,14 @@ def figure_3_13(results: Results) -> Figure:
     svms = results.learned(name, mesh).svms
     machines = [machine for machine in MACHINES if machine in svms]
     some(machines, f"no SVM was trained for {name}", "weights", runnable=False)
-    seen = [visible_points(mesh, ground_truth["points"], viewpoint, masks.shape[1:])[:2] for viewpoint in viewpoints]
-    counts = np.array([len(rows) for rows, _ in seen])
+    spots = [visible_points(mesh, ground_truth["points"], viewpoint, masks.shape[1:])[:2] for viewpoint in viewpoints]
+    counts = np.array([len(rows) for rows, _ in spots])
     view = _nearest(viewpoints, np.flatnonzero(counts >= 0.6 * counts.max()))  # such views show points enough
     mask, part = masks[view], _window(masks[view])
-    truth = gts_map(*seen[view], mask) > SALIENT_LEVEL
+    truth = gts_map(*spots[view], mask) > SALIENT_LEVEL
     figure, grid = plt.subplots(1, 2 + len(machines), figsize=(2.7 * (2 + len(machines)), 2.7))
     grid[0].imshow(_render(mesh, viewpoints[view], mask)[part])
-    down, across = (places - kept.start for places, kept in zip(seen[view], part, strict=True))
+    down, across = (places - window.start for places, window in zip(spots[view], part, strict=True))
     grid[0].plot(across, down, "o", color=RED, ms=4.2, mec="white", mew=0.8)
     binary = np.where(mask, np.where(truth, 0.1, 0.85), 1.0)  # greys: salient, the rest of the object, background
     grid[1].imshow(binary[part], cmap="gray", vmin=0, vmax=1)
@@ -147,8 +147,8 @@ def figure_3_13(results: Results) -> Figure:
         answer[mask] = next(iter(svms[machine].values())).predict(maps[view][:, mask].T)
         axes.imshow(answer[part], cmap=MAP, vmin=0, vmax=1)
         axes.contour(np.nan_to_num(answer)[part], [0.5], colors=[RED], linewidths=0.9)
-        told = (answer > 0.5) == truth
-        share = np.mean([told[mask & (truth == kind)].mean() for kind in (True, False)])
+        correct = (answer > 0.5) == truth
+        share = np.mean([correct[mask & (truth == kind)].mean() for kind in (True, False)])
         right.append(f"{label(machine)} {100 * share:.0f} %")
     name_panels(grid[None], [f"{name}, {len(down)} points", "binarised ground truth", *map(label, machines)])
     for axes in grid:

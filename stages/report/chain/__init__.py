@@ -27,10 +27,10 @@ def front_table(results: Results) -> Table:
     searched = of_rung(rows, SEARCH).set_index("number")
     for name in SPLITS.values():
         frame[f"{name}_searched"] = frame["number"].map(searched[name])
-    asked = rows[rows["rung"] == CONFIRMED]
-    usual = asked[asked["number"] == named(rows, "default")]
+    confirmed = rows[rows["rung"] == CONFIRMED]
+    usual = confirmed[confirmed["number"] == named(rows, "default")]
     for split, name in SPLITS.items():
-        over = [effect(usual, asked[asked["number"] == choice], split) for choice in frame["number"]]
+        over = [effect(usual, confirmed[confirmed["number"] == choice], split) for choice in frame["number"]]
         frame[[f"{name}_over", f"{name}_over_low", f"{name}_over_high"]] = over
     frame["role"] = frame["number"].map({named(rows, "default"): DEFAULT, named(rows, "smallest"): SMALLEST}).fillna("")
     shown = pd.DataFrame(
@@ -72,16 +72,16 @@ def _searched(value):
 
 def _words(rows, frame):
     """The words of the notes: how many choices and objects, and the two choices that are named."""
-    counts = {rung: own["number"].nunique() for rung, own in rows.groupby("rung")}
+    counts = {rung: choices["number"].nunique() for rung, choices in rows.groupby("rung")}
     small, usual = (frame[frame["role"] == role].iloc[0] for role in (SMALLEST, DEFAULT))
-    asked = rows[rows["rung"] == CONFIRMED].drop_duplicates(["split", "item"])
-    shapes, objects = (int((asked["split"] == split).sum()) for split in SPLITS)
-    found = {"wide": counts["wide"], "narrow": counts["narrow"], "last": counts["last"], "confirmed": len(frame)}
-    found |= {"shapes": shapes, "objects": objects, "guess": f"{100 / asked['group'].nunique():.0f}"}
+    items = rows[rows["rung"] == CONFIRMED].drop_duplicates(["split", "item"])
+    shapes, objects = (int((items["split"] == split).sum()) for split in SPLITS)
+    texts = {"wide": counts["wide"], "narrow": counts["narrow"], "last": counts["last"], "confirmed": len(frame)}
+    texts |= {"shapes": shapes, "objects": objects, "guess": f"{100 / items['group'].nunique():.0f}"}
     for name, row in (("small", small), ("usual", usual)):
         accuracies = (f"{100 * row[split]:.0f}" for split in SPLITS.values())
-        found |= zip((name, f"{name}_regions", f"{name}_objects"), (row["words"], *accuracies), strict=True)
-    return found | {
+        texts |= zip((name, f"{name}_regions", f"{name}_objects"), (row["words"], *accuracies), strict=True)
+    return texts | {
         "small_ms": brief(1000 * small["seconds"]),
         "times": brief(usual["seconds"] / small["seconds"]),
         "kept": smallest_kept(frame)["words"],
@@ -112,23 +112,23 @@ def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str
     axes.plot(
         searched["seconds"], 100 * searched[name], "o", color="none", mec=GREY, ms=4.5, label="on objects of the search"
     )
-    own = searched.assign(low=searched[f"{name}_low"], high=searched[f"{name}_high"])
-    found = placed(own, "seconds", name, noise=NOISE[CLOCK])
-    front = found[found["on_front"] == ON].sort_values("seconds")
-    said = "on their front in 95 % of resamples"
-    axes.step(front["seconds"], 100 * front[name], where="post", color=GREY, lw=1, zorder=1, label=said)
+    rows = searched.assign(low=searched[f"{name}_low"], high=searched[f"{name}_high"])
+    ranked = placed(rows, "seconds", name, noise=NOISE[CLOCK])
+    front = ranked[ranked["on_front"] == ON].sort_values("seconds")
+    text = "on their front in 95 % of resamples"
+    axes.step(front["seconds"], 100 * front[name], where="post", color=GREY, lw=1, zorder=1, label=text)
     pairs = confirmed.merge(searched, on="number", suffixes=("", "_before"))
     for row in records(pairs):
-        ends = [[getattr(row, f"{one}_before"), getattr(row, one)] for one in ("seconds", name)]
+        ends = [[getattr(row, f"{key}_before"), getattr(row, key)] for key in ("seconds", name)]
         axes.plot(ends[0], [100 * end for end in ends[1]], color=PALE, lw=1.2, zorder=0)
     others = confirmed[~confirmed["number"].isin(marked)]
-    for own, (form, tint, said) in [
+    for rows, (form, tint, text) in [
         (others, ("o", CYCLE[0], "confirmed on unseen ones, 95 % interval")),
-        *((confirmed[confirmed["number"] == one], look) for one, look in marked.items()),
+        *((confirmed[confirmed["number"] == key], look) for key, look in marked.items()),
     ]:
-        ends = 100 * own[[f"{name}_low", f"{name}_high"]].to_numpy()
-        axes.vlines(own["seconds"], *ends.T, color=tint, lw=1.2, alpha=0.6, zorder=2)
-        axes.plot(own["seconds"], 100 * own[name], form, color=tint, mec="white", mew=0.8, ms=7, zorder=3, label=said)
+        ends = 100 * rows[[f"{name}_low", f"{name}_high"]].to_numpy()
+        axes.vlines(rows["seconds"], *ends.T, color=tint, lw=1.2, alpha=0.6, zorder=2)
+        axes.plot(rows["seconds"], 100 * rows[name], form, color=tint, mec="white", mew=0.8, ms=7, zorder=3, label=text)
     for row in records(pd.concat([searched, confirmed])):
         axes.plot(row.seconds, 100 * getattr(row, name), alpha=0, label=f"_{row.words}")
     axes.set(xscale="log", ylim=(0, 102))
@@ -148,19 +148,19 @@ def changed(results: Results) -> Table:
     rows = front_rows(results)
     base = rows[(rows["rung"] == CONFIRMED) & (rows["number"] == named(rows, "smallest"))]
     first, lines = base.iloc[0], []
-    for _, own in rows[rows["rung"] == CHANGED].groupby("number"):
-        stage = next(name for name in CHOICES if not _same(own.iloc[0][name], first[name]))
-        line: dict[str, Any] = {"stage": stage, "option": own.iloc[0][stage], "from": first[stage]}
+    for _, part in rows[rows["rung"] == CHANGED].groupby("number"):
+        stage = next(name for name in CHOICES if not _same(part.iloc[0][name], first[name]))
+        line: dict[str, Any] = {"stage": stage, "option": part.iloc[0][stage], "from": first[stage]}
         for split, name in SPLITS.items():
-            line |= zip((name, f"{name}_low", f"{name}_high"), effect(base, own, split), strict=True)
-        line["times"] = own["seconds"].mean() / base["seconds"].mean()
-        lines.append(line | {"seconds": own["seconds"].mean(), "faces": own["faces"].mean()})
-    frame = pd.DataFrame(lines).sort_values("stage", key=lambda own: own.map(CHOICES.index), kind="stable")
+            line |= zip((name, f"{name}_low", f"{name}_high"), effect(base, part, split), strict=True)
+        line["times"] = part["seconds"].mean() / base["seconds"].mean()
+        lines.append(line | {"seconds": part["seconds"].mean(), "faces": part["faces"].mean()})
+    frame = pd.DataFrame(lines).sort_values("stage", key=lambda part: part.map(CHOICES.index), kind="stable")
     return Table(frame, _shown(frame), {"words": words(first), "seconds": brief(1000 * base["seconds"].mean())})
 
 
-def _same(one, other):
-    return one == other or (pd.isna(one) and pd.isna(other))
+def _same(first, second):
+    return first == second or (pd.isna(first) and pd.isna(second))
 
 
 def _shown(frame: pd.DataFrame) -> pd.DataFrame:
@@ -168,9 +168,9 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
         words: [signed(row[name], row[f"{name}_low"], row[f"{name}_high"], 0) for _, row in frame.iterrows()]
         for name, words in (("regions", "unseen regions, points"), ("objects", "unseen objects, points"))
     }
-    said = [f"{_option(row['option'])} instead of {_option(row['from'])}" for _, row in frame.iterrows()]
+    options = [f"{_option(row['option'])} instead of {_option(row['from'])}" for _, row in frame.iterrows()]
     times = [f"{brief(value)} times" for value in frame["times"]]
-    return pd.DataFrame({"stage": frame["stage"].map(STAGES), "option": said, **effects, "seconds": times})
+    return pd.DataFrame({"stage": frame["stage"].map(STAGES), "option": options, **effects, "seconds": times})
 
 
 def _option(value):
@@ -192,15 +192,15 @@ def front_rows(results: Results) -> pd.DataFrame:
 
 def of_rung(rows: pd.DataFrame, rung: str) -> pd.DataFrame:
     """One row a choice: its options, `words`, the accuracies with low and high, seconds with their parts, training."""
-    found = []
-    for choice, own in some(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
-        first = own.iloc[0]
+    lines = []
+    for choice, group in some(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
+        first = group.iloc[0]
         line: dict[str, Any] = {"number": choice, "words": words(first)} | {name: first[name] for name in CHOICES}
         for split, name in SPLITS.items():
-            ends = within(own.loc[own["split"] == split, "value"])
+            ends = within(group.loc[group["split"] == split, "value"])
             line |= zip((name, f"{name}_low", f"{name}_high"), ends, strict=True)
-        found.append(line | own[["seconds", *PARTS, "training", "faces"]].mean().to_dict())
-    return pd.DataFrame(found)
+        lines.append(line | group[["seconds", *PARTS, "training", "faces"]].mean().to_dict())
+    return pd.DataFrame(lines)
 
 
 def words(row: pd.Series) -> str:
@@ -212,9 +212,9 @@ def words(row: pd.Series) -> str:
     return ", ".join([*parts, faces, touches, label(row["classifier"])])
 
 
-def effect(base: pd.DataFrame, own: pd.DataFrame, split: str) -> tuple[float, float, float]:
+def effect(base: pd.DataFrame, variant: pd.DataFrame, split: str) -> tuple[float, float, float]:
     """(mean, low, high) over the objects: the points of accuracy by which the rows of a choice exceed those of base."""
-    before, after = (frame[frame["split"] == split].set_index("item")["value"] for frame in (base, own))
+    before, after = (frame[frame["split"] == split].set_index("item")["value"] for frame in (base, variant))
     return interval(100 * (after - before).dropna())
 
 

@@ -39,8 +39,8 @@ def build(results: Results) -> Table:
         stopped = group[sure & (group["metric"] == "accuracy")]
         for name, column in COLUMNS.items():
             ends = (1.0, most) if name == "touches" else (0.0, 1.0)
-            found = within(stopped[column], shared_by(line["split"]), *ends)
-            line |= zip((name, f"{name}_low", f"{name}_high"), found, strict=True)
+            values = within(stopped[column], shared_by(line["split"]), *ends)
+            line |= zip((name, f"{name}_low", f"{name}_high"), values, strict=True)
         lines.append(line | {"fixed": needed(group, line["accuracy"]), "most": most, "repetitions": len(stopped)})
     frame = pd.DataFrame(lines)
     most = ", ".join(map(str, sorted(set(frame["most"]))))
@@ -124,17 +124,17 @@ def exploration(results: Results) -> Figure:
 
 def _points(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     """Accuracy with its interval, mean touches and stated belief, one row for each combination of columns `by`."""
-    found = []
+    points = []
     for key, group in grouped(rows, by):
         accuracy = within(group["value"], shared_by(group["split"].iloc[0]))
-        found.append((*key, group["touches"].mean(), group["belief"].mean(), *accuracy))
-    return pd.DataFrame(found, columns=[*by, "touches", "stated", "accuracy", "low", "high"])
+        points.append((*key, group["touches"].mean(), group["belief"].mean(), *accuracy))
+    return pd.DataFrame(points, columns=[*by, "touches", "stated", "accuracy", "low", "high"])
 
 
 def _draw_touches(axes: Axes, panel: pd.DataFrame) -> None:
     for way, words in WAYS.items():
-        own, tint = panel[panel["way"] == way].sort_values("level"), TINTS[way]
-        sure, fixed = own[own["stop"] == "confidence"], own[own["stop"] == "fixed"]
+        points, tint = panel[panel["way"] == way].sort_values("level"), TINTS[way]
+        sure, fixed = points[points["stop"] == "confidence"], points[points["stop"] == "fixed"]
         axes.fill_between(fixed["touches"], 100 * fixed["low"], 100 * fixed["high"], color=tint, alpha=0.1, lw=0)
         dots, dashes = {"marker": "o", "ms": 4, "lw": 1.5, "zorder": 3}, {"ls": "--", "lw": 1.0}
         axes.plot(sure["touches"], 100 * sure["accuracy"], color=tint, label=f"{words}, stops when sure", **dots)
@@ -158,9 +158,9 @@ def calibration(results: Results) -> Figure:
         for axes, method in zip(line, methods, strict=True):
             axes.plot([0, 1], [0, 1], color=GREY, lw=0.8)
             for (likelihood, (dash, mark)), tint in zip(LINES.items(), CYCLE, strict=False):
-                own = frame[(frame[["split", "likelihood", "method"]] == (split, likelihood, method)).all(axis=1)]
-                axes.vlines(own["stated"], own["low"], own["high"], color=tint, lw=0.8, alpha=0.25)
-                axes.plot(own["stated"], own["accuracy"], dash, marker=mark, ms=4, lw=1.3, color=tint,
+                points = frame[(frame[["split", "likelihood", "method"]] == (split, likelihood, method)).all(axis=1)]
+                axes.vlines(points["stated"], points["low"], points["high"], color=tint, lw=0.8, alpha=0.25)
+                axes.plot(points["stated"], points["accuracy"], dash, marker=mark, ms=4, lw=1.3, color=tint,
                           label=LIKELIHOODS[likelihood])  # fmt: skip
             axes.set(xlim=(0.3, 1.0), ylim=(0.3, 1.0), aspect="equal")
             axes.grid()
@@ -176,13 +176,13 @@ def calibration(results: Results) -> Figure:
 
 def _honesty(frame: pd.DataFrame) -> list[str]:
     """For each split, by how many points the belief by imprints lies beside the rate of right answers, on average."""
-    said = []
+    lines = []
     for split, words in HELD_OUT.items():
-        own = frame[(frame["split"] == split) & (frame["likelihood"] == "imprint")]
-        points = 100 * (own["stated"] - own["accuracy"]).mean()
+        beliefs = frame[(frame["split"] == split) & (frame["likelihood"] == "imprint")]
+        points = 100 * (beliefs["stated"] - beliefs["accuracy"]).mean()
         way = "too careful" if points < 0 else "too sure"
-        said.append(f"{str(words).capitalize()}: {abs(points):.0f} points {way} on average")
-    return said
+        lines.append(f"{str(words).capitalize()}: {abs(points):.0f} points {way} on average")
+    return lines
 
 
 PERFECT = 0.99  # what "up to 100 %" of T table 4.6 is taken to mean
@@ -217,7 +217,7 @@ def over_as_many_touches(results: Results, claim: Claim) -> pd.Series:
     """Accuracy of the first side minus that of a fixed number of touches, interpolated at as many."""
     curve = curves(results.measured(STAGE, claim.sets[0], **claim.where, stop="fixed"))
     touches = _touches(results, claim, claim.first)
-    fixed = {one: np.interp(touches[one], curve.columns, curve.loc[one]) for one in touches.index}
+    fixed = {trial: np.interp(touches[trial], curve.columns, curve.loc[trial]) for trial in touches.index}
     return side(results, claim, claim.first, None) - pd.Series(fixed)
 
 
@@ -229,8 +229,8 @@ def overconfidence(results: Results, claim: Claim) -> pd.Series:
     return last["belief"] - last["value"]
 
 
-def _touches(results: Results, claim: Claim, own: Side) -> pd.Series:
-    return results.measured(STAGE, claim.sets[0], **claim.where, **own).set_index("repetition")["touches"]
+def _touches(results: Results, claim: Claim, selection: Side) -> pd.Series:
+    return results.measured(STAGE, claim.sets[0], **claim.where, **selection).set_index("repetition")["touches"]
 
 
 CLAIMS = [

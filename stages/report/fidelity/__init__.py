@@ -15,10 +15,10 @@ def build(results: Results) -> Table:
     if results.own_meshes:
         raise NotRun("the thesis is not about a folder of one's own", "report", runnable=False)
     frame = results.thesis("fidelity").fillna("")
-    said = (frame["run"] + ": " + frame["differs"]).str.removesuffix(": ").replace(PRINTED, "yes")
-    said = said.str.replace(r"\b(\w+_\w+)\b", r"`\1`", regex=True)  # names of files and columns
+    answers = (frame["run"] + ": " + frame["differs"]).str.removesuffix(": ").replace(PRINTED, "yes")
+    answers = answers.str.replace(r"\b(\w+_\w+)\b", r"`\1`", regex=True)  # names of files and columns
     files = {name: frame[name].map(lambda text: text and f"`{text}`") for name in ("code", "twin", "test")}
-    shown = frame.assign(run=said, sets=frame["sets"].map(dataset_text), **files).drop(columns="differs")
+    shown = frame.assign(run=answers, sets=frame["sets"].map(dataset_text), **files).drop(columns="differs")
     counts = {str(name).replace(" ", "_"): count for name, count in frame["run"].value_counts().items()}
     words = dict.fromkeys((run.replace(" ", "_") for run in RUNS), 0) | counts
     return Table(frame, shown.rename(columns=HEADS), words)  # no ranking: sections do not compete
@@ -38,8 +38,8 @@ ROUNDING = 0.51  # of the last digit that is stated
 def stated(text: str) -> tuple[str, list[float]]:
     """(kind, numbers) of a stated agreement; ValueError for another form."""
     for kind, form in FORMS.items():
-        if found := re.fullmatch(form, text):
-            return kind, [float(number) for number in found.groups()]
+        if match := re.fullmatch(form, text):
+            return kind, [float(number) for number in match.groups()]
     raise ValueError(f"{text!r} is no agreement: write it as one of {', '.join(FORMS.values())}")
 
 
@@ -55,8 +55,8 @@ def is_printed(text: str) -> bool:
 
 def matches(text: str, kind: str, measured: float | tuple[int, int]) -> bool:
     """Whether a stated agreement is what a test measures, within its last digit; a difference need only be below."""
-    own, numbers = stated(text)
-    if own != kind:
+    form, numbers = stated(text)
+    if form != kind:
         return False
     if isinstance(measured, tuple):
         return numbers == list(measured)

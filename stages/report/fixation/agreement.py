@@ -49,13 +49,13 @@ ENDS = ("", "_low", "_high")  # of the columns of what a detector has more than 
 
 def build(results: Results) -> Table:
     """Agreement of every detector with people in all metrics, beside what it has more than its controls."""
-    found = sources(results)
-    frame = pd.DataFrame([line for source, rows in found.items() for line in _lines(source, rows)])
+    truths = sources(results)
+    frame = pd.DataFrame([line for source, rows in truths.items() for line in _lines(source, rows)])
     rows = results.rows("fixation").reindex(columns=["method", "task", "value", "note"])
     absent = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])  # networks as a whole
     words = {
-        "accuracy": "\n".join(filter(None, starmap(_accuracy, found.items()))),
-        "no_people": no_people(found).strip(),
+        "accuracy": "\n".join(filter(None, starmap(_accuracy, truths.items()))),
+        "no_people": no_people(truths).strip(),
         "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent)),
     }
     shown = _wide(frame)
@@ -85,23 +85,23 @@ def _looking(rows: pd.DataFrame) -> pd.Series:
 
 def _gains(table: pd.DataFrame, name: Detector) -> dict[str, float]:
     """How much more the detector has than each opponent, paired over the objects; empty where that is not measured."""
-    found, others = {}, {"prior": PRIOR, "lee": LEE, "weights": name._replace(method=with_random_weights(name.method))}
-    for key, other in others.items():
-        if other in table and other != name:
-            found |= zip((f"over_{key}{end}" for end in ENDS), interval(table[name] - table[other]), strict=True)
-    return found
+    gains, rivals = {}, {"prior": PRIOR, "lee": LEE, "weights": name._replace(method=with_random_weights(name.method))}
+    for key, rival in rivals.items():
+        if rival in table and rival != name:
+            gains |= zip((f"over_{key}{end}" for end in ENDS), interval(table[name] - table[rival]), strict=True)
+    return gains
 
 
 def _accuracy(source: str, rows: pd.DataFrame) -> str:
     """How well the heads know their tasks: of known objects from new directions, and of objects never seen."""
     wide = rows.pivot_table(index=["method", "split"], columns="metric", values="value")
     shares = (100 * wide.reindex(columns=["accuracy", "chance"])).dropna().to_dict("index")
-    said = []
+    lines = []
     for method in networks(rows):
-        parts = [f"{words} {found['accuracy']:.0f} (most frequent class {found['chance']:.0f})"
-                 for split, words in SPLITS.items() if (found := shares.get((method, split)))]  # fmt: skip
-        said += [f"{network_text(method)}: {', '.join(parts)}"] if parts else []
-    return f"Classes named right on {source}, %, mean of the tasks: {'; '.join(said)}." if said else ""
+        parts = [f"{words} {share['accuracy']:.0f} (most frequent class {share['chance']:.0f})"
+                 for split, words in SPLITS.items() if (share := shares.get((method, split)))]  # fmt: skip
+        lines += [f"{network_text(method)}: {', '.join(parts)}"] if parts else []
+    return f"Classes named right on {source}, %, mean of the tasks: {'; '.join(lines)}." if lines else ""
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
@@ -143,13 +143,13 @@ def chart(results: Results) -> Figure:
 
 def _saved(maps: dict[str, pd.Series]) -> str:
     """The change by training more than a head, paired over the objects; maps: {network: PCC of its fused maps}."""
-    said = []
-    for method, own in maps.items():
+    changes = []
+    for method, pcc in maps.items():
         frozen = f"{method.rpartition('-')[0]}-frozen"
         if frozen != method and frozen in maps and not untrained(method):
-            gain = signed(*interval(own - maps[frozen]), places=3)
-            said.append(f"{network_text(method)} minus frozen: PCC {gain}")
-    return f"{'; '.join(said)}." if said else "No network was fine-tuned here."
+            gain = signed(*interval(pcc - maps[frozen]), places=3)
+            changes.append(f"{network_text(method)} minus frozen: PCC {gain}")
+    return f"{'; '.join(changes)}." if changes else "No network was fine-tuned here."
 
 
 # A set's colour, and where its chosen number stands, in points.
@@ -158,14 +158,14 @@ LINES = ((CYCLE[0], (-14, -7)), (CYCLE[1], (7, 6)), (CYCLE[2], (-16, -9)))
 
 def figure_3_28(results: Results) -> Figure:
     """The elbow of k-means in the sums of squares, by task of shape and data set."""
-    found = everywhere(results, "fixation", "no sums of squares: the objects do not differ in shape", metric="ssd")
-    rows = pd.concat(found.values())
+    by_set = everywhere(results, "fixation", "no sums of squares: the objects do not differ in shape", metric="ssd")
+    rows = pd.concat(by_set.values())
     rows["chosen"] = rows["chosen"].astype(str) == "True"
     curves = dict(grouped(rows, ["task", "dataset"]))
     tasks = [task for task in SHAPE_MEASURES if task in set(rows["task"])]
     figure, (grid,) = plt.subplots(1, len(tasks), figsize=(3.5 * len(tasks), 3.0), squeeze=False)
     for axes, task in zip(grid, tasks, strict=True):
-        for (tint, beside), dataset in zip(LINES, found, strict=False):
+        for (tint, beside), dataset in zip(LINES, by_set, strict=False):
             if (task, dataset) in curves:
                 _elbow(axes, curves[task, dataset].sort_values("clusters"), dataset_text(dataset), tint, beside)
         axes.plot([], [], "o", mfc="none", mec=INK, mew=1.8, ms=10, label="chosen")
@@ -175,9 +175,9 @@ def figure_3_28(results: Results) -> Figure:
     grid[0].set_ylabel("sum of squared distances,\nover that of the fewest clusters")
     grid[-1].legend(fontsize=8.5)
     figure.tight_layout()
-    said = [f"{dataset_text(dataset)}: {', '.join(f'{label(row.task)} {row.clusters:g}' for row in records(chosen))}"
+    sets = [f"{dataset_text(dataset)}: {', '.join(f'{label(row.task)} {row.clusters:g}' for row in records(chosen))}"
             for (dataset,), chosen in grouped(rows[rows["chosen"]], ["dataset"])]  # fmt: skip
-    return Figure(figure, {"chosen": "; ".join(said)})
+    return Figure(figure, {"chosen": "; ".join(sets)})
 
 
 def _elbow(axes: Axes, rows: pd.DataFrame, source: str, tint: str, beside: tuple[int, int]) -> None:

@@ -52,11 +52,11 @@ PHRASES = {
     ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", tuple(NAMED)): "mean of the other two,",
     ("task", AVERAGE): "equal weights,",
     ("task", OURS.task): "ours, learned on the other meshes,", ("task", CLASSICAL): task_text(CLASSICAL),
-    **{("task", one): f"{task_text(one)}," for one in (FUSED, NARROWED, *NAMED)},
+    **{("task", task): f"{task_text(task)}," for task in (FUSED, NARROWED, *NAMED)},
     **{("task", task): f"{task_text(task)}," for task in FUSED_TASKS},
-    **{("task", one.task): one.text for one in (LEE, PRIOR, NOISE)},
+    **{("task", detector.task): detector.text for detector in (LEE, PRIOR, NOISE)},
     **{("task", task): task_text(task) for task in RIVALS.values()},
-    **{("method", each): network_text(each) for one in (*PRINTED, *FROZEN) for each in (one, with_random_weights(one))},
+    **{("method", name): network_text(name) for net in (*PRINTED, *FROZEN) for name in (net, with_random_weights(net))},
     ("method", VGG): f"{network_text(VGG)} from random fully connected layers",
 }  # fmt: skip
 claim = partial(Claim, stage="fixation", dataset=GAZED, over=("item",), scale=1, unit="PCC", phrases=PHRASES)
@@ -72,12 +72,12 @@ VGG_FROZEN, BOTH_FROZEN = frozen(first="vgg16"), frozen(first="resnet50", second
 
 
 def agrees(
-    key: str, said: str, first: Pair, second: Pair, section: str = "T3.3.6", metric: str = "pcc", **more: Any
+    key: str, sentence: str, first: Pair, second: Pair, section: str = "T3.3.6", metric: str = "pcc", **more: Any
 ) -> Claim:
     """A claim that the correlation of one (method, task) with people is higher than that of another."""
-    one, other = ({"task": task, "method": method} for method, task in (first, second))
-    return claim(key=key, section=section, sentence=said, where={"metric": metric, "view": VIEWS}, first=one,
-                 second=other, **more)  # fmt: skip
+    higher, lower = ({"task": task, "method": method} for method, task in (first, second))
+    return claim(key=key, section=section, sentence=sentence, where={"metric": metric, "view": VIEWS}, first=higher,
+                 second=lower, **more)  # fmt: skip
 
 
 def in_each_metric(*args: Any, metrics: tuple[str, ...] = METRICS, of: str = "", **more: Any) -> list[Claim]:
@@ -85,27 +85,27 @@ def in_each_metric(*args: Any, metrics: tuple[str, ...] = METRICS, of: str = "",
 
     NSS and AUC are of all views together. The key of PCC over visible vertices has no suffix.
     """
-    claim, found = agrees(*args, **more), []
+    claim, claims = agrees(*args, **more), []
     for metric in metrics:
         view, unit = (ALL_VIEWS, metric.upper()) if metric in WHOLE else (VIEWS, "PCC")
         key = {"pcc": claim.key, AS_PRINTED: f"{claim.key}_masked"}.get(metric, f"{claim.key}_{metric}")
-        found.append(replace(claim, key=key, where={"metric": metric, "view": view}, unit=unit, of=of))
+        claims.append(replace(claim, key=key, where={"metric": metric, "view": view}, unit=unit, of=of))
         of = of or key
-    return found
+    return claims
 
 
 def each_network(
-    key: str, sentence: str, other: Callable[[str], Pair], section: str = "ours", **more: Any
+    key: str, sentence: str, rival: Callable[[str], Pair], section: str = "ours", **more: Any
 ) -> list[Claim]:
-    """The claims for each of PRINTED and FROZEN. other: of a method, what it is compared with."""
-    names = {one: f"{key}_{one.partition('-')[0]}" for one in PRINTED}
-    names |= {one: f"{key}_{one.replace('-', '_')}" for one in FROZEN}
-    found = []
-    for one, name in names.items():
-        known: dict[str, Any] = {"of": found[0].key if found else ""} | more | (VGG_FROZEN if one == VGG else {})
-        part = section if one in PRINTED else "ours"
-        found += in_each_metric(name, sentence, (one, FUSED), other(one), part, **known)
-    return found
+    """The claims for each of PRINTED and FROZEN. rival: of a method, what it is compared with."""
+    names = {method: f"{key}_{method.partition('-')[0]}" for method in PRINTED}
+    names |= {method: f"{key}_{method.replace('-', '_')}" for method in FROZEN}
+    claims = []
+    for method, name in names.items():
+        fields: dict[str, Any] = {"of": claims[0].key if claims else ""} | more | (VGG_FROZEN if method == VGG else {})
+        part = section if method in PRINTED else "ours"
+        claims += in_each_metric(name, sentence, (method, FUSED), rival(method), part, **fields)
+    return claims
 
 
 def nearer(key: str, sentence: str, near: Pair, far: Pair, of: str = "", **more: Any) -> list[Claim]:
@@ -120,20 +120,20 @@ def nearer(key: str, sentence: str, near: Pair, far: Pair, of: str = "", **more:
 MEAN_DISTANCE = reading("mean distance of all pairs", where={"metric": "distance_mean"})
 
 
-def quartile(key: str, sentence: str, near: Pair, far: Pair, which: str, of: str = "") -> Claim:
-    """The claim that a quantile of the least distances of all views is lower. which: a statistic of .quantiles."""
-    words = which.replace("_", " ").replace("below", "of both")
+def quartile(key: str, sentence: str, near: Pair, far: Pair, statistic: str, of: str = "") -> Claim:
+    """The claim that a quantile of the least distances of all views is lower. statistic: a statistic of .people."""
+    words = statistic.replace("_", " ").replace("below", "of both")
     return agrees(key, sentence, near, far, metric="distance", scale=100, unit="% of the views", within=("view",),
-                  statistic=which, of=of, note=f"share of views below the {words}",
+                  statistic=statistic, of=of, note=f"share of views below the {words}",
                   readings=(*(VGG_FROZEN["readings"] if near[0] == VGG else ()), MEAN_DISTANCE))  # fmt: skip
 
 
-def same_place(other: str, words: str, note: str, of: str = "") -> Claim:
+def same_place(place: str, words: str, note: str, of: str = "") -> Claim:
     """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
     sentence = f"Changing the viewpoint moves the most salient place less than {words}."
     note = f"{task_text(ITSELF)}: distance of {note} minus that of their maxima"
-    return claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, dataset=SEEN, unit=DIAMETER,
-                 where={"metric": f"nearer_than_{other}"}, first={"method": "*-frozen"}, second=0, scale=100,
+    return claim(key=f"same_place_over_{place}", section="T3.3.3", sentence=sentence, dataset=SEEN, unit=DIAMETER,
+                 where={"metric": f"nearer_than_{place}"}, first={"method": "*-frozen"}, second=0, scale=100,
                  note=note, of=of)  # fmt: skip
 
 
@@ -157,35 +157,35 @@ CLAIMS = [
     *in_each_metric("excluded_least", "Attention is less like people's where a network names the object itself or its "
                     "convexity than in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, tuple(NAMED)),
                     "T3.3.3", within=("method",)),
-    *[one for task, name in NAMED.items()
-      for one in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
-                                "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
-                                within=("method",), of="excluded_least_masked")],
+    *[entry for task, name in NAMED.items()
+      for entry in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
+                                  "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
+                                  within=("method",), of="excluded_least_masked")],
     *in_each_metric("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC,
                     (TUNED, AVERAGE), "T3.3.4", within=("method",)),
-    *[one for method, name in SHORT.items()
-      for one in in_each_metric(f"ewigc_over_rest_{method.partition('-')[0]}", f"Fused Grad-CAM of {name} correlates "
-                                "more with fixations than the models of Lee, Song and Tasse.", (method, FUSED),
-                                ("rival", highest_of(*REST)), **(VGG_FROZEN if method == VGG else {}))],
+    *[entry for method, name in SHORT.items()
+      for entry in in_each_metric(f"ewigc_over_rest_{method.partition('-')[0]}", f"Fused Grad-CAM of {name} correlates "
+                                  "more with fixations than the models of Lee, Song and Tasse.", (method, FUSED),
+                                  ("rival", highest_of(*REST)), **(VGG_FROZEN if method == VGG else {}))],
     *in_each_metric("leifman_over_rest", "Leifman's regions of interest correlate more with fixations than the models "
                     "of Lee, Song and Tasse.", ("rival", LEIFMAN), ("rival", highest_of(*REST))),
     *each_network("ewigc_over_lee", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency.", lambda _: LEE,
                   "T3.3.6", of="ewigc_over_rest_resnet50_masked"),
-    *[one for name, task in RIVALS.items()
-      for one in in_each_metric(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", NEAREST,
-                                ("rival", task), of="ewigc_over_rest_resnet50_masked")],
+    *[entry for name, task in RIVALS.items()
+      for entry in in_each_metric(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", NEAREST,
+                                  ("rival", task), of="ewigc_over_rest_resnet50_masked")],
     *in_each_metric("fused_over_narrowed", "The whole map correlates more with gaze than its highest levels alone.",
                     EWIGC, EWIGC_L4, within=("method",)),
     *nearer("ewigc_nearer_than_literature", "Fused Grad-CAM finds centres nearer to fixations than the best model of "
             "the literature.", NEAREST, ("rival", lowest_of(*LITERATURE))),
-    *[one for name, task in {"mesh saliency": LEE.task, **RIVALS}.items()
-      for one in nearer(f"ewigc_nearer_than_{'lee' if task == LEE.task else task}", "Fused Grad-CAM finds centres "
-                        f"nearer to fixations than {name}.", NEAREST, ("rival", task),
-                        "ewigc_nearer_than_literature_least")],
+    *[entry for name, task in {"mesh saliency": LEE.task, **RIVALS}.items()
+      for entry in nearer(f"ewigc_nearer_than_{'lee' if task == LEE.task else task}", "Fused Grad-CAM finds centres "
+                          f"nearer to fixations than {name}.", NEAREST, ("rival", task),
+                          "ewigc_nearer_than_literature_least")],
     *[quartile(f"ewigc_{key}_{method.partition('-')[0]}", f"The {words} of the distances to fixations is lower by "
                f"fused Grad-CAM of {name} than by the best model of the literature.", (method, FUSED),
-               ("rival", lowest_of(*LITERATURE)), which)
-      for key, words, which in (("median_nearer", "median", MEDIAN),
+               ("rival", lowest_of(*LITERATURE)), below)
+      for key, words, below in (("median_nearer", "median", MEDIAN),
                                 ("upper_quartile_nearer", "75th percentile", UPPER_QUARTILE))
       for method, name in SHORT.items()],
     *nearer("leifman_nearer_than_rest", "Leifman's regions of interest lie nearer to fixations than those of Lee, Song "

@@ -49,7 +49,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
     some(named, f"no network named {words['name']} itself", "fixation", runnable=False)
     renders = [picture(mesh, viewpoint=viewpoint, rows=ROWS) for viewpoint in VIEWPOINTS]
     images = {
-        network_text(method): [_veiled(render, seen[ITSELF]) for render, seen in zip(renders, views, strict=True)]
+        network_text(method): [_veiled(render, layers[ITSELF]) for render, layers in zip(renders, views, strict=True)]
         for method, views in named.items()
     }
     figure = _panels(images, 1.9, [0.93, 0.15, 0.014, 0.7], "over its maximum")
@@ -83,15 +83,17 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     methods = _networks(files[names[0]], NARROWED)
     some(methods, f"no fused maps of {names[0]}", "fixation", runnable=False)
     truth = "human gaze" if results.folder("fixation", dataset).parent.name == "gaze" else "marks"
-    known = (LEE.task, *RIVALS.values(), OURS.task)
-    rivals, images, columns = results.saliency(names[0], dataset).those_of(known), {}, {}
+    models = (LEE.task, *RIVALS.values(), OURS.task)
+    rivals, images, columns = results.saliency(names[0], dataset).those_of(models), {}, {}
     for name, arrays in files.items():
         mesh, saliency = results.mesh(name, dataset), results.saliency(name, dataset)
         columns = {truth: marked[name]} if marked else {}
-        columns |= {f"{task_text(NARROWED)}\n{network_text(each)}": arrays[f"{each}.{NARROWED}"] for each in methods}
+        columns |= {
+            f"{task_text(NARROWED)}\n{network_text(method)}": arrays[f"{method}.{NARROWED}"] for method in methods
+        }
         columns |= {label(rival): saliency[rival] for rival in rivals}
-        shown = (picture(mesh, vivid(values.astype(float)), rows=SMALL) for values in columns.values())
-        images[name] = [squared(image)[0] for image in shown]
+        pictures = (picture(mesh, vivid(values.astype(float)), rows=SMALL) for values in columns.values())
+        images[name] = [squared(image)[0] for image in pictures]
     figure = _panels(images, 1.6, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile", list(columns), (9, 10))
     words = {
         "names": ", ".join(names),
@@ -112,8 +114,8 @@ def _look(results: Results, dataset: str | None) -> tuple[Mesh, np.ndarray, View
     name = _ready(results, dataset)[0]
     arrays, tasks = stored(results, name, dataset), results.rows("fixation", dataset, metric="class")["task"].unique()
     cams = {method: arrays[f"{method}.maps"] for method in _networks(arrays, "maps")}
-    maps = {name: [dict(zip(tasks, large(view, name), strict=True)) for view in own] for name, own in cams.items()}
-    sizes = " or ".join(f"{rows} x {columns}" for rows, columns in sorted({own.shape[2:] for own in cams.values()}))
+    maps = {name: [dict(zip(tasks, large(view, name), strict=True)) for view in views] for name, views in cams.items()}
+    sizes = " or ".join(f"{rows} x {columns}" for rows, columns in sorted({views.shape[2:] for views in cams.values()}))
     return results.mesh(name, dataset), arrays["visible"], maps, {"name": name, "sizes": sizes}
 
 
@@ -124,11 +126,11 @@ def _ready(results: Results, dataset: str | None) -> list[str]:
     return sorted(names, key=lambda name: [*results.settings.figure_objects, name].index(name))
 
 
-def _networks(arrays: dict[str, np.ndarray], what: str) -> list[str]:
-    """The methods of which a file holds METHOD.what: of each network the one that was taught most; no controls."""
-    networks = dict.fromkeys(key.rpartition("-")[0] for key in arrays if key.endswith(f".{what}"))
-    known = ([f"{one}-{mode}" for mode in MOST_TAUGHT if f"{one}-{mode}.{what}" in arrays] for one in networks)
-    return [methods[0] for methods in known if methods]
+def _networks(arrays: dict[str, np.ndarray], suffix: str) -> list[str]:
+    """The methods of which a file holds METHOD.suffix: of each network the one that was taught most; no controls."""
+    networks = dict.fromkeys(key.rpartition("-")[0] for key in arrays if key.endswith(f".{suffix}"))
+    groups = ([f"{base}-{mode}" for mode in MOST_TAUGHT if f"{base}-{mode}.{suffix}" in arrays] for base in networks)
+    return [methods[0] for methods in groups if methods]
 
 
 def _taught(methods: Iterable[str]) -> str:
@@ -139,8 +141,8 @@ def _taught(methods: Iterable[str]) -> str:
 def large(cams: np.ndarray, method: str) -> np.ndarray:
     """(t, ROWS, ROWS) f4: Grad-CAM maps (t, i, j) of a network as it sees them, each over its maximum or zero."""
     network = method.rpartition("-")[0]
-    seen = resize_cams(cams, GRIDS[network][0] * cams.shape[1], network)
-    return np.stack([cv2.resize(cam, (ROWS, ROWS), interpolation=cv2.INTER_LINEAR) for cam in seen])
+    resized = resize_cams(cams, GRIDS[network][0] * cams.shape[1], network)
+    return np.stack([cv2.resize(cam, (ROWS, ROWS), interpolation=cv2.INTER_LINEAR) for cam in resized])
 
 
 def _fused(maps: Mapping[str, np.ndarray]) -> np.ndarray:

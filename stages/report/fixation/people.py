@@ -47,15 +47,15 @@ DIAMOND = DOT | {"marker": "D", "color": "white", "ms": 4.5}
 
 def figure_3_32(results: Results) -> Figure:
     """Correlation of each task's map with people as T3.3.6 prints it, a row a task, a colour a network."""
-    found = sources(results)
-    methods = sorted(dict.fromkeys(method for rows in found.values() for method in networks(rows)), key=untrained)
+    truths = sources(results)
+    methods = sorted(dict.fromkeys(method for rows in truths.values() for method in networks(rows)), key=untrained)
     parts = {method: method.rpartition("-") for method in methods}
     paint = colours(list(dict.fromkeys(base for base, *_ in parts.values())))
     marks = {method: DOT | {"color": paint[base]} | LOOKS.get(mode, {}) for method, (base, _, mode) in parts.items()}
     places = (np.arange(len(methods)) - (len(methods) - 1) / 2) * 0.72 / max(len(methods), 3)
-    size = (4.0 * len(found) + 2.6, 1.2 + len(LINES) * max(0.42, 0.14 * len(methods)))
-    grid = _panels(found, list(map(task_text, LINES)), "Pearson's correlation with people", size, 10)
-    for axes, rows in zip(grid, found.values(), strict=True):
+    size = (4.0 * len(truths) + 2.6, 1.2 + len(LINES) * max(0.42, 0.14 * len(methods)))
+    grid = _panels(truths, list(map(task_text, LINES)), "Pearson's correlation with people", size, 10)
+    for axes, rows in zip(grid, truths.values(), strict=True):
         table = scores(rows, "pcc_masked")
         for (y, task), (down, method) in product(enumerate(LINES), zip(places, methods, strict=True)):
             if (method, task) in table:
@@ -65,45 +65,45 @@ def figure_3_32(results: Results) -> Figure:
         axes.hlines(np.arange(len(TASKS) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.5)
     for method, mark in marks.items():
         grid[-1].plot([], [], label=network_text(method), **mark)
-    return _with_noise(_with_legend(grid, found), found)
+    return _with_noise(_with_legend(grid, truths), truths)
 
 
 def figure_3_35(results: Results) -> Figure:
     """Correlation of detectors with people as T3.3.6 prints it, best mean first."""
-    found = {source: (scores(rows, "pcc_masked"), scores(rows, "pcc")) for source, rows in sources(results).items()}
+    tables = {source: (scores(rows, "pcc_masked"), scores(rows, "pcc")) for source, rows in sources(results).items()}
     draw, zero = partial(_span, lw=1.6, mec="white", mew=0.5, **DOT), partial(Axes.axvline, color=INK, lw=0.8)
-    grid = _ranked(found, "mean", "Pearson's correlation with people", draw, zero, zorder=1.9)
+    grid = _ranked(tables, "mean", "Pearson's correlation with people", draw, zero, zorder=1.9)
     for words, tint in KINDS.values():
         grid[-1].plot([], [], color=tint, label=words, **DOT)
-    return _with_noise(_with_legend(grid, found, "over visible vertices alone"), sources(results))
+    return _with_noise(_with_legend(grid, tables, "over visible vertices alone"), sources(results))
 
 
-def _with_noise(figure: Figure, found: dict[str, pd.DataFrame]) -> Figure:
+def _with_noise(figure: Figure, truths: dict[str, pd.DataFrame]) -> Figure:
     """The figure, with what noise has by its correlation on the first truth among its words."""
-    source, rows = next(iter(found.items()))
+    source, rows = next(iter(truths.items()))
     figure.words["noise"] = f"{number(scores(rows, 'pcc_masked')[NOISE].mean())} on {source}"
     return figure
 
 
 def figure_3_36(results: Results) -> Figure:
     """Distance between centres of fixation of detectors and of people, least median first."""
-    found: Tables = {}
+    tables: Tables = {}
     for source, rows in sources(results, "distance").items():
         nearest, pairs = (scores(rows, metric, ("item", "view")) for metric in ("distance", "distance_mean"))
-        found[source] = nearest, pairs.clip(lower=FLOOR)
+        tables[source] = nearest, pairs.clip(lower=FLOOR)
     axis = "distance, % of the diameter\nof the bounding sphere"
-    grid = _ranked(found, "median", axis, _box, _logarithmic)
+    grid = _ranked(tables, "median", axis, _box, _logarithmic)
     for words, tint in KINDS.values():
         grid[-1].barh([np.nan], [1], color=tint, alpha=0.45, label=words)
-    return _with_legend(grid, found, "median of the mean\nover all pairs", "of")
+    return _with_legend(grid, tables, "median of the mean\nover all pairs", "of")
 
 
-def _panels(found: Collection[str], names: list[str], axis: str, size: tuple[float, float], font: float) -> np.ndarray:
+def _panels(truths: Collection[str], names: list[str], axis: str, size: tuple[float, float], font: float) -> np.ndarray:
     """Axes: a panel for each truth, one row per name."""
-    _, (grid,) = plt.subplots(1, len(found), figsize=size, squeeze=False, sharey=True, sharex=True)
+    _, (grid,) = plt.subplots(1, len(truths), figsize=size, squeeze=False, sharey=True, sharex=True)
     grid[0].set_yticks(range(len(names)), names, fontsize=font)
     grid[0].set_ylim(len(names) - 0.4, -0.6)
-    for axes, source in zip(grid, found, strict=True):
+    for axes, source in zip(grid, truths, strict=True):
         axes.grid(axis="x")
         axes.tick_params(axis="y", length=0)
         axes.set_title(source, fontsize=10, fontweight="normal")
@@ -112,33 +112,33 @@ def _panels(found: Collection[str], names: list[str], axis: str, size: tuple[flo
 
 
 def _ranked(
-    found: Tables, middle: str, axis: str, draw: Callable, finish: Callable[[Axes], object], zorder: float = 2
+    tables: Tables, middle: str, axis: str, draw: Callable, finish: Callable[[Axes], object], zorder: float = 2
 ) -> np.ndarray:
     """Axes: a row a detector, in the order of the first truth that has it; diamonds: middles of its second scores."""
-    order = pd.concat([own[detectors(own)].agg(middle) for own, _ in found.values()])
+    order = pd.concat([table[detectors(table)].agg(middle) for table, _ in tables.values()])
     order = order[~order.index.duplicated()].sort_values(ascending=middle == "median", kind="stable")
     names = [Detector(*name) for name in order.index]
-    size = (3.9 * len(found) + 3.6, 1.0 + 0.26 * len(names))
-    grid = _panels(found, [name.text for name in names], axis, size, 8.5)
-    for axes, (own, beside) in zip(grid, found.values(), strict=True):
+    size = (3.9 * len(tables) + 3.6, 1.0 + 0.26 * len(names))
+    grid = _panels(tables, [name.text for name in names], axis, size, 8.5)
+    for axes, (table, beside) in zip(grid, tables.values(), strict=True):
         axes.hlines(range(len(names)), 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.4, zorder=0)
         for y, name in enumerate(names):
             tint = KINDS[name.kind][1]
-            if name in own:
-                draw(axes, own[name], y, tint)
+            if name in table:
+                draw(axes, table[name], y, tint)
             if name in beside:
                 axes.plot(beside[name].agg(middle), y, mec=tint, mew=1.1, zorder=zorder, **DIAMOND)
         finish(axes)
     return grid
 
 
-def _with_legend(grid: np.ndarray, found: Collection[str], diamond: str = "", joint: str = "with") -> Figure:
+def _with_legend(grid: np.ndarray, truths: Collection[str], diamond: str = "", joint: str = "with") -> Figure:
     if diamond:
         grid[-1].plot([], [], mec=INK, label=diamond, **DIAMOND)
     grid[-1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
     drawing = grid[-1].figure
     drawing.tight_layout()
-    return Figure(drawing, {"sources": f" and {joint} ".join(found), "no_people": no_people(found), "floor": FLOOR})
+    return Figure(drawing, {"sources": f" and {joint} ".join(truths), "no_people": no_people(truths), "floor": FLOOR})
 
 
 def _span(axes: Axes, values: pd.Series, y: float, color: str, lw: float, **mark: Any) -> None:
@@ -170,12 +170,14 @@ def below(results: Results, claim: Claim, share: float) -> pd.Series:
     It is above zero where the first side's own quantile is the lower one. Values at the quantile count half.
     """
     sides = (claim.first, claim.other), (claim.other, claim.first)
-    both = pd.concat([side(results, claim, own, other) for own, other in sides], axis=1, keys=["first", "second"])
-    both = both.dropna()
-    if both.empty:
-        return both["first"]
-    edge = both.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
-    under = (both < edge) + (both == edge) / 2
+    joined = pd.concat(
+        [side(results, claim, selection, other) for selection, other in sides], axis=1, keys=["first", "second"]
+    )
+    joined = joined.dropna()
+    if joined.empty:
+        return joined["first"]
+    edge = joined.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
+    under = (joined < edge) + (joined == edge) / 2
     return (under["first"] - under["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
 
 

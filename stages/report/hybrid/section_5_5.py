@@ -34,13 +34,13 @@ def section_5_5_table(results: Results) -> Table:
     thesis = results.thesis("section_5_5_hybrid").set_index("quantity")["value"]
     lines, notes = [], []
     for dataset in everywhere(results, data="hybrid"):
-        found = results.measured("transfer", dataset, data="hybrid", perturbation=None)
-        found = found.assign(network=found["method"].replace(dict.fromkeys(SENSES, "apart")))
-        middles = [rows for _, rows in found.groupby("mode", sort=False)]
+        trials = results.measured("transfer", dataset, data="hybrid", perturbation=None)
+        trials = trials.assign(network=trials["method"].replace(dict.fromkeys(SENSES, "apart")))
+        middles = [rows for _, rows in trials.groupby("mode", sort=False)]
         middles.sort(key=lambda rows: -rows["repetition"].nunique())
         for rows in middles:
             splits = [split for split in SPLITS if split in set(rows["split"])]
-            lines += [_line(rows, middles[0], *which) for which in product(METHODS, splits)]
+            lines += [_line(rows, middles[0], *case) for case in product(METHODS, splits)]
             notes.append(_note(rows, thesis["compression_ratio"]))
     frame = pd.DataFrame(lines)
     words = {"visual": 100 * thesis["visual_accuracy"], "tactile": 100 * thesis["tactile_accuracy"]}
@@ -96,13 +96,13 @@ def _objects(rows: pd.DataFrame) -> str:
 
 def _values(rows: pd.DataFrame, network: str, metric: str = "accuracy", **where: str) -> pd.Series:
     """The values of a network, indexed by its training and senses."""
-    wanted = pd.Series({"metric": metric, "network": network, **where})
-    return rows[(rows[wanted.index] == wanted).all(axis=1)].set_index(["sense", "split", "repetition"])["value"]
+    selection = pd.Series({"metric": metric, "network": network, **where})
+    return rows[(rows[selection.index] == selection).all(axis=1)].set_index(["sense", "split", "repetition"])["value"]
 
 
 def _shown(frame: pd.DataFrame) -> pd.DataFrame:
     """One line per network: accuracies side by side, size the mean over the splits, which differ by a few bytes."""
-    shown = []
+    lines = []
     for (objects, layers, network), group in frame.groupby(["objects", "shared_layers", "network"], sort=False):
         line, gains = {"objects": objects, "shared layers": layers, "network": METHODS[str(network)]}, {}
         for (_, row), (sense, word) in product(group.iterrows(), SENSES.items()):
@@ -110,8 +110,8 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
             line[f"by {word}, {ITEMS[row['split']]}, %"] = text
             gains[f"gain by {word}, {ITEMS[row['split']]}, points"] = f"{row[f'{sense}_gain']:+.1f}"
         line |= {"file, MB": f"{group['megabytes'].mean():.2f}", "size ratio": f"{group['size_ratio'].mean():.3f}"}
-        shown.append(line | (gains if layers != frame["shared_layers"].iloc[0] else {}))
-    return pd.DataFrame(shown)
+        lines.append(line | (gains if layers != frame["shared_layers"].iloc[0] else {}))
+    return pd.DataFrame(lines)
 
 
 def _note(rows: pd.DataFrame, theirs: float) -> str:
@@ -136,11 +136,11 @@ def _draw(axes: Axes, frame: pd.DataFrame, first: str) -> None:
     base = frame[(frame["network"] == "hybrid") & (frame["shared_layers"] == first)].iloc[0]
     for (sense, tint), down in zip(TINTS.items(), (-0.1, 0.1), strict=True):
         for y, (_, row) in enumerate(rows.iterrows()):
-            other = row["shared_layers"] != first
-            place = 100 * base[sense] + row[f"{sense}_gain"] if other else 100 * row[sense]
-            style = {"color": tint, "mfc": "white" if other else tint, "ms": 7, "label": f"_by {SENSES[sense]}"}
+            hollow = row["shared_layers"] != first
+            place = 100 * base[sense] + row[f"{sense}_gain"] if hollow else 100 * row[sense]
+            style = {"color": tint, "mfc": "white" if hollow else tint, "ms": 7, "label": f"_by {SENSES[sense]}"}
             axes.plot(place, y + down, "o", zorder=3, **style)
-            if not other:
+            if not hollow:
                 axes.plot(100 * row[[f"{sense}_low", f"{sense}_high"]], [y + down] * 2, color=tint, lw=1.4, alpha=0.5)
         axes.plot([], [], "o", color=tint, ms=7, label=f"by {SENSES[sense]}")
     names = rows["network"].map(METHODS).where(rows["shared_layers"] == first, "hybrid, " + rows["shared_layers"])
@@ -176,8 +176,8 @@ def new_object_sentences(results: Results) -> str:
         except NotRun:
             continue
         lines += [
-            f"{dataset_text(dataset)}, {HEADS[name]}: {_counts(own)}."
-            for (name,), own in grouped(rows[rows["method"] != "chance"], ["method"])
+            f"{dataset_text(dataset)}, {HEADS[name]}: {_counts(trials)}."
+            for (name,), trials in grouped(rows[rows["method"] != "chance"], ["method"])
         ]
         guessing = rows.loc[rows["method"] == "chance", "value"].iloc[0]
         lines[-1] += f" {rows['item'].nunique()} new objects, guessing {100 * guessing:.1f} %."
@@ -186,12 +186,12 @@ def new_object_sentences(results: Results) -> str:
 
 def _counts(rows: pd.DataFrame) -> str:
     """`31 [25, 37] % after 1 touch, ... (0.1 to 0.9 s)` of one method, with the interval over the objects."""
-    said = [
-        f"{with_interval(*within(own['value']), 100, 0)} % after {count:g} touch{'es' if count > 1 else ''}"
-        for (count,), own in grouped(rows, ["severity"])
+    texts = [
+        f"{with_interval(*within(trials['value']), 100, 0)} % after {count:g} touch{'es' if count > 1 else ''}"
+        for (count,), trials in grouped(rows, ["severity"])
     ]
     seconds = rows.groupby("severity")["seconds"].median()
-    return f"{', '.join(said)}, in {number(seconds.min(), 2)} to {number(seconds.max(), 2)} s an object on one core"
+    return f"{', '.join(texts)}, in {number(seconds.min(), 2)} to {number(seconds.max(), 2)} s an object on one core"
 
 
 JOINED = {
@@ -214,26 +214,26 @@ WHOLE = "none"  # the perturbation of senses that are as they should be
 
 def hybrid_senses(results: Results) -> Table:
     """Accuracy of each way to join the senses under the harshest of each damage, on items at random."""
-    found = measured(results, data="hybrid", mode=MIDDLE, split="random", sense="both")
-    found = found[found["severity"] == found.groupby("perturbation")["severity"].transform("max")]
+    rows = measured(results, data="hybrid", mode=MIDDLE, split="random", sense="both")
+    rows = rows[rows["severity"] == rows.groupby("perturbation")["severity"].transform("max")]
     frame = pd.DataFrame(
         {"damage": damage, "severity": severity, "method": method} | accuracy(part[part["method"] == method], "random")
-        for (damage, severity), part in grouped(found, ["perturbation", "severity"])
+        for (damage, severity), part in grouped(rows, ["perturbation", "severity"])
         for method in JOINED
     ).drop(columns="values")
     cells = frame.assign(head=[*map(spoken, frame["damage"], frame["severity"])])
     wide = grid(cells, "method", "head", names={"method": JOINED.get}).rename(columns={"method": "answers"})
     shares = frame.groupby("method", sort=False)["accuracy"].mean()
     wide.insert(1, MEAN, [percent(shares[method]) for method in JOINED if method in shares])
-    words, answer = seen(found), [name for name in map(str, wide) if not any(part in name for part in DETAILS)]
+    words, answer = seen(rows), [name for name in map(str, wide) if not any(part in name for part in DETAILS)]
     return Table(frame, wide, {"seen": f"For touch: {words}." if words else ""}, Ranking(MEAN), answer)
 
 
 def spoken(perturbation: str, severity: float) -> str:
     """A damage as a person says it, as the head of a column of per cents."""
-    sense, _, what = perturbation.partition("_")
-    said = "both whole" if perturbation == WHOLE else f"{sense}: {what.replace('_', ' ')}"
-    return said + (f" {severity:g}, %" if severity not in (0, 1) else ", %")
+    sense, _, damage = perturbation.partition("_")
+    words = "both whole" if perturbation == WHOLE else f"{sense}: {damage.replace('_', ' ')}"
+    return words + (f" {severity:g}, %" if severity not in (0, 1) else ", %")
 
 
 UNHARMED = {"perturbation": WHOLE}
@@ -267,11 +267,11 @@ def joined(
     key: str, section: str, sentence: str, first: str, second: str, damage: Side = UNHARMED, **more: Any
 ) -> Claim:  # fmt: skip
     """A claim on both senses: one way of joining them, or one sense alone, over another."""
-    found = claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage})
-    return replace(found, **more)
+    base = claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage})
+    return replace(base, **more)
 
 
-on_both_splits = partial(both, items="items", done="met")
+on_both_splits = partial(both, items="items", verb="met")
 THESIS = on_both_splits(
     claim("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
           {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, {"perturbation": None}),

@@ -35,10 +35,10 @@ def backends_table(results: Results) -> Table:
     frame = summarised(rows, fitted=True)
     cells = rows.drop_duplicates(CELL)
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
-    said = [_said(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
+    lines = [_said(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
         "measured": shared_notes(__package__, f"timed_{'cold' if MAXIMUM in rows else 'warm'}"),
-        "said": "\n".join(said + against_meshoptimizer(rows, results)),
+        "said": "\n".join(lines + against_meshoptimizer(rows, results)),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -62,40 +62,40 @@ def tried(results: Results) -> pd.DataFrame:
 def common(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows of the cells that all backends of their task (with points, or without) reached."""
     reached = rows[rows["outcome"] == "reached"]
-    wanted = rows.groupby("with_points")["backend"].nunique()
-    found = reached.groupby(CELL)["backend"].transform("nunique")
-    return reached[found == reached["with_points"].map(wanted)]
+    total = rows.groupby("with_points")["backend"].nunique()
+    count = reached.groupby(CELL)["backend"].transform("nunique")
+    return reached[count == reached["with_points"].map(total)]
 
 
 def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
     """A row a backend, without and with points to keep: refusals, ratios of time and errors; fitted: and growth."""
-    paired, found = common(rows), []
+    paired, lines = common(rows), []
     for key, group in rows.groupby(TASK, sort=False):
-        own, outcomes = paired[(paired[TASK] == key).all(axis=1)], group["outcome"].value_counts()
-        line = dict(zip(TASK, key, strict=True)) | {"meshes": own["mesh"].nunique(), "cells": len(own)}
+        cells, outcomes = paired[(paired[TASK] == key).all(axis=1)], group["outcome"].value_counts()
+        line = dict(zip(TASK, key, strict=True)) | {"meshes": cells["mesh"].nunique(), "cells": len(cells)}
         line |= {"tried": len(group) - outcomes.get("infeasible", 0)}
         line |= {name: outcomes.get(name, 0) for name in ("refused", "missed")}
         for name in RATIOS:
-            ratios = own[f"{name}_ratio"]
-            logs = ratios.where(ratios > 0).apply(np.log).groupby(own["mesh"]).mean()
+            ratios = cells[f"{name}_ratio"]
+            logs = ratios.where(ratios > 0).apply(np.log).groupby(cells["mesh"]).mean()
             line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
-        line |= {"slowest": own["time_ratio"].max(), "seconds": own["seconds"].median()}
-        made = group[group["outcome"] == "reached"]
-        line |= {name: made[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
+        line |= {"slowest": cells["time_ratio"].max(), "seconds": cells["seconds"].median()}
+        reached = group[group["outcome"] == "reached"]
+        line |= {name: reached[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
         for shape in GROWTHS if fitted else ():
-            fit = growth(own, shape)
+            fit = growth(cells, shape)
             line |= {f"{shape}_{name}": getattr(fit, name, np.nan) for name in ("power", "low", "high")}
-        found.append(line if line["with_points"] else line | {"kept": np.nan})
-    return pd.DataFrame(found).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
+        lines.append(line if line["with_points"] else line | {"kept": np.nan})
+    return pd.DataFrame(lines).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
 
 
 def _said(row) -> str:
-    other, faster = label(REFERENCE), (1 / row.time_ratio, 1 / row.time_high, 1 / row.time_low)
+    peer, faster = label(REFERENCE), (1 / row.time_ratio, 1 / row.time_high, 1 / row.time_low)
     error = row.error_ratio, row.error_low, row.error_high
     power = row.loglinear_power, row.loglinear_low, row.loglinear_high
     return (
         f"{label(OURS)}, {'points' if row.with_points else 'nothing'} kept: {with_interval(*faster)} times as fast as "
-        f"{other}. Its Metro error is {with_interval(*error)} times {other}'s. Its time grows as (n log n)^p, p = "
+        f"{peer}. Its Metro error is {with_interval(*error)} times {peer}'s. Its time grows as (n log n)^p, p = "
         f"{with_interval(*power, places=2)}."
     )
 
@@ -133,9 +133,9 @@ def backends_chart(results: Results) -> Figure:
         frame[f"{kind}_front"] = False
         for _, group in frame.groupby("with_points"):  # the task without points to keep is another than the one with
             parts = {part: np.log(group[f"{kind}_{part}"]) for part in ("ratio", "low", "high")}
-            own = group.assign(name=group["backend"], **parts)
-            found = placed(own, "time_ratio", "ratio", "low", noise_of(group["time_low"], group["time_high"]))
-            frame.loc[group.index, f"{kind}_front"] = found["on_front"] == ON
+            choices = group.assign(name=group["backend"], **parts)
+            ranked = placed(choices, "time_ratio", "ratio", "low", noise_of(group["time_low"], group["time_high"]))
+            frame.loc[group.index, f"{kind}_front"] = ranked["on_front"] == ON
         _against(axes, frame, kind, tints)
         axes.set(ylabel=f"{name}, ratio to {REFERENCE}", title=title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}
@@ -151,11 +151,11 @@ def backends_chart(results: Results) -> Figure:
 def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) -> None:
     """One error against time, as ratios. kind: the first part of the columns' names."""
     parts = {f"{kind}_{part}": part for part in ("ratio", "low", "high", "front")}
-    known = frame.rename(columns=parts).dropna(subset=["ratio"])
-    for with_points, group in known[known["front"]].sort_values("time_ratio").groupby("with_points"):
+    compared = frame.rename(columns=parts).dropna(subset=["ratio"])
+    for with_points, group in compared[compared["front"]].sort_values("time_ratio").groupby("with_points"):
         style = "-" if with_points else ":"
         axes.step(group["time_ratio"], group["ratio"], where="post", color=INK, lw=1, ls=style, zorder=1)
-    ends = [pair for row in known.itertuples() for pair in _mark(axes, row, tints)]
+    ends = [pair for row in compared.itertuples() for pair in _mark(axes, row, tints)]
     for form, name in KEPT.values():
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=name)
     axes.set(xscale="log", yscale="log", xlabel=f"seconds, ratio to {REFERENCE}")
@@ -165,9 +165,9 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
     for axis in (axes.xaxis, axes.yaxis):
         plain_logarithm(axis)
     axes.legend(loc="upper right", fontsize=8)
-    first = known.drop_duplicates("backend")
+    first = compared.drop_duplicates("backend")
     names = zip(first["backend"].map(label), zip(first["time_ratio"], first["ratio"], strict=True), strict=True)
-    points = np.concatenate([known[["time_ratio", "ratio"]], known[["whole_ratio", "ratio"]].dropna()])
+    points = np.concatenate([compared[["time_ratio", "ratio"]], compared[["whole_ratio", "ratio"]].dropna()])
     place_names(axes, names, points, ends)
 
 
@@ -187,8 +187,8 @@ def _mark(axes: Axes, row: Any, tints: dict[str, str]) -> Iterator[list[Spot]]:
 def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tints: dict[str, str]) -> None:
     """Seconds against faces, a dot a cell, with the fits and the intervals of their powers."""
     for backend, tint in tints.items():
-        here, fit, power = rows[rows["backend"] == backend], fits[backend], ""
-        axes.plot(here["full"], here["seconds"], ".", color=tint, ms=4, alpha=0.4, mew=0)
+        cells, fit, power = rows[rows["backend"] == backend], fits[backend], ""
+        axes.plot(cells["full"], cells["seconds"], ".", color=tint, ms=4, alpha=0.4, mew=0)
         if fit:
             n, power = np.geomspace(*fit.span, 30), f", p = {fit.said}"
             axes.plot(n, fit(n), color=tint, lw=1.4)
@@ -242,12 +242,12 @@ def _salient(results: Results) -> Iterator[str]:
         return
     if "bar" not in rows or rows["bar"].isna().all():
         return
-    own = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
-    found, meshes = _over_meshes(own["salient_ratio"]), own["salient_ratio"].dropna().index.nunique()
-    means = own["salient_ratio"].apply(np.log).groupby(own["share"]).mean().apply(np.exp)
+    ours = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
+    ratio, meshes = _over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
+    means = ours["salient_ratio"].apply(np.log).groupby(ours["share"]).mean().apply(np.exp)
     shares = ", ".join(f"{mean:.2f} at {share:.0%}" for share, mean in means.items())
     yield (
         f"Error weighted by recorded gaze, {meshes} meshes: ours, with the gaze as weights, has "
-        f"{with_interval(*found)} times that of {label(OTHER)} with its priority bit, its lock bit or neither, the "
+        f"{with_interval(*ratio)} times that of {label(OTHER)} with its priority bit, its lock bit or neither, the "
         f"best in each cell ({shares} of the faces)."
     )

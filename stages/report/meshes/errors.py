@@ -98,25 +98,25 @@ def figure_3_5(results: Results) -> Figure:
 
 def figure_3_23(results: Results) -> Figure:
     """A row of panels for each data set, a panel for each error and face count, a box for each method."""
-    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, PROPOSED)}
-    found = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in found.items()}
-    shown = {name: rows for name, rows in found.items() if PLAIN in set(rows["method"])}
+    by_set = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, PROPOSED)}
+    by_set = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in by_set.items()}
+    shown = {name: rows for name, rows in by_set.items() if PLAIN in set(rows["method"])}
     some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
-    own = {name: [method for method in BOXES if method in set(rows["method"])] for name, rows in shown.items()}
-    heights = [0.9 + 0.17 * len(methods) for methods in own.values()]  # of a title, the boxes and an axis
+    boxes = {name: [method for method in BOXES if method in set(rows["method"])] for name, rows in shown.items()}
+    heights = [0.9 + 0.17 * len(methods) for methods in boxes.values()]  # of a title, the boxes and an axis
     drawing, grid = plt.subplots(
         len(shown), 4, figsize=(10.4, sum(heights)), squeeze=False, sharey="row", height_ratios=heights,
         layout="constrained",
     )  # fmt: skip
     for row, (name, rows) in zip(grid, shown.items(), strict=True):
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
-            errors = by_object(rows, own[name], metric, target)
+            errors = by_object(rows, boxes[name], metric, target)
             _draw_boxes(axes, errors)
             title = f"{ERRORS[metric]}, {said(target)}\n{len(errors)} objects"
             axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
         row[0].set_title(f"{name}\n{row[0].get_title('left')}", fontsize=8.5, fontweight="normal", pad=4)
-        _name_rows(row[0], own[name], TINTS, 8)
-    methods = [method for method in BOXES if any(method in mine for mine in own.values())]
+        _name_rows(row[0], boxes[name], TINTS, 8)
+    methods = [method for method in BOXES if any(method in group for group in boxes.values())]
     return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
 
 
@@ -249,8 +249,8 @@ def views(results: Results) -> Figure:
         line = points[points["method"] == "any"].sort_values("views")
         axes.plot(line["views"], line["value"], "o-", color=tint, mec="white", ms=6, label=name)
         for method, (marker, _) in CHOSEN.items():
-            one = points[points["method"] == method]
-            axes.plot(one["views"], one["value"], marker, color=tint, mec=INK, mew=0.8, ms=10, zorder=4)
+            spot = points[points["method"] == method]
+            axes.plot(spot["views"], spot["value"], marker, color=tint, mec=INK, mew=0.8, ms=10, zorder=4)
     for marker, label in CHOSEN.values():
         axes.plot([], [], marker, color="none", mec=INK, ms=9, label=label)
     ticks = sorted(set(frame["views"]))
@@ -271,11 +271,11 @@ def views(results: Results) -> Figure:
 
 def _typical_views(rows: pd.DataFrame) -> pd.DataFrame:
     """A row a metric, way of choosing and number of views: root mean square over the meshes with its interval."""
-    keys, found = ["metric", "method", "views"], []
+    keys, lines = ["metric", "method", "views"], []
     for key, group in grouped(rows, keys):
         ends = np.sqrt(np.maximum(interval(group["value"] ** 2), 0))
-        found.append([*key, *ends, group["seconds"].mean(), len(group)])
-    return pd.DataFrame(found, columns=[*keys, "value", "low", "high", "seconds", "meshes"])
+        lines.append([*key, *ends, group["seconds"].mean(), len(group)])
+    return pd.DataFrame(lines, columns=[*keys, "value", "low", "high", "seconds", "meshes"])
 
 
 def _rows(results: Results, what: str) -> pd.DataFrame:

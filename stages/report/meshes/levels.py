@@ -43,8 +43,8 @@ MANY = 5  # methods that a rank correlation needs
 def spread(results: Results, claim: Claim) -> pd.Series:
     """Standard deviation over the methods of the first side, under the first selection minus under the second."""
     tables = (_errors(results, claim, claim.first["method"], **where) for where in claim.contrast or ())
-    one, other = (table.std(axis=1).droplevel("target") for table in tables)
-    return one - other
+    first, second = (table.std(axis=1).droplevel("target") for table in tables)
+    return first - second
 
 
 @statistic("falls_with_faces")
@@ -70,10 +70,10 @@ def room(results: Results, claim: Claim) -> pd.Series:
         table = _errors(results, claim, (base, *claim.first["method"]), metric=metric)
         if base not in table or table.shape[1] < 2:
             raise NotRun(f"lod did not run {base} beside another", claim.stage, runnable=False)
-        middle = (table.add(table[base], axis=0) / 2).where(lambda both: both > 0, 1.0)
+        middle = (table.add(table[base], axis=0) / 2).where(lambda mean: mean > 0, 1.0)
         shares = table.sub(table[base], axis=0) / middle
         gaps += [shares[name].groupby("item").mean() for name in table if name != base]
-    return min((side * gap for gap in gaps for side in (-1, 1)), key=lambda found: interval(found)[1])
+    return min((side * gap for gap in gaps for side in (-1, 1)), key=lambda series: interval(series)[1])
 
 
 @statistic("ranks_agree")
@@ -86,8 +86,8 @@ def ranks_agree(results: Results, claim: Claim) -> pd.Series:
     errors = _by_method(results, claim, metric, "value")
     if errors.empty or errors.shape[1] < MANY:
         raise NotRun(f"fewer than {MANY} methods to rank", claim.stage, runnable=False)
-    other = (str(claim.other["metric"]), "value") if claim.second else (metric, "points")
-    return errors.corrwith(_by_method(results, claim, *other), axis=1, method="spearman")
+    second = (str(claim.other["metric"]), "value") if claim.second else (metric, "points")
+    return errors.corrwith(_by_method(results, claim, *second), axis=1, method="spearman")
 
 
 def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: object) -> pd.DataFrame:
@@ -154,18 +154,18 @@ def _costed(rows: pd.DataFrame, search: dict[str, float], noise: float) -> pd.Da
 def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
     tints = colours([method for method in METHODS if method in set(frame["method"])])
     forms = dict(zip(targets, MARKERS, strict=False))
-    known = [metric for metric in DRAWN if metric in set(frame["metric"])]
-    drawing, panels = plt.subplots(1, len(known), figsize=(4.0 * len(known), 4.2), squeeze=False)
-    for axes, metric in zip(panels[0], known, strict=True):
-        here = frame[frame["metric"] == metric]
-        for _, group in here[here["on_front"]].sort_values("cost_ratio").groupby("target"):
-            ends = [*group["cost_ratio"], here["cost_ratio"].max()]
+    metrics = [metric for metric in DRAWN if metric in set(frame["metric"])]
+    drawing, panels = plt.subplots(1, len(metrics), figsize=(4.0 * len(metrics), 4.2), squeeze=False)
+    for axes, metric in zip(panels[0], metrics, strict=True):
+        panel = frame[frame["metric"] == metric]
+        for _, group in panel[panel["on_front"]].sort_values("cost_ratio").groupby("target"):
+            ends = [*group["cost_ratio"], panel["cost_ratio"].max()]
             axes.step(ends, [*group["mean"], group["mean"].iloc[-1]], where="post", color=INK, lw=0.9, zorder=1)
-        columns = here[["method", "target", "cost_ratio", "mean", "low", "high"]]
+        columns = panel[["method", "target", "cost_ratio", "mean", "low", "high"]]
         for method, target, cost, mean, *ends in columns.itertuples(index=False):
             axes.plot([cost] * 2, ends, color=tints[method], lw=1.2, alpha=0.5, zorder=2)
-            said = f"_{label(method)}, {target}"
-            axes.plot(cost, mean, forms[target], color=tints[method], ms=7, mec="white", mew=0.8, zorder=3, label=said)
+            name = f"_{label(method)}, {target}"
+            axes.plot(cost, mean, forms[target], color=tints[method], ms=7, mec="white", mew=0.8, zorder=3, label=name)
         unit = "%" if metric == "ssim_error" else "% of the diagonal"
         axes.set(xscale="log", yscale="log", xlabel=f"cost, as a ratio to {label(PLAIN)}", ylabel=unit)
         axes.set_title(ERRORS[metric].removesuffix(", %"), fontsize=10)

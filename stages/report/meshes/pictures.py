@@ -67,16 +67,16 @@ def figure_3_6(results: Results) -> Figure:
 
 def figure_3_7(results: Results) -> Figure:
     """Many, intermediate and few kept points on one object: one with area for wires, on which they differ most."""
-    found = []
+    candidates = []
     for name, target, meshes in _simplified(results, DIFFERING, _preferred(results)):
         with suppress(NotRun):
             points = results.strong_points(name)
             many, middle, few = (len(points[method]) for method in DIFFERING)
             apart = min(many / max(middle, 1), middle / max(few, 1), ENOUGH)
             near = 1 / NEAR < len(meshes[DIFFERING[0]].faces) / FACES < NEAR
-            found.append(((near and filled(results.mesh(name)) > THIN, apart), name, target, meshes, points))
-    some(found, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
-    _, name, target, meshes, points = max(found, key=lambda one: one[0])  # of equals the first
+            candidates.append(((near and filled(results.mesh(name)) > THIN, apart), name, target, meshes, points))
+    some(candidates, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
+    _, name, target, meshes, points = max(candidates, key=lambda entry: entry[0])  # of equals the first
     drawing, grid = square_grid(1, len(DIFFERING), side=2.9, right=1.1, gap=0.3)
     for axes, method in zip(grid[0], DIFFERING, strict=True):
         show(axes, meshes[method], faces_an_area(meshes[method]), True, rows=ROWS["figure_3_7"], tints=TINTS)
@@ -88,11 +88,11 @@ def figure_3_7(results: Results) -> Figure:
 
 def figure_3_8(results: Results) -> Figure:
     """The original with its points, levels that keep them, and the original coloured by its distance to each level."""
-    objects, found = results.settings.figure_objects, []
+    objects, pairs = results.settings.figure_objects, []
     for method in KEEPING:
-        found += islice(_levels(results, (method, PLAIN), objects), 1)
-    what = f"no levels of detail of {' or '.join(KEEPING)} beside plain QEM"
-    name, levels = some(found, what, "lod", runnable=False)[0]
+        pairs += islice(_levels(results, (method, PLAIN), objects), 1)
+    message = f"no levels of detail of {' or '.join(KEEPING)} beside plain QEM"
+    name, levels = some(pairs, message, "lod", runnable=False)[0]
     (method, kept), (_, plain) = levels.items()
     mesh, points, rows = results.mesh(name), results.strong_points(name)[method], ROWS["figure_3_8"]
     targets = sorted(set(kept) & set(plain), key=lambda target: -len(kept[target].faces))[-LEVELS:]
@@ -121,16 +121,16 @@ def figure_3_8(results: Results) -> Figure:
 
 def figure_3_21(results: Results) -> Figure:
     """One object at falling face counts, by plain QEM above and with salient neighbourhoods kept below."""
-    found, wanted, rows = [], _preferred(results), ROWS["figure_3_21"]
+    candidates, preferred, rows = [], _preferred(results), ROWS["figure_3_21"]
     keeping = GUIDED if results.sets[0] == SECTION_3_2 else OURS
-    for name, levels in _levels(results, (PLAIN, keeping), wanted, len(wanted)):
+    for name, levels in _levels(results, (PLAIN, keeping), preferred, len(preferred)):
         counts = sorted(filter(str.isdigit, levels[PLAIN]), key=size)
         shown = (counts if len(counts) > 1 else sorted(levels[PLAIN], key=size))[:LEVELS]
         # Area for wires, and the most targets within reach of kept points.
         score = (filled(results.mesh(name)) > THIN, len(set(shown) & set(levels[keeping])))
-        found.append((score, name, shown, levels))
-    some(found, f"no simplified mesh with the points of {keeping} kept", "lod")
-    _, name, targets, levels = max(found, key=lambda one: one[0])
+        candidates.append((score, name, shown, levels))
+    some(candidates, f"no simplified mesh with the points of {keeping} kept", "lod")
+    _, name, targets, levels = max(candidates, key=lambda entry: entry[0])
     original, points = results.mesh(name), results.strong_points(name)[keeping]
     drawing, grid = square_grid(2, len(targets) + 1, side=2.0, gap=0.3)
     show(grid[0, 0], original, rows=rows)
@@ -152,8 +152,8 @@ def figure_3_21(results: Results) -> Figure:
 
 def figure_3_22(results: Results) -> Figure:
     """Two objects with the points of ED, SSIM and SVM kept, with fixed and with adaptive neighbourhoods."""
-    own = {unseen: name for name, unseen in UNSEEN.items()} if results.sets[0] == SECTION_3_2 else {}
-    methods = [own.get(method, method) for method in FIXED_ADAPTIVE]
+    printed = {unseen: name for name, unseen in UNSEEN.items()} if results.sets[0] == SECTION_3_2 else {}
+    methods = [printed.get(method, method) for method in FIXED_ADAPTIVE]
     shown = list(islice(_simplified(results, methods, results.settings.figure_objects), 2))
     some(shown, f"no object simplified by all of {', '.join(methods)}", "lod", runnable=False)
     drawing, grid = square_grid(len(shown), len(methods), side=1.6, gap=0.15)
@@ -211,16 +211,16 @@ def density(mesh: Mesh, points: np.ndarray) -> np.ndarray:
     width = SPREAD * mesh.diagonal
     places = KDTree(mesh.vertices[points].reshape(-1, 3))
     near = places.sparse_distance_matrix(KDTree(mesh.vertices), 4 * width, output_type="coo_matrix")
-    found = np.bincount(near.col, np.exp(-0.5 * (near.data / width) ** 2), len(mesh.vertices))
-    return found / (found.mean() or 1.0)
+    shares = np.bincount(near.col, np.exp(-0.5 * (near.data / width) ** 2), len(mesh.vertices))
+    return shares / (shares.mean() or 1.0)
 
 
 def against_the_mean(mesh: Mesh, points: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """{method: (n,) in 0..1}: more points about a vertex than the methods have in the mean is over 0.5."""
-    found = {method: density(mesh, own) for method, own in points.items() if len(own)}
-    mean = np.mean(list(found.values()), axis=0)
-    top = float(np.quantile(np.abs(list(found.values()) - mean), DEEPEST)) or 1.0
-    return {method: np.clip(0.5 + 0.5 * (own - mean) / top, 0, 1) for method, own in found.items()}
+    densities = {method: density(mesh, values) for method, values in points.items() if len(values)}
+    mean = np.mean(list(densities.values()), axis=0)
+    top = float(np.quantile(np.abs(list(densities.values()) - mean), DEEPEST)) or 1.0
+    return {method: np.clip(0.5 + 0.5 * (values - mean) / top, 0, 1) for method, values in densities.items()}
 
 
 def faces_an_area(mesh: Mesh) -> np.ndarray:

@@ -31,13 +31,13 @@ def build(results: Results) -> Table:
     if "rings" not in results.rows("lod", first):
         raise NotRun("no rings in the rows of lod", "lod")
     frames = {name: counted(results.rows("lod", name)) for name in sorted(sets, key=lambda name: name != first)}
-    frame = pd.concat({dataset_text(name): found for name, found in frames.items()}, names=["data", None])
+    frame = pd.concat({dataset_text(name): counts for name, counts in frames.items()}, names=["data", None])
     frame = frame.reset_index("data").reset_index(drop=True)
-    own = frame[frame["data"] == dataset_text(first)]
+    part = frame[frame["data"] == dataset_text(first)]
     targets = face_counts(results.rows("lod", first))[:2]
     some(targets, "no target is a number of faces", "lod", runnable=False)
     return Table(
-        frame, _wide(own, targets), {"set": dataset_text(first)}
+        frame, _wide(part, targets), {"set": dataset_text(first)}
     )  # no ranking: numbers of points do not compete
 
 
@@ -51,16 +51,16 @@ def counted(rows: pd.DataFrame) -> pd.DataFrame:
         as_plain=pd.MultiIndex.from_frame(units[UNIT]).isin(as_plain(rows)),
     )
     grouped = units.groupby(["method", "target"], sort=False)
-    found = grouped.agg(objects=("item", "nunique"), points=("points", "median"), rings=("rings", "median"))
-    found = found.join(grouped[list(SHARES)].mean()).reset_index()
-    found["method"] = pd.Categorical(found["method"], ordered(found["method"].unique()))
-    return found.sort_values("method", kind="stable").astype({"method": str})
+    summary = grouped.agg(objects=("item", "nunique"), points=("points", "median"), rings=("rings", "median"))
+    summary = summary.join(grouped[list(SHARES)].mean()).reset_index()
+    summary["method"] = pd.Categorical(summary["method"], ordered(summary["method"].unique()))
+    return summary.sort_values("method", kind="stable").astype({"method": str})
 
 
-def _wide(own: pd.DataFrame, targets: list[str]) -> pd.DataFrame:
+def _wide(frame: pd.DataFrame, targets: list[str]) -> pd.DataFrame:
     """A row a method: its points at the fewest faces, then rings and shares by face count, most faces first."""
-    cells = own.set_index(["method", "target"])
-    methods = own["method"].unique()
+    cells = frame.set_index(["method", "target"])
+    methods = frame["method"].unique()
     shown = pd.DataFrame({"kept points": [short(name) for name in methods]})
 
     def column(name: str, target: str, text: str = "{:.1f}", factor: float = 1.0) -> list[str]:
@@ -92,13 +92,13 @@ def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
 
     Without those of one method on other backgrounds.
     """
-    names, wanted = results.datasets("lod"), set(methods)
-    found = [
+    names, accepted = results.datasets("lod"), set(methods)
+    sets = [
         name for name in names
         if name not in (ON_GREY, ON_WHITE)
-        and (not wanted or wanted & set(results.rows("lod", name)["method"].replace(UNSEEN)))
+        and (not accepted or accepted & set(results.rows("lod", name)["method"].replace(UNSEEN)))
     ]  # fmt: skip
-    return some(found, "no measurements of lod", "lod")
+    return some(sets, "no measurements of lod", "lod")
 
 
 def paired_cells(
@@ -113,11 +113,11 @@ def paired_cells(
     """
     rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"])
     rows["method"] = rows["method"].replace(UNSEEN)
-    made = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
+    times = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
     rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
     rows = rows if methods is None else rows[rows["method"].isin(list(methods))]
-    rows = rows.merge(made, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
+    rows = rows.merge(times, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
     counted = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
     reached = rows.assign(method=counted).groupby([*CELL, "metric"])["method"].transform("nunique")
     return rows[reached == rows["method"].nunique()]
@@ -125,12 +125,12 @@ def paired_cells(
 
 def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFrame:
     """Mean, its interval from `least` on, and mean difference from `plain`, over the objects of each value of `by`."""
-    found = []
+    lines = []
     for key, group in grouped(rows, by):
         gain = interval(over_items(group.assign(value=group["value"] - group["plain"])))
-        found.append((*key, *within(over_items(group), least=least, top=np.inf), group["value"].count(), *gain))
+        lines.append((*key, *within(over_items(group), least=least, top=np.inf), group["value"].count(), *gain))
     ends = ["mean", "low", "high", "objects", "over_plain", "over_plain_low", "over_plain_high"]
-    return pd.DataFrame(found, columns=[*by, *ends])
+    return pd.DataFrame(lines, columns=[*by, *ends])
 
 
 def by_object(rows: pd.DataFrame, methods: list[str], metric: str, target: str | None = None) -> pd.DataFrame:
@@ -148,8 +148,8 @@ def face_counts(rows: pd.DataFrame) -> list[str]:
 
 def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
     """Column `text` pivoted, rows and columns in the order of the cells; `–` where there is none."""
-    found = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
-    return found.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
+    table = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
+    return table.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
 
 
 def cell(row: Any) -> str:
@@ -238,12 +238,12 @@ def dataset(results: Results) -> Table:
 
 def combinations(results: Results) -> Table:
     """The combinations of channels, in the thesis's order, and the mean errors that each led to."""
-    found = []
+    averages = []
     with suppress(NotRun):  # the list is worth having without the errors
         rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
-        found = means(rows, ["method", "metric"])
-    found = pd.DataFrame(found, columns=["method", "metric", "mean"])
-    errors = found.pivot(index="method", columns="metric", values="mean")
+        averages = means(rows, ["method", "metric"])
+    averages = pd.DataFrame(averages, columns=["method", "metric", "mean"])
+    errors = averages.pivot(index="method", columns="metric", values="mean")
     metrics = [metric for metric in ERRORS if metric in errors] or list(METRICS)
     channels = [", ".join(map(label, METHODS[method].channels)) for method in COMBINATIONS]
     frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
@@ -254,17 +254,19 @@ def combinations(results: Results) -> Table:
 
 def every_detector(results: Results) -> Table:
     """Errors and numbers of points of every method, on every data set."""
-    found = {dataset_text(name): paired_cells(results, dataset=name) for name in data_sets(results)}
-    found = {data: rows for data, rows in found.items() if PLAIN in set(rows["method"])}
-    some(found, "no face count that plain QEM and all other methods reach on one object", "lod", runnable=False)
-    parts = {data: _by_method(rows) for data, rows in found.items()}
+    by_set = {dataset_text(name): paired_cells(results, dataset=name) for name in data_sets(results)}
+    by_set = {data: rows for data, rows in by_set.items() if PLAIN in set(rows["method"])}
+    some(by_set, "no face count that plain QEM and all other methods reach on one object", "lod", runnable=False)
+    parts = {data: _by_method(rows) for data, rows in by_set.items()}
     frame = pd.concat(parts, names=["data", None]).reset_index("data")
     frame.insert(3, "objects", frame.pop("objects"))
-    counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in found.items())
-    shown, own = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
-    own = [name for name in map(str, shown) if name in own or name in COUNTS or name.startswith(ERRORS["gaze_error"])]
+    counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in by_set.items())
+    shown, answer = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
+    answer = [
+        name for name in map(str, shown) if name in answer or name in COUNTS or name.startswith(ERRORS["gaze_error"])
+    ]
     best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
-    return Table(frame, shown, {"counts": counts}, best, ["kept points", *own])
+    return Table(frame, shown, {"counts": counts}, best, ["kept points", *answer])
 
 
 def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
@@ -277,14 +279,14 @@ def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _methods_wide(frame: pd.DataFrame) -> pd.DataFrame:
-    own = frame["data"] == frame["data"].iloc[0]
-    cells = frame[own | frame["metric"].isin([*METRICS, "gaze_error"])]  # of the further data sets these alone
+    first = frame["data"] == frame["data"].iloc[0]
+    cells = frame[first | frame["metric"].isin([*METRICS, "gaze_error"])]  # of the further data sets these alone
     cells = cells.sort_values("metric", key=lambda metric: metric.isin(ERRORS), kind="stable")  # the counts come first
     texts = [cell(row) if row.metric in ERRORS else f"{row.mean:.1f}" for row in cells.itertuples()]
     names = cells["metric"].replace(ERRORS)
     heads = names.where(cells["data"] == frame["data"].iloc[0], names + ", " + cells["data"])
-    found = wide(cells.assign(text=texts, head=heads), "method", "head")
-    return found.loc[ordered(found.index)].rename(short).reset_index(names="kept points")
+    table = wide(cells.assign(text=texts, head=heads), "method", "head")
+    return table.loc[ordered(table.index)].rename(short).reset_index(names="kept points")
 
 
 def table_3_2(results: Results) -> Table:
@@ -309,13 +311,13 @@ def table_3_2(results: Results) -> Table:
 def _parts(results: Results) -> Iterator[pd.DataFrame]:
     """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
     for name in sorted(data_sets(results, OF_T3_2), key=lambda name: name != SECTION_3_2):
-        every = np.inf
+        total = np.inf
         for whole in (False, True):
             rows = paired_cells(results, METRICS, GUIDED, name, whole)
             rows = rows[rows["target"].isin(face_counts(rows))]
-            if 0 < len(rows) < every:
+            if 0 < len(rows) < total:
                 yield rows.assign(data=dataset_text(name), nothing_shrunk=whole)
-            every = len(rows)
+            total = len(rows)
 
 
 def _blocks_wide(cells: pd.DataFrame) -> pd.DataFrame:
@@ -326,7 +328,7 @@ def _blocks_wide(cells: pd.DataFrame) -> pd.DataFrame:
     cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
     cells["head"] = cells["metric"].map(ERRORS).astype(str) + ", " + cells["data"]
     cells["kept points"] = cells["method"].map(label)
-    found = wide(cells, ["block", "kept points"], "head")
+    table = wide(cells, ["block", "kept points"], "head")
     sets = sorted(cells["data"].unique(), key=[dataset_text(SECTION_3_2), "thesis"].__contains__, reverse=True)
-    found = found[[f"{ERRORS[metric]}, {data}" for metric in METRICS for data in sets]]
-    return found.reset_index(names=["target", "kept points"])
+    table = table[[f"{ERRORS[metric]}, {data}" for metric in METRICS for data in sets]]
+    return table.reset_index(names=["target", "kept points"])

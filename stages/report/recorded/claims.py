@@ -129,11 +129,11 @@ def over_classifiers(results: Results, claim: Claim) -> pd.Series:
     where |= {"group": "all", "method": "all"} if "pressure" in claim.where["data"] else {"palm": "all"}
     rows = results.measured("recorded", claim.sets[0], **where)
     ways = [name for name in ("classifier", "scaling", "scaled", "components") if name in rows]
-    own = side(results, claim, claim.first, None)
+    first = side(results, claim, claim.first, None)
     table = (
-        rows[rows["classifier"] != "majority"].pivot_table(index=key, columns=ways, values="value").reindex(own.index)
+        rows[rows["classifier"] != "majority"].pivot_table(index=key, columns=ways, values="value").reindex(first.index)
     )
-    return own - table[table.mean().idxmax()]
+    return first - table[table.mean().idxmax()]
 
 
 def claims(
@@ -144,11 +144,11 @@ def claims(
     for name in names:
         data, split = (SETTINGS | HAND)[name]
         common = {"data": data, "split": split, **ACCURACY, **where}
-        said = {"section": "T5.4", "over": ("item",) if split in OVER else ("repetition",)} | fields
+        options = {"section": "T5.4", "over": ("item",) if split in OVER else ("repetition",)} | fields
         yield Claim(
             key=f"recorded_{key}_{name}", sentence=sentence, stage=STAGE, first=first, second=second, phrases=OF_SIGHT,
             dataset=SETS_OF.get(data, "biotac_grasps"),
-            where={column: value for column, value in common.items() if column not in first}, **said,
+            where={column: value for column, value in common.items() if column not in first}, **options,
         )  # fmt: skip
 
 
@@ -206,12 +206,12 @@ SERIES = [
     *(
         on_events(
             f"{method}_over_network_{group}",
-            f"Time-binned event counts and a linear {said} recognise {group} better than the published spiking graph "
+            f"Time-binned event counts and a linear {name} recognise {group} better than the published spiking graph "
             "network.",
             where=TESTED | {"group": group}, first={"method": method}, second=SPIKING[group],
             note="the network's figure is a constant here: it has no interval",
         )
-        for method, said in ((OURS, "discriminant"), ("linear_svm", "SVM")) for group in GROUPS
+        for method, name in ((OURS, "discriminant"), ("linear_svm", "SVM")) for group in GROUPS
     ),
     *(
         on_events(f"bins_over_components_{group}", "A linear discriminant of all bins recognises more than kNN on "

@@ -28,11 +28,11 @@ SCALED = {"training": "training part", "own": "each part by its own"}
 def grasps_table(results: Results) -> Table:
     """Accuracy by task, palm direction, scaling, values and classifier, and how far the electrodes drift."""
     rows = results.rows("recorded", "biotac_grasps")
-    found = []
+    lines = []
     for key, group in grouped(rows[rows["metric"] == "accuracy"], [*BY, "classifier"]):
         shared = shared_by(Split.RANDOM) if group["item"].isna().all() else 0.0
-        found.append((*key, *interval(group["value"], shared)))
-    frame = pd.DataFrame(found, columns=[*BY, "classifier", "accuracy", "low", "high"]).astype({"components": int})
+        lines.append((*key, *interval(group["value"], shared)))
+    frame = pd.DataFrame(lines, columns=[*BY, "classifier", "accuracy", "low", "high"]).astype({"components": int})
     drift = {
         metric: ", ".join(f"palm {row.palm} {row.value:.1f}" for row in records(rows[rows["metric"] == metric]))
         for metric in ("drift", "drift_drawn")
@@ -53,9 +53,9 @@ def grasps_table(results: Results) -> Table:
 def _better(frame: pd.DataFrame) -> str:
     """How many classifiers are better than the majority on one palm direction, by the way they are scaled."""
     test = (frame["task"] == "slip") & (frame["split"] == Split.TEST_OBJECTS) & (frame["palm"] != "all")
-    mine = frame[test].set_index(BY)
-    common = mine.loc[mine["classifier"] == "majority", "accuracy"]
-    others = mine[mine["classifier"] != "majority"]
+    trials = frame[test].set_index(BY)
+    common = trials.loc[trials["classifier"] == "majority", "accuracy"]
+    others = trials[trials["classifier"] != "majority"]
     counts = (others["low"] > common.reindex(others.index)).groupby(["palm", "scaled"]).agg(["sum", "size"])
-    said = [f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in counts.to_records()]
-    return "; ".join(said)
+    texts = [f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in counts.to_records()]
+    return "; ".join(texts)

@@ -40,7 +40,7 @@ SETTING = {"data": "pressure", "split": Split.BLOCKS, "weights": "imagenet", "mo
 def build(results: Results) -> Table:
     """Accuracy of each network, start and mode on each recording and split, with its gains over the controls."""
     frame = measured_lines(results)
-    shown = [
+    lines = [
         {
             "data": DATA.get(row.data, row.data),
             "split": SPLITS.get(row.split, row.split),
@@ -55,27 +55,27 @@ def build(results: Results) -> Table:
         }
         for row in records(frame)
     ]
-    found = pd.DataFrame(shown)
-    answer = [name for name in map(str, found) if name not in ("guessing, %", "over")]
-    return Table(frame, found, best=Ranking("accuracy, %", among=["data", "split"]), answer=answer)
+    table = pd.DataFrame(lines)
+    answer = [name for name in map(str, table) if name not in ("guessing, %", "over")]
+    return Table(frame, table, best=Ranking("accuracy, %", among=["data", "split"]), answer=answer)
 
 
 def printed(data: str, thesis: str, results: Results) -> Table:
     """Networks on one of the thesis's data sets: its own table, and ours where the data were at hand."""
     figures = results.thesis(thesis).set_index("network")
     rows = measured(results, "accuracy")
-    mine = rows[(rows["data"] == data) & (rows["split"] == Split.RANDOM) & (rows["weights"] == "imagenet")]
+    trials = rows[(rows["data"] == data) & (rows["split"] == Split.RANDOM) & (rows["weights"] == "imagenet")]
     frame = pd.DataFrame({"network": list(PRINTED)})
     shown = pd.DataFrame({"network": list(PRINTED.values())})
     for mode in MODES:
-        own = mine[mine["mode"] == mode]
-        found = [interval(own[own["method"] == network]["value"], shared_by(Split.RANDOM)) for network in PRINTED]
-        frame[[mode, f"{mode}_low", f"{mode}_high"]] = found
+        group = trials[trials["mode"] == mode]
+        spans = [interval(group[group["method"] == network]["value"], shared_by(Split.RANDOM)) for network in PRINTED]
+        frame[[mode, f"{mode}_low", f"{mode}_high"]] = spans
         frame[f"{mode}_thesis"] = figures.loc[shown["network"], f"acc_{mode}"].to_numpy()
-        size = "".join(f", {pixels} px" for pixels in own["size"].unique())
-        shown[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
+        size = "".join(f", {pixels} px" for pixels in group["size"].unique())
+        shown[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in spans]
         shown[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
-    return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})  # no ranking: the thesis's rows are printed
+    return Table(frame, shown, {"absent": "" if len(trials) else ABSENT})  # no ranking: the thesis's rows are printed
 
 
 def chart(results: Results) -> Figure:
@@ -91,9 +91,9 @@ def chart(results: Results) -> Figure:
         axes.set_xlabel(words)
     panels[0].set_ylabel("accuracy, %")
     figure.tight_layout()  # before names find their places
-    known = (100 * frame[["accuracy", "low", "high"]]).assign(name=frame["network"].map(label))
+    points = (100 * frame[["accuracy", "low", "high"]]).assign(name=frame["network"].map(label))
     for axes, (cost, (_, unit)) in zip(panels, COSTS.items(), strict=True):
-        _draw(axes, known.assign(cost=frame[cost] / unit))
+        _draw(axes, points.assign(cost=frame[cost] / unit))
     return Figure(figure, {"size": SIZE, "slack": 100 * SLACK, "smallest": smallest}, frame)
 
 
@@ -105,14 +105,14 @@ def _gain(*points: float) -> str:
 def _draw(axes: Axes, frame: pd.DataFrame) -> None:
     """frame: accuracy, low and high in per cent, cost and name."""
     axes.set_xscale("log")
-    found = placed(frame, "cost", "accuracy", noise=NOISE[CLOCK])
-    front = found[found["on_front"] == ON].sort_values("cost")
+    ranked = placed(frame, "cost", "accuracy", noise=NOISE[CLOCK])
+    front = ranked[ranked["on_front"] == ON].sort_values("cost")
     axes.step(front["cost"], front["accuracy"], where="post", color=INK, lw=1, zorder=1)
     across, up = front[["cost", "accuracy"]].to_numpy().repeat(2, axis=0).T
     steps = pairwise(zip(across[1:], up[:-1], strict=True))
-    known = frame.dropna(subset=["low", "high"])
-    low, high = (zip(known["cost"], known[end], strict=True) for end in ("low", "high"))
-    axes.plot([known["cost"]] * 2, [known["low"], known["high"]], color="#0072B2", lw=1.2, alpha=0.5)
+    bounded = frame.dropna(subset=["low", "high"])
+    low, high = (zip(bounded["cost"], bounded[end], strict=True) for end in ("low", "high"))
+    axes.plot([bounded["cost"]] * 2, [bounded["low"], bounded["high"]], color="#0072B2", lw=1.2, alpha=0.5)
     axes.plot(frame["cost"], frame["accuracy"], "o", color="#0072B2", ms=6, mec="white")
     axes.margins(x=0.2)
     axes.grid(True)
@@ -136,21 +136,21 @@ def build_table(results: Results) -> Table:
     alone = rows[(rows["group"] != "all") & (rows["training"] == "simulated")]
     shares = alone.groupby(["simulation", "aligned", "group"])["value"].mean()
     way: Any = shares.groupby(level=[0, 1]).mean().idxmax()
-    said = [f"{label(name)} {100 * share:.0f}" for name, share in shares[way].sort_values(ascending=False).items()]
-    mine = frame[frame["classifier"] == SHOWN].sort_values("touches", kind="stable")
-    mine["simulated imprints"] = [*map(_way, mine["simulation"], mine["aligned"])]
-    wide = grid(mine, "simulated imprints", "touches", head=lambda count: f"{count} real touch{'es' * (count != 1)}, %")
+    texts = [f"{label(name)} {100 * share:.0f}" for name, share in shares[way].sort_values(ascending=False).items()]
+    knn = frame[frame["classifier"] == SHOWN].sort_values("touches", kind="stable")
+    knn["simulated imprints"] = [*map(_way, knn["simulation"], knn["aligned"])]
+    wide = grid(knn, "simulated imprints", "touches", head=lambda count: f"{count} real touch{'es' * (count != 1)}, %")
     wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
     wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
-    words = {"way": _way(*way), "shares": ", ".join(said), "best": _best(frame)}
+    words = {"way": _way(*way), "shares": ", ".join(texts), "best": _best(frame)}
     return Table(frame, wide, words, Ranking(wide.columns[-1]))
 
 
 def _accuracies(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     """(accuracy, low and high by the columns BY, the rows); of real touches alone the simulation is "none"."""
     rows = results.rows("simulated_to_real").fillna({"simulation": "none", "aligned": False}).astype({"aligned": bool})
-    found = means(rows[rows["group"] == "all"], BY, shared_by(Split.RANDOM), top=1.0)
-    return pd.DataFrame(found).rename(columns={"mean": "accuracy"})[[*BY, "accuracy", "low", "high"]], rows
+    averages = means(rows[rows["group"] == "all"], BY, shared_by(Split.RANDOM), top=1.0)
+    return pd.DataFrame(averages).rename(columns={"mean": "accuracy"})[[*BY, "accuracy", "low", "high"]], rows
 
 
 def _way(simulation: Any, aligned: Any) -> str:
@@ -160,9 +160,9 @@ def _way(simulation: Any, aligned: Any) -> str:
 def _best(frame: pd.DataFrame) -> str:
     """The best of all classifiers by the number of real touches, with and without simulated imprints."""
     top = frame.loc[frame.groupby(["training", "touches"])["accuracy"].idxmax()]
-    said = {}
+    texts = {}
     for training, simulation, aligned, touches, classifier, share, *_ in top.itertuples(index=False):
         way = f", {_way(simulation, aligned)}" if training == "both" else ""
-        said[training, touches] = f"{100 * share:.0f} ({label(classifier)}{way})"
+        texts[training, touches] = f"{100 * share:.0f} ({label(classifier)}{way})"
     counts = sorted(set(frame["touches"]) - {0})
-    return "; ".join(f"{count}: {said['real', count]} without, {said['both', count]} with" for count in counts)
+    return "; ".join(f"{count}: {texts['real', count]} without, {texts['both', count]} with" for count in counts)

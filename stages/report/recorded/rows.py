@@ -42,9 +42,9 @@ def measured(results: Results, *metrics: str) -> pd.DataFrame:
 
     unit: the repetition, whose number is the same split for all, or the object where OVER. NotRun without any.
     """
-    what = f"no {' or '.join(metrics)} of networks on recorded touches"
-    found = everywhere(results, STAGE, what, metric=list(metrics))
-    rows = of_passes(pd.concat(found.values(), ignore_index=True)).astype({"size": "Int64"})
+    message = f"no {' or '.join(metrics)} of networks on recorded touches"
+    by_set = everywhere(results, STAGE, message, metric=list(metrics))
+    rows = of_passes(pd.concat(by_set.values(), ignore_index=True)).astype({"size": "Int64"})
     rows = rows[rows["item"].notna() == rows["split"].isin(OVER)].astype(dict.fromkeys(["item", *KEYS], object))
     return rows.fillna(dict.fromkeys(KEYS, "")).assign(unit=rows["item"].fillna(rows["repetition"]))
 
@@ -56,13 +56,13 @@ def measured_lines(results: Results) -> pd.DataFrame:
     features and over the same network untrained, each with _low, _high and the number of _pairs.
     """
     rows, guess, lines = measured(results, "accuracy"), _guesses(results), []
-    found = {key: own.groupby("unit")["value"].mean() for key, own in grouped(rows, KEYS)}
-    for key, own in found.items():
+    groups = {key: values.groupby("unit")["value"].mean() for key, values in grouped(rows, KEYS)}
+    for key, values in groups.items():
         data, split, method, _, mode, size = key
         shared = 0.0 if split in OVER else shared_by(Split.RANDOM)
-        line = [*key, *within(own, shared), len(own)]
+        line = [*key, *within(values, shared), len(values)]
         for control in (data, split, *CLASSICAL), (data, split, method, "random", mode, size):
-            gains = (own - found[control]).dropna() if control in found and control != key else own[:0]
+            gains = (values - groups[control]).dropna() if control in groups and control != key else values[:0]
             line += [*interval(gains, shared), len(gains)]
         lines.append([*line, guess.get((data, split), np.nan)])
     frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES]).join(rows.groupby(KEYS)["pretrained"].first(), on=KEYS)
@@ -73,18 +73,18 @@ def measured_lines(results: Results) -> pd.DataFrame:
 
 def commonest(results: Results) -> pd.Series:
     """Share of right answers by object kept for the test, where the answer is always the commonest in training."""
-    wanted = {"task": "slip", "split": Split.TEST_OBJECTS, "palm": "all", "scaled": "training"}
-    rows = results.measured("recorded", "biotac_grasps", **wanted, classifier="majority", metric="accuracy")
+    where = {"task": "slip", "split": Split.TEST_OBJECTS, "palm": "all", "scaled": "training"}
+    rows = results.measured("recorded", "biotac_grasps", **where, classifier="majority", metric="accuracy")
     return rows.groupby("item")["value"].mean()
 
 
 def _guesses(results: Results) -> dict[tuple[str, str], float]:
     """{(data, split): share that guessing gets right}: any class, or always the commonest, the better on average."""
-    found = {}
+    shares = {}
     with suppress(NotRun):
         rows = measured(results, "chance", "majority")
         means = rows.groupby(["data", "split", "metric", "unit"])["value"].mean().groupby(level=[0, 1, 2]).mean()
-        found |= means.groupby(level=[0, 1]).max().to_dict()
+        shares |= means.groupby(level=[0, 1]).max().to_dict()
     with suppress(NotRun):  # which another stage has object by object
-        found["grasps_slip", Split.TEST_OBJECTS] = commonest(results).mean()
-    return found
+        shares["grasps_slip", Split.TEST_OBJECTS] = commonest(results).mean()
+    return shares

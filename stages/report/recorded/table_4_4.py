@@ -42,14 +42,14 @@ VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_block
 
 def table_4_4(results: Results) -> Table:
     """Accuracy by set of classes, selection and classifier, beside the thesis's where it has one."""
-    every = results.rows("recorded", "pressure_images")
+    trials = results.rows("recorded", "pressure_images")
     thesis = results.thesis("table_4_4_imprint_selection_real").set_index("classifier")
     means = pd.DataFrame({name: thesis.loc[list(several)].mean() for name, several in MEANS.items()})
     thesis = pd.concat([thesis, means.T])
-    rows = scaled(every).rename(columns=COLUMNS)
-    scores = _scores(scaled(every))
+    rows = scaled(trials).rename(columns=COLUMNS)
+    scores = _scores(scaled(trials))
     frame = pd.DataFrame(
-        [_line(scores, thesis, *key) for key in product(CLASSES, SELECTIONS, thesis.index)] + _readings(every, thesis),
+        [_line(scores, thesis, *key) for key in product(CLASSES, SELECTIONS, thesis.index)] + _readings(trials, thesis),
         columns=[*KEYS, *VALUES],
     )
     names = {"set": lambda name: CLASSES.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
@@ -62,7 +62,7 @@ def table_4_4(results: Results) -> Table:
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
     lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
     words = {
-        "removed": ", ".join(f"{said} {100 * removed.get(name, np.nan):.1f} %" for name, said in CLASSES.items()),
+        "removed": ", ".join(f"{text} {100 * removed.get(name, np.nan):.1f} %" for name, text in CLASSES.items()),
         "four": chosen.get("four_alike", ""), "six": chosen.get("six_alike", ""),
         "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
         "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
@@ -73,17 +73,17 @@ def table_4_4(results: Results) -> Table:
 def _scores(rows: pd.DataFrame) -> dict[tuple, pd.Series]:
     """{(set, selection, classifier, split): accuracies}, with the means over classifiers."""
     rows = with_means(rows[rows["metric"] == "accuracy"]).rename(columns=COLUMNS)
-    return {key: own["value"] for key, own in rows.groupby([*KEYS, "split"])}
+    return {key: group["value"] for key, group in rows.groupby([*KEYS, "split"])}
 
 
 def _readings(rows: pd.DataFrame, thesis: pd.DataFrame) -> list[tuple]:
     """Lines of all touches of the sets that were scaled otherwise, their selection said as that reading."""
     lines = []
-    for scaling, said in READINGS.items():
+    for scaling, words in READINGS.items():
         scores = _scores(scaled(rows, scaling))
         sets = [name for name in CLASSES if any(key[:2] == (name, "all") for key in scores)]
-        found = [_line(scores, thesis, name, "all", classifier) for name in sets for classifier in thesis.index]
-        lines += [(line[0], f"no selection: {said}", *line[2:6], np.nan, *line[7:]) for line in found]
+        cells = [_line(scores, thesis, name, "all", classifier) for name in sets for classifier in thesis.index]
+        lines += [(line[0], f"no selection: {words}", *line[2:6], np.nan, *line[7:]) for line in cells]
     return lines
 
 

@@ -34,54 +34,54 @@ def build(results: Results) -> Table:
     """Each method on the publisher's test part, asked one time, beside the published figures."""
     rows = results.rows("recorded", SET)
     tested = rows[(rows["part"] == "test") & (rows["metric"] == "accuracy")]
-    scores = {key: own.set_index("item")["value"] for key, own in grouped(tested, ["group", "method"])}
-    other = {
-        key: own["value"].iloc[0] for key, own in grouped(rows[rows["item"].isna()], ["group", "method", "metric"])
+    scores = {key: part.set_index("item")["value"] for key, part in grouped(tested, ["group", "method"])}
+    overall = {
+        key: part["value"].iloc[0] for key, part in grouped(rows[rows["item"].isna()], ["group", "method", "metric"])
     }
     frame = pd.DataFrame([
-        {"group": group, "method": method, **dict(zip(("accuracy", "low", "high"), within(own), strict=True))}
-        | dict(zip(("gain", "gain_low", "gain_high"), interval(scores[group, OURS] - own), strict=True))
-        | {metric: other[group, method, metric] for metric in ("cross_validated", "milliseconds", "training_seconds")}
+        {"group": group, "method": method, **dict(zip(("accuracy", "low", "high"), within(part), strict=True))}
+        | dict(zip(("gain", "gain_low", "gain_high"), interval(scores[group, OURS] - part), strict=True))
+        | {metric: overall[group, method, metric] for metric in ("cross_validated", "milliseconds", "training_seconds")}
         | tested[(tested["group"] == group) & (tested["method"] == method)].iloc[0][["bins", "parameter"]].to_dict()
-        for (group, method), own in scores.items()
+        for (group, method), part in scores.items()
     ])  # fmt: skip
     published = [{"method": f"published: {name}"} | {
         GROUPS[group]: f"{share:.2f}" for group, share in zip(GROUPS, shares, strict=True)
     } for name, shares in PUBLISHED.items()]  # fmt: skip
-    ours = [_line(own) for _, own in grouped(frame, ["method"])]
+    ours = [_line(part) for _, part in grouped(frame, ["method"])]
     shown = pd.DataFrame(ours + published).fillna("–")
     return Table(frame, shown, {"chosen": _chosen(frame)})
 
 
 def conditions(results: Results) -> Table:
     """Accuracy within the training part by time heard, taxels and disturbance."""
-    found = [
+    lines = [
         {"group": group, "method": method, "condition": condition, "level": level}
-        | dict(zip(("accuracy", "low", "high"), within(own["value"]), strict=True))
+        | dict(zip(("accuracy", "low", "high"), within(trials["value"]), strict=True))
         for condition, rows in _varied(results)
-        for (group, method, level), own in grouped(rows, ["group", "method", "level"])
+        for (group, method, level), trials in grouped(rows, ["group", "method", "level"])
     ]
-    frame = pd.DataFrame(found)
-    mine = frame[frame["method"].isin(SHOWN)]
-    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(mine)]
+    frame = pd.DataFrame(lines)
+    shown = frame[frame["method"].isin(SHOWN)]
+    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(shown)]
     names = [
-        f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(mine["group"], mine["method"], strict=True)
+        f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(shown["group"], shown["method"], strict=True)
     ]
-    wide = mine.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
+    wide = shown.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
     wide = wide.pivot(index=["condition", "level"], columns="name", values="cell")
     wide = wide.reindex(frame.set_index(["condition", "level"]).index.unique()).rename_axis(columns=None).reset_index()
     return Table(frame, wide.assign(condition=wide["condition"].map(CONDITIONS), level=wide["level"].map(number)))
 
 
-def _line(own: pd.DataFrame) -> dict[str, str]:
-    line = {"method": label(own["method"].iloc[0])}
-    for row in records(own):
+def _line(rows: pd.DataFrame) -> dict[str, str]:
+    line = {"method": label(rows["method"].iloc[0])}
+    for row in records(rows):
         ends = [100 * value for value in (row.gain, row.gain_low, row.gain_high)]
         line[GROUPS[row.group]] = with_interval(row.accuracy, row.low, row.high, 100, 2)
         line[f"{label(OURS)} − it, {row.group}"] = "–" if row.method == OURS else signed(*ends, places=1)
-    for row in records(own):
+    for row in records(rows):
         line[f"in training, {row.group}, %"] = percent(row.cross_validated, 1)
-    for row in records(own):
+    for row in records(rows):
         line[f"milliseconds a touch, {row.group}"] = number(row.milliseconds)
     return line
 
@@ -89,21 +89,24 @@ def _line(own: pd.DataFrame) -> dict[str, str]:
 def _chosen(frame: pd.DataFrame) -> str:
     """The method of each group with the highest accuracy in training, and its accuracy on the test part."""
     best = frame.loc[frame.groupby("group", sort=False)["cross_validated"].idxmax()]
-    said = [
+    texts = [
         f"of the {GROUPS[row.group]} {label(row.method)}, {with_interval(row.accuracy, row.low, row.high, 100, 1)} %"
         for row in records(best)
     ]
-    return "; ".join(said)
+    return "; ".join(texts)
 
 
 def _varied(results: Results) -> Iterator[tuple[str, pd.DataFrame]]:
     """(condition, its rows within the training part, with the column level); undisturbed for heard and cells."""
     rows = results.rows("recorded", SET, part="training", metric="accuracy")
     plain, most = rows[rows["disturbance"].isna()], rows["cells"].max()
-    yield "heard", plain[plain["cells"] == most].assign(level=lambda own: own["heard"])
-    yield "cells", plain[plain["heard"] == 1].assign(level=lambda own: own["cells"]).sort_values("level", kind="stable")
-    for kind, own in grouped(rows.dropna(subset=["disturbance"]), ["disturbance"]):
-        yield str(kind[0]), own.assign(level=own["severity"])
+    yield "heard", plain[plain["cells"] == most].assign(level=lambda part: part["heard"])
+    yield (
+        "cells",
+        plain[plain["heard"] == 1].assign(level=lambda part: part["cells"]).sort_values("level", kind="stable"),
+    )
+    for kind, part in grouped(rows.dropna(subset=["disturbance"]), ["disturbance"]):
+        yield str(kind[0]), part.assign(level=part["severity"])
 
 
 GRASPS = "schunk"
@@ -113,13 +116,13 @@ BEST_GRASPS = Ranking("grasps left out in turn, %")
 def grasp_series(results: Results) -> Table:
     """Each method: all grasps left out in turn, with intervals over grasps, and the publisher's five test grasps."""
     rows = results.rows("recorded", GRASPS, metric="accuracy")
-    scores = {key: own.set_index("item")["value"] for key, own in grouped(rows, ["method", "part"])}
+    scores = {key: trials.set_index("item")["value"] for key, trials in grouped(rows, ["method", "part"])}
     lines = []
     for method in rows["method"].unique():
-        own, listed = scores[method, "training"], scores[method, "test"]
-        line = {"method": method, **dict(zip(("accuracy", "low", "high"), within(own), strict=True))}
-        gain = dict(zip(("gain", "gain_low", "gain_high"), interval(scores[OURS, "training"] - own), strict=True))
-        lines.append(line | gain | {"grasps": len(own), "listed": int(listed.sum()), "listed_of": len(listed)})
+        trials, listed = scores[method, "training"], scores[method, "test"]
+        line = {"method": method, **dict(zip(("accuracy", "low", "high"), within(trials), strict=True))}
+        gain = dict(zip(("gain", "gain_low", "gain_high"), interval(scores[OURS, "training"] - trials), strict=True))
+        lines.append(line | gain | {"grasps": len(trials), "listed": int(listed.sum()), "listed_of": len(listed)})
     frame = pd.DataFrame(lines)
     shown = pd.DataFrame({
         "method": frame["method"].map(label),

@@ -56,16 +56,16 @@ def counts_table(results: Results) -> Table:
     rows = _measured(results, [*CONDITIONS, "cost"])
     costs = rows[rows["condition"] == "cost"].pivot(index="method", columns="metric", values="value")
     costs = costs.reindex(list(MODELS), columns=["fit", "ask"]).dropna()
-    said = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in records(costs)]
-    told, keys = rows[rows["metric"].isin(METRICS)], ["condition", "method"]
-    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(told)]
-    wide = told.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
+    texts = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in records(costs)]
+    measured, keys = rows[rows["metric"].isin(METRICS)], ["condition", "method"]
+    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(measured)]
+    wide = measured.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
     wide = wide.fillna("–").rename(columns={metric: head for metric, (head, *_) in METRICS.items()})
-    wide = wide.join(told.groupby(keys)[["cases", "objects"]].max().astype(int))
+    wide = wide.join(measured.groupby(keys)[["cases", "objects"]].max().astype(int))
     wide = wide.loc[[key for key in pd.MultiIndex.from_product([CONDITIONS, MODELS]) if key in wide.index]]
     wide = wide.rename(CONDITIONS, level="condition").rename(MODELS, level="method")
     shown = wide.rename_axis(["asked about", "model"]).reset_index()
-    return Table(rows, shown, {"costs": "; ".join(said) or "not measured"})
+    return Table(rows, shown, {"costs": "; ".join(texts) or "not measured"})
 
 
 def figure(results: Results) -> Figure:
@@ -90,8 +90,8 @@ def _measured(results: Results, conditions: list[str]) -> pd.DataFrame:
 
 def _of(rows: pd.DataFrame, condition: str, metric: str) -> pd.DataFrame:
     """Frame MODELS x (value, low, high), NaN where it was not measured."""
-    found = rows[(rows["condition"] == condition) & (rows["metric"] == metric)].set_index("method")
-    return found[["value", "low", "high"]].reindex(list(MODELS))
+    measured = rows[(rows["condition"] == condition) & (rows["metric"] == metric)].set_index("method")
+    return measured[["value", "low", "high"]].reindex(list(MODELS))
 
 
 def _waste(axes: Axes, rows: pd.DataFrame) -> None:
@@ -108,16 +108,16 @@ def _waste(axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def _failures(axes: Axes, rows: pd.DataFrame) -> None:
-    shown = [condition for condition in PLACES if condition in set(rows["condition"])]
-    bias = pd.concat([_of(rows, condition, "count_bias") for condition in shown], keys=shown)
+    conditions = [condition for condition in PLACES if condition in set(rows["condition"])]
+    bias = pd.concat([_of(rows, condition, "count_bias") for condition in conditions], keys=conditions)
     for k, (method, (tint, marker)) in enumerate(LOOKS.items()):
-        x, own = np.arange(len(shown)) + 0.15 * (k - 1.5), bias.xs(method, level=1)
-        axes.vlines(x, own["low"], own["high"], color=tint, lw=1.2, alpha=0.6)
-        axes.plot(x, own["value"], marker, color=tint, ms=6, label=MODELS[method])
+        x, biases = np.arange(len(conditions)) + 0.15 * (k - 1.5), bias.xs(method, level=1)
+        axes.vlines(x, biases["low"], biases["high"], color=tint, lw=1.2, alpha=0.6)
+        axes.plot(x, biases["value"], marker, color=tint, ms=6, label=MODELS[method])
     axes.axhline(1, color=INK, lw=0.8, ls=":")
     axes.set_yscale("log")
     axes.yaxis.set(major_locator=FixedLocator(FACTORS), major_formatter="{x:g}", minor_locator=NullLocator())
-    axes.set_xticks(range(len(shown)), [PLACES[condition] for condition in shown], fontsize=8.5)
+    axes.set_xticks(range(len(conditions)), [PLACES[condition] for condition in conditions], fontsize=8.5)
     axes.tick_params(axis="x", length=0)
     axes.set(ylabel="count / needed", title="where it fails")
     axes.grid(axis="y")
@@ -126,11 +126,11 @@ def _failures(axes: Axes, rows: pd.DataFrame) -> None:
 def _training(axes: Axes, rows: pd.DataFrame) -> None:
     trained = rows[(rows["condition"] == "trained_on") & (rows["metric"] == "factor_90")].sort_values("setting")
     for method, (tint, marker) in LOOKS.items():
-        own = trained[trained["method"] == method]
-        axes.plot(own["setting"], own["value"], color=tint, marker=marker, ms=5.5, lw=1.4)
-        axes.fill_between(own["setting"], own["low"], own["high"], color=tint, alpha=0.1, lw=0)
-    own = _of(rows, "left_out", "factor_90")["value"]["lookup"]
-    axes.axhline(own, color=LOOKS["lookup"][0], lw=1.4, ls="--")
+        error = trained[trained["method"] == method]
+        axes.plot(error["setting"], error["value"], color=tint, marker=marker, ms=5.5, lw=1.4)
+        axes.fill_between(error["setting"], error["low"], error["high"], color=tint, alpha=0.1, lw=0)
+    error = _of(rows, "left_out", "factor_90")["value"]["lookup"]
+    axes.axhline(error, color=LOOKS["lookup"][0], lw=1.4, ls="--")
     axes.set(xlabel="objects trained on (the lookup needs none)", title="few objects to learn from")
 
 
@@ -166,11 +166,11 @@ def frames(results: Results) -> Figure:
     bare = {"squeeze": False, "gridspec_kw": GRID, "subplot_kw": {"xticks": [], "yticks": []}}
     grid = pictures.subplots(len(frames), 2 * len(methods) - 1, **bare)
     for line, frame, rgb, displacement in zip(grid, frames, stored["rgb"], stored["displacement"], strict=True):
-        said = rows[rows["frame"] == frame].pivot_table(index="method", columns="metric", values="value")
+        numbers = rows[rows["frame"] == frame].pivot_table(index="method", columns="metric", values="value")
         box = _box(rgb[0])
         for axes, picture, method in zip(line, rgb, methods, strict=False):
             axes.imshow(picture[box])
-            measured = f"{said.loc[method, 'faces']:,.0f} faces, error {number(said.loc[method, 'error'])}"
+            measured = f"{numbers.loc[method, 'faces']:,.0f} faces, error {number(numbers.loc[method, 'error'])}"
             axes.set_title(f"{NAMES[method]}\n{measured}", **SMALL)
         for axes, values, method in zip(line[len(methods) :], displacement[1:], methods[1:], strict=True):
             axes.set_facecolor("#dddddd")

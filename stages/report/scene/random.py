@@ -25,8 +25,8 @@ def needs(results: Results) -> Table:
     """A line for each task: the median over the objects with its interval, and the range of nine in ten."""
     rows, lines, frame = _rows(results), [], []
     full = rows[rows["task"] == "full"].set_index("item")["value"]
-    for (task, condition), own in _tasks(rows):
-        need = own.set_index("item")["value"]
+    for (task, condition), group in _tasks(rows):
+        need = group.set_index("item")["value"]
         share = 100 * need / full[need.index]
         median, low, high = interval(need, statistic=np.median)
         ends = np.quantile(need, [0.05, 0.95])
@@ -49,8 +49,8 @@ def needs_figure(results: Results) -> Figure:
     rows = _rows(results)
     tasks = [(("full", np.nan), rows[rows["task"] == "full"]), *_tasks(rows)]
     drawing, axes = plt.subplots(figsize=(7.4, 0.42 * len(tasks) + 1.2))
-    for place, ((task, _), own) in enumerate(reversed(tasks)):
-        need = np.sort(own["value"])
+    for place, ((task, _), group) in enumerate(reversed(tasks)):
+        need = np.sort(group["value"])
         tint = TASKS[task][-1] if task in TASKS else INK
         axes.plot(
             need, place + 0.5 * (np.arange(len(need)) / len(need) - 0.5), "o", ms=3.5, mew=0, color=tint, alpha=0.6
@@ -123,9 +123,9 @@ def amount(value: float, unit: str) -> str:
 
 def savings(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows on the share of the faces that ours saves: value, low, high, the `rival`, and in per cent as `text`."""
-    found = rows[rows["metric"].str.startswith("saved_")].dropna(subset=["kind", "value"])
-    text = [with_interval(row.value, row.low, row.high, 100, 0) for row in records(found)]
-    return found.assign(rival=found["metric"].str.removeprefix("saved_"), text=text)
+    saved = rows[rows["metric"].str.startswith("saved_")].dropna(subset=["kind", "value"])
+    text = [with_interval(row.value, row.low, row.high, 100, 0) for row in records(saved)]
+    return saved.assign(rival=saved["metric"].str.removeprefix("saved_"), text=text)
 
 
 def left_of(saved: pd.DataFrame) -> str:
@@ -135,11 +135,13 @@ def left_of(saved: pd.DataFrame) -> str:
              if {(name, "error"), (name, "displacement")} <= set(shares)}  # fmt: skip
     if not pairs:
         return ""
-    equal, spread = (np.mean(np.concatenate(each)) for each in zip(*pairs.values(), strict=True))
+    equal, spread = (np.mean(np.concatenate(amounts)) for amounts in zip(*pairs.values(), strict=True))
     part = "most" if spread < equal / 2 else "part"
-    left = "the saving is no smaller" if spread >= equal else f"{part} of the saving vanishes"
-    said = [f"{_range(each)} instead of {_range(own)} against {NAMES[name]}" for name, (own, each) in pairs.items()]
-    return f" At an equal mean displacement of all pixels {left}: {'; '.join(said)}."
+    outcome = "the saving is no smaller" if spread >= equal else f"{part} of the saving vanishes"
+    texts = [
+        f"{_range(amounts)} instead of {_range(base)} against {NAMES[name]}" for name, (base, amounts) in pairs.items()
+    ]
+    return f" At an equal mean displacement of all pixels {outcome}: {'; '.join(texts)}."
 
 
 def _range(shares: list[float]) -> str:
@@ -164,23 +166,23 @@ def random_table(results: Results) -> Table:
     times = _times(results)
     lines, frame = [], []
     for plan in [plan for plan in PLANS if plan in _keys(wide)]:
-        own = wide.xs(plan, level=["method", "matched"])
+        scenes = wide.xs(plan, level=["method", "matched"])
         saved = 100 * saving(wide, plan)
-        found = {"method": plan[0], "matched": plan[1], "scenes": len(own), "faces": own["faces"].mean()}
-        found |= dict(zip(("saved", "saved_low", "saved_high"), interval(saved / 100), strict=True))
+        entry = {"method": plan[0], "matched": plan[1], "scenes": len(scenes), "faces": scenes["faces"].mean()}
+        entry |= dict(zip(("saved", "saved_low", "saved_high"), interval(saved / 100), strict=True))
         less = 100 * fewer(wide, plan) if plan[1] == "displacement" or plan[0] == OURS else []
-        found |= dict(zip(("less", "less_low", "less_high"), 0.01 * np.array(interval(less)), strict=True))
-        found |= {name: own[name].mean() for name in SHOWN} | {"step_worst": own["step_worst"].median()}
-        found |= {"planning_ms": own["planning_ms"].median()}
-        found |= dict(zip(("drawing", "drawing_low", "drawing_high"), times.get(plan, (None,) * 3), strict=True))
-        frame.append(found)
-        line = {"levels chosen by": NAMES[plan[0]], "equal to ours in": EQUAL[plan[1]], "faces a frame": found["faces"]}
+        entry |= dict(zip(("less", "less_low", "less_high"), 0.01 * np.array(interval(less)), strict=True))
+        entry |= {name: scenes[name].mean() for name in SHOWN} | {"step_worst": scenes["step_worst"].median()}
+        entry |= {"planning_ms": scenes["planning_ms"].median()}
+        entry |= dict(zip(("drawing", "drawing_low", "drawing_high"), times.get(plan, (None,) * 3), strict=True))
+        frame.append(entry)
+        line = {"levels chosen by": NAMES[plan[0]], "equal to ours in": EQUAL[plan[1]], "faces a frame": entry["faces"]}
         line["faces that ours saves, %"] = "–" if plan[0] == OURS else with_interval(*interval(saved), places=0)
         line["fewer than uniform levels by distance, %"] = (
             with_interval(*interval(less), places=0) if len(less) else "–"
         )
-        line |= {head: f"{scale * found[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()}
-        line |= {"worst jump": found["step_worst"], "planning, ms a frame": found["planning_ms"]}
+        line |= {head: f"{scale * entry[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()}
+        line |= {"worst jump": entry["step_worst"], "planning, ms a frame": entry["planning_ms"]}
         line["drawing time / full"] = with_interval(*times[plan], places=2) if plan in times else "–"
         lines.append(line)
     shown = pd.DataFrame(lines)
@@ -214,8 +216,8 @@ def fewer(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
     """The share of the faces of uniform levels by distance that a plan saves at our displacement, a value a scene."""
     if not {plan, UNIFORM_LEVELS} <= _keys(wide):
         return pd.Series(dtype=float)
-    own, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in (plan, UNIFORM_LEVELS))
-    return (1 - own / rival).dropna()
+    faces, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in (plan, UNIFORM_LEVELS))
+    return (1 - faces / rival).dropna()
 
 
 def _extra(wide: pd.DataFrame) -> pd.Series:
@@ -238,8 +240,8 @@ def _foresight(wide: pd.DataFrame) -> str:
 
 
 def _jumps(wide: pd.DataFrame, method: str) -> tuple[float, float]:
-    own = wide.xs((method, ""), level=["method", "matched"])["step_worst"]
-    return own.median(), own.max()
+    jumps = wide.xs((method, ""), level=["method", "matched"])["step_worst"]
+    return jumps.median(), jumps.max()
 
 
 def _keys(wide: pd.DataFrame) -> set[tuple[str, str]]:
@@ -253,36 +255,36 @@ def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]
     except NotRun:
         return {}
     rows = rows[rows["method"] != "full"]
-    found = {str(name): interval(own["ratio"]) for name, own in rows.groupby("method", sort=False)}
-    own = (OURS, "online", "full")
-    return {(name, "" if name in own else "displacement"): ratio for name, ratio in found.items()}
+    ratios = {str(name): interval(group["ratio"]) for name, group in rows.groupby("method", sort=False)}
+    group = (OURS, "online", "full")
+    return {(name, "" if name in group else "displacement"): ratio for name, ratio in ratios.items()}
 
 
 def planning(results: Results) -> str:
     """The cost of planning a frame beside the drawing time that our levels save over uniform ones; empty if unknown."""
     try:
         wide, _ = plans(results)
-        drawn = results.bench("frame_times").pivot(index="scene", columns="method", values="ms")
+        times = results.bench("frame_times").pivot(index="scene", columns="method", values="ms")
     except NotRun:
         return ""
-    less = with_interval(*interval(drawn["uniform"] - drawn[OURS]), places=1)
+    less = with_interval(*interval(times["uniform"] - times[OURS]), places=1)
     spent = wide.groupby(["method", "matched"])["planning_ms"].median()
-    said = f"Planning our levels costs {number(spent[OURS, ''])} ms a frame, and drawing them is {less} ms faster than "
-    said += "drawing uniform ones."
+    text = f"Planning our levels costs {number(spent[OURS, ''])} ms a frame, and drawing them is {less} ms faster than "
+    text += "drawing uniform ones."
     looked_up = ("beforehand", "displacement")
-    if looked_up in spent and looked_up[0] in drawn:
-        less = with_interval(*interval(drawn["uniform"] - drawn[looked_up[0]]), places=1)
-        said += (
+    if looked_up in spent and looked_up[0] in times:
+        less = with_interval(*interval(times["uniform"] - times[looked_up[0]]), places=1)
+        text += (
             f" Looking up errors that were rendered beforehand costs {number(spent[looked_up])} ms, and drawing these"
         )
-        said += f" levels is {less} ms faster."
+        text += f" levels is {less} ms faster."
     blind = ("online_unrendered", "")
     if blind not in spent:
-        return said
-    other = wide.xs(UNIFORM_LEVELS, level=["method", "matched"])["faces"]
-    saved = 100 * (1 - wide.xs(blind, level=["method", "matched"])["faces"] / other).dropna()
-    said += f" The plan that renders nothing costs {number(spent[blind])} ms and saves "
-    return said + f"{with_interval(*interval(saved), places=0)} % of the faces of uniform levels by distance."
+        return text
+    uniform = wide.xs(UNIFORM_LEVELS, level=["method", "matched"])["faces"]
+    saved = 100 * (1 - wide.xs(blind, level=["method", "matched"])["faces"] / uniform).dropna()
+    text += f" The plan that renders nothing costs {number(spent[blind])} ms and saves "
+    return text + f"{with_interval(*interval(saved), places=0)} % of the faces of uniform levels by distance."
 
 
 def drawing(results: Results) -> str:
@@ -292,12 +294,12 @@ def drawing(results: Results) -> str:
     except NotRun:
         return ""
     ms = rows.groupby("method")[["faces", "ms"]].mean()
-    said = [f"{NAMES[row.Index]} {row.faces:,.0f} faces, {number(row.ms)} ms" for row in records(ms)]
+    texts = [f"{NAMES[row.Index]} {row.faces:,.0f} faces, {number(row.ms)} ms" for row in records(ms)]
     wide = rows.pivot(index="scene", columns="method", values="ms")
     device = rows["device"].iloc[0].partition(" (")[0]
     return (
         f"Drawing: processor milliseconds of pyrender on {device}, a software rasteriser, one thread, screens of "
-        f"{rows['rows'].iloc[0]} rows, {len(wide)} scenes: {'; '.join(said)}. Ours takes "
+        f"{rows['rows'].iloc[0]} rows, {len(wide)} scenes: {'; '.join(texts)}. Ours takes "
         f"{with_interval(*interval(wide[OURS] / wide['uniform']), places=2)} of the time of uniform levels."
     )
 

@@ -51,7 +51,7 @@ def scene_table(results: Results) -> Table:
     wide["seconds"] = rows.groupby(["method", "matched"])["seconds"].max()
     wide, saved = wide[wide["faces"].notna()], savings(rows)
     text = {(row.rival, row.matched): row.text for row in records(saved)}
-    found = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SAID if key in text]
+    parts = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SAID if key in text]
     shown = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
     shown = shown.assign(held=shown["held"].map(percent)).map(number).rename(columns=COLUMNS)
     shown["faces that ours saves, %"] = [text.get(key, "–") for key in wide.index]
@@ -62,7 +62,7 @@ def scene_table(results: Results) -> Table:
     words = {
         "scene": scene,
         "tolerance": amount(tolerance, unit),
-        "saved": f"{NAMES[OURS].capitalize()} saves {'; '.join(found)}." if found else "",
+        "saved": f"{NAMES[OURS].capitalize()} saves {'; '.join(parts)}." if parts else "",
         "left": left_of(saved),
         "noted": "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in records(notes)),
     }
@@ -79,10 +79,10 @@ def chart(results: Results) -> Figure:
     rows = rows[rows["matched"].isin(EQUAL) & rows["method"].isin(NAMES)].dropna(subset=["tolerance"])
     unit, scenes = UNITS[rows["kind"].iloc[0]], list(dict.fromkeys(rows["group"]))
     lines, errors = [], {}
-    for (tolerance, method, matched), own in grouped(rows, ["tolerance", "method", "matched"]):
+    for (tolerance, method, matched), group in grouped(rows, ["tolerance", "method", "matched"]):
         way = NAMES[method]
         name = way if method == REFERENCE else ", ".join(filter(None, (way, amount(tolerance, unit), EQUAL[matched])))
-        wide = own.pivot(index="group", columns="metric", values="value")
+        wide = group.pivot(index="group", columns="metric", values="value")
         errors[name], ends = wide["error"], dict(zip(("error", "low", "high"), interval(wide["error"]), strict=True))
         lines.append({"method": method, "way": way, "name": name, "tolerance": tolerance, "matched": EQUAL[matched],
                       "faces": wide["faces"].mean(), **ends})  # fmt: skip
@@ -90,9 +90,9 @@ def chart(results: Results) -> Figure:
     marker = "tolerance" if frame["tolerance"].nunique() > 1 else "matched"
     frame["tolerance"] = [amount(value, unit) for value in frame["tolerance"]]
     frame["matched"] = frame["matched"].replace("", "nothing: as planned")
-    what = f"{len(scenes)} random scenes" if len(scenes) > 1 else f"Scene {scenes[0]}"
+    subject = f"{len(scenes)} random scenes" if len(scenes) > 1 else f"Scene {scenes[0]}"
     figure = pareto_chart(
-        frame, "error", title=f"{what}: faces against what shows", reference=NAMES[REFERENCE],
+        frame, "error", title=f"{subject}: faces against what shows", reference=NAMES[REFERENCE],
         quality_label=f"error of the rendered frames, mean, {unit}", cost="faces", better="low", colour="way",
         marker=marker, clock="", units=pd.DataFrame(errors),
         legends={"matched": "equal to ours in", "faces": "faces a frame"},
@@ -140,14 +140,14 @@ def scenes(results: Results) -> Table:
 
 def _said(rows: pd.DataFrame) -> str:
     """The objects of a scene, the savings of ours there, and the notes but for those on limits."""
-    there = next(iter(records(rows.dropna(subset=["value"]))))
-    text = f"Scene {there.scene}, tolerance {amount(there.tolerance, UNITS[there.kind])}: "
-    text += f"{there.objects:.0f} objects ({there.shapes:.0f} different), {there.frames:.0f} frames."
+    first = next(iter(records(rows.dropna(subset=["value"]))))
+    text = f"Scene {first.scene}, tolerance {amount(first.tolerance, UNITS[first.kind])}: "
+    text += f"{first.objects:.0f} objects ({first.shapes:.0f} different), {first.frames:.0f} frames."
     saved = {(row.rival, row.matched): row for row in records(savings(rows))}
     for rival in UNIFORM:
-        if own := saved.get((rival, "error")):
-            text += f" Against {NAMES[rival]} ours saves {own.text} % at an equal mean error."
-        if own := saved.get((rival, "displacement")):
-            text += f" At an equal mean displacement of all pixels it saves {own.text} %."
+        if saving := saved.get((rival, "error")):
+            text += f" Against {NAMES[rival]} ours saves {saving.text} % at an equal mean error."
+        if saving := saved.get((rival, "displacement")):
+            text += f" At an equal mean displacement of all pixels it saves {saving.text} %."
     noted = rows[rows["matched"] != "limit"].dropna(subset=["note"]).drop_duplicates(["method", "note"])
     return text + "".join(f" {NAMES[row.method].capitalize()}: {row.note}." for row in records(noted))

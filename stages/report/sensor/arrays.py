@@ -29,8 +29,8 @@ SPLITS = {Split.OBJECTS: "unseen", Split.RANDOM: "known, other touches"}
 
 def table(results: Results) -> Table:
     """One row per array, data set and split; the sets that are switched on first."""
-    found = everywhere(results, STAGE, metric=["accuracy", "smallest_chosen_again"])
-    rows = pd.concat([rows.sort_values("split", kind="stable") for rows in found.values()])
+    by_set = everywhere(results, STAGE, metric=["accuracy", "smallest_chosen_again"])
+    rows = pd.concat([rows.sort_values("split", kind="stable") for rows in by_set.values()])
     rows, smallest = (rows[rows["metric"] == metric] for metric in ("accuracy", "smallest_chosen_again"))
     thesis = results.thesis("figure_4_11_sensor_32x32_sensel_0_01").set_index("classifier")["accuracy"]
     rows = rows.reindex(columns=[*rows.columns.union(list(EMPTY), sort=False)]).fillna(EMPTY)
@@ -63,26 +63,26 @@ def _beside(array: str) -> str:
 def _cells(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     """Mean accuracy and interval over the tested objects, one row for each combination of the columns `by`."""
     objects = rows.groupby([*by, "item"], sort=False)[["value", "seconds"]].mean().reset_index()
-    found = pd.DataFrame(means(objects, by, top=1.0)).rename(columns={"mean": "accuracy"}).drop(columns="values")
-    return found.assign(seconds=rows.groupby(by, sort=False)["seconds"].median().to_numpy())
+    averages = pd.DataFrame(means(objects, by, top=1.0)).rename(columns={"mean": "accuracy"}).drop(columns="values")
+    return averages.assign(seconds=rows.groupby(by, sort=False)["seconds"].median().to_numpy())
 
 
 def _classes(rows: pd.DataFrame) -> str:
     """The content of each set, in words."""
     return "; ".join(
-        f"{dataset_text(str(name))}: {', '.join(sorted(set(own['group'])))}, {own['item'].nunique()} objects, "
-        f"{int(own['touches'].iloc[0])} touches each, guessing {100 / own['group'].nunique():.1f} %"
-        for name, own in rows.groupby("dataset", sort=False)
+        f"{dataset_text(str(name))}: {', '.join(sorted(set(part['group'])))}, {part['item'].nunique()} objects, "
+        f"{int(part['touches'].iloc[0])} touches each, guessing {100 / part['group'].nunique():.1f} %"
+        for name, part in rows.groupby("dataset", sort=False)
     )
 
 
 def _smallest(rows: pd.DataFrame) -> str:
     """The smallest array of each set, a line each."""
     lines = []
-    for name, own in rows.groupby("dataset", sort=False):
+    for name, part in rows.groupby("dataset", sort=False):
         arrays = [
             f"{label(row.classifier)} {row.cells:.0f} x {row.cells:.0f} at {row.pitch:g} ({100 * row.value:.0f} %)"
-            for row in records(own)
+            for row in records(part)
         ]
         lines.append(f"The smallest array that is enough, {dataset_text(str(name))}: {'; '.join(arrays)}.")
     return "\n".join(lines)
@@ -91,35 +91,35 @@ def _smallest(rows: pd.DataFrame) -> str:
 def chart(results: Results) -> Figure:
     """Accuracy on unseen objects against the number of sensels, for each distance, and the cost of a touch."""
     rows = results.measured(STAGE, **UNSEEN)
-    found = _cells(rows, ["cells", "pitch", "classifier"])
+    cells = _cells(rows, ["cells", "pitch", "classifier"])
     touched = results.measured(STAGE, metric="seconds_a_touch")
     costs = 1e3 * pd.DataFrame([
-        dict(zip(("cells", "pitch", "mean", "low", "high"), (*key, *interval(over_items(own))), strict=True))
-        for key, own in grouped(touched, ["cells", "pitch"])
+        dict(zip(("cells", "pitch", "mean", "low", "high"), (*key, *interval(over_items(points))), strict=True))
+        for key, points in grouped(touched, ["cells", "pitch"])
     ]).set_index(["cells", "pitch"]).sort_index()  # fmt: skip
     clock = results.clock(STAGE)
     spread = np.exp(NORMAL * noise_by(clock))  # of a cost without objects of its own, from run to run
     costs = costs.assign(
         low=costs["low"].fillna(costs["mean"] / spread), high=costs["high"].fillna(costs["mean"] * spread)
     )
-    names = list(dict.fromkeys(found["classifier"]))
-    pitches, sizes = sorted(set(found["pitch"])), sorted(set(found["cells"]))
+    names = list(dict.fromkeys(cells["classifier"]))
+    pitches, sizes = sorted(set(cells["pitch"])), sorted(set(cells["cells"]))
     figure, panels = plt.subplots(1, len(names) + 1, figsize=(1.95 * (len(names) + 1), 3.4))
     accuracies, cost = dict(zip(names, panels, strict=False)), panels[-1]
     for k, pitch in enumerate(pitches):
         style = {"color": CYCLE[k], "marker": MARKERS[k], "ms": 5, "lw": 1.3}
         for name, axes in accuracies.items():
-            own = found[(found["classifier"] == name) & (found["pitch"] == pitch)].sort_values("cells")
-            x = own["cells"] * 1.03 ** (k - (len(pitches) - 1) / 2)  # apart, so that no interval hides another
-            axes.vlines(x, 100 * own["low"], 100 * own["high"], color=CYCLE[k], lw=1, alpha=0.5)
-            axes.plot(x, 100 * own["accuracy"], label=f"cells {pitch:g} units apart", **style)
-        own = costs.xs(pitch, level="pitch")
-        x = own.index * 1.06 ** (k - (len(pitches) - 1) / 2)
-        cost.vlines(x, own["low"], own["high"], color=CYCLE[k], lw=1, alpha=0.5)
-        cost.plot(x, own["mean"], **style)
+            points = cells[(cells["classifier"] == name) & (cells["pitch"] == pitch)].sort_values("cells")
+            x = points["cells"] * 1.03 ** (k - (len(pitches) - 1) / 2)  # apart, so that no interval hides another
+            axes.vlines(x, 100 * points["low"], 100 * points["high"], color=CYCLE[k], lw=1, alpha=0.5)
+            axes.plot(x, 100 * points["accuracy"], label=f"cells {pitch:g} units apart", **style)
+        points = costs.xs(pitch, level="pitch")
+        x = points.index * 1.06 ** (k - (len(pitches) - 1) / 2)
+        cost.vlines(x, points["low"], points["high"], color=CYCLE[k], lw=1, alpha=0.5)
+        cost.plot(x, points["mean"], **style)
     for name, axes in accuracies.items():
         axes.axhline(100 / rows["group"].nunique(), color=GREY, lw=0.8, ls=":")
-        axes.set(title=label(name), ylim=(0, min(100 * found["high"].fillna(found["accuracy"]).max() + 5, 100)))
+        axes.set(title=label(name), ylim=(0, min(100 * cells["high"].fillna(cells["accuracy"]).max() + 5, 100)))
         axes.tick_params(labelleft=axes is panels[0])
     cost.set(title="cost of a touch", ylim=(0, None), ylabel="milliseconds")
     for axes in panels:
@@ -128,21 +128,21 @@ def chart(results: Results) -> Figure:
         axes.grid(axis="y")
     panels[0].set_ylabel("accuracy on unseen objects, %")
     figure.supxlabel("cells of the array", fontsize=10, y=0.12)
-    figure.suptitle(_best(found), x=0.01, ha="left", fontsize=11, fontweight="bold")
+    figure.suptitle(_best(cells), x=0.01, ha="left", fontsize=11, fontweight="bold")
     figure.tight_layout(w_pad=1.2, rect=(0, 0.1, 1, 1))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncol=len(pitches), fontsize=9)
     return Figure(figure, {"clock": clock, "on": dataset_text(str(rows["dataset"].iloc[0]))})
 
 
-def _best(found: pd.DataFrame) -> str:
+def _best(cells: pd.DataFrame) -> str:
     """The best array, and the loss of the one with the fewest and closest cells."""
-    best = found.sort_values("accuracy").iloc[-1]
-    small = found[found["classifier"] == best["classifier"]].sort_values(["cells", "pitch"]).iloc[0]
-    said = (
+    best = cells.sort_values("accuracy").iloc[-1]
+    small = cells[cells["classifier"] == best["classifier"]].sort_values(["cells", "pitch"]).iloc[0]
+    texts = (
         f"{label(row['classifier'])}, {row['cells']}² cells {row['pitch']:g} apart: {100 * row['accuracy']:.0f} %"
         for row in (best, small)
     )
-    return "Best: {}; the smallest array: {}".format(*said)
+    return "Best: {}; the smallest array: {}".format(*texts)
 
 
 STAGE = "sensor_size"
@@ -189,7 +189,7 @@ PRINTED_CLAIMS = [
 ]  # fmt: skip
 CLAIMS = [
     *PRINTED_CLAIMS,
-    *(replace(one, key=f"{one.key}_more", of=one.key, dataset=MORE, printed=0) for one in PRINTED_CLAIMS),
+    *(replace(entry, key=f"{entry.key}_more", of=entry.key, dataset=MORE, printed=0) for entry in PRINTED_CLAIMS),
     ours(key="more_cells_help_all", note=f"{ALL} and all distances of sensels", first={"cells": LARGE},
          second={"cells": SMALL}, sentence="At equal sensel size a larger sensor is better, whatever the size."),
     ours(key="finer_sensor_enough", first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST,
@@ -203,9 +203,9 @@ CLAIMS = [
         for cells, pitch in (("coarse", coarse), ("fine", fine))
     ),
     *(
-        hands(key=f"region_over_{other}", first=AROUND | {"extent": "region"}, second=AROUND | {"extent": other},
+        hands(key=f"region_over_{extent}", first=AROUND | {"extent": "region"}, second=AROUND | {"extent": extent},
               sentence=f"Five touches in the salient region around a point are better than {words}.")
-        for other, words in (("points", "at five separate points"), ("disc", "in a disc of its area"))
+        for extent, words in (("points", "at five separate points"), ("disc", "in a disc of its area"))
     ),
     ours(key="known_objects_easier",
          sentence="Touches of known objects flatter: their class is named more often than unseen ones'.",

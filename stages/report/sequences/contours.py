@@ -34,11 +34,11 @@ CLEAR = 2e-3  # units along the view to come off the surface, before asking what
 
 def figure_4_14(results: Results) -> Figure:
     """The first contours of each strategy on pictures of some objects."""
-    found = _chosen(results, OBJECTS)
-    strategies = list(next(iter(found.values()))[1])
-    size = (2.7 * len(found), 2.9 * len(strategies))
-    figure, grid = plt.subplots(len(strategies), len(found), figsize=size, squeeze=False)
-    for column, (name, (mesh, contours)) in zip(grid.T, found.items(), strict=True):
+    items = _chosen(results, OBJECTS)
+    strategies = list(next(iter(items.values()))[1])
+    size = (2.7 * len(items), 2.9 * len(strategies))
+    figure, grid = plt.subplots(len(strategies), len(items), figsize=size, squeeze=False)
+    for column, (name, (mesh, contours)) in zip(grid.T, items.items(), strict=True):
         column[0].set_title(label(name), loc="center")
         for axes, strategy in zip(column, strategies, strict=True):
             canvas, sequences = Canvas(axes, mesh), contours[strategy]
@@ -47,7 +47,7 @@ def figure_4_14(results: Results) -> Figure:
                 axes.plot(*canvas.pixels(start[None]), "o", mfc="white", mec=tint, mew=1.6, ms=5)
     name_panels(grid, [], map(label, strategies))
     figure.subplots_adjust(wspace=0.03, hspace=0.03)
-    words = {"names": ", ".join(map(label, found)), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
+    words = {"names": ", ".join(map(label, items)), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
     words["on"] = dataset_text(results.folder("contours").parent.name)
     return Figure(figure, words)
 
@@ -143,13 +143,13 @@ def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Seq
     others = [name for name in names if name not in first]
     places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []
     chosen = [*first, *dict.fromkeys(others[place] for place in places)][:count]
-    found = {}
+    items = {}
     for name in chosen:
         stored = read_sequences(folder / f"{name}.npz")
         guided = sorted(stored.keys() - {BLIND}, key=lambda method: (method != GUIDED, method))
         contours = {strategy: stored[strategy] for strategy in (BLIND, *guided[:1]) if strategy in stored}
-        found[name] = results.mesh(name, folder.parent.name), contours
-    return found
+        items[name] = results.mesh(name, folder.parent.name), contours
+    return items
 
 
 THESIS_CLASSES = "princeton_eight"
@@ -163,14 +163,14 @@ def figure_4_19(results: Results) -> Figure:
         frame = results.measured(STAGE, THESIS_CLASSES, metric="confusion")
     except NotRun:
         frame = results.measured(STAGE, metric="confusion")
-    here = set(zip(frame["split"], frame["method"], strict=True))
-    lines = [(split, method) for split in SPLITS for method in (BLIND, GUIDED) if (split, method) in here]
+    pairs = set(zip(frame["split"], frame["method"], strict=True))
+    lines = [(split, method) for split in SPLITS for method in (BLIND, GUIDED) if (split, method) in pairs]
     rows = {(split, method): f"{label(method)}\n{SPLITS[split]}" for split, method in lines}
     names = {name: CLASSIFIERS[name] for name in PRINTED_METHODS if name in set(frame["classifier"])}
     figure, words = draw_matrices(frame, rows, names, ["split", "method"], "classifier")
-    said = {"rows": "; ".join(rows.values()).replace("\n", ", "), "columns": ", ".join(names.values())}
-    said["on"] = dataset_text(str(frame["dataset"].iloc[0]))
-    return Figure(figure, words | said)
+    texts = {"rows": "; ".join(rows.values()).replace("\n", ", "), "columns": ", ".join(names.values())}
+    texts["on"] = dataset_text(str(frame["dataset"].iloc[0]))
+    return Figure(figure, words | texts)
 
 
 def chart(results: Results) -> Figure:
@@ -183,15 +183,15 @@ def chart(results: Results) -> Figure:
     rows = rows.astype(dict.fromkeys(SIZE, int))
     frames, cells = rows[SIZE].max()
     rows = rows[(rows["classifier"] != "cnn_normals") | (rows["cells"] == cells)]  # normals have no cells
-    found = []
-    for (classifier, number, side), own in rows.groupby(["classifier", *SIZE]):
-        mean, low, high, _ = accuracy(own, split)
-        found.append({
+    lines = []
+    for (classifier, number, side), part in rows.groupby(["classifier", *SIZE]):
+        mean, low, high, _ = accuracy(part, split)
+        lines.append({
             "classifier": classifier, "of": CLASSIFIERS[classifier], "frames": number, "cells": side,
             "film": f"{number} frames", "name": f"{CLASSIFIERS[classifier]}, {number} x {side} x {side}",
-            "mean": mean, "low": low, "high": high, "cost": own.loc[own["metric"] == "accuracy", "seconds"].median(),
+            "mean": mean, "low": low, "high": high, "cost": part.loc[part["metric"] == "accuracy", "seconds"].median(),
         })  # fmt: skip
-    frame = pd.DataFrame(found).sort_values(SIZE, ascending=False, ignore_index=True)
+    frame = pd.DataFrame(lines).sort_values(SIZE, ascending=False, ignore_index=True)
     reference = f"{CLASSIFIERS['knn']}, {frames} x {cells} x {cells}"
     title = f"{int(rows['classes'].max())} classes by following contours, {label(strategy)}, frames x cells x cells"
     return pareto_chart(

@@ -57,20 +57,20 @@ def table_4_9(results: Results) -> Table:
     """Accuracy by data set, split, classifier and strategy, beside the thesis's two columns."""
     thesis = results.thesis("table_4_9_sequences").set_index("classifier")
     printed = thesis.rename(columns={"blind": BLIND, "guided": GUIDED}).stack().to_dict()
-    found = everywhere(results, STAGE, metric=list(METRICS.values()))
+    by_set = everywhere(results, STAGE, metric=list(METRICS.values()))
     lines = []
-    for source, rows in found.items():
+    for source, rows in by_set.items():
         rows = rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]  # with all their frames and cells
         splits = [split for split in SPLITS if split in set(rows["split"])]
         strategies = sorted(rows["method"].unique(), key=lambda method: (method != BLIND, method != GUIDED))
         for split, classifier, method in product(splits, CLASSIFIERS, strategies):
-            mine = rows[(rows["method"] == method) & (rows["classifier"] == classifier)]
+            runs = rows[(rows["method"] == method) & (rows["classifier"] == classifier)]
             lines.append({
                 "objects": source, "split": split, "classifier": classifier, "strategy": method,
-                **dict(zip(("accuracy", "low", "high", "values"), accuracy(mine, split), strict=True)),
+                **dict(zip(("accuracy", "low", "high", "values"), accuracy(runs, split), strict=True)),
                 "thesis": printed.get((classifier, method), np.nan) if split == Split.RANDOM else np.nan,
-                "chance": 1 / mine["classes"].max(), "sequences": mine["sequences"].max(),
-                "seconds": mine.loc[(mine["split"] == split) & (mine["metric"] == "accuracy"), "seconds"].median(),
+                "chance": 1 / runs["classes"].max(), "sequences": runs["sequences"].max(),
+                "seconds": runs.loc[(runs["split"] == split) & (runs["metric"] == "accuracy"), "seconds"].median(),
             })  # fmt: skip
     frame = pd.DataFrame(lines)
     names = {"objects": dataset_text, "split": SPLITS.get, "classifier": CLASSIFIERS.get}
@@ -86,19 +86,19 @@ def table_4_9(results: Results) -> Table:
 
 def trained(results: Results) -> str:
     """Passes of both networks and the share of training sequences that they know, of the sets that measured it."""
-    found = []
+    texts = []
     for dataset in results.datasets(STAGE):
         rows = results.rows(STAGE, dataset)
         rows = rows[rows["metric"].isin(["passes", "train_accuracy"])]
         rows = rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]
         if len(rows):
             of = rows.groupby(["classifier", "metric"])["value"].median()
-            said = (
+            parts = (
                 f"{of[name, 'passes']:.0f} of the {words[:2]} network ({percent(of[name, 'train_accuracy'])} %)"
                 for name, words in NETWORKS.items()
             )
-            found.append(f"{dataset_text(dataset)} {', '.join(said)}")
-    return "; ".join(found) or "not measured"
+            texts.append(f"{dataset_text(dataset)} {', '.join(parts)}")
+    return "; ".join(texts) or "not measured"
 
 
 STAGE = "sequences"
@@ -152,11 +152,11 @@ def whole_sequences(results: Results, claim: Claim) -> pd.Series:
 
 def both(claims: Iterable[Claim]) -> Iterator[Claim]:
     """Each claim with sequences drawn at random, as in the thesis, and with unseen objects: does it carry over?"""
-    for one in claims:
-        said = f"{one.sentence[:-1]}, on objects never touched too."
-        yield replace(one, key=f"{one.key}_random", where={**one.where, **RANDOM}, shared=SHARED[Split.RANDOM])
-        of = "" if one.own else f"{one.key}_random"
-        yield replace(one, key=f"{one.key}_unseen", of=of, sentence=said, where={**one.where, **UNSEEN}, **OBJECTS)
+    for base in claims:
+        words = f"{base.sentence[:-1]}, on objects never touched too."
+        yield replace(base, key=f"{base.key}_random", where={**base.where, **RANDOM}, shared=SHARED[Split.RANDOM])
+        of = "" if base.own else f"{base.key}_random"
+        yield replace(base, key=f"{base.key}_unseen", of=of, sentence=words, where={**base.where, **UNSEEN}, **OBJECTS)
 
 
 OWN = [
@@ -177,11 +177,11 @@ OWN = [
     cnn(key="contours_map_helps", section="T4.4.9", first={"classifier": WITH_MAP}, second={"classifier": NO_MAP},
         sentence="Reducing the features by a self-organising map helps."),
 ]  # fmt: skip
-PRIMARY = [one for one in both(OWN) if not one.own]
+PRIMARY = [entry for entry in both(OWN) if not entry.own]
 CLAIMS = [
     *PRIMARY,
-    *(replace(one, key=f"{one.key}_more", of=one.of or one.key, **OF_MORE, printed=0) for one in PRIMARY),
-    *(replace(one, **OF_MORE) for one in both(OWN) if one.own),
+    *(replace(entry, key=f"{entry.key}_more", of=entry.of or entry.key, **OF_MORE, printed=0) for entry in PRIMARY),
+    *(replace(entry, **OF_MORE) for entry in both(OWN) if entry.own),
     claim(key="contours_random_flatters", section="ours", **OF_MORE,
           sentence="Drawing test sequences at random flatters: the same objects are known.",
           where={"method": GUIDED, "classifier": "cnn"}, first=RANDOM, second=UNSEEN, mean_of="first", **OBJECTS),

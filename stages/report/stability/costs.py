@@ -19,9 +19,9 @@ def kernels(results: Results) -> Figure:
     rows = rows.assign(place=rows["commit"].map(commits.index))
     drawing, axes = plt.subplots(figsize=(7.2, 4.8))
     last = rows.groupby("what")["ratio"].last().sort_values(ascending=False)
-    for k, what in enumerate(last.index):
+    for k, kernel in enumerate(last.index):
         form = MARKERS[(k + k // len(CYCLE)) % len(MARKERS)]  # another where the colours start again
-        _draw(axes, rows[rows["what"] == what], CYCLE[k % len(CYCLE)], form)
+        _draw(axes, rows[rows["what"] == kernel], CYCLE[k % len(CYCLE)], form)
     axes.axhline(1, color="black", lw=0.8, ls=":")
     axes.set_yscale("log")
     plain_logarithm(axes.yaxis)
@@ -31,7 +31,7 @@ def kernels(results: Results) -> Figure:
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
     named = rows.drop_duplicates("what").set_index("what")["peer"]
     words = {"kernels": len(last), "commits": len(commits), "machine": rows["machine"].iloc[-1]}
-    return Figure(drawing, words | {"names": ", ".join(f"{what} ({named[what]})" for what in last.index)})
+    return Figure(drawing, words | {"names": ", ".join(f"{kernel} ({named[kernel]})" for kernel in last.index)})
 
 
 def _draw(axes, rows: pd.DataFrame, tint: str, form: str) -> None:
@@ -56,9 +56,9 @@ def time_spent(results: Results) -> Table:
             rows = rows.loc[~((rows["metric"] == SEEN) & (rows.get("views") != 1))]
             parts.append(rows.drop(columns=TIME_KEYS, errors="ignore").drop_duplicates().assign(stage=stage))
     timed = pd.concat(some([part for part in parts if len(part)], "nothing was timed", "meshes"))
-    said = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
-    frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**said).reset_index()
+    fields = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
+    frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**fields).reset_index()
     frame["share, %"] = 100 * frame["seconds"] / frame["seconds"].sum()
     frame = frame.sort_values("seconds", ascending=False, kind="stable")
-    said = {name: frame[name].map(label) for name in ("stage", "method")}
-    return Table(frame, frame.assign(**said), words={"sets": ", ".join(results.sets)})
+    fields = {name: frame[name].map(label) for name in ("stage", "method")}
+    return Table(frame, frame.assign(**fields), words={"sets": ", ".join(results.sets)})

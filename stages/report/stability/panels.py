@@ -31,7 +31,7 @@ def panels(names: Sequence[str], words: str, width: float, height: float) -> tup
 
 def finish(axes: Axes, name: str, unit: str, severities: Sequence[float]) -> None:
     """Axes of a panel: no change on the left, then the severities at equal distances."""
-    axes.set_xticks(range(len(severities) + 1), ["none", *(f"{one:g}" for one in severities)], fontsize=8)
+    axes.set_xticks(range(len(severities) + 1), ["none", *(f"{severity:g}" for severity in severities)], fontsize=8)
     axes.set_ylim(0, 100)
     axes.set_xlabel(unit, fontsize=8)
     axes.set_title(label(name), fontsize=10)
@@ -74,8 +74,8 @@ def broken(frame: pd.DataFrame, heads: Iterable[str], unharmed: Mapping[str, flo
     frame: perturbation, unit, the harshest severity and those where it breaks, with the interval: the columns `ends`,
     where NaN is beyond the harshest: `> 0.3`. unharmed: {perturbation: severity without a change}.
     """
-    shown = {}
+    lines = {}
     for head, row in zip(heads, records(frame), strict=True):
-        line = shown.setdefault(row.perturbation, {"perturbation": label(row.perturbation), "unit": row.unit})
+        line = lines.setdefault(row.perturbation, {"perturbation": label(row.perturbation), "unit": row.unit})
         line[head] = cell(row, unharmed[row.perturbation])
-    return pd.DataFrame(list(shown.values())).fillna("–")
+    return pd.DataFrame(list(lines.values())).fillna("–")

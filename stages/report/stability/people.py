@@ -45,14 +45,14 @@ def _score(rows: pd.DataFrame) -> str:
     """The mean corruption errors in AUC and what they have beyond the undisturbed error, in a sentence."""
     if REFERENCE not in set(rows["method"]):
         return ""
-    found = scores(of_gaze(rows), REFERENCE)
-    said = "; ".join(
+    table = scores(of_gaze(rows), REFERENCE)
+    text = "; ".join(
         f"{label(row.method)} {with_interval(row.mce, row.mce_low, row.mce_high, 100, 0)} %, relative "
         f"{with_interval(row.relative, row.relative_low, row.relative_high, 100, 0)} %"
-        for row in records(found[found["method"] != REFERENCE])
+        for row in records(table[table["method"] != REFERENCE])
     )
     return (
-        f"Mean corruption error of 1 - AUC, that of {label(REFERENCE)} being 100 %: {said}. Relative: of what is lost "
+        f"Mean corruption error of 1 - AUC, that of {label(REFERENCE)} being 100 %: {text}. Relative: of what is lost "
         "beyond the undisturbed error alone, where a disturbance costs the reference anything."
     )
 
@@ -62,11 +62,11 @@ def _cell(case, plain):
     wide = case.pivot(index="item", columns="metric", values="value")
     method = case["method"].iloc[0]
     again = np.clip(interval(wide["repeatability"], statistic=np.median), 0, 1)
-    found = dict(zip(("again", "again_low", "again_high"), again, strict=True)) | {"chance": wide["chance"].mean()}
+    numbers = dict(zip(("again", "again_low", "again_high"), again, strict=True)) | {"chance": wide["chance"].mean()}
     for metric in ("nss", "auc"):
         lost = wide[metric] - plain.xs((method, metric), level=("method", "metric")).reindex(wide.index)
-        found |= dict(zip((metric, f"{metric}_low", f"{metric}_high"), interval(lost), strict=True))
-    return found | {"objects": len(wide)}
+        numbers |= dict(zip((metric, f"{metric}_low", f"{metric}_high"), interval(lost), strict=True))
+    return numbers | {"objects": len(wide)}
 
 
 def _line(key, case, methods):
@@ -89,8 +89,8 @@ def uses(results: Results) -> Table:
     """A row a disturbance: per method the salient error as a share of that of plain QEM, and recognition by touch."""
     rows = results.measured(STAGE, results.printed(BENCHMARK, STAGE), metric=list(METRICS))
     frame = pd.DataFrame([
-        {"perturbation": name, "method": method, "metric": metric, **_number(rows, own, method, metric)}
-        for (name, method, metric), own in grouped(rows, ["perturbation", "method", "metric"])
+        {"perturbation": name, "method": method, "metric": metric, **_number(rows, group, method, metric)}
+        for (name, method, metric), group in grouped(rows, ["perturbation", "method", "metric"])
     ])  # fmt: skip
     cells = frame.set_index(["perturbation", "method", "metric"])
     methods = [name for name in SHOWN if name in set(frame["method"])] or list(dict.fromkeys(frame["method"]))
@@ -111,15 +111,15 @@ def uses(results: Results) -> Table:
     return Table(frame, shown, words)
 
 
-def _number(rows, own, method, metric):
+def _number(rows, group, method, metric):
     """Mean, low and high over the objects; of an error as a share of that of plain QEM of the same object."""
-    values = own.set_index("item")["value"]
+    values = group.set_index("item")["value"]
     if metric == "recognised":
-        found = within(values)
+        ends = within(values)
     else:
         plain = rows[(rows["perturbation"] == PLAIN) & (rows["method"] == method) & (rows["metric"] == metric)]
-        found = interval(values / plain.set_index("item")["value"].reindex(values.index))
-    return dict(zip(("mean", "low", "high"), found, strict=True)) | {"objects": len(values)}
+        ends = interval(values / plain.set_index("item")["value"].reindex(values.index))
+    return dict(zip(("mean", "low", "high"), ends, strict=True)) | {"objects": len(values)}
 
 
 def _text(cells, *key):
@@ -161,9 +161,9 @@ def pairs_table(results: Results) -> Table:
 
 def middle_of(rows: pd.DataFrame) -> dict[str, float]:
     """{perturbation: its middle severity}."""
-    known = rows.dropna(subset=["severity"]).drop_duplicates(["perturbation", "severity"])
-    severities = known.groupby("perturbation", sort=False)["severity"]
-    return {str(name): middle_severity(list(own)) for name, own in severities}
+    cases = rows.dropna(subset=["severity"]).drop_duplicates(["perturbation", "severity"])
+    severities = cases.groupby("perturbation", sort=False)["severity"]
+    return {str(name): middle_severity(list(values)) for name, values in severities}
 
 
 def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[str, float]:
@@ -176,13 +176,13 @@ def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[st
         lost[(lost["perturbation"] == name) & (lost["severity"] == middle[name])].set_index("item")["value"]
         for name in pair.split(AND)
     )
-    both = lost[lost["perturbation"] == pair].set_index("item")["value"]
-    joined = pd.concat({"first": first, "second": second, "both": both}, axis=1, join="inner")
+    joint = lost[lost["perturbation"] == pair].set_index("item")["value"]
+    joined = pd.concat({"first": first, "second": second, "both": joint}, axis=1, join="inner")
     beyond = interval(joined["both"] - np.minimum(joined["first"] + joined["second"], 1))
     independent = joined["both"] - 1 + (1 - joined["first"]) * (1 - joined["second"])
-    found = {name: float(joined[name].mean()) for name in ("first", "second", "both")}
-    found |= dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
-    return found | {"independent": float(independent.mean()), "objects": len(joined)}
+    numbers = {name: float(joined[name].mean()) for name in ("first", "second", "both")}
+    numbers |= dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
+    return numbers | {"independent": float(independent.mean()), "objects": len(joined)}
 
 
 def verdict(low: float, high: float) -> str:

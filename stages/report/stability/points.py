@@ -25,22 +25,22 @@ def table(results: Results) -> Table:
     """The severity of each perturbation at which half of a method's points are lost."""
     rows = results.measured(STAGE, metric=["repeatability", "chance", "drift"])
     points = rows.loc[(rows["metric"] == "repeatability") & (rows["method"] != CHANCE)]
-    found = []
+    lines = []
     for (perturbation, method), (breaking, *ends) in breaking_points(points).items():
-        own = rows.loc[rows["perturbation"] == perturbation]
-        severities = list(own["severity"].unique())
+        group = rows.loc[rows["perturbation"] == perturbation]
+        severities = list(group["severity"].unique())
         middle = middle_severity(severities)
-        here = own.loc[(own["method"] == method) & (own["severity"] == middle)]
-        mean, low, high = within(here.loc[here["metric"] == "repeatability", "value"])
-        found.append({
+        trials = group.loc[(group["method"] == method) & (group["severity"] == middle)]
+        mean, low, high = within(trials.loc[trials["metric"] == "repeatability", "value"])
+        lines.append({
             "perturbation": perturbation, "unit": PERTURBATIONS[perturbation].unit, "method": method,
             "severity": middle, "repeatability": mean, "repeatability_low": low, "repeatability_high": high,
-            "drift": here.loc[here["metric"] == "drift", "value"].mean(),
-            "chance": own.loc[own["metric"] == "chance", "value"].mean(), "harshest": severities[-1],
+            "drift": trials.loc[trials["metric"] == "drift", "value"].mean(),
+            "chance": group.loc[group["metric"] == "chance", "value"].mean(), "harshest": severities[-1],
             "breaking_point": breaking, "low": ends[0], "high": ends[1],
         })  # fmt: skip
-    frame = pd.DataFrame(found)
-    unharmed = {name: known.unharmed for name, known in PERTURBATIONS.items()}
+    frame = pd.DataFrame(lines)
+    unharmed = {name: entry.unharmed for name, entry in PERTURBATIONS.items()}
     shown = broken(frame, frame["method"].map(label), unharmed)
     shown["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
     words = {"objects": ", ".join(dict.fromkeys(points["item"])), "not_run": results.left_out(STAGE)}
@@ -81,9 +81,9 @@ def failures(results: Results) -> Figure:
     for (before, after), (method, case) in zip(grid.T, worst.items(), strict=True):
         show(before, results.mesh(case["item"]), case["before_saliency"], points=case["before_points"])
         show(after, Mesh(case["vertices"], case["faces"]), case["after_saliency"], points=case["after_points"])
-        what = f"{label(case['perturbation'])} {float(case['severity']):g}"
+        damage = f"{label(case['perturbation'])} {float(case['severity']):g}"
         again = f"{100 * float(case['repeatability']):.0f} % found again"
-        for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{what}\n{again}")):
+        for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{damage}\n{again}")):
             axes.set_title(title, fontsize=9, fontweight="normal", loc="center")
     name_panels(grid, beside=("before", "after"))
     names = dict.fromkeys(str(case["perturbation"]) for case in worst.values())
@@ -99,6 +99,6 @@ def _worst(results: Results) -> dict[str, dict[str, Any]]:
             method, _, name = key.rpartition(".")
             cases.setdefault(method, {}).setdefault(path.stem, {"item": path.stem})[name] = values
     return {
-        method: min(found.values(), key=lambda case: np.nan_to_num(case["repeatability"]))
-        for method, found in some(cases, "no data/stability", STAGE).items()
+        method: min(objects.values(), key=lambda case: np.nan_to_num(case["repeatability"]))
+        for method, objects in some(cases, "no data/stability", STAGE).items()
     }

@@ -57,7 +57,7 @@ class Errors:
     @property
     def severities(self) -> np.ndarray:
         """(p,): how many cases each perturbation has."""
-        return np.array([sum(name == one for name, _ in self.cases) for one in self.perturbations])
+        return np.array([sum(name == perturbation for name, _ in self.cases) for perturbation in self.perturbations])
 
     @property
     def beyond_clean(self) -> "Errors":
@@ -71,8 +71,8 @@ class Errors:
 
     def by_perturbation(self, means: np.ndarray) -> np.ndarray:
         """(r, m, p): means (r, m, k) summed over the severities of each perturbation."""
-        return np.stack([means[..., [name == one for name, _ in self.cases]].sum(axis=-1)
-                         for one in self.perturbations], axis=-1)  # fmt: skip
+        return np.stack([means[..., [name == perturbation for name, _ in self.cases]].sum(axis=-1)
+                         for perturbation in self.perturbations], axis=-1)  # fmt: skip
 
 
 def points_lost(rows: pd.DataFrame) -> pd.DataFrame:
@@ -96,16 +96,16 @@ def of_gaze(rows: pd.DataFrame) -> Errors:
     return _gathered(rows[KEYS].assign(value=1 - rows["value"]), rows)
 
 
-def _gathered(found: pd.DataFrame, rows: pd.DataFrame) -> Errors:
+def _gathered(errors: pd.DataFrame, rows: pd.DataFrame) -> Errors:
     """The Errors of the single perturbations that belong to a kind; copies of a shape are one object."""
-    found = found.assign(item=found["item"].map(unit)).groupby(KEYS, sort=False, dropna=False, as_index=False).mean()
-    known = [name for names in KINDS.values() for name in names]
-    cases = rows.loc[rows["perturbation"].isin(known), ["perturbation", "severity"]].drop_duplicates()
-    cases = sorted(cases.itertuples(index=False, name=None), key=lambda case: known.index(case[0]))
+    errors = errors.assign(item=errors["item"].map(unit)).groupby(KEYS, sort=False, dropna=False, as_index=False).mean()
+    members = [name for names in KINDS.values() for name in names]
+    cases = rows.loc[rows["perturbation"].isin(members), ["perturbation", "severity"]].drop_duplicates()
+    cases = sorted(cases.itertuples(index=False, name=None), key=lambda case: members.index(case[0]))
     some(cases, "no disturbed points", STAGE)
-    pairs = list(zip(found["perturbation"], found["severity"], strict=True))
-    found = found.assign(case=pd.Series(pairs, index=found.index, dtype=object))
-    disturbed, clean = (found[found["perturbation"].isin(names)] for names in (known, [UNPERTURBED]))
+    pairs = list(zip(errors["perturbation"], errors["severity"], strict=True))
+    errors = errors.assign(case=pd.Series(pairs, index=errors.index, dtype=object))
+    disturbed, clean = (errors[errors["perturbation"].isin(names)] for names in (members, [UNPERTURBED]))
     objects, methods = (sorted(set(disturbed["item"])), list(dict.fromkeys(rows["method"])))
     values = _filled(disturbed, ["item", "method", "case"], (objects, methods, cases))
     start = np.zeros(values.shape[:2]) if clean.empty else _filled(clean, ["item", "method"], (objects, methods))
@@ -114,10 +114,10 @@ def _gathered(found: pd.DataFrame, rows: pd.DataFrame) -> Errors:
 
 def _filled(frame: pd.DataFrame, columns: Sequence[str], names: Sequence[Sequence]) -> np.ndarray:
     """The values of a frame by the places of its columns among the names, NaN where there is none."""
-    values = np.full([len(one) for one in names], np.nan)
-    places = [{name: place for place, name in enumerate(one)} for one in names]
+    values = np.full([len(part) for part in names], np.nan)
+    places = [{name: place for place, name in enumerate(part)} for part in names]
     for *key, value in frame[[*columns, "value"]].itertuples(index=False, name=None):
-        values[tuple(of[one] for of, one in zip(places, key, strict=True))] = value
+        values[tuple(of[part] for of, part in zip(places, key, strict=True))] = value
     return values
 
 
@@ -129,11 +129,11 @@ def corruption_errors(errors: Errors, reference: str, counts: np.ndarray) -> tup
     """
     if reference not in errors.methods:
         raise NotRun(f"{reference}, the reference of the score, is not among stability.methods", STAGE, runnable=False)
-    own = errors.methods.index(reference)
-    whole = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0, own]
+    column = errors.methods.index(reference)
+    whole = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0, column]
     kept = np.flatnonzero(whole > LEAST * errors.severities)
     summed = errors.by_perturbation(errors.means(counts))[..., kept]
-    return summed / summed[:, own : own + 1], [errors.perturbations[place] for place in kept]
+    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in kept]
 
 
 def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.DataFrame:
@@ -144,19 +144,19 @@ def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.Data
     that they are paired: that of the reference is [1, 1]. One object gives none.
     """
     count = len(errors.objects)
-    every, draws = np.ones((1, count)), resamples(count, seed)
-    at, names = corruption_errors(errors, reference, every)
+    whole, draws = np.ones((1, count)), resamples(count, seed)
+    at, names = corruption_errors(errors, reference, whole)
     some(names, f"nothing disturbs {reference}", STAGE, runnable=False)
     drawn = corruption_errors(errors, reference, draws)[0]
     frame = pd.DataFrame({"method": errors.methods, **_with_ends("mce", at.mean(axis=2), drawn.mean(axis=2), count)})
     for kind, members in KINDS.items():
-        chosen = [place for place, name in enumerate(names) if name in members]
-        frame[kind] = at[0][:, chosen].mean(axis=1) if chosen else np.nan
+        places = [place for place, name in enumerate(names) if name in members]
+        frame[kind] = at[0][:, places].mean(axis=1) if places else np.nan
     beyond = errors.beyond_clean
-    own, more = (corruption_errors(beyond, reference, counts)[0].mean(axis=2) for counts in (every, draws))
-    kept = [1 - errors.by_perturbation(errors.means(counts)) / errors.severities for counts in (every, draws)]
-    found = _with_ends("found", kept[0].mean(axis=2), kept[1].mean(axis=2), count)
-    return frame.assign(**_with_ends("relative", own, more, count), **found)
+    excess, more = (corruption_errors(beyond, reference, counts)[0].mean(axis=2) for counts in (whole, draws))
+    shares = [1 - errors.by_perturbation(errors.means(counts)) / errors.severities for counts in (whole, draws)]
+    columns = _with_ends("found", shares[0].mean(axis=2), shares[1].mean(axis=2), count)
+    return frame.assign(**_with_ends("relative", excess, more, count), **columns)
 
 
 def _with_ends(name, at, drawn, count):
@@ -198,18 +198,18 @@ def breaking(results: Results) -> Table:
     """A row a method, a column a disturbance: the severity at which half of the points are lost."""
     rows, frame, errors = _scored(results)
     rows = rows[rows["perturbation"].isin(errors.perturbations)]
-    found = pd.DataFrame([
+    points = pd.DataFrame([
         {"method": method, "perturbation": name, "unit": PERTURBATIONS[name].unit,
-         "harshest": [severity for one, severity in errors.cases if one == name][-1],
+         "harshest": [severity for perturbation, severity in errors.cases if perturbation == name][-1],
          "breaking_point": at, "low": low, "high": high}
         for (name, method), (at, low, high) in breaking_points(rows[rows["method"] != CHANCE]).items()
     ])  # fmt: skip
-    found["text"] = [cell(row, PERTURBATIONS[row.perturbation].unharmed) for row in records(found)]
+    points["text"] = [cell(row, PERTURBATIONS[row.perturbation].unharmed) for row in records(points)]
     order = [name for name in frame.sort_values("mce")["method"] if name != CHANCE]
-    wide = found.pivot(index="method", columns="perturbation", values="text").loc[order, errors.perturbations]
+    wide = points.pivot(index="method", columns="perturbation", values="text").loc[order, errors.perturbations]
     shown = wide.rename(index=label, columns=label).rename_axis(columns=None).reset_index()
     units = "; ".join(f"{label(name)}: {PERTURBATIONS[name].unit}" for name in errors.perturbations)
-    return Table(found.drop(columns="text"), shown, _words(results, rows, errors) | {"units": units})
+    return Table(points.drop(columns="text"), shown, _words(results, rows, errors) | {"units": units})
 
 
 def chart(results: Results) -> Figure:
@@ -222,15 +222,15 @@ def chart(results: Results) -> Figure:
     frame = frame.sort_values("nss", ascending=False)
     for end in ("found", "low", "high"):
         frame[end] *= 100
-    drawn = pareto_chart(
+    figure = pareto_chart(
         frame, "found", title="Stability against the cost of a look", reference=label(REFERENCE),
         quality_label="points found again beyond chance, %", colour="band", legends={"band": "NSS on gaze"},
         clock=results.clock("salient_points", GAZE),
     )  # fmt: skip
     sharp = frame[frame["band"] == frame["band"].iloc[0]].sort_values("found", ascending=False).iloc[0]
-    said = f"{sharp['name']}, {with_interval(sharp['found'], sharp['low'], sharp['high'], places=0)} %"
-    drawn.words |= {"objects": len(errors.objects), "band": sharp["band"], "sharp": said}
-    return drawn
+    best = f"{sharp['name']}, {with_interval(sharp['found'], sharp['low'], sharp['high'], places=0)} %"
+    figure.words |= {"objects": len(errors.objects), "band": sharp["band"], "sharp": best}
+    return figure
 
 
 def _scored(results: Results) -> tuple[pd.DataFrame, pd.DataFrame, Errors]:
@@ -246,11 +246,11 @@ def _accuracy(results: Results) -> pd.DataFrame:
         return pd.DataFrame(columns=["method", "nss", "seconds"]).astype({"nss": float, "seconds": float})
     rows = results.measured("salient_points", GAZE, metric="nss")
     seconds = attention_seconds(results, GAZE)
-    found = [
-        dict(zip(("nss", "nss_low", "nss_high"), interval(own["value"]), strict=True)) | {"method": method}
-        for method, own in rows.groupby("method")
+    lines = [
+        dict(zip(("nss", "nss_low", "nss_high"), interval(group["value"]), strict=True)) | {"method": method}
+        for method, group in rows.groupby("method")
     ]
-    frame = pd.DataFrame(found)
+    frame = pd.DataFrame(lines)
     return frame.assign(seconds=frame["method"].map(seconds))
 
 

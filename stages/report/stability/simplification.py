@@ -41,7 +41,7 @@ def table(results: Results) -> Table:
     valid = cases.loc[(cases["outcome"] == "valid") & (cases["budget"] != SMALLEST)].fillna({"soft": ""})
     keys, backends = ["item", "perturbation", "budget", "kept", "soft"], cases["method"].unique()
     means = valid.pivot_table("seconds", index=keys, columns="method").dropna().mean()  # of what all backends can
-    times = [f"{label(one)} {means[one]:.4f} ({means[one] / means[backends[0]]:.2g} times)" for one in backends]
+    times = [f"{label(peer)} {means[peer]:.4f} ({means[peer] / means[backends[0]]:.2g} times)" for peer in backends]
     objects = ", ".join(dict.fromkeys(cases["item"]))
     words = {"ruin": RUIN, "largest": 100 * LARGEST_ERROR, "objects": objects}
     return Table(frame, pd.DataFrame(shown), words | {"times": ", ".join(times)})
@@ -76,11 +76,11 @@ def figure(results: Results) -> Figure:
         gridspec_kw={"height_ratios": [height, 1.8], "hspace": 0.16, "wspace": 0.34},
     )  # fmt: skip
     for backend, (upper, lower) in zip(backends, grid.T, strict=False):
-        mine = cases.loc[cases["method"] == backend]
-        plain = mine.loc[(mine["kept"] == "none") & mine["soft"].isna()]
+        runs = cases.loc[cases["method"] == backend]
+        plain = runs.loc[(runs["kept"] == "none") & runs["soft"].isna()]
         _squares(upper, plain, "perturbation", damages, [*BUDGETS, SMALLEST])
         upper.set_title(label(backend))
-        kept = mine.loc[(mine["kept"] != "none") & (mine["perturbation"] == "sound")]
+        kept = runs.loc[(runs["kept"] != "none") & (runs["perturbation"] == "sound")]
         _squares(lower, kept, "kept", list(KEPT)[1:], [*KEPT_BUDGETS, SMALLEST])
         lower.set(ylabel="vertices kept,\nsound object", xlabel="faces asked for")
     curves, legend = grid[:, -1]
@@ -121,10 +121,10 @@ def _curves(axes: Axes, errors: pd.DataFrame, styles: Mapping[str, str]) -> None
     errors = errors.assign(percent=100 * np.maximum(errors["value"], LEAST_ERROR))
     for damage, colour in zip(SHOWN, CYCLE, strict=True):
         for backend, style in styles.items():
-            here = errors.loc[(errors["perturbation"] == damage) & (errors["method"] == backend)]
-            means = here.groupby("budget").agg({"severity": "mean", "percent": "mean"}).sort_values("severity")
+            group = errors.loc[(errors["perturbation"] == damage) & (errors["method"] == backend)]
+            means = group.groupby("budget").agg({"severity": "mean", "percent": "mean"}).sort_values("severity")
             axes.plot(means["severity"], means["percent"], ls=style, marker=".", color=colour, lw=1.2)
-            bad = here.loc[here["outcome"] == "ruined"]
+            bad = group.loc[group["outcome"] == "ruined"]
             axes.plot(bad["severity"], bad["percent"], "x", color=colour, ms=8, mew=1.6)
         axes.plot([], [], color=colour, label=label(damage))
     axes.set(xscale="log", yscale="log", title="error until it breaks")

@@ -33,8 +33,8 @@ LINES = {  # (split, features, classifier): how a person says it
     ("random", "imprint_place", "knn"): "kNN with places",
 }
 TINTS = ("#0072B2", "#56B4E9", "#D55E00", "#009E73")
-UNITS = {name: known.unit for name, known in TOUCH_PERTURBATIONS.items()}
-UNHARMED = {name: known.unharmed for name, known in TOUCH_PERTURBATIONS.items()}
+UNITS = {name: entry.unit for name, entry in TOUCH_PERTURBATIONS.items()}
+UNHARMED = {name: entry.unharmed for name, entry in TOUCH_PERTURBATIONS.items()}
 ENOUGH = 0.02  # accuracy that may be lost before it is said to suffer
 COLUMNS = ["perturbation", "unit", *KEYS, "breaking_point", "low", "high", "harmless", "harshest", "accuracy"]
 LEFT = ["left", "left_low", "left_high"]
@@ -45,14 +45,14 @@ def curve(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> pd.Data
 
     left: what is left of the lead over guessing. The intervals are over the repetitions, widened for what they share.
     """
-    mine = rows.loc[rows[KEYS].eq(list(line)).all(axis=1)].set_index("repetition")
-    clean, mine = (mine.loc[mine["perturbation"] == name] for name in (CLEAN, perturbation))
-    found, whole, share = [], clean["value"].mean(), shared_by(line[0])
-    for (severity,), group in grouped(mine, ["severity"]):
-        lost, left = clean["value"] - group["value"], lead_left(group["value"], whole, mine["chance"].iloc[0])
-        found.append((severity, whole, lost.mean(), *interval(group["value"], share), *interval(left, share)))
-    found.sort(key=lambda point: abs(point[0] - UNHARMED[perturbation]))
-    return pd.DataFrame(found, columns=["severity", "clean", "lost", *ACCURACY, *LEFT])
+    runs = rows.loc[rows[KEYS].eq(list(line)).all(axis=1)].set_index("repetition")
+    clean, runs = (runs.loc[runs["perturbation"] == name] for name in (CLEAN, perturbation))
+    points, whole, share = [], clean["value"].mean(), shared_by(line[0])
+    for (severity,), group in grouped(runs, ["severity"]):
+        lost, left = clean["value"] - group["value"], lead_left(group["value"], whole, runs["chance"].iloc[0])
+        points.append((severity, whole, lost.mean(), *interval(group["value"], share), *interval(left, share)))
+    points.sort(key=lambda point: abs(point[0] - UNHARMED[perturbation]))
+    return pd.DataFrame(points, columns=["severity", "clean", "lost", *ACCURACY, *LEFT])
 
 
 def breaking(points: pd.DataFrame, perturbation: str) -> tuple[float, ...]:
@@ -63,8 +63,8 @@ def breaking(points: pd.DataFrame, perturbation: str) -> tuple[float, ...]:
 
 def harmless(points: pd.DataFrame) -> float:
     """The harshest severity up to which at most ENOUGH of accuracy is lost on average; NaN if none."""
-    kept = points.loc[(points["lost"] <= ENOUGH).cumprod().astype(bool), "severity"]
-    return float(kept.iloc[-1]) if len(kept) else float("nan")
+    mild = points.loc[(points["lost"] <= ENOUGH).cumprod().astype(bool), "severity"]
+    return float(mild.iloc[-1]) if len(mild) else float("nan")
 
 
 def table(results: Results) -> Table:
@@ -72,12 +72,12 @@ def table(results: Results) -> Table:
     blocks = [_block(*_curves(results), "")]
     for behind in list(DENOISERS)[1:] if DENOISED in results.datasets(STAGE) else ():
         blocks.append(_block(*_curves(results, DENOISED, behind), behind))
-    frames, shown, said = zip(*blocks, strict=True)
+    frames, shown, texts = zip(*blocks, strict=True)
     rows = results.measured(STAGE, metric="accuracy")
     group, method = rows[["group", "method"]].iloc[0]
     words = {
         "points": 100 * ENOUGH, "objects": results.group_text(group).capitalize(), "method": label(method),
-        "clean": "; ".join(said), "guessing": 100 * rows["chance"].iloc[0], "not_run": results.left_out(STAGE),
+        "clean": "; ".join(texts), "guessing": 100 * rows["chance"].iloc[0], "not_run": results.left_out(STAGE),
     }  # fmt: skip
     return Table(pd.concat(frames), pd.concat(shown), words)
 
@@ -105,15 +105,15 @@ def denoised(results: Results) -> Table:
 
 def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFrame, pd.DataFrame, str]:
     """(breaking points, the same for a reader, undisturbed accuracies) of one denoiser, a name of DENOISERS."""
-    found = []
+    entries = []
     for name, lines in curves.items():
         for line, points in lines.items():
             if points["left"].notna().any():
                 ends, last = (*breaking(points, name), harmless(points)), points[["severity", "accuracy"]].iloc[-1]
-                found.append((name, UNITS[name], *line, *ends, *last))
-    frame = pd.DataFrame(found, columns=COLUMNS)
-    known = _lines(behind)
-    heads = {line: f"{words} breaks at" for line, words in known.items()}
+                entries.append((name, UNITS[name], *line, *ends, *last))
+    frame = pd.DataFrame(entries, columns=COLUMNS)
+    labels = _lines(behind)
+    heads = {line: f"{words} breaks at" for line, words in labels.items()}
     shown = broken(frame, frame.set_index(KEYS).index.map(heads), UNHARMED)
     columns = ["perturbation", "unit", *(f"{words} breaks at" for words in LINES.values())]
     shown = shown.reindex(columns=columns, fill_value="–")
@@ -122,15 +122,15 @@ def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFram
     if behind:
         shown["perturbation"] += f", {DENOISERS[behind]}"
     clean = {key: group["value"].mean() for key, group in grouped(rows.loc[rows["perturbation"] == CLEAN], KEYS)}
-    said = [f"{words} {100 * clean[line]:.0f} %" for line, words in known.items() if line in clean]
-    return frame, shown, " ".join(filter(None, [DENOISERS[behind], ", ".join(said)]))
+    texts = [f"{words} {100 * clean[line]:.0f} %" for line, words in labels.items() if line in clean]
+    return frame, shown, " ".join(filter(None, [DENOISERS[behind], ", ".join(texts)]))
 
 
 def gain(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> tuple[float, float, float]:
     """(mean, low, high) of the accuracy that a denoiser gains, over the severities; in pairs of equal touches."""
-    own = rows[rows["perturbation"] == perturbation].set_index([*KEYS, "repetition", "severity"])["value"].sort_index()
+    runs = rows[rows["perturbation"] == perturbation].set_index([*KEYS, "repetition", "severity"])["value"].sort_index()
     split, features, classifier = line
-    paired = own.loc[split, features, classifier] - own.loc[split, PLAIN, classifier]
+    paired = runs.loc[split, features, classifier] - runs.loc[split, PLAIN, classifier]
     return interval(paired.groupby("repetition").mean(), shared_by(split))
 
 
@@ -154,8 +154,8 @@ def figure(results: Results) -> Figure:
 
 def _lines(behind: str) -> dict[tuple[str, ...], str]:
     """LINES, or those on imprints alone that went through a denoiser, a name of DENOISERS."""
-    kept = {line: said for line, said in LINES.items() if line[1] == PLAIN or not behind}
-    return {(split, f"{features}{behind}", classifier): said for (split, features, classifier), said in kept.items()}
+    lines = {line: words for line, words in LINES.items() if line[1] == PLAIN or not behind}
+    return {(split, f"{features}{behind}", classifier): words for (split, features, classifier), words in lines.items()}
 
 
 def _curves(results: Results, dataset: str | None = None, behind: str = "") -> tuple[pd.DataFrame, Curves]:
@@ -163,7 +163,7 @@ def _curves(results: Results, dataset: str | None = None, behind: str = "") -> t
     rows = results.measured(STAGE, dataset, metric="accuracy")
     names = [name for name in TOUCH_PERTURBATIONS if name in set(rows["perturbation"])]
     return rows, {
-        name: {line: found for line in _lines(behind) if len(found := curve(rows, name, line))} for name in names
+        name: {line: points for line in _lines(behind) if len(points := curve(rows, name, line))} for name in names
     }
 
 
@@ -174,17 +174,17 @@ def build(results: Results) -> Figure:
     """Tactile images of one object's first place, a line a perturbation of what is asked about."""
     [item] = results.choose(results.settings.figure_objects, 1, "touch_stability")
     stored = read_arrays(results.folder("touch_stability") / f"{item}.npz")
-    asked = [name for name, known in TOUCH_PERTURBATIONS.items() if not known.in_training]
-    shown = {name: found for name in asked if (found := severities(stored, name))}
+    names = [name for name, entry in TOUCH_PERTURBATIONS.items() if not entry.in_training]
+    shown = {name: levels for name in names if (levels := severities(stored, name))}
     half, across = -(-len(shown) // 2), MOST + 2  # beside the images: the name, and no change
     unmarked = {"xticks": [], "yticks": []}
     figure, grid = plt.subplots(half, 2 * across, figsize=(12.5, 0.86 * half), squeeze=False, subplot_kw=unmarked)
     for axes in grid.flat:
         axes.set_axis_off()
-    for k, (name, found) in enumerate(shown.items()):
+    for k, (name, levels) in enumerate(shown.items()):
         words, *row = grid[k % half, across * (k // half) :]
         words.text(1.0, 0.5, label(name), ha="right", va="center", fontsize=9, transform=words.transAxes)
-        keys = {"none": "shown.clean"} | {severity: f"shown.{name}.{severity}" for severity in found[:MOST]}
+        keys = {"none": "shown.clean"} | {severity: f"shown.{name}.{severity}" for severity in levels[:MOST]}
         for axes, (title, key) in zip(row, keys.items(), strict=False):
             axes.set_axis_on()
             axes.imshow(stored[key][0], cmap="gray", vmin=0, vmax=1)
@@ -197,5 +197,5 @@ def build(results: Results) -> Figure:
 def severities(keys: Iterable[str], perturbation: str) -> list[str]:
     """The severities of a perturbation as they stand in the keys of a file, from mild to harsh."""
     start, unharmed = f"shown.{perturbation}.", TOUCH_PERTURBATIONS[perturbation].unharmed
-    found = [key.removeprefix(start) for key in keys if key.startswith(start)]
-    return sorted(found, key=lambda key: np.abs(float(key) - unharmed))
+    levels = [key.removeprefix(start) for key in keys if key.startswith(start)]
+    return sorted(levels, key=lambda key: np.abs(float(key) - unharmed))

@@ -29,15 +29,15 @@ COLUMNS = ["perturbation", "unit", "weights", "mode", "clean", "breaking_point",
 
 def table(results: Results) -> Table:
     """Breaking points; of networks that were measured and have a lead to lose."""
-    (curves, chance), found = _curves(results), []
+    (curves, chance), entries = _curves(results), []
     for name, lines in curves.items():
         for kind, points in lines.items():
             whole, severities = points["clean"].iloc[0], list(points["severity"])
             if whole > chance:
                 left = lead_left(points[ACCURACY].to_numpy().T, whole, chance)
                 ends = [breaking_point(severities, list(end), UNHARMED[name]) for end in left]
-                found.append((name, UNITS[name], *kind, whole, *ends, severities[-1], points["accuracy"].iloc[-1]))
-    frame = pd.DataFrame(some(found, "no disturbed imprints", "transfer"), columns=COLUMNS)
+                entries.append((name, UNITS[name], *kind, whole, *ends, severities[-1], points["accuracy"].iloc[-1]))
+    frame = pd.DataFrame(some(entries, "no disturbed imprints", "transfer"), columns=COLUMNS)
     heads = [f"{start(row.weights)}, {label(row.mode)} ({100 * row.clean:.0f} % clean)" for row in records(frame)]
     return Table(frame, broken(frame, heads, UNHARMED))
 
@@ -61,7 +61,7 @@ def _curves(results: Results) -> tuple[Curves, float]:
     for name, kind in product(UNITS, TINTS):
         if (name, *kind) in groups:
             severities = grouped(groups[name, *kind], ["severity"])
-            found = [(severity, *mean(group["value"], "random"), *clean[kind]) for (severity,), group in severities]
-            found.sort(key=lambda point: abs(point[0] - UNHARMED[name]))
-            curves.setdefault(name, {})[kind] = pd.DataFrame(found, columns=["severity", *ACCURACY, *CLEAN])
+            points = [(severity, *mean(group["value"], "random"), *clean[kind]) for (severity,), group in severities]
+            points.sort(key=lambda point: abs(point[0] - UNHARMED[name]))
+            curves.setdefault(name, {})[kind] = pd.DataFrame(points, columns=["severity", *ACCURACY, *CLEAN])
     return curves, results.measured("transfer", metric="chance", data=FINE, split="random")["value"].mean()

@@ -46,7 +46,8 @@ BEFORE_SPLIT = tuple(reading(name, first={"variant": five}) for name, five in MI
 MANY = reading("five times as many combinations", first={"variant": "touches_5_many"},
                second={"variant": "touches_1_many"})  # fmt: skip
 JOINED = tuple(  # of all classifiers
-    reading(f"without the SVM, {one.name}", where={"classifier": ALIVE}, **one.changes) for one in (*BEFORE_SPLIT, MANY)
+    reading(f"without the SVM, {base.name}", where={"classifier": ALIVE}, **base.changes)
+    for base in (*BEFORE_SPLIT, MANY)
 )
 MORE_THAN_KNN = reading("more than kNN does", contrast=({"classifier": "deep_learning"}, {"classifier": "knn"}))
 COPIES = reading("one joined touch in twenty copies", where={"variant": "touches_1_many"})
@@ -86,10 +87,10 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
     readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
     section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
-    own = {} if end.endswith("_ours") else SETS
+    sets = {} if end.endswith("_ours") else SETS
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end], stage=STAGE, phrases=PHRASES,
-        note=ALL if end == "_all" else "", section=section, of=of, readings=readings if own else (), **own,
+        note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (), **sets,
     )  # fmt: skip
 
 
@@ -98,14 +99,14 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
 
     end: of their keys.
     """
-    here: Side = {"method": best}
+    model: Side = {"method": best}
 
     def claim(key: str, sentence: str, where: Side, first: Side, second: Side | float, **further: Any) -> Claim:
-        sides = {"where": {**where, **here}, "first": first, "second": second}
+        sides = {"where": {**where, **model}, "first": first, "second": second}
         return Claim(key=key + end, sentence=sentence, stage=STAGE, phrases=PHRASES, **sides, **common | further)
 
-    def variant(key: str, sentence: str, one: str, other: str = "plain", where: Side = SIX, **further: Any) -> Claim:
-        return claim(key, sentence, where, {"variant": one}, {"variant": other}, **further)
+    def variant(key: str, sentence: str, kind: str, rival: str = "plain", where: Side = SIX, **further: Any) -> Claim:
+        return claim(key, sentence, where, {"variant": kind}, {"variant": rival}, **further)
 
     knn = {"classifier": "knn", "metric": "accuracy", "split": Split.RANDOM} | SCALE | PLAIN
     four_to_six = partial(claim, where=knn, first={"group": "four"}, second={"group": "six"}, readings=SCALED)

@@ -41,9 +41,9 @@ def table(results: Results) -> Table:
     errors = 1000 * frame["error"] / frame["pitch"]
     shown["error, thousandths of a cell"] = ["< 1e-6" if error < 1e-6 else error for error in errors]
     texts = shown[[*TITLES.values()]].itertuples(index=False, name=None)
-    said = [_said(row, *both) for row, both in zip(records(frame), texts, strict=True) if row.method == OURS]
+    lines = [_said(row, *pair) for row, pair in zip(records(frame), texts, strict=True) if row.method == OURS]
     words = {
-        "said": "\n".join(said), "absent": " ".join(why.unique()),
+        "said": "\n".join(lines), "absent": " ".join(why.unique()),
         "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in records(meshes)),
     }  # fmt: skip
     answer = ["method", "cells", *TITLES.values(), "error, thousandths of a cell"]
@@ -53,7 +53,7 @@ def table(results: Results) -> Table:
 
 def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     """(rows of rates; one row per method and number of cells: rates, ratios, error and its pitch in units, note)."""
-    rates, errors = (results.bench("imprints").query(f"what == '{what}'") for what in ("rate", "error"))
+    rates, errors = (results.bench("imprints").query(f"what == '{kind}'") for kind in ("rate", "error"))
     if rates["value"].isna().all() or errors.empty:
         raise NotRun("bench/imprints.csv is not whole: `make bench` writes it anew", "imprints", runnable=False)
     largest = errors.groupby("method")[["to_mesh", "pitch"]].max().rename(columns={"to_mesh": "error"})
@@ -72,8 +72,8 @@ def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
 
 def _said(row: Any, rate: str, ratio: str) -> str:
     """How fast ours is."""
-    said = f"Ours, {row.cells} x {row.cells} cells: {rate} imprints a second on one core. "
-    return said + ("TACTO was not run." if row.ratio != row.ratio else f"{ratio} times TACTO's rate.")
+    text = f"Ours, {row.cells} x {row.cells} cells: {rate} imprints a second on one core. "
+    return text + ("TACTO was not run." if row.ratio != row.ratio else f"{ratio} times TACTO's rate.")
 
 
 def chart(results: Results) -> Figure:

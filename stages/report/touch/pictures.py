@@ -35,9 +35,9 @@ def pipeline(results: Results) -> Figure:
     figure = plt.figure(figsize=SIZE)
     becomes = f"{len(mesh.faces):,} faces become {len(coarse.faces):,}"
     below = (name, "saliency, and where to touch", becomes, "what a pressure array feels (black: first)", "")
-    for left, step, said in zip(LEFT, STEPS, below, strict=True):
+    for left, step, caption in zip(LEFT, STEPS, below, strict=True):
         figure.text(left, 0.92, step, fontsize=13, fontweight="bold", color=INK)
-        figure.text(left, 0.03, said, fontsize=10, color=GREY)
+        figure.text(left, 0.03, caption, fontsize=10, color=GREY)
     panels = [figure.add_axes((left, 0.12, WIDTH, WIDTH * SIZE[0] / SIZE[1])) for left in LEFT]
     show(panels[0], mesh, rows=800)
     show(panels[1], mesh, vivid(results.saliency(name)[MODEL]), points=points, rows=800)
@@ -93,8 +93,8 @@ def _draw_imprint(axes: Axes, image: np.ndarray | None) -> None:
 
 def touch_one_mesh(results: Results) -> Figure:
     """Draws the output of `haptic-glance touch MESH`: of one object, or of each object of a folder of one's own."""
-    own, settings = results.own_meshes, results.settings
-    names = results.choose(() if own else [settings.hero_object], settings.viewer_count if own else 1)
+    own_meshes, settings = results.own_meshes, results.settings
+    names = results.choose(() if own_meshes else [settings.hero_object], settings.viewer_count if own_meshes else 1)
     figure = plt.figure(figsize=(12, 5.4 * len(names)))
     most = 0
     for part, name in zip(figure.subfigures(len(names), 1, squeeze=False).flat, names, strict=True):
@@ -104,8 +104,8 @@ def touch_one_mesh(results: Results) -> Figure:
         raw = distances(Surface(mesh), points, CELLS, PITCH)
         axes = sensor_axes(sensor_normals(mesh, points))
         draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
-        if own:
+        if own_meshes:
             part.suptitle(name, fontweight="bold", y=0.995)
-    title = "Where to touch, and what is felt there" if own else "Touching one mesh"
+    title = "Where to touch, and what is felt there" if own_meshes else "Touching one mesh"
     words = {"title": title, "name": ", ".join(names), "count": most, "rows": CELLS[0], "columns": CELLS[1]}
     return Figure(figure, words | {"pitch": PITCH}, dpi=110)

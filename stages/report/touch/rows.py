@@ -53,16 +53,16 @@ def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, 
     on_sets: also that as printed on random sets of objects. scaling: of the samples; rows about no classifier
     have none.
     """
-    found = everywhere(results, STAGE, **where)
-    found = {name: own for name, rows in found.items() if not (own := scaled(rows, scaling)).empty}
-    some(found, f"no rows of the scaling {scaling}", STAGE)
-    if PRINTED in found:
-        yield Protocol(PRINTED, found.pop(PRINTED), "as printed", EQUAL)
-    if (drawn := {name: found.pop(name) for name in SETS_4_2 if name in found}) and on_sets:
+    by_set = everywhere(results, STAGE, **where)
+    by_set = {name: part for name, rows in by_set.items() if not (part := scaled(rows, scaling)).empty}
+    some(by_set, f"no rows of the scaling {scaling}", STAGE)
+    if PRINTED in by_set:
+        yield Protocol(PRINTED, by_set.pop(PRINTED), "as printed", EQUAL)
+    if (drawn := {name: by_set.pop(name) for name in SETS_4_2 if name in by_set}) and on_sets:
         rows = pd.concat(drawn.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
         count = len(rows[["dataset", "set"]].drop_duplicates())
         yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", EQUAL)
-    for dataset, rows in list(found.items())[:1]:
+    for dataset, rows in list(by_set.items())[:1]:
         yield Protocol(dataset, rows, "ours", MODEL)
 
 
@@ -79,8 +79,8 @@ def accuracies(rows: pd.DataFrame) -> dict[str, float]:
         drawn = measured[splits == Split.RANDOM]
         at_random, share = drawn.groupby(["dataset", "set"])["value"].mean(), 0.0
     ends = zip(("accuracy", "low", "high"), within(at_random, share), strict=True)
-    others = {one: values[splits == one] for one in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
-    means = {f"accuracy_{one}": own.mean() if len(own) else np.nan for one, own in others.items()}
+    by_split = {split: values[splits == split] for split in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
+    means = {f"accuracy_{split}": group.mean() if len(group) else np.nan for split, group in by_split.items()}
     return {**dict(ends), "repetitions": len(at_random), **means}
 
 

@@ -31,9 +31,11 @@ def table_4_3(results: Results) -> Table:
     """The gain from leaving out imprints that another object has too, by protocol."""
     few = [fifteen(way) for way in WAYS]
     thesis = results.thesis("table_4_3_imprint_selection_virtual").set_index("classifier")
-    selected = {one.dataset for one in protocols(results, variant="selected")}
-    found = protocols(results, group=["six", "four"], variant=[*WAYS, *few])
-    frame = pd.concat([_selections(one, thesis) for one in found if one.dataset in selected], ignore_index=True)
+    selected = {version.dataset for version in protocols(results, variant="selected")}
+    versions = protocols(results, group=["six", "four"], variant=[*WAYS, *few])
+    frame = pd.concat(
+        [_selections(version, thesis) for version in versions if version.dataset in selected], ignore_index=True
+    )
     down, few_of = ["protocol", "classifier"], frame["classifier"].str.contains(", ")
     cells = frame.assign(thesis=frame["thesis"].mask(few_of))
     cells = cells.assign(head=cells["objects"] + ", " + cells["selection"].map(WAYS))
@@ -48,12 +50,12 @@ def _selections(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
     rows, cells = protocol.rows[protocol.rows["method"] == protocol.best], []
     for suffix, name, group, way in product(("", ", 15 imprints"), thesis.index, rows["group"].unique(), WAYS):
         variant = fifteen(way) if suffix else way
-        mine = rows[(rows["classifier"] == name) & (rows["group"] == group) & (rows["variant"] == variant)]
-        recall = mine[(mine["split"] == Split.RANDOM) & (mine["metric"] == "recall")]["value"].mean()
+        trials = rows[(rows["classifier"] == name) & (rows["group"] == group) & (rows["variant"] == variant)]
+        recall = trials[(trials["split"] == Split.RANDOM) & (trials["metric"] == "recall")]["value"].mean()
         printed = thesis.loc[name].get(f"{group}_{PRINTED_WAYS.get(way)}", np.nan)
         cell = {"protocol": protocol.name, "classifier": f"{name}{suffix}", "objects": group, "selection": way}
         cells.append(
-            cell | accuracies(mine) | {"imprints": mine["imprints"].max(), "recall": recall, "thesis": printed}
+            cell | accuracies(trials) | {"imprints": trials["imprints"].max(), "recall": recall, "thesis": printed}
         )
     return pd.DataFrame(cells)
 
@@ -62,7 +64,7 @@ def section_4_2_4(results: Results) -> Table:
     """How many imprints correlate by 0.85 or more with one of another object, by protocol."""
     thesis = results.thesis("section_4_2_similar_imprints").set_index("sampling")["share_with_ncc_over_0_85"]
     frame = pd.concat([
-        _shares(one, thesis) for one in protocols(results, group="six", metric="similar_share")
+        _shares(protocol, thesis) for protocol in protocols(results, group="six", metric="similar_share")
     ], ignore_index=True)  # fmt: skip
     shown = frame[["protocol", "of"]].assign(
         name=frame["name"].where(frame["of"] == "object", frame["name"].map(sampling_text))
@@ -96,12 +98,12 @@ def figure_4_4(results: Results) -> Figure:
     pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
     images = {name: results.imprints(name, dataset) for pair in pairs for name in pair}
     samplings = {method: label(method) for method in ("random", best)}
-    found = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
-    order = np.argsort([np.median(values) for values in found[best]], kind="stable")
+    likeness = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
+    order = np.argsort([np.median(values) for values in likeness[best]], kind="stable")
     paint = colours(list(samplings))
     figure, axes = plt.subplots(figsize=(7.6, 0.42 * len(pairs) + 1.2))
     for offset, (method, words) in zip((0.18, -0.18), samplings.items(), strict=True):
-        tint, correlations = paint[method], [found[method][k] for k in order]
+        tint, correlations = paint[method], [likeness[method][k] for k in order]
         axes.boxplot(
             [values.ravel() for values in correlations], positions=np.arange(len(pairs)) + offset, widths=0.3,
             orientation="horizontal", whis=(5, 95), showfliers=False, patch_artist=True,

@@ -46,7 +46,7 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
     with suppress(NotRun):
         for protocol in protocols(results, on_sets=True, group=group, variant=fifteen(variant)):
             few.append(_cells(protocol, thesis, ", 15 imprints"))
-    scaled = [_cells(one, thesis) for one in readings(results, group=group, variant=variant)]
+    scaled = [_cells(entry, thesis) for entry in readings(results, group=group, variant=variant)]
     frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable")
     frame = pd.concat([frame, *scaled], ignore_index=True)
     once = frame.assign(thesis=frame["thesis"].mask(frame["sampling"].str.contains(", ")))  # not beside 15 imprints too
@@ -63,11 +63,11 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
 
 def readings(results: Results, **where: Any) -> Iterator[Protocol]:
     """The readings of the scale: of the protocol as printed on random sets, or else of the first that has them."""
-    for scaling, said in READINGS.items():
+    for scaling, words in READINGS.items():
         with suppress(NotRun):
-            found = list(protocols(results, True, scaling, **where))
-            chosen = next((one for one in found if one.dataset in SETS_4_2), found[0])
-            yield replace(chosen, name=f"{chosen.name}: {said}")
+            versions = list(protocols(results, True, scaling, **where))
+            chosen = next((version for version in versions if version.dataset in SETS_4_2), versions[0])
+            yield replace(chosen, name=f"{chosen.name}: {words}")
 
 
 def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool = False) -> pd.DataFrame:
@@ -99,15 +99,15 @@ def table_4_6(results: Results) -> Table:
     means = {name: thesis.loc[list(several)].mean() for name, several in MEANS.items()}
     thesis = pd.concat([thesis, pd.DataFrame(means).T]).rename_axis("classifier").reset_index()
     thesis = thesis.melt("classifier", var_name="touches", value_name="thesis")
-    found = [*protocols(results, on_sets=True, group="six"), *readings(results, group="six")]
-    frame = pd.concat([_by_touches(one, thesis) for one in found], ignore_index=True)
+    versions = [*protocols(results, on_sets=True, group="six"), *readings(results, group="six")]
+    frame = pd.concat([_by_touches(version, thesis) for version in versions], ignore_index=True)
     some(frame, "no several touches", STAGE)
     scaled = frame["protocol"].str.contains(": ")
     plain = frame["best"] & (frame["way"] == "") & ~scaled
     judged = (scaled | frame["way"].isin(MIXED)) & frame["best"] & frame["classifier"].isin(JUDGED)
-    others = frame["sampling"].map(label).mask(frame["best"], "")
-    words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), others, strict=True)
-    names = pd.Series([", ".join(filter(None, said)) for said in words])
+    samplings = frame["sampling"].map(label).mask(frame["best"], "")
+    words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), samplings, strict=True)
+    names = pd.Series([", ".join(filter(None, parts)) for parts in words])
     named = frame.assign(name=names)
     down, rest = ["protocol", "name"], named[~plain & (judged | (frame["classifier"].isin(FURTHER) & ~scaled))]
     cells = pd.concat([blocks(named[plain], down, "touches", BELOW), rest])
@@ -166,8 +166,8 @@ def draw_bars(
 
 def figure_4_1(results: Results) -> Figure:
     """Table 4.1 as a picture, a panel a protocol."""
-    found = table_4_1(results).frame
-    parts = list(found[~found["protocol"].str.contains(": ")].groupby("protocol", sort=False))
+    table = table_4_1(results).frame
+    parts = list(table[~table["protocol"].str.contains(": ")].groupby("protocol", sort=False))
     figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 4.1 * len(parts)), squeeze=False)
     figure.subplots_adjust(hspace=0.52)
     for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):

@@ -19,12 +19,12 @@ MARKS = {"printed": "o", "converged": "s", "printed_rate": "^"}
 
 def build(results: Results) -> Figure:
     """Accuracy of fine-tuned minus frozen networks, a panel for each set."""
-    found = {source: frame for source, rows in everywhere(results, *PASSES).items() if len(frame := gains(rows))}
-    some(found, "no network was both fine-tuned and frozen", "transfer")
-    networks = list(pd.concat(found)["network"].unique())
-    size = (4.6 * len(found) + 2.2, len(networks) + 1.9)
-    figure, [panels] = plt.subplots(1, len(found), figsize=size, squeeze=False, sharey=True)
-    for axes, (source, frame) in zip(panels, found.items(), strict=True):
+    by_set = {source: frame for source, rows in everywhere(results, *PASSES).items() if len(frame := gains(rows))}
+    some(by_set, "no network was both fine-tuned and frozen", "transfer")
+    networks = list(pd.concat(by_set)["network"].unique())
+    size = (4.6 * len(by_set) + 2.2, len(networks) + 1.9)
+    figure, [panels] = plt.subplots(1, len(by_set), figsize=size, squeeze=False, sharey=True)
+    for axes, (source, frame) in zip(panels, by_set.items(), strict=True):
         _draw(axes, frame, networks, results)
         axes.set_title(dataset_text(source))
     panels[0].set_yticks(range(len(networks)), map(label, networks))
@@ -41,14 +41,14 @@ def build(results: Results) -> Figure:
 
 def gains(rows: pd.DataFrame) -> pd.DataFrame:
     """Points that fine-tuning adds, with mean, low and high, by network, split, data and passes with pairs of both."""
-    found = []
-    seen = rows[(rows["weights"] == "imagenet") & rows["data"].isin(CELLS)]
-    for (network, split, data, passes), group in grouped(seen, ["method", "split", "data", "passes"]):
+    lines = []
+    pretrained = rows[(rows["weights"] == "imagenet") & rows["data"].isin(CELLS)]
+    for (network, split, data, passes), group in grouped(pretrained, ["method", "split", "data", "passes"]):
         sides = group.pivot_table(index="repetition", columns="mode", values="value").reindex(columns=MODES).dropna()
         if len(sides):
             ends = interval(100 * (sides["finetuned"] - sides["frozen"]), shared(split, group["dataset"].iloc[0]))
-            found.append((network, split, data, passes, *ends))
-    return pd.DataFrame(found, columns=["network", "split", "data", "passes", "mean", "low", "high"])
+            lines.append((network, split, data, passes, *ends))
+    return pd.DataFrame(lines, columns=["network", "split", "data", "passes", "mean", "low", "high"])
 
 
 def _draw(axes: Axes, frame: pd.DataFrame, networks: list[str], results: Results) -> None:

@@ -23,12 +23,12 @@ SHARED = ("block_2", "block_15")  # the ends of the middle that the hybrid netwo
 
 def figure_5_4(results: Results) -> Figure:
     """As printed, the mean change of each network on each data set; below, that of each layer of MobileNetV2."""
-    found = everywhere(results, metric="weight_change", **WHERE)
+    by_set = everywhere(results, metric="weight_change", **WHERE)
     printed = pd.DataFrame([
         {"on": f"{dataset_text(dataset)}, {CELLS[data]}, from {start(weights)}", "network": network,
-         "mean": own["value"].mean(), "low": own["value"].min(), "high": own["value"].max(), "trainings": len(own)}
-        for dataset, rows in found.items()
-        for (network, data, weights), own in grouped(rows, ["method", "data", "weights"])
+         "mean": runs["value"].mean(), "low": runs["value"].min(), "high": runs["value"].max(), "trainings": len(runs)}
+        for dataset, rows in by_set.items()
+        for (network, data, weights), runs in grouped(rows, ["method", "data", "weights"])
     ])  # fmt: skip
     figure, (above, below) = plt.subplots(2, 1, figsize=(9.2, 7.4), height_ratios=[3, 3.8])
     figure.subplots_adjust(hspace=0.4)
@@ -47,21 +47,21 @@ def _draw_networks(axes: Axes, frame: pd.DataFrame) -> None:
     """A group of dots a network, a colour a data set; lines from the least to the greatest of the trainings."""
     networks, sets = list(dict.fromkeys(frame["network"])), list(dict.fromkeys(frame["on"]))
     for k, (name, tint) in enumerate(zip(sets, CYCLE, strict=False)):
-        own = frame[frame["on"] == name]
-        x = own["network"].map(networks.index) + 0.12 * (k - (len(sets) - 1) / 2)
-        axes.vlines(x, own["low"], own["high"], color=tint, lw=1.2, alpha=0.6)
-        axes.plot(x, own["mean"], MARKERS[k], color=tint, ms=6, mec="white", label=name)
+        dots = frame[frame["on"] == name]
+        x = dots["network"].map(networks.index) + 0.12 * (k - (len(sets) - 1) / 2)
+        axes.vlines(x, dots["low"], dots["high"], color=tint, lw=1.2, alpha=0.6)
+        axes.plot(x, dots["mean"], MARKERS[k], color=tint, ms=6, mec="white", label=name)
     axes.set_xticks(range(len(networks)), [label(name) for name in networks])
 
 
 def _draw_layers(axes: Axes, results: Results) -> None:
     """Change of each convolution of MobileNetV2, by the array and the weights that it started from."""
-    mine = of_passes(results.measured("transfer", metric="layer_weight_change", method=NETWORK, **WHERE))
-    parts = mine.groupby("layer", sort=False)["part"].first()
+    changes = of_passes(results.measured("transfer", metric="layer_weight_change", method=NETWORK, **WHERE))
+    parts = changes.groupby("layer", sort=False)["part"].first()
     for (data, weights), tint in TINTS.items():
-        one = mine[(mine["data"] == data) & (mine["weights"] == weights)]
-        if len(one):
-            spread = one.groupby("layer")["value"].agg(["mean", "min", "max"]).loc[parts.index]
+        group = changes[(changes["data"] == data) & (changes["weights"] == weights)]
+        if len(group):
+            spread = group.groupby("layer")["value"].agg(["mean", "min", "max"]).loc[parts.index]
             axes.fill_between(range(len(parts)), spread["min"], spread["max"], color=tint, alpha=0.18, lw=0)
             words = f"{CELLS[data]}, from {start(weights)}"
             axes.plot(spread["mean"].to_numpy(), color=tint, marker="o", ms=3, lw=1.2, label=words)
@@ -72,7 +72,7 @@ def _draw_layers(axes: Axes, results: Results) -> None:
     for end in (middle[0] - 0.5, middle[-1] + 0.5):
         axes.axvline(end, color=INK, lw=0.9, ls="--")
     axes.set_xlabel(
-        f"convolutions of MobileNetV2 on {dataset_text(mine['dataset'].iloc[0])}, from the image to the classes"
+        f"convolutions of MobileNetV2 on {dataset_text(changes['dataset'].iloc[0])}, from the image to the classes"
     )
 
 
@@ -135,8 +135,8 @@ def training_curves(results: Results) -> Figure:
     size = (2.7 * columns + 0.6, 2.3 * height + 0.7)
     figure, panels = plt.subplots(height, columns, figsize=size, squeeze=False, sharey=True)
     for axes, (network, weights, mode) in zip(panels.flat, kinds, strict=False):
-        mine = rows[(rows["method"] == network) & (rows["weights"] == weights) & (rows["mode"] == mode)]
-        _draw_curves(axes, mine)
+        runs = rows[(rows["method"] == network) & (rows["weights"] == weights) & (rows["mode"] == mode)]
+        _draw_curves(axes, runs)
         axes.set_title(f"{label(network)}, {label(mode)},\n{start(weights)}", fontsize=9)
     for axes in panels.flat[len(kinds) :]:
         axes.set_axis_off()
@@ -149,9 +149,9 @@ def training_curves(results: Results) -> Figure:
 
 def _draw_curves(axes: Axes, rows: pd.DataFrame) -> None:
     for metric, side in rows.groupby("metric", sort=False):
-        for number, (_, one) in enumerate(side.groupby(["dataset", "repetition"])):
+        for number, (_, run) in enumerate(side.groupby(["dataset", "repetition"])):
             words = SIDES[str(metric)] if number == 0 else None
-            axes.plot(one["epoch"], 100 * one["value"], color=SIDE_TINTS[str(metric)], lw=1, alpha=0.75, label=words)
+            axes.plot(run["epoch"], 100 * run["value"], color=SIDE_TINTS[str(metric)], lw=1, alpha=0.75, label=words)
     axes.axvline(PRINTED_PASSES, color=GREY, lw=0.9, ls="--")
     axes.set_ylim(0, 102)
     axes.tick_params(colors=INK, labelsize=8)

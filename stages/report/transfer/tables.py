@@ -55,28 +55,30 @@ def networks(results: Results, data: str) -> Table:
     thesis = results.thesis(THESIS[data]).set_index("network")
     rows = pd.concat(everywhere(results, *PASSES, data=data).values())
     sources = list(dict.fromkeys(rows["dataset"]))
-    every = pd.concat([results.rows("transfer", source) for source in sources])
-    chance = every[every["metric"] == "chance"].groupby(["dataset", "split"])["value"].mean()
+    cases = pd.concat([results.rows("transfer", source) for source in sources])
+    chance = cases[cases["metric"] == "chance"].groupby(["dataset", "split"])["value"].mean()
     keys = ["dataset", "method", "weights", "mode", "split", "passes"]
     groups, trained = dict(iter(rows.groupby(keys))), _trained(results, keys, data=data)
-    ran = {key[1:4] for key in groups}
-    looked = {key: seen(own) for key, own in grouped(of_passes(rows), ["dataset", "split"])}
+    measured = {key[1:4] for key in groups}
+    touches = {key: seen(group) for key, group in grouped(of_passes(rows), ["dataset", "split"])}
     settings = product(dict.fromkeys([*PRINTED, *rows["method"]]), STARTS, MODES)
-    kept = [one for one in settings if one in ran or (one[0] in PRINTED and one[1] == "imagenet")]
+    kept = [
+        setting for setting in settings if setting in measured or (setting[0] in PRINTED and setting[1] == "imagenet")
+    ]
     lines = []
     for source, (network, weights, mode), split in product(sources, kept, SPLITS):
-        every = {passes: (source, network, weights, mode, split, passes) for passes in PASSES}
-        mine = groups.get(every["printed"], rows[:0])
-        cell, guess = accuracy(mine, split), chance.get((source, split), np.nan)
+        cases = {passes: (source, network, weights, mode, split, passes) for passes in PASSES}
+        runs = groups.get(cases["printed"], rows[:0])
+        cell, guess = accuracy(runs, split), chance.get((source, split), np.nan)
         printed = weights == "imagenet" and split == "random" and network in PRINTED
         lines.append({
             "objects": source, "network": network, "weights": weights,
-            "pretrained": next(iter(mine["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
-            **_other_passes(every, groups, trained, split), "chance": guess,
-            "above_chance": cell["accuracy"] - guess, "seen": looked.get((source, split), ""),
-            "precision": next(iter(mine["precision"].dropna()), None) if "precision" in mine else None,
+            "pretrained": next(iter(runs["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
+            **_other_passes(cases, groups, trained, split), "chance": guess,
+            "above_chance": cell["accuracy"] - guess, "seen": touches.get((source, split), ""),
+            "precision": next(iter(runs["precision"].dropna()), None) if "precision" in runs else None,
             "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if printed else np.nan,
-            "seconds": mine["seconds"].median(),
+            "seconds": runs["seconds"].median(),
         })  # fmt: skip
     frame = pd.DataFrame(lines)
     starts = zip(frame["weights"], frame.groupby("network")["pretrained"].transform("first"), strict=True)
@@ -99,12 +101,12 @@ def frozen_layers(results: Results) -> Table:
     keys = ["dataset", "mode", "split", "passes"]
     groups, trained, lines = dict(iter(rows.groupby(keys))), _trained(results, keys, **where), []
     for source, (layers, printed), split in product(dict.fromkeys(rows["dataset"]), thesis.items(), SPLITS):
-        every = {passes: (source, MODE_OF.get(str(layers), layers), split, passes) for passes in PASSES}
-        mine = groups.get(every["printed"], rows[:0])
-        known = {"objects": source, "frozen_layers": layers, "split": split}
-        saw = of_passes(rows[(rows["dataset"] == source) & (rows["split"] == split)])
-        known |= accuracy(mine, split) | _other_passes(every, groups, trained, split)
-        lines.append(known | {"thesis": printed, "seen": seen(saw)})
+        cases = {passes: (source, MODE_OF.get(str(layers), layers), split, passes) for passes in PASSES}
+        runs = groups.get(cases["printed"], rows[:0])
+        line = {"objects": source, "frozen_layers": layers, "split": split}
+        group = of_passes(rows[(rows["dataset"] == source) & (rows["split"] == split)])
+        line |= accuracy(runs, split) | _other_passes(cases, groups, trained, split)
+        lines.append(line | {"thesis": printed, "seen": seen(group)})
     frame, heads = pd.DataFrame(lines), _heads(rows)
     shown = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"], heads)
     return Table(frame, shown, {"looked": _looked(frame)}, _ranking(frame, heads))
@@ -112,12 +114,12 @@ def frozen_layers(results: Results) -> Table:
 
 def _trained(results: Results, keys: list[str], **where: str) -> dict[tuple, pd.DataFrame]:
     """{values of `keys`: train_accuracy and epochs of each repetition}, of the trainings that say them."""
-    found = {}
+    columns = {}
     for metric in ("train_accuracy", "epochs"):
         with suppress(NotRun):
             rows = pd.concat(everywhere(results, *PASSES, metric=metric, **where).values())
-            found[metric] = rows.set_index([*keys, "repetition"])["value"]
-    return dict(iter(pd.DataFrame(found).groupby(level=list(range(len(keys)))))) if found else {}
+            columns[metric] = rows.set_index([*keys, "repetition"])["value"]
+    return dict(iter(pd.DataFrame(columns).groupby(level=list(range(len(keys)))))) if columns else {}
 
 
 def _other_passes(
@@ -138,8 +140,8 @@ def _precisions(frame: pd.DataFrame) -> str:
     """The networks that computed in other numbers than float32, in a sentence a set; empty for none."""
     other = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
     parts = []
-    for (source, numbers), mine in other.groupby(["objects", "precision"], sort=False):
-        names = ", ".join(label(name) for name in dict.fromkeys(mine["network"]))
+    for (source, numbers), group in other.groupby(["objects", "precision"], sort=False):
+        names = ", ".join(label(name) for name in dict.fromkeys(group["network"]))
         parts.append(f"On {dataset_text(str(source))}, {names} computed in {numbers}.")
     return " ".join(parts)
 
@@ -160,34 +162,34 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     parts = [cells.assign(passes="printed", place=place)]
     for passes in OTHERS:
         ends = {"accuracy": "", "low": "_low", "high": "_high", "training": "_training"}
-        asked = cells[passes].notna()
-        if passes == "converged" and asked.any():
+        listed = cells[passes].notna()
+        if passes == "converged" and listed.any():
             setting = [cells[name] for name in down]
-            tried = cells[["accuracy", passes]].notna().any(axis=1).groupby(setting).transform("any")
-            asked |= tried & cells["thesis"].groupby(setting).transform("max").notna()
+            measured = cells[["accuracy", passes]].notna().any(axis=1).groupby(setting).transform("any")
+            listed |= measured & cells["thesis"].groupby(setting).transform("max").notna()
         again = {name: cells[f"{passes}{end}"] for name, end in ends.items()}
-        parts.append(cells.assign(**again, passes=passes, place=place)[asked])
-    every, keys = pd.concat(parts).sort_values("place", kind="stable"), [*down, "passes"]
-    head = [heads[key] for key in zip(every["objects"], every["split"], strict=True) if key in heads]
-    wide = grid(every.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
-    thesis = every.groupby(keys, sort=False)["thesis"].max()  # printed beside touches at random alone
-    known = every["training"].where(every["split"] == "random").groupby([every[key] for key in keys], sort=False).last()
+        parts.append(cells.assign(**again, passes=passes, place=place)[listed])
+    rows, keys = pd.concat(parts).sort_values("place", kind="stable"), [*down, "passes"]
+    head = [heads[key] for key in zip(rows["objects"], rows["split"], strict=True) if key in heads]
+    wide = grid(rows.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
+    thesis = rows.groupby(keys, sort=False)["thesis"].max()  # printed beside touches at random alone
+    training = rows["training"].where(rows["split"] == "random").groupby([rows[key] for key in keys], sort=False).last()
     return wide.assign(**{
-        "training touches, %": [percent(share, 1) for share in known],
+        "training touches, %": [percent(share, 1) for share in training],
         "thesis, %": [percent(share, 1) for share in thesis],
     })  # fmt: skip
 
 
 def _heads(rows: pd.DataFrame) -> dict[tuple, str]:
     """{(set, split): head of its column}: with the pixels a side, and the most repetitions of a training."""
-    known, found = of_passes(rows, *PASSES), {}
-    for source, split in product(dict.fromkeys(known["dataset"]), SPLITS):
-        mine = known[(known["dataset"] == source) & (known["split"] == split)]
-        sizes = " and ".join(f"{pixels:.0f}" for pixels in sorted(mine["size"].dropna().unique()))
-        count = mine.groupby(["method", "weights", "mode", "passes"])["repetition"].nunique().max()
-        ends = f", {sizes} px, {count} {'folds' if split == 'objects' else 'splits'}" if len(mine) else ""
-        found[source, split] = f"{dataset_text(source)}, {SPLITS[split]}{ends}, %"
-    return found
+    trained, heads = of_passes(rows, *PASSES), {}
+    for source, split in product(dict.fromkeys(trained["dataset"]), SPLITS):
+        runs = trained[(trained["dataset"] == source) & (trained["split"] == split)]
+        sizes = " and ".join(f"{pixels:.0f}" for pixels in sorted(runs["size"].dropna().unique()))
+        count = runs.groupby(["method", "weights", "mode", "passes"])["repetition"].nunique().max()
+        ends = f", {sizes} px, {count} {'folds' if split == 'objects' else 'splits'}" if len(runs) else ""
+        heads[source, split] = f"{dataset_text(source)}, {SPLITS[split]}{ends}, %"
+    return heads
 
 
 def _head(cells: pd.DataFrame) -> pd.Series:
@@ -244,7 +246,7 @@ def claim(
 def later_change_less(results: Results, claim: Claim) -> pd.Series:
     """Minus the rank correlation of a convolution's depth with its change, per training."""
     changes = results.measured("transfer", claim.sets[0], metric="layer_weight_change", **claim.where)
-    return -changes.groupby("repetition")["value"].agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
+    return -changes.groupby("repetition")["value"].agg(lambda values: spearmanr(np.arange(len(values)), values)[0])
 
 
 OWN = both(
@@ -269,8 +271,8 @@ OWN = both(
           "for one point.", "mode", "18:139", "finetuned", 1.0),
 )  # fmt: skip
 EARLY = [  # by layers that the default run does not freeze
-    replace(one, key=f"{one.key}_psb", dataset=THEIRS)
-    for one in both(
+    replace(entry, key=f"{entry.key}_psb", dataset=THEIRS)
+    for entry in both(
         claim("early_decisive", "T5.5", "The early layers are decisive: tuning them too beats tuning the last ones "
               "alone.", "mode", "18:139", "1:134"),
     )
@@ -312,8 +314,8 @@ def build(results: Results) -> Table:
     values = rows.pivot(index="repetition", columns="setting", values="value")
     share, lines = shared_by("random"), []
     for setting in [name for name in SETTINGS if name in values]:
-        own, gain = values[setting], values[setting] - values["plain"]
-        lines.append((setting, own.count(), *interval(own, share), *interval(gain, share), rows["chance"].iloc[0]))
+        rates, gain = values[setting], values[setting] - values["plain"]
+        lines.append((setting, rates.count(), *interval(rates, share), *interval(gain, share), rows["chance"].iloc[0]))
     gains = ["gain", "gain_low", "gain_high"]
     frame = pd.DataFrame(lines, columns=["setting", "values", "accuracy", "low", "high", *gains, "chance"])
     shown = {
