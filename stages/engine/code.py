@@ -27,10 +27,15 @@ LOCAL = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ListComp, ast.Se
 
 def stage_files(stage: str) -> list[Path]:
     """The files that `python -m stages.STAGE` may run or read as part of its code, in alphabetical order."""
-    found: set[Path] = set()
-    ahead = {_module(f"stages.{stage}.__main__"), _module(f"stages.{stage}")} - {None}
-    if not ahead:
+    starts = {_module(f"stages.{stage}.__main__"), _module(f"stages.{stage}")} - {None}
+    if not starts:
         raise ValueError(f"there is no stage {stage}: stages/{stage}/__main__.py is missing")
+    return files_behind(starts)
+
+
+def files_behind(starts: Iterable[Path | None]) -> list[Path]:
+    """These files and all that they import or read as part of their code, in alphabetical order."""
+    found, ahead = set(), set(starts)
     while ahead:
         path = ahead.pop()
         if path is None or path in found:

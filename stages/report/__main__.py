@@ -3,11 +3,12 @@
 Reads reports/measurements/SET/STAGE.csv.gz, data/ and data/reference/thesis/*.csv. Writes reports/tables,
 reports/figures, reports/tradeoff, reports/claims.md and .csv with the differences behind them in
 reports/claims/differences.csv.gz, reports/index.html with reports/site, and reports/metrics/report.json. A table
-without measurements is listed as not run, with the stage to run.
+without measurements is listed as not run, with the stage to run. Parts that nothing has changed are those of the last
+run, see `reuse`.
 """
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from operator import call
@@ -27,10 +28,11 @@ from .own_page import write_own_page
 from .page import pack_viewer
 from .records import HEADLINES_FILE, PROVENANCE_FILE, write_headlines, write_records
 from .results import NotRun, Results
+from .reuse import keep, key_of, taken_again
 from .site import write_site
 from .tables import as_text, markdown_table
-from .topics import CLAIMS, KINDS, TOPICS, build_all
-from .verdict import counted, counts, judged, open_by_cause
+from .topics import CLAIMS, KINDS, TOPICS, build_all, name_of
+from .verdict import by_claim, counted, counts, open_by_cause, tabled
 
 OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html", HEADLINES_FILE,
            PROVENANCE_FILE)  # fmt: skip
@@ -142,18 +144,29 @@ def build(results: Results, out: Path) -> dict[str, Any]:
 
 
 def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame]]:
-    """(what was built of each kind, what `judged` says): a job for each kind of a topic, the longest jobs first."""
-    parts = [(kind, topic) for kind in ("figures", "tradeoff", "tables") for topic in TOPICS]
-    jobs = [partial(judged, CLAIMS, results), *(partial(build_all, kind, results, [topic]) for kind, topic in parts)]
+    """(what was built of each kind, what `judged` says): the parts of each topic, built anew where they must be."""
+    keys = {name_of(topic): key_of(topic, results) for topic in TOPICS}
+    jobs: dict[tuple[str, str], Callable[[], Any]] = {
+        ("claims", name_of(topic)): partial(by_claim, topic.CLAIMS, results) for topic in TOPICS
+    }
+    for kind in ("figures", "tradeoff", "tables"):  # the longest first
+        jobs |= {(kind, name_of(topic)): partial(build_all, kind, results, [topic]) for topic in TOPICS}
+    parts = {job: taken_again("-".join(job), keys[job[1]], results) for job in jobs}
+    anew = [job for job, part in parts.items() if part is None]
     where = dict(results.workspace.parallel)
     if where.get("backend") == "dask":  # the files that a topic reads are here alone
         where["backend"] = "loky"
-    verdicts, *batches = parallel_map(call, jobs, "report", **where)
+    for job, part in zip(anew, parallel_map(call, [jobs[job] for job in anew], "report", **where), strict=True):
+        parts[job] = part
+        keep("-".join(job), keys[job[1]], part, results)
+    if len(anew) < len(jobs):
+        print(f"report: {len(jobs) - len(anew)} of {len(jobs)} parts are those of the last run")
     built = {kind: Built() for kind in KINDS}
-    for (kind, _), batch in zip(parts, batches, strict=True):
-        built[kind].items += batch.items
-        built[kind].not_run |= batch.not_run
-    return built, verdicts
+    for kind, total in built.items():
+        for topic in TOPICS:
+            total.items += parts[kind, name_of(topic)].items
+            total.not_run |= parts[kind, name_of(topic)].not_run
+    return built, tabled(CLAIMS, [row for topic in TOPICS for row in parts["claims", name_of(topic)]])
 
 
 def remove_older(built: dict[str, Built], out: Path) -> None:

@@ -23,6 +23,7 @@ from .marks import vector
 from .page import box, folded, image, lacks_cells, part, prose, script_json
 from .results import dataset_text
 from .tables import with_interval
+from .topics import name_of
 from .verdict import DEPENDS, UNTESTABLE, counts, sentences
 from .words import findings
 
@@ -290,8 +291,3 @@ def chart_html(chart: Figure) -> str:
 def anchor(item: Table | Figure) -> str:
     """The id of an item's section on the page of its topic."""
     return f"{item.paths[0].parent.name}-{item.name}"
-
-
-def name_of(module: ModuleType) -> str:
-    """The name of a topic."""
-    return module.__name__.rpartition(".")[2]

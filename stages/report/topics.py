@@ -36,6 +36,11 @@ KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # fold
 CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]
 
 
+def name_of(topic: ModuleType) -> str:
+    """`touch`, say."""
+    return topic.__name__.rpartition(".")[2]
+
+
 def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS) -> Built:
     """Builds and writes all of one kind (a key of KINDS), topic by topic; what lacks its measurement is noted."""
     built = Built()
@@ -59,7 +64,7 @@ def build_one(topic: ModuleType, kind: str, name: str, results: Results) -> Tabl
     with plt.rc_context(SETTINGS):
         item = getattr(topic, KINDS[kind])[name](results)
         add_words(item, topic, kind, name)
-        item.topic, item.sets = topic.__name__.rpartition(".")[2], results.in_order(results.read)
+        item.topic, item.sets = name_of(topic), results.in_order(results.read)
         item.record = record_of(item, results, kind)
         item.write(results.out / kind)
     return item

@@ -5,7 +5,7 @@ other intervals leave the claim open, with one of CAUSES. Data sets that disagre
 disagree make it depend on the reading. `holding` corrects for the claims of a chapter (Benjamini and Hochberg).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +32,7 @@ COLUMNS = [
     "section", "claim", "verdict", "effect", "low", "high", "unit", "p", "holds", "pairs", "over", "units", "shared",
     "i2", "by_set", "carries", "readings", "validity", "needed", "needed_of", "cause", "tested_on", "of", "key",
 ]  # fmt: skip
+Row = tuple[Mapping[str, object], list[tuple[str, str, float, bool]]]  # (columns of a claim, the differences behind it)
 
 
 def verdict(low: float, high: float, unit: str = "") -> str:
@@ -47,12 +48,12 @@ def verdict(low: float, high: float, unit: str = "") -> str:
     return "no difference" if max(-low, high) <= NEGLIGIBLE.get(unit, -1.0) else "open"
 
 
-def judge(claims: Iterable[Claim], results: Results) -> pd.DataFrame:
+def judge(claims: Sequence[Claim], results: Results) -> pd.DataFrame:
     """A frame with one row per claim: effect with its interval and the word; unmeasured ones are open and say why."""
     return judged(claims, results)[0]
 
 
-def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
+def judged(claims: Sequence[Claim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     """(the frame of `judge`, the differences behind it: columns key, pair, difference in the claim's unit, judged).
 
     A verdict follows from the differences on the sets as printed, `shared` and the readings. The pairs of a claim on
@@ -60,27 +61,40 @@ def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.
     written cannot be tested, its first reading that can be gives the numbers. Column `of`: the key of the primary
     claim, empty for a primary claim itself.
     """
-    rows, pairs, first = [], [], {}
-    for claim in claims:
-        primary = claim.of or first.setdefault((claim.own, claim.sentence), claim.key)
-        row = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
-        row["of"] = primary if primary != claim.key else ""
-        try:
-            judgements = _judgements(claim, results)
-        except NotRun as absent:
-            unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {absent}", "cause": CAUSES[0]}
-            rows.append(row | unmeasured | {"verdict": "open"})
-            continue
-        judged_one = next((entry for entry in judgements if entry.word != UNTESTABLE), judgements[0])
-        rows.append(row | _numbers(judged_one) | _words(judged_one, results) | _readings(judged_one, judgements))
-        for entry in judged_one.found:
-            start = f"{entry.dataset}/" if len(claim.sets) > 1 else ""
-            named = (start + "/".join(map(str, listed(pair))) for pair in entry.differences.index)
-            decides = entry in judged_one.chosen
-            pairs += ((claim.key, name, value, decides) for name, value in zip(named, entry.differences, strict=True))
-    frame = pd.DataFrame(rows, columns=COLUMNS)
+    return tabled(claims, by_claim(claims, results))
+
+
+def by_claim(claims: Sequence[Claim], results: Results) -> list[Row]:
+    """The row of each claim and the differences behind it; of a claim without measurements the reason, and no pairs."""
+    return [_row(claim, results) for claim in claims]
+
+
+def tabled(claims: Sequence[Claim], rows: Sequence[Row]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The frames of `judged` from the rows of `by_claim`: adds the columns that depend on other claims."""
+    first: dict[tuple[bool, str], str] = {}
+    primaries = [claim.of or first.setdefault((claim.own, claim.sentence), claim.key) for claim in claims]
+    frame = pd.DataFrame([columns for columns, _ in rows], columns=COLUMNS)
+    frame["of"] = [key if key != claim.key else "" for key, claim in zip(primaries, claims, strict=True)]
     frame["holds"] = holding(frame)
+    pairs = [pair for _, differences in rows for pair in differences]
     return frame, pd.DataFrame(pairs, columns=["key", "pair", "difference", "judged"])
+
+
+def _row(claim: Claim, results: Results) -> Row:
+    row = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
+    try:
+        judgements = _judgements(claim, results)
+    except NotRun as absent:
+        unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {absent}", "cause": CAUSES[0]}
+        return row | unmeasured | {"verdict": "open"}, []
+    judgement = next((entry for entry in judgements if entry.word != UNTESTABLE), judgements[0])
+    pairs = []
+    for effect in judgement.found:
+        start = f"{effect.dataset}/" if len(claim.sets) > 1 else ""
+        named = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
+        decides = effect in judgement.chosen
+        pairs += ((claim.key, name, value, decides) for name, value in zip(named, effect.differences, strict=True))
+    return row | _numbers(judgement) | _words(judgement, results) | _readings(judgement, judgements), pairs
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import sys
 from html import unescape
 from pathlib import Path
@@ -16,7 +17,7 @@ import yaml
 from haptic_glance.base.files import write_text
 from stages.compose import compose
 from stages.engine import statistics
-from stages.report import items
+from stages.report import items, reuse
 from stages.report.__main__ import write_report
 from stages.report.claims_page import sets_read
 from stages.report.drawing import save
@@ -209,9 +210,21 @@ def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
     assert pd.read_csv(own.reports / "claims.csv")["pairs"].gt(0).all()
 
 
+@pytest.mark.parametrize(("damaged", "again"), [("", "56 of 56"), ("tables/*.md", "55 of 56")])
+def test_a_second_run_builds_only_what_was_touched_and_gives_equal_bytes(damaged, again, own, small, capsys):
+    files = sorted(path for path in own.reports.rglob("*") if path.is_file())
+    before = [path.read_bytes() for path in files]
+    if damaged:
+        next(own.reports.glob(damaged)).write_text("edited by hand")
+    write_report(small.results(own.workspace.root))
+    assert f"report: {again} parts are those of the last run" in capsys.readouterr().out
+    assert [path.read_bytes() for path in files] == before
+
+
 def test_equal_runs_give_equal_bytes_with_any_number_of_workers(own, small):
     files = sorted(path for path in own.reports.rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
+    shutil.rmtree(own.workspace.build / reuse.FOLDER)
     params = own.workspace.root / "params.yaml"
     params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
     write_report(small.results(own.workspace.root))
