@@ -135,18 +135,18 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
     for number, (name, (mesh, truth)) in enumerate(objects.items(), 1):
         report(f"{number} of {len(objects)}: {name}")
         row: dict[str, Any] = {"item": name, "method": OWN, "clock": clock()}
-        found: dict[str, float] = {}
+        scores: dict[str, float] = {}
         try:
             others = [(mesh, truth.density) for other, (mesh, truth) in objects.items() if other != name]
             saliency, fresh = method(others) if train else method, replace(mesh)  # without what the truth has cached
             with Stopwatch() as watch:
                 values = saliency(fresh)
-            found = agreement(np.asarray(values, dtype=np.float64), truth)
+            scores = agreement(np.asarray(values, dtype=np.float64), truth)
             row["seconds"] = watch.seconds
         except Exception as error:  # a method may raise anything; the other objects are judged
             row["note"] = failed[name] = f"{type(error).__name__}: {error}"
             report(f"{name} is left out: {failed[name]}")
-        rows += [row | {"metric": metric, "value": found.get(metric, np.nan)} for metric in SCORES]
+        rows += [row | {"metric": metric, "value": scores.get(metric, np.nan)} for metric in SCORES]
     if len(failed) == len(objects):
         raise ValueError(f"the method failed on every object, on {name} by {failed[name]}")
     return rows
@@ -207,8 +207,8 @@ def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
         row["seconds"] = float(measured["seconds"].median())
         row["clock"] = np.nan if np.isnan(row["seconds"]) else next(iter(measured["clock"].dropna()), WALL)
         row["values"] = {
-            item: _without_nan(dict(zip(own["metric"], own["value"], strict=True), seconds=own["seconds"].iloc[0]))
-            for item, own in measured.groupby("item")
+            item: _without_nan(dict(zip(part["metric"], part["value"], strict=True), seconds=part["seconds"].iloc[0]))
+            for item, part in measured.groupby("item")
         }
         row["failed"] = rows[rows["value"].isna()].groupby("item")["note"].first().to_dict()
         methods.append(_without_nan(row))

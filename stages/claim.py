@@ -37,7 +37,7 @@ def run(argv: Sequence[str]) -> int:
     parser.add_argument("keys", nargs="+", metavar="KEY", help="a key of reports/claims.csv, or a pattern")
     parser.add_argument("--json", action="store_true", help="print one JSON object a claim")
     parser.add_argument("--measure", action="store_true", help="measure its rows anew first, by `dvc repro`")
-    given = parser.parse_args(argv)
+    options = parser.parse_args(argv)
     workspace = Workspace(Path("."))
     with from_extra():
         from stages.report.topics import CLAIMS
@@ -46,28 +46,28 @@ def run(argv: Sequence[str]) -> int:
         raise ValueError(f"no {verdicts}: run it in a clone of the project")
     committed = read_table(verdicts).set_index("key")
     moved = []
-    for claim in chosen(CLAIMS, given.keys):
-        found = judged_again(workspace, claim)
-        if given.measure:
-            measure(workspace, found["rows"])
-            found = judged_again(workspace, claim, anew=True)
-        print(json.dumps(found) if given.json else as_text(found))
-        said = committed.loc[claim.key].to_dict() if claim.key in committed.index else {"verdict": "absent"}
-        if not agree(found, said, COMPARED[:1] if given.measure else COMPARED):
-            remedy = "" if given.measure else f": {restore(workspace.root, claim.stage, found['rows'])}"
-            moved.append(f"{claim.key}: {in_short(found)}, in reports/claims.csv {in_short(said)}{remedy}")
+    for claim in chosen(CLAIMS, options.keys):
+        row = judged_again(workspace, claim)
+        if options.measure:
+            measure(workspace, row["rows"])
+            row = judged_again(workspace, claim, anew=True)
+        print(json.dumps(row) if options.json else as_text(row))
+        reference = committed.loc[claim.key].to_dict() if claim.key in committed.index else {"verdict": "absent"}
+        if not agree(row, reference, COMPARED[:1] if options.measure else COMPARED):
+            remedy = "" if options.measure else f": {restore(workspace.root, claim.stage, row['rows'])}"
+            moved.append(f"{claim.key}: {in_short(row)}, in reports/claims.csv {in_short(reference)}{remedy}")
     print("\n".join(f"claim: {line}" for line in moved), file=sys.stderr, end="\n" if moved else "")
     return 1 if moved else 0
 
 
-def agree(found: dict[str, Any], said: dict[str, Any], columns: Sequence[str]) -> bool:
+def agree(row: dict[str, Any], reference: dict[str, Any], columns: Sequence[str]) -> bool:
     """Whether two rows of claims.csv are the same in some columns; numbers to the digits that the file has."""
-    cells = ((found.get(column, math.nan), said.get(column, math.nan)) for column in columns)
+    cells = ((row.get(column, math.nan), reference.get(column, math.nan)) for column in columns)
     return all(
-        math.isclose(one, other, rel_tol=1e-4) or (one != one and other != other)
-        if isinstance(one, int | float) and isinstance(other, int | float)
-        else one == other
-        for one, other in cells
+        math.isclose(first, second, rel_tol=1e-4) or (first != first and second != second)
+        if isinstance(first, int | float) and isinstance(second, int | float)
+        else first == second
+        for first, second in cells
     )
 
 
@@ -82,20 +82,20 @@ def restore(root: Path, stage: str, rows: Sequence[str]) -> str:
     """How to bring back the rows of a stage: of the files that git finds missing or changed, else of those read."""
     listed = ["git", "ls-files", "--modified", "--", f"{PUBLISHED}/measurements/*/{stage}{SUFFIX}"]
     try:
-        found = subprocess.run(listed, cwd=root, capture_output=True, text=True).stdout.split()
+        paths = subprocess.run(listed, cwd=root, capture_output=True, text=True).stdout.split()
     except OSError:  # no git
-        found = []
-    files = found or list(rows)
-    words = [f"{file} is {'changed' if (root / file).exists() else 'missing'}" for file in found]
+        paths = []
+    files = paths or list(rows)
+    words = [f"{file} is {'changed' if (root / file).exists() else 'missing'}" for file in paths]
     return f"{', '.join(words) or 'the rows are not those judged'}; `git checkout {' '.join(files)}` brings them back"
 
 
 def chosen(claims: Sequence[Any], keys: Sequence[str]) -> list[Any]:
     """The claims that match the keys or patterns, in the order of the report; ValueError for a key without a claim."""
-    known = [claim.key for claim in claims]
+    names = [claim.key for claim in claims]
     for key in keys:
-        if not any(fnmatch(name, key) for name in known):
-            close = " or ".join(get_close_matches(key, known)) or "a key of reports/claims.csv"
+        if not any(fnmatch(name, key) for name in names):
+            close = " or ".join(get_close_matches(key, names)) or "a key of reports/claims.csv"
             raise ValueError(f"there is no claim {key}: try {close}")
     return [claim for claim in claims if any(fnmatch(claim.key, key) for key in keys)]
 
@@ -116,10 +116,10 @@ def judged_again(workspace: Workspace, claim: Any, anew: bool = False) -> dict[s
     sets, (row,) = sets_read(claim, results), frame.itertuples()
     folder = results.reports.relative_to(workspace.root) / "measurements"
     files = [(folder / name / f"{claim.stage}{SUFFIX}").as_posix() for name in sets]
-    found = {str(key): value for key, value in frame.iloc[0].to_dict().items() if value == value}
+    cells = {str(key): value for key, value in frame.iloc[0].to_dict().items() if value == value}
     texts = {"on each set": sets_text(row), "open": open_text(row), "over": over_text(row)}
     return {
-        **found,
+        **cells,
         "texts": {name: text for name, text in texts.items() if text},
         "differences": dict(zip(pairs["pair"], pairs["difference"], strict=True)),
         "rows": [file for file in files if Path(workspace.root / file).exists()],
@@ -127,31 +127,31 @@ def judged_again(workspace: Workspace, claim: Any, anew: bool = False) -> dict[s
     }
 
 
-def as_text(found: dict[str, Any]) -> str:
+def as_text(row: dict[str, Any]) -> str:
     """A claim as a person reads it, with a line for each pair."""
-    lines = [f"{found['key']} ({found['section']}): {found['claim']}", f"  {found['verdict']}"]
-    if "effect" in found:
-        interval = f" [{found['low']:.3g}, {found['high']:.3g}]" if "low" in found else ""
-        lines[1] += f": {found['effect']:+.3g}{interval} {found['unit']}, {found['texts']['over']}"
-        lines += as_share(found)
-    lines.append(f"  tested on: {found['tested_on']}")
-    lines += [f"  {name}: {text}" for name, text in found["texts"].items() if name != "over"]
-    lines += [f"    {pair:32} {value:+.4g}" for pair, value in found["differences"].items()]
-    lines += [f"  rows: {file}" for file in found["rows"]]
-    return "\n".join([*lines, f"  measure anew: {found['command']}", ""])
+    lines = [f"{row['key']} ({row['section']}): {row['claim']}", f"  {row['verdict']}"]
+    if "effect" in row:
+        interval = f" [{row['low']:.3g}, {row['high']:.3g}]" if "low" in row else ""
+        lines[1] += f": {row['effect']:+.3g}{interval} {row['unit']}, {row['texts']['over']}"
+        lines += as_share(row)
+    lines.append(f"  tested on: {row['tested_on']}")
+    lines += [f"  {name}: {text}" for name, text in row["texts"].items() if name != "over"]
+    lines += [f"    {pair:32} {value:+.4g}" for pair, value in row["differences"].items()]
+    lines += [f"  rows: {file}" for file in row["rows"]]
+    return "\n".join([*lines, f"  measure anew: {row['command']}", ""])
 
 
-def as_share(found: dict[str, Any]) -> list[str]:
+def as_share(row: dict[str, Any]) -> list[str]:
     """A line with an effect in % of the mean of both as README.md and the pages state it: % less, or times as much."""
-    if not found["unit"].startswith("% of the mean of both") or "low" not in found:
+    if not row["unit"].startswith("% of the mean of both") or "low" not in row:
         return []
     from stages.report.cells import PREFIXES
 
-    less = found["effect"] > 0
+    less = row["effect"] > 0
     share = PREFIXES["less:" if less else "times:"]
-    low, high = sorted((share(found["low"]), share(found["high"])))
+    low, high = sorted((share(row["low"]), share(row["high"])))
     words = "% less than the first" if less else "times the first"
-    return [f"  as a share: the second is {share(found['effect']):.3g} [{low:.3g}, {high:.3g}] {words}"]
+    return [f"  as a share: the second is {share(row['effect']):.3g} [{low:.3g}, {high:.3g}] {words}"]
 
 
 def measure(workspace: Workspace, rows: Sequence[str]) -> None:

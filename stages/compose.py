@@ -62,8 +62,8 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     check_section(schema_of("report"), values["report"])
     check_common(values)
     for dataset in common["sets"]:
-        own = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
-        config = composed([f"data={dataset}", *general, *own])
+        special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
+        config = composed([f"data={dataset}", *general, *special])
         values[dataset] = _sections(config, dataset)
         if any("methods" in override for override in overrides):  # what conf/ names exists
             check_methods(values[dataset])
@@ -79,8 +79,8 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
 
 def own_folder(overrides: Sequence[str]) -> str:
     """The folder of a run's results: runs/ and the names of its profile, experiment and sets, or `own` without any."""
-    chosen = dict(override.split("=", 1) for override in overrides if "=" in override)
-    words = [word for key in ("profile", "experiment", "sets") for word in re.findall(r"\w+", chosen.get(key, ""))]
+    options = dict(override.split("=", 1) for override in overrides if "=" in override)
+    words = [word for key in ("profile", "experiment", "sets") for word in re.findall(r"\w+", options.get(key, ""))]
     return f"{RUNS}/{'-'.join(words) or 'own'}"
 
 
@@ -136,11 +136,11 @@ def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
         raise ParamsError(f"{dataset}: stages={stages} must name stages: {', '.join(stage_names())}")
     if config["obtain"] and not any(config.get(stage, {}).get("folder") for stage in (*STARTS, "recorded")):
         raise ParamsError(f"{dataset} needs its files: {config['obtain']}")
-    wanted = dict.fromkeys(section for stage in stages for section in [stage, *READ_TOO.get(stage, [])])
-    found = {section: config.get(section, {}) for section in wanted}
-    for section, own in found.items():
-        check_section(schema_of(section), own)
-    return found
+    names = dict.fromkeys(section for stage in stages for section in [stage, *READ_TOO.get(stage, [])])
+    sections = {section: config.get(section, {}) for section in names}
+    for section, values in sections.items():
+        check_section(schema_of(section), values)
+    return sections
 
 
 def check_methods(sections: dict[str, Any]) -> None:
@@ -175,13 +175,13 @@ def quoted(override: str) -> str:
 
 def _check_options(overrides: Sequence[str]) -> None:
     """Raises ParamsError for an option that a group does not have; Hydra passes over an optional group's in silence."""
-    known = groups()
+    options = groups()
     for override in overrides:
         name, _, value = override.partition("=")
-        if name in known and value not in (*known[name], "null"):
+        if name in options and value not in (*options[name], "null"):
             if "," in value:
                 raise ParamsError(f"{override}: one option at a time; `python -m stages.sweep -m` takes a list")
-            raise ParamsError(f"unknown option {override}: {_near(value, known[name])}")
+            raise ParamsError(f"unknown option {override}: {_near(value, options[name])}")
 
 
 def _explain(overrides: Sequence[str], error: Exception) -> str:
@@ -199,9 +199,9 @@ def _explain(overrides: Sequence[str], error: Exception) -> str:
     return message + (f" To add a name, write +{section}.NAME=..." if section else "")
 
 
-def _near(name: str, known: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.4)
-    return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+def _near(name: str, options: Sequence[str]) -> str:
+    near = difflib.get_close_matches(name, options, n=1, cutoff=0.4)
+    return f"did you mean {near[0]}?" if near else f"known: {', '.join(options)}"
 
 
 def _dotted(values: dict[str, Any], prefix: str = "") -> list[str]:
@@ -230,8 +230,8 @@ def main() -> None:
         print(f"compose: {dataset} is left out, {path} is not there: {_obtain(dataset)}", file=sys.stderr)
         leave_out(values, dataset)
     write_text(FILE, OmegaConf.to_yaml(OmegaConf.create(values)))
-    chosen = f" with {' '.join(overrides)}" if overrides else ""
-    print(f"compose: {FILE} written{chosen}; results go to {values['out']}/")
+    suffix = f" with {' '.join(overrides)}" if overrides else ""
+    print(f"compose: {FILE} written{suffix}; results go to {values['out']}/")
 
 
 def _obtain(dataset: str) -> str:

@@ -89,8 +89,8 @@ def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, other
         )
     new = sorted(set(metrics) - set(baseline))
     more = f" and {len(new) - LISTED} more" if len(new) > LISTED else ""
-    said = f"gate: {len(baseline)} metrics within their tolerances about {path}"
-    return f"{said}; not in the baseline yet: {', '.join(new[:LISTED])}{more}" if new else said
+    message = f"gate: {len(baseline)} metrics within their tolerances about {path}"
+    return f"{message}; not in the baseline yet: {', '.join(new[:LISTED])}{more}" if new else message
 
 
 def update(metrics: Mapping[str, float], path: Path) -> str:
@@ -125,21 +125,19 @@ def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
 
 def hold_rows(revision: str, root: Path = Path()) -> str:
     """The message on rows that all equal those of a git revision. SystemExit names each file with other rows."""
-    known = _git(root, "ls-tree", "-r", "--name-only", revision, "--", ROWS).decode().splitlines()
-    listed = [name for name in known if name.endswith(SUFFIX)]
-    here = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob(f"*{SUFFIX}")]
-    said = []
-    for name in sorted({*listed, *here}):
+    committed = _git(root, "ls-tree", "-r", "--name-only", revision, "--", ROWS).decode().splitlines()
+    listed = [name for name in committed if name.endswith(SUFFIX)]
+    present = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob(f"*{SUFFIX}")]
+    lines = []
+    for name in sorted({*listed, *present}):
         before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in listed else Counter()
-        after = _rows_of((root / name).read_bytes()) if name in here else Counter()
-        gone, new = (before - after).total(), (after - before).total()
-        if gone or new:
-            said.append(
-                f"  {name}: {min(gone, new)} rows changed, {max(new - gone, 0)} more, {max(gone - new, 0)} fewer"
-            )
-    if said:
+        after = _rows_of((root / name).read_bytes()) if name in present else Counter()
+        old, new = (before - after).total(), (after - before).total()
+        if old or new:
+            lines.append(f"  {name}: {min(old, new)} rows changed, {max(new - old, 0)} more, {max(old - new, 0)} fewer")
+    if lines:
         remedy = f"commit the files if the change is meant, or run `git checkout {revision} -- FILE`"
-        raise SystemExit("\n".join([f"gate: {len(said)} files have other rows than {revision}: {remedy}", *said]))
+        raise SystemExit("\n".join([f"gate: {len(lines)} files have other rows than {revision}: {remedy}", *lines]))
     return f"gate: the rows of {len(listed)} files equal those of {revision}"
 
 
@@ -151,10 +149,10 @@ def _rows_of(content: bytes) -> Counter:
 
 
 def _git(root: Path, *arguments: str) -> bytes:
-    found = subprocess.run(["git", *arguments], cwd=root, capture_output=True)
-    if found.returncode:
-        raise SystemExit(f"gate: git {arguments[0]}: {found.stderr.decode().strip()}")
-    return found.stdout
+    completed = subprocess.run(["git", *arguments], cwd=root, capture_output=True)
+    if completed.returncode:
+        raise SystemExit(f"gate: git {arguments[0]}: {completed.stderr.decode().strip()}")
+    return completed.stdout
 
 
 def run(argv: Sequence[str]) -> None:
@@ -171,31 +169,31 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--markdown", action="store_true", help="print Markdown, for the summary of a run on GitHub")
     about = "compare each row of every measurement with those of a git revision, times left out"
     parser.add_argument("--rows", metavar="REVISION", help=about)
-    given = parser.parse_args(argv)
-    if given.rows:
-        print(hold_rows(given.rows))
+    options = parser.parse_args(argv)
+    if options.rows:
+        print(hold_rows(options.rows))
         return
-    if given.metrics and (given.spread or not given.baseline):
+    if options.metrics and (options.spread or not options.baseline):
         parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
-    if given.metrics:
-        metrics = flatten({file.stem: read_json(file) for file in given.metrics})
-        path, rules, others = given.baseline, given.tolerances, []
+    if options.metrics:
+        metrics = flatten({file.stem: read_json(file) for file in options.metrics})
+        path, rules, others = options.baseline, options.tolerances, []
     else:
         check_clone()
         workspace = Workspace(Path("."))
-        metrics, path = measured(workspace), given.baseline or baseline_of(workspace)
-        rules = given.tolerances or (TOLERANCES if TOLERANCES.exists() else None)
+        metrics, path = measured(workspace), options.baseline or baseline_of(workspace)
+        rules = options.tolerances or (TOLERANCES if TOLERANCES.exists() else None)
         others = [name for file in path.parent.glob("*.json") for name in read_json(file)]
-    if given.spread:
-        print(write_spread([measured(workspace, folder) for folder in given.spread], path))
-    elif given.update:
+    if options.spread:
+        print(write_spread([measured(workspace, folder) for folder in options.spread], path))
+    elif options.update:
         print(update(metrics, path))
     else:
         try:
             text = hold(metrics, path, allowed(rules, path), others)
         except SystemExit as moved:
-            raise SystemExit(markdown(str(moved)) if given.markdown else moved.code) from None
-        print(markdown(text) if given.markdown else text)
+            raise SystemExit(markdown(str(moved)) if options.markdown else moved.code) from None
+        print(markdown(text) if options.markdown else text)
 
 
 def markdown(text: str) -> str:

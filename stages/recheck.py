@@ -51,23 +51,23 @@ def run(argv: Sequence[str]) -> int:
     )
     parser.add_argument("files", nargs="+", metavar="SET/STAGE", help="rows below reports/measurements")
     parser.add_argument("--items", type=int, default=2, metavar="N", help="items of the stage (default: 2)")
-    given = parser.parse_args(argv)
-    if given.items < 1:
-        raise ValueError(f"--items {given.items}: give 1 or more")
+    options = parser.parse_args(argv)
+    if options.items < 1:
+        raise ValueError(f"--items {options.items}: give 1 or more")
     check_clone()
     write_digests(CODE)
     moved = 0
-    for name in given.files:
+    for name in options.files:
         try:
-            found, ended = recheck(name, given.items)
+            rows, ended = recheck(name, options.items)
         except ValueError as error:  # the other files go on
             print(f"recheck: {error}", file=sys.stderr)
             moved += 1
             continue
-        print(f"{name}:\n{by_method(found).to_string(index=False)}")
+        print(f"{name}:\n{by_method(rows).to_string(index=False)}")
         if ended:
-            keep(name, found)
-        moved += not (ended and agrees(outcome(found)))
+            keep(name, rows)
+        moved += not (ended and agrees(outcome(rows)))
     return 1 if moved else 0
 
 
@@ -78,8 +78,8 @@ def recheck(name: str, items: int) -> tuple[pd.DataFrame, bool]:
     """
     dataset, _, stage = name.partition("/")
     if not _file(name).is_file():
-        known = sorted(path.relative_to(COMMITTED).as_posix() for path in COMMITTED.glob(f"*/*{SUFFIX}"))
-        raise ValueError(f"no {_file(name)}; known: {', '.join(path.removesuffix(SUFFIX) for path in known)}")
+        files = sorted(path.relative_to(COMMITTED).as_posix() for path in COMMITTED.glob(f"*/*{SUFFIX}"))
+        raise ValueError(f"no {_file(name)}; known: {', '.join(path.removesuffix(SUFFIX) for path in files)}")
     workspace = prepared(dataset)
     for earlier in chain(stage):
         if earlier in workspace.params["graph"] and dataset in workspace.params["graph"][earlier]:
@@ -130,18 +130,18 @@ def prepared(dataset: str) -> Workspace:
 
 def chain(stage: str) -> list[str]:
     """The stages whose folders a stage reads, directly or not, as dvc.yaml has them, each after those it needs."""
-    known = yaml.safe_load(Path("dvc.yaml").read_text(encoding="utf-8"))["stages"]
-    found: dict[str, None] = {}
+    stages = yaml.safe_load(Path("dvc.yaml").read_text(encoding="utf-8"))["stages"]
+    needed: dict[str, None] = {}
 
     def add(name: str) -> None:
-        for dependency in known[name].get("do", known[name]).get("deps", ()):
+        for dependency in stages[name].get("do", stages[name]).get("deps", ()):
             read = re.fullmatch(r"data/\$\{(?:item|key)\}/(\w+)", dependency)
-            if read and read[1] not in found:
+            if read and read[1] not in needed:
                 add(read[1])
-                found[read[1]] = None
+                needed[read[1]] = None
 
     add(stage)
-    return list(found)
+    return list(needed)
 
 
 def _run(stage: str, workspace: Workspace) -> None:
@@ -158,13 +158,15 @@ def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     keys = [name for name in committed.columns if name in again.columns and name not in MEASURED]
     sides = [_numbered(rows, keys) for rows in (committed, again)]
     sides[1] = sides[1].rename(columns={"value": "again"})
-    both = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
-    known = set(_units(sides[1], keys))
-    both = both[(both["side"] != "left_only") | np.array([unit in known for unit in _units(both, keys)], dtype=bool)]
-    pair = both[["value", "again"]]
+    merged = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
+    units = set(_units(sides[1], keys))
+    merged = merged[
+        (merged["side"] != "left_only") | np.array([unit in units for unit in _units(merged, keys)], dtype=bool)
+    ]
+    pair = merged[["value", "again"]]
     size = pair.abs().max(axis=1)
     off = ((pair["value"] - pair["again"]).abs() / size.clip(lower=ZERO)).where(~pair.isna().all(axis=1), 0.0)
-    return both.assign(off=off.fillna(np.inf).where(both["side"] == "both"))
+    return merged.assign(off=off.fillna(np.inf).where(merged["side"] == "both"))
 
 
 def _units(rows: pd.DataFrame, keys: list[str]) -> list[tuple[str, ...]]:
@@ -176,31 +178,31 @@ def _units(rows: pd.DataFrame, keys: list[str]) -> list[tuple[str, ...]]:
 
 def _numbered(rows: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
     """The rows with their keys as text, and a number for rows with equal keys."""
-    texts = rows[keys].map(lambda one: "" if one != one else f"{one:g}" if isinstance(one, float) else str(one))
+    texts = rows[keys].map(lambda cell: "" if cell != cell else f"{cell:g}" if isinstance(cell, float) else str(cell))
     return texts.assign(value=rows["value"].astype(float), number=texts.groupby(keys, sort=False).cumcount())
 
 
-def by_method(found: pd.DataFrame) -> pd.DataFrame:
+def by_method(rows: pd.DataFrame) -> pd.DataFrame:
     """A line a method: rows that both sides have, equal ones, close ones, rows of one side, the largest difference."""
-    marks = {"rows": found["side"] == "both", "equal": found["off"] <= EQUAL, "close": found["off"] <= CLOSE,
-             "only_committed": found["side"] == "left_only", "only_again": found["side"] == "right_only"}  # fmt: skip
-    counts = pd.DataFrame(marks).assign(method=found.get("method", "")).groupby("method", sort=False).sum()
-    largest = found.assign(method=found.get("method", "")).groupby("method", sort=False)["off"].max()
+    marks = {"rows": rows["side"] == "both", "equal": rows["off"] <= EQUAL, "close": rows["off"] <= CLOSE,
+             "only_committed": rows["side"] == "left_only", "only_again": rows["side"] == "right_only"}  # fmt: skip
+    counts = pd.DataFrame(marks).assign(method=rows.get("method", "")).groupby("method", sort=False).sum()
+    largest = rows.assign(method=rows.get("method", "")).groupby("method", sort=False)["off"].max()
     return counts.assign(largest_difference=largest).reset_index()
 
 
-def keep(name: str, found: pd.DataFrame) -> None:
+def keep(name: str, rows: pd.DataFrame) -> None:
     """Writes the outcome of a check beside the rows, with the hash of the rows and the digest of the code."""
     path, stage = COMMITTED / RECHECKED, name.partition("/")[2]
-    kept = read_json(path) if path.is_file() else {}
+    checks = read_json(path) if path.is_file() else {}
     digests = {"sha256": sha256(_file(name)), "code": sha256(CODE / stage)}
-    kept[name] = {key: digest[:DIGITS] for key, digest in digests.items()} | outcome(found)
-    write_json(path, dict(sorted(kept.items())))
+    checks[name] = {key: digest[:DIGITS] for key, digest in digests.items()} | outcome(rows)
+    write_json(path, dict(sorted(checks.items())))
 
 
-def outcome(found: pd.DataFrame) -> dict[str, int]:
+def outcome(rows: pd.DataFrame) -> dict[str, int]:
     """{compared, close, only_committed}: numbers of rows."""
-    counts = by_method(found).rename(columns={"rows": "compared"})
+    counts = by_method(rows).rename(columns={"rows": "compared"})
     return {name: int(counts[name].sum()) for name in ("compared", "close", "only_committed")}
 
 

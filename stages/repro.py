@@ -54,20 +54,20 @@ class Schedule:
                 self.ended.add(name)
         return None
 
-    def end(self, name: str, ran: bool) -> None:
+    def end(self, name: str, executed: bool) -> None:
         """A stage ended well; if it ran, those that need it must be looked at."""
         self.ended.add(name)
-        if ran:
-            self.changed |= {other for other, needed in self.needs.items() if name in needed}
+        if executed:
+            self.changed |= {stage for stage, needed in self.needs.items() if name in needed}
 
     def fail(self, name: str) -> list[str]:
         """A stage failed: returns the stages that cannot run now."""
         lost = {name}
-        for other in self.waiting:  # in the order of the graph: what a stage needs stands before it
-            if self.needs[other] & lost:
-                lost.add(other)
+        for stage in self.waiting:  # in the order of the graph: what a stage needs stands before it
+            if self.needs[stage] & lost:
+                lost.add(stage)
         self.failed.append(name)
-        self.waiting = [other for other in self.waiting if other not in lost]
+        self.waiting = [stage for stage in self.waiting if stage not in lost]
         return sorted(lost - {name})
 
 
@@ -79,7 +79,7 @@ def read_graph(root: Path) -> tuple[dict[str, set[str]], set[str]]:
     graph = repo.index.graph
     with repo.lock:
         changed = {stage.addressing for stage in graph if stage.cmd and stage.changed()}
-    needs = {stage.addressing: {one.addressing for one in graph.successors(stage)} for stage in graph}
+    needs = {stage.addressing: {needed.addressing for needed in graph.successors(stage)} for stage in graph}
     return {name: needs[name] for name in TopologicalSorter(needs).static_order()}, changed
 
 
@@ -91,9 +91,9 @@ def reproduce(root: Path, name: str, log: Path, send: Any) -> None:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
     logging.getLogger("dvc").setLevel(logging.WARNING)  # its advice on git, once a stage, hides what the stage says
-    found = patient(lambda: Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True))  # type: ignore[arg-type] (its decorators)
+    stages = patient(lambda: Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True))  # type: ignore[arg-type] (its decorators)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    send.send((bool(found), used.ru_utime + used.ru_stime))
+    send.send((bool(stages), used.ru_utime + used.ru_stime))
 
 
 def patient(call: Callable[[], Any]) -> Any:
@@ -103,14 +103,14 @@ def patient(call: Callable[[], Any]) -> Any:
     """
     from dvc.lock import LockError
 
-    for left in reversed(range(ATTEMPTS)):
+    for remaining in reversed(range(ATTEMPTS)):
         try:
             return call()
         except Exception as error:
             causes: list[BaseException] = [error]
             while causes[-1].__cause__:
                 causes.append(causes[-1].__cause__)
-            if left and any(isinstance(cause, LockError) for cause in causes):
+            if remaining and any(isinstance(cause, LockError) for cause in causes):
                 continue
             print(": ".join(map(str, causes)), file=sys.stderr)
             raise SystemExit(1) from error
@@ -123,7 +123,7 @@ def run(root: Path) -> list[str]:
     (root / LOGS).mkdir(parents=True, exist_ok=True)
     running: dict[str, tuple[Any, Any, float]] = {}
     bar = tqdm(total=len(schedule.needs), desc="stages", disable=not sys.stderr.isatty(), unit="stage")
-    said: tuple[set[str], float] = set(), 0.0  # what the last line of progress names, and when it came
+    progress: tuple[set[str], float] = set(), 0.0  # what the last line of progress names, and when it came
     with parallel.budget(root / "build/cores"), bar:
         while True:
             while len(running) < AT_ONCE and (name := schedule.take()):
@@ -137,8 +137,8 @@ def run(root: Path) -> list[str]:
             bar.set_postfix_str(", ".join(f"{name} {now - began:.0f} s" for name, (_, _, began) in running.items()))
             if not running:
                 return schedule.failed
-            if bar.disable and (running.keys() - said[0] or now - said[1] > PLAIN):
-                said = set(running), now
+            if bar.disable and (running.keys() - progress[0] or now - progress[1] > PLAIN):
+                progress = set(running), now
                 print(_plain(schedule, [f"{name} {now - running[name][2]:.0f} s" for name in running]), file=sys.stderr)
             wait([process.sentinel for process, _, _ in running.values()], REFRESH)
             for name in [name for name, (process, _, _) in running.items() if process.exitcode is not None]:
@@ -165,17 +165,17 @@ def _plain(schedule, running):
 
 def _ended(root, name, process, receive, began, schedule):
     """Takes note of how a stage ended, and prints what it said and took."""
-    said = _log(root, name).read_text(errors="replace").strip()
+    text = _log(root, name).read_text(errors="replace").strip()
     if process.exitcode:
         lost = schedule.fail(name)
-        tqdm.write(f"{name} failed:\n{said}" + (f"\nleft out: {', '.join(lost)}" if lost else ""), file=sys.stderr)
+        tqdm.write(f"{name} failed:\n{text}" + (f"\nleft out: {', '.join(lost)}" if lost else ""), file=sys.stderr)
         return
-    ran, processor = receive.recv()
-    schedule.end(name, ran)
+    executed, processor = receive.recv()
+    schedule.end(name, executed)
     keep_lock(root)
-    if ran:
-        taken = f"{name}: {time.monotonic() - began:.0f} s, {processor:.0f} s of processor time"
-        tqdm.write("\n".join(filter(None, [said, taken])))
+    if executed:
+        times = f"{name}: {time.monotonic() - began:.0f} s, {processor:.0f} s of processor time"
+        tqdm.write("\n".join(filter(None, [text, times])))
         sys.stdout.flush()  # a log would otherwise hold it back
 
 

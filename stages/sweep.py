@@ -53,20 +53,20 @@ KEYS = ["job", "dataset", "group", "method", "classifier", "seed"]  # rows that 
 
 def recognise(config: dict[str, Any], data: Path) -> list[dict[str, Any]]:
     """Rows of one job: every set, method and classifier of a composed configuration. data: data/SET."""
-    chosen = {name: check_section(schema_of(name), config[name]) for name in SECTIONS}
+    sections = {name: check_section(schema_of(name), config[name]) for name in SECTIONS}
     rows = []
     touched = {}
-    sets = sets_there(chosen["classification"].sets, data)
+    sets = sets_there(sections["classification"].sets, data)
     for objects in sets.values():
         for name in objects:
             if name not in touched:
-                touched[name] = _touch(name, config, chosen, data)
+                touched[name] = _touch(name, config, sections, data)
     for set_name, objects in sets.items():
-        for method in chosen["imprints"].methods:
+        for method in sections["imprints"].methods:
             images = {name: touched[name][method] for name in objects}
-            for classifier in chosen["classification"].classifiers:
-                found = evaluate(images, classifier, chosen["classification"].repetitions, config["seed"])
-                rows += [{"group": set_name, "method": method, **row, "seed": config["seed"]} for row in found]
+            for classifier in sections["classification"].classifiers:
+                scores = evaluate(images, classifier, sections["classification"].repetitions, config["seed"])
+                rows += [{"group": set_name, "method": method, **row, "seed": config["seed"]} for row in scores]
     return rows
 
 
@@ -75,25 +75,25 @@ def sets_there(sets: Mapping[str, Sequence[str]], data: Path) -> dict[str, Seque
 
     All sets where data has no mesh at all: its stages have not run.
     """
-    there = sorted(path.stem for path in (data / "meshes").glob("*.npz"))
-    if not there:
+    present = sorted(path.stem for path in (data / "meshes").glob("*.npz"))
+    if not present:
         return dict(sets)
-    absent = {name: [each for each in objects if each not in there] for name, objects in sets.items()}
+    absent = {name: [item for item in objects if item not in present] for name, objects in sets.items()}
     whole = {name: objects for name, objects in sets.items() if not absent[name]}
     left_out = "; ".join(f"{name} ({', '.join(missing)})" for name, missing in absent.items() if missing)
     if not whole:
         raise ParamsError(
             f"{data.name} does not have all objects of any set of classification.sets: {left_out}; "
-            f"name some of these in +classification.sets.NAME=[...]: {', '.join(there)}"
+            f"name some of these in +classification.sets.NAME=[...]: {', '.join(present)}"
         )
     if left_out:
         print(f"sweep: sets with objects that {data.name} does not have are left out: {left_out}", file=sys.stderr)
     return whole
 
 
-def _touch(name: str, config: dict[str, Any], chosen: dict[str, Any], data: Path) -> dict[str, np.ndarray]:
+def _touch(name: str, config: dict[str, Any], sections: dict[str, Any], data: Path) -> dict[str, np.ndarray]:
     """{method: imprints (k, rows, columns)} of one object."""
-    settings = chosen["salient_points"]
+    settings = sections["salient_points"]
     for folder, file in (("meshes", f"{name}.npz"), ("conspicuity", f"{name}.npz"), ("weights", "weights.csv")):
         if not (data / folder / file).exists():
             sys.exit(f"sweep: {data / folder / file} is not there: run `dvc repro {folder}@{data.name}` first")
@@ -103,13 +103,13 @@ def _touch(name: str, config: dict[str, Any], chosen: dict[str, Any], data: Path
     learned = read_learned_weights(data / "weights", name, mesh)
     methods, _ = split_runnable(settings.methods, learned)
     options = Options(learned, settings.selection, settings.radius, settings.smoothing, config["seed"], name)
-    found, _ = find_all(mesh, sight, methods, options, settings.count)
-    sensor = chosen["imprints"]
+    detections, _ = find_all(mesh, sight, methods, options, settings.count)
+    sensor = sections["imprints"]
     return {
         method: press_many(
             mesh, result.points[touchable(mesh, result.points)], sensor.cells, sensor.pitch, contact=sensor.contact
         )
-        for method, result in found.items()
+        for method, result in detections.items()
         if method in sensor.methods
     }
 
@@ -136,12 +136,12 @@ def prepare(argv: Sequence[str]) -> None:
 
     Raises ParamsError that names the nearest right name, and for a set that params.yaml does not switch on.
     """
-    chosen = dict(word.split("=", 1) for word in argv if is_override(word) and not word.startswith("hydra"))
-    for key, values in chosen.items():
+    options = dict(word.split("=", 1) for word in argv if is_override(word) and not word.startswith("hydra"))
+    for key, values in options.items():
         for value in split_values(values):
             composed([quoted(f"{key}={value}")])
     params, bases = load_params(), {}
-    for dataset in split_values(chosen.get("data", "household")):
+    for dataset in split_values(options.get("data", "household")):
         if dataset in params.get("sets", []):
             conf = composed([f"data={dataset}"])
             sections = [name for name in SECTIONS if name in params[dataset]]  # a folder is not classified
@@ -230,9 +230,9 @@ def gather(folder: Path, out: Path = OUT) -> None:
 
 def table(frame: pd.DataFrame) -> pd.DataFrame:
     """One line per job, set, method and classifier: mean hold-out accuracy with its 95 % interval, and its cost."""
-    kept = frame[(frame.metric == "accuracy") & (frame.split == Split.RANDOM)]
+    rows = frame[(frame.metric == "accuracy") & (frame.split == Split.RANDOM)]
     lines = []
-    for key, group in kept.groupby(["job", "group", "method", "classifier"], sort=False):
+    for key, group in rows.groupby(["job", "group", "method", "classifier"], sort=False):
         accuracy = with_interval(*within(group.value, shared_by(Split.RANDOM)), places=3)
         cells = dict(zip(("job", "set", "method", "classifier"), list(key), strict=True))  # type: ignore[arg-type]
         lines.append(cells | {"accuracy": accuracy, "fit ms": f"{1e3 * group.seconds.mean():.1f}"})

@@ -20,11 +20,11 @@ GRAPH = """stages:
 def test_a_stage_waits_for_all_that_it_needs():
     schedule = Schedule(NEEDS, {"a"})
     assert [schedule.take(), schedule.take()] == ["a", None]
-    schedule.end("a", ran=True)
+    schedule.end("a", executed=True)
     assert [schedule.take(), schedule.take(), schedule.take()] == ["b", "c", None]
-    schedule.end("b", ran=True)
+    schedule.end("b", executed=True)
     assert schedule.take() is None
-    schedule.end("c", ran=True)
+    schedule.end("c", executed=True)
     assert schedule.take() == "d"
 
 
@@ -33,7 +33,7 @@ def test_a_stage_that_did_not_change_starts_nothing():
     assert schedule.take() is None and schedule.ended == set(NEEDS)
     schedule = Schedule(NEEDS, {"a"})
     assert schedule.take() == "a"
-    schedule.end("a", ran=False)
+    schedule.end("a", executed=False)
     assert schedule.take() is None and schedule.ended == set(NEEDS)
 
 

@@ -75,7 +75,11 @@ def agreement_with_gaze(mesh: Mesh, marked: list[np.ndarray], truth: GroundTruth
         "height": [height(mesh)],
     }
     return [
-        {"method": method, "metric": metric.__name__, "value": float(np.mean([metric(one, truth) for one in values]))}
+        {
+            "method": method,
+            "metric": metric.__name__,
+            "value": float(np.mean([metric(saliency, truth) for saliency in values])),
+        }
         for method, values in answers.items()
         for metric in (nss, auc)
     ]

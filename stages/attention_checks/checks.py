@@ -52,11 +52,11 @@ def process_nested(method: str, folder: Path, data: Path, names: list[str]) -> R
     column chosen names the features.
     """
     gaze = {name: read_arrays(data / "weights/ground_truth" / f"{name}.npz") for name in names}
-    seen = {name: _seen(one) for name, one in gaze.items()}
+    seen = {name: _seen(entry) for name, entry in gaze.items()}
     rows = []
-    for name, own in gaze.items():
-        others = {other: one for other, one in seen.items() if other != name}
-        truth = GroundTruth(own["amounts"], own["density"], own["areas"])
+    for name, arrays in gaze.items():
+        others = {other: entry for other, entry in seen.items() if other != name}
+        truth = GroundTruth(arrays["amounts"], arrays["density"], arrays["areas"])
         fit = functools.cache(functools.partial(_fit, others))  # the fixed choice may be all features
         chosen = choose(others, fit(tuple(seen[name].features), RIDGE))
         for way, (features, ridge) in {"once": (FIXED, RIDGE), "nested": chosen}.items():
@@ -77,13 +77,13 @@ def choose(objects: Mapping[str, Seen], around: np.ndarray) -> tuple[tuple[str, 
     """
     names = tuple(next(iter(objects.values())).features)
     slopes, bends = _quadratic(objects, names, around)
-    chosen, found = [], []
+    chosen, steps = [], []
     for _ in names:
-        tried = [(*_left_out(slopes, bends, [*chosen, k]), k) for k in range(len(names)) if k not in chosen]
-        loss, ridge, best = min(tried)
+        candidates = [(*_left_out(slopes, bends, [*chosen, k]), k) for k in range(len(names)) if k not in chosen]
+        loss, ridge, best = min(candidates)
         chosen.append(best)
-        found.append((loss, len(chosen), ridge))
-    _, count, ridge = min(found)
+        steps.append((loss, len(chosen), ridge))
+    _, count, ridge = min(steps)
     return tuple(names[k] for k in sorted(chosen[:count])), ridge
 
 
@@ -92,32 +92,32 @@ def _quadratic(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(slopes (k, d), bends (k, d, d)): near the weights `around` the loss of object k is slopes w + w bends w / 2."""
     slopes, bends = [], []
-    for one in objects.values():
-        features = one.stacked(names).astype(np.float64)
-        score = features @ around + np.log(np.maximum(one.areas, 1e-300))
+    for item in objects.values():
+        features = item.stacked(names).astype(np.float64)
+        score = features @ around + np.log(np.maximum(item.areas, 1e-300))
         likely = np.exp(score - np.logaddexp.reduce(score))
         mean = likely @ features
         bends.append(features.T @ (likely[:, None] * features) - np.outer(mean, mean))
-        slopes.append(mean - one.amounts / one.amounts.sum() @ features - bends[-1] @ around)
+        slopes.append(mean - item.amounts / item.amounts.sum() @ features - bends[-1] @ around)
     return np.stack(slopes), np.stack(bends)
 
 
 def _left_out(slopes: np.ndarray, bends: np.ndarray, chosen: list[int]) -> tuple[float, float]:
     """(mean loss of an object that is left out, ridge): of the best ridge, with some of the features."""
     slopes, bends = slopes[:, chosen], bends[:, chosen][:, :, chosen]
-    others = len(slopes) - 1
-    slope, bend = (slopes.sum(axis=0) - slopes) / others, (bends.sum(axis=0) - bends) / others
+    count = len(slopes) - 1
+    slope, bend = (slopes.sum(axis=0) - slopes) / count, (bends.sum(axis=0) - bends) / count
     losses = []
     for ridge in RIDGES:
         weights = np.linalg.solve(bend + 2 * ridge * np.eye(len(chosen)), -slope[..., None])[..., 0]
-        each = np.einsum("ki,ki->k", slopes, weights) + np.einsum("ki,kij,kj->k", weights, bends, weights) / 2
-        losses.append((float(each.mean()), ridge))
+        values = np.einsum("ki,ki->k", slopes, weights) + np.einsum("ki,kij,kj->k", weights, bends, weights) / 2
+        losses.append((float(values.mean()), ridge))
     return min(losses)
 
 
 def _fit(objects: Mapping[str, Seen], names: tuple[str, ...], ridge: float) -> np.ndarray:
-    found = [(one.stacked(names), one.amounts, one.areas) for one in objects.values()]
-    features, amounts, areas = zip(*found, strict=True)
+    parts = [(item.stacked(names), item.amounts, item.areas) for item in objects.values()]
+    features, amounts, areas = zip(*parts, strict=True)
     return fit_fixations(features, amounts, areas, ridge)
 
 
@@ -151,14 +151,14 @@ def process_views(name: str, folder: Path, data: Path, views: Sequence[str]) -> 
     gaze = read_arrays(data / "weights/ground_truth" / f"{name}.npz")
     truth = GroundTruth(gaze["amounts"], gaze["density"], gaze["areas"])
     rows = []
-    for one in views:
-        viewpoints = VIEWS[one](mesh)
+    for view_set in views:
+        viewpoints = VIEWS[view_set](mesh)
         with Stopwatch() as watch:
             maps = compute_maps(mesh, CHANNELS, viewpoints, "raster")
             assert maps is not None  # there are channels
             saliency = np.add.reduce([maps.vertex_values(maps.maps[channel]) for channel in CHANNELS])
         rows += [
-            {"item": name, "views": one, "method": "equal", "metric": metric.__name__, "seconds": watch.seconds}
+            {"item": name, "views": view_set, "method": "equal", "metric": metric.__name__, "seconds": watch.seconds}
             | {"value": float(metric(saliency, truth))}
             for metric in (nss, auc)
         ]

@@ -53,17 +53,17 @@ def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
     """
     planned: dict[str, int | str] = {}
     for name, objects in sets.items():
-        missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
+        missing = [item for item in objects if not (folder / f"{item}.npz").exists()]
         if missing:
-            there = ", ".join(object_files(folder)) or "nothing"
-            remedy = f"name some of these in +classification.sets.NAME=[...]: {there}"
+            names = ", ".join(object_files(folder)) or "nothing"
+            remedy = f"name some of these in +classification.sets.NAME=[...]: {names}"
             planned[f"{name}."] = f"set {name} left out: no imprints of {', '.join(missing)}; {remedy}"
             continue
-        counts = {one: _counts(one, folder) for one in objects}
-        samplings = sorted({sampling for found in counts.values() for sampling in found})
+        counts = {item: _counts(item, folder) for item in objects}
+        samplings = sorted({sampling for numbers in counts.values() for sampling in numbers})
         usable = {}
         for sampling in samplings:
-            by_object = {one: found.get(sampling, 0) for one, found in counts.items()}
+            by_object = {item: numbers.get(sampling, 0) for item, numbers in counts.items()}
             try:
                 check_counts(by_object)
                 usable[f"{name}.{sampling}"] = min(by_object.values())
@@ -73,9 +73,9 @@ def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
     return planned
 
 
-def _counts(one, folder):
-    imprints = read_imprints(folder / f"{one}.npz")
-    return {sampling: len(found.images) for sampling, found in imprints.items()}
+def _counts(name, folder):
+    imprints = read_imprints(folder / f"{name}.npz")
+    return {sampling: len(touches.images) for sampling, touches in imprints.items()}
 
 
 def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str], settings: Params, seed: int) -> Rows:
@@ -92,14 +92,14 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
         prepared = prepare(touched.samples, touched.truth, settings.repetitions, seed, touched.places, touched.width)
         for classifier in settings.classifiers:
             try:
-                found, confusion = evaluate_prepared(prepared, len(objects), classifier, seed)
+                scores, confusion = evaluate_prepared(prepared, len(objects), classifier, seed)
             except Exception as error:  # whatever one classifier trips over, the others still count
-                found: Rows = [{"classifier": classifier, "split": Split.RANDOM, "metric": "accuracy", "value": None}]
-                found[0]["note"] = f"{classifier} failed: {error}"
+                scores: Rows = [{"classifier": classifier, "split": Split.RANDOM, "metric": "accuracy", "value": None}]
+                scores[0]["note"] = f"{classifier} failed: {error}"
             else:
                 confusions[f"{classifier}.confusion"] = confusion
             plain = {**common, "variant": "plain", "scaling": TRAINING, "imprints": len(labels), "note": None}
-            rows += [{**plain, **row} for row in found]
+            rows += [{**plain, **row} for row in scores]
         able = [key.removesuffix(".confusion") for key in confusions]
         rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
     rows += [
@@ -114,8 +114,8 @@ def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str],
     """Rows of the variants, as far as the settings ask for them."""
     several = None
     if sampling in settings.closer and set_of(name)["group"] == set_of(next(iter(settings.sets)))["group"]:
-        every = sampling == settings.closer[0]
-        several = MultiTouchTrials(tuple(settings.touches), settings.combinations, every)
+        all_variants = sampling == settings.closer[0]
+        several = MultiTouchTrials(tuple(settings.touches), settings.combinations, all_variants)
     closer = sampling in settings.closer
     return evaluate_variants(touched, classifiers, settings.repetitions, seed, several, closer)
 
@@ -136,9 +136,9 @@ def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> di
         elif (row["method"], row["classifier"]) == closest:
             values["variants", row["group"], row["variant"], metric].append(row["value"])
     tree = {}
-    for (first, second, third, metric), found in values.items():
+    for (first, second, third, metric), numbers in values.items():
         branch = tree.setdefault(first, {}).setdefault(second, {}).setdefault(third, {})
-        branch[metric] = interval_metrics(found, seed)
+        branch[metric] = interval_metrics(numbers, seed)
     return tree
 
 

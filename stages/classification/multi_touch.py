@@ -67,8 +67,8 @@ class MultiTouchTrials:
         if variant == "_disjoint":
             return side[_disjoint(touched.truth[side], count, random)]
         draws_per_imprint = self.draws_per_imprint * (MANY_FACTOR if variant == "_many" else 1)
-        drawn = [side[draw_combinations(touched.truth[side], count, random)] for _ in range(draws_per_imprint)]
-        combinations = np.concatenate(drawn)
+        draws = [side[draw_combinations(touched.truth[side], count, random)] for _ in range(draws_per_imprint)]
+        combinations = np.concatenate(draws)
         if variant == "_ordered":
             combinations = np.take_along_axis(combinations, touched.places[combinations, 2].argsort(axis=1), axis=1)
         return combinations
@@ -93,9 +93,9 @@ def _map_and_positions(touched, train):
 def _disjoint(truth, count, random):
     """(m, count) indices of combinations that share no imprint."""
     combinations = []
-    for one in np.unique(truth):
-        own = random.permutation(np.flatnonzero(truth == one))
-        combinations.append(own[: len(own) // count * count].reshape(-1, count))
+    for label in np.unique(truth):
+        ids = random.permutation(np.flatnonzero(truth == label))
+        combinations.append(ids[: len(ids) // count * count].reshape(-1, count))
     return np.concatenate(combinations)
 
 
@@ -134,8 +134,8 @@ def evaluate_variants(
                     rows.append({**row, "value": None, "note": note})
                 continue
             for scaling in trial.scalings:
-                found = _trial_rows(trial, scaling, classifiers, random_state)
-                rows += [{**row, "repetition": repetition} for row in found]
+                scores = _trial_rows(trial, scaling, classifiers, random_state)
+                rows += [{**row, "repetition": repetition} for row in scores]
     return rows
 
 
@@ -170,7 +170,9 @@ def _trial_rows(trial, scaling, classifiers, random_state):
         common |= {"imprints": len(prepared.train) + len(truth), "seconds": seconds}
         rows.append({**common, "metric": "accuracy", "value": float(correct.mean())})
         if trial.variant.endswith(("selected", "selected_control")) and trial.split == Split.RANDOM:
-            recall = np.mean([correct[truth == one].mean() for one in np.unique(truth)])
+            recall = np.mean([correct[truth == entry].mean() for entry in np.unique(truth)])
             rows.append({**common, "metric": "recall", "value": float(recall)})
-        rows += [{**common, "seconds": None, **one} for one in answers.validity if one["metric"] in trial.validity]
+        rows += [
+            {**common, "seconds": None, **entry} for entry in answers.validity if entry["metric"] in trial.validity
+        ]
     return rows

@@ -137,7 +137,7 @@ def _table(file, path):
 
 def gather(folder: Path, objects: list[str], sampling: str, count: int) -> tuple[TouchSet, np.ndarray]:
     """(TouchSet, labels (k,)): the first `count` imprints of each object, the objects in alphabetical order."""
-    imprints_by_object = {one: read_imprints(folder / f"{one}.npz")[sampling] for one in sorted(objects)}
+    imprints_by_object = {name: read_imprints(folder / f"{name}.npz")[sampling] for name in sorted(objects)}
     images = np.concatenate([imprints.images[:count] for imprints in imprints_by_object.values()])
     places = np.concatenate([imprints.positions[:count] for imprints in imprints_by_object.values()])
     truth = np.repeat(np.arange(len(imprints_by_object)), count)
@@ -151,8 +151,8 @@ def similar_share_rows(touched: TouchSet, objects: list[str]) -> list[dict]:
     """Rows of the share of imprints confusable with another object's: over all objects, and per object (`item`)."""
     rows = []
     for variant, part in (("plain", touched), (f"first_{THESIS_COUNT}", touched.first_of_each())):
-        for name, own in ((None, slice(None)), *((one, part.truth == k) for k, one in enumerate(objects))):
-            share = part.confusable[own]
+        for name, mask in ((None, slice(None)), *((item, part.truth == k) for k, item in enumerate(objects))):
+            share = part.confusable[mask]
             rows.append({"variant": variant, "classifier": None, "item": name, "metric": "similar_share"})
             rows[-1] |= {"imprints": len(share), "value": float(share.mean()), "seconds": None, "note": None}
     return rows

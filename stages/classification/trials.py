@@ -68,8 +68,8 @@ class TouchSet:
     def subset(self, chosen: np.ndarray) -> "TouchSet":
         """The TouchSet of the imprints `chosen` (mask or indices)."""
         similarities = self.similarities[chosen][:, chosen]
-        own = (self.samples[chosen], self.truth[chosen], self.places[chosen])
-        return TouchSet(*own, self.width, self.images[chosen], similarities)
+        parts = (self.samples[chosen], self.truth[chosen], self.places[chosen])
+        return TouchSet(*parts, self.width, self.images[chosen], similarities)
 
     def first_of_each(self, count: int = THESIS_COUNT) -> "TouchSet":
         """The TouchSet of the first `count` imprints of each object."""
@@ -115,7 +115,7 @@ def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = Fal
 
     closer: with each reading of the scaling. Otherwise some have those but `components`, fewer with all classifiers.
     """
-    every = (TRAINING, *OTHERS)
+    scalings = (TRAINING, *OTHERS)
     plain = Trial("plain", Split.RANDOM, touched.samples, touched.truth, random_holdout(touched.truth, random_state))
     yield replace(plain, scalings=SCALINGS[1:] if closer else OTHERS, validity=VALIDITY if closer else ())
     regions = _region_trial("plain", touched, touched.samples, random_state, "features", side=False)
@@ -123,8 +123,10 @@ def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = Fal
     yield from _feature_trials(touched, plain.parts)
     located = np.hstack([touched.samples, touched.places])
     first_few = touched.first_of_each()
-    yield from _both_splits("first_15", first_few, first_few.samples, random_state, scalings=every, narrow=not closer)
-    yield from _both_splits("locations", touched, located, random_state, "located", every if closer else (TRAINING,))
+    yield from _both_splits(
+        "first_15", first_few, first_few.samples, random_state, scalings=scalings, narrow=not closer
+    )
+    yield from _both_splits("locations", touched, located, random_state, "located", scalings if closer else (TRAINING,))
     yield _region_trial("plain_side", touched, touched.samples, random_state, "features", side=True)
     parts = random_holdout(touched.truth, random_state)
     turned = _rotated_positions(touched, parts, random_state)
@@ -149,11 +151,11 @@ def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
     for prefix, part in (("", touched), ("first_15_", touched.first_of_each())):
         kept = ~part.confusable
         train, test = random_holdout(part.truth, random_state)
-        own = ~confusable(part.similarities, part.truth, train)[train]
+        distinct = ~confusable(part.similarities, part.truth, train)[train]
         random = np.random.default_rng([random_state, len(part.truth)])
         for end, whole, training in (
-            ("", kept, own),
-            ("_control", as_many(part.truth, kept, random), as_many(part.truth[train], own, random)),
+            ("", kept, distinct),
+            ("_control", as_many(part.truth, kept, random), as_many(part.truth[train], distinct, random)),
         ):
             selected = list(_selected(f"{prefix}selected{end}", part, whole, random_state))
             yield from selected[:1] if end else selected
@@ -162,20 +164,20 @@ def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
 
 def _selected(variant, part, chosen, random_state):
     """The trials of the imprints of a mask, drawn before the split."""
-    kept = part.subset(chosen)
-    if min(np.bincount(kept.truth, minlength=part.truth.max() + 1)) < MIN_TO_SPLIT:
+    selection = part.subset(chosen)
+    if min(np.bincount(selection.truth, minlength=part.truth.max() + 1)) < MIN_TO_SPLIT:
         note = f"selection leaves an object fewer than {MIN_TO_SPLIT} of its {len(part.truth)} imprints"
         yield Trial(variant, Split.RANDOM, note=note)
     else:
         scalings = (TRAINING,) if variant.startswith("first") else (TRAINING, *OTHERS)
-        yield from _both_splits(variant, kept, kept.samples, random_state, scalings=scalings)
+        yield from _both_splits(variant, selection, selection.samples, random_state, scalings=scalings)
 
 
 def _selected_train(variant, part, parts):
     """The trial of a training part that selection leaves."""
-    every = len(np.unique(part.truth[parts[0]])) == part.truth.max() + 1
-    note = None if every else "selection leaves an object no imprint to train on"
-    return Trial(variant, Split.RANDOM, part.samples, part.truth, parts if every else None, note=note)
+    complete = len(np.unique(part.truth[parts[0]])) == part.truth.max() + 1
+    note = None if complete else "selection leaves an object no imprint to train on"
+    return Trial(variant, Split.RANDOM, part.samples, part.truth, parts if complete else None, note=note)
 
 
 def _both_splits(variant, touched, samples, random_state, kind="features", scalings=(TRAINING,), narrow=False):

@@ -26,22 +26,22 @@ def run(workspace: Workspace) -> None:
     unknown = sorted(set(settings.variants) - set(VARIANTS))
     if unknown:
         raise ValueError(f"coarse_imprints.variants: {unknown[0]} is not one of {', '.join(VARIANTS)}")
-    chosen = [VARIANTS[name] for name in settings.variants]
-    if any(variant.weights == "imagenet" for variant in chosen):
+    variants = [VARIANTS[name] for name in settings.variants]
+    if any(variant.weights == "imagenet" for variant in variants):
         imagenet_state("mobilenet_v2")  # before the work starts, not in each worker
     with StageRun(workspace, "coarse_imprints", COLUMNS, inputs=("meshes", "salient_points")) as stage:
         members = read_classes(workspace.data / "meshes")
-        each = dataclasses.replace(settings, variants=[])  # what an object or a variant depends on
-        arrays = sorted({variant.cells for variant in chosen})
+        common = dataclasses.replace(settings, variants=[])  # what an object or a variant depends on
+        arrays = sorted({variant.cells for variant in variants})
         work = functools.partial(
-            trial.process_press, data=workspace.data, settings=each, arrays=arrays, seed=stage.seed
+            trial.process_press, data=workspace.data, settings=common, arrays=arrays, seed=stage.seed
         )
         objects = [name for names in members.values() for name in names]
         stage.each(work, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
-        train = functools.partial(trial.process, made=stage.folder, members=members, settings=each, seed=stage.seed)
+        train = functools.partial(trial.process, made=stage.folder, members=members, settings=common, seed=stage.seed)
         stage.each(train, settings.variants, reads=["coarse_imprints"])
         stage.metrics(named_means((row["setting"], row["value"]) for row in stage.rows))
-    print(f"coarse_imprints: {workspace.dataset}, {len(members)} classes, {len(chosen)} variants")
+    print(f"coarse_imprints: {workspace.dataset}, {len(members)} classes, {len(variants)} variants")
 
 
 if __name__ == "__main__":

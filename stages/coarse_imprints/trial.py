@@ -109,7 +109,7 @@ def train_head(
     random: np.random.Generator,
 ) -> tuple[float, float]:
     """(learning rate, accuracy on the test touches) of a head trained on the cached features (k, width)."""
-    task = Task(head, lambda ids: cached[ids], lambda ids: cached[ids], lambda *_: None, lambda others: others)
+    task = Task(head, lambda ids: cached[ids], lambda ids: cached[ids], lambda *_: None, lambda images: images)
     train, fit = split.train, split.fit
     if variant.share < 1:
         train, fit = (part[stratified_split(objects[part], variant.share, random)[0]] for part in (train, fit))

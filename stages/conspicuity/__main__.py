@@ -35,13 +35,13 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     rows = []
     for k, viewpoint in enumerate(viewpoints):
         view = read_view(data / "views" / name / f"{viewpoint}.npz")
-        found, measured = measured_maps(mesh, view, channels, size, filled, settings.symmetry, settings.formulas)
-        maps[k] = [found[channel] for channel in channels]
+        view_maps, measured = measured_maps(mesh, view, channels, size, filled, settings.symmetry, settings.formulas)
+        maps[k] = [view_maps[channel] for channel in channels]
         mask[k] = mask_at_size(view.mask, size)
         rows += measured
         if k == 0 and settings.compare_background:
             rows += background_rows(mesh, view, channels, size, settings.formulas)
-            rows += hue_rows(mesh, view, found, size, filled, settings.formulas)
+            rows += hue_rows(mesh, view, view_maps, size, filled, settings.formulas)
     write_arrays(folder / f"{name}.npz", maps=maps, mask=mask, viewpoints=viewpoints, channels=channels)
     return [{"item": name} | row for row in rows]
 

@@ -72,15 +72,15 @@ def hue_rows(
     in_grey = conspicuity(mesh, replace(view, rgb=grey), maps, size, filled, formulas=formulas)
     inside, rows = mask_at_size(view.mask, size), []
     for channel, values in maps.items():
-        others = {"grey_likeness": in_grey[channel], "intensity_likeness": maps.get("intensity", values)}
-        for metric, other in others.items():
-            rows.append(_valued(channel, view, metric, _likeness(values[inside], other[inside])))
+        references = {"grey_likeness": in_grey[channel], "intensity_likeness": maps.get("intensity", values)}
+        for metric, reference in references.items():
+            rows.append(_valued(channel, view, metric, _likeness(values[inside], reference[inside])))
     return rows
 
 
-def _likeness(values, others):
-    flat = not len(values) or min(np.ptp(values), np.ptp(others)) == 0
-    return math.nan if flat else float(np.corrcoef(values, others)[0, 1])
+def _likeness(values, reference):
+    flat = not len(values) or min(np.ptp(values), np.ptp(reference)) == 0
+    return math.nan if flat else float(np.corrcoef(values, reference)[0, 1])
 
 
 def _row(channel, view, metric, values, seconds):
@@ -123,7 +123,7 @@ def _band(mask, shape):
     inward = cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
     band = np.zeros(mask.shape, dtype=bool)
     band[box] = (inward > 0) & (inward <= BAND * len(mask))
-    parts = (cv2.resize(each.astype(np.float32), shape[::-1], interpolation=cv2.INTER_AREA) for each in (band, mask))
+    parts = (cv2.resize(image.astype(np.float32), shape[::-1], interpolation=cv2.INTER_AREA) for image in (band, mask))
     along, inside = parts
     within = np.divide(along, inside, out=np.zeros_like(along), where=inside > 0)
     return within, float(band.sum() / mask.sum())

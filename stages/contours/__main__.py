@@ -60,11 +60,11 @@ def summary(rows: Rows, seed: int) -> dict[str, Any]:
         if row["value"] is not None:
             values[row["method"], row["metric"]].append(row["value"])
     tree = {}
-    for (strategy, metric), found in values.items():
+    for (strategy, metric), numbers in values.items():
         if metric in ("sequences", "refused"):
-            tree.setdefault(strategy, {})[metric] = sum(found)
+            tree.setdefault(strategy, {})[metric] = sum(numbers)
         elif metric in ("share", "shrunk"):
-            tree[strategy][metric] = interval_metrics(found, seed)
+            tree[strategy][metric] = interval_metrics(numbers, seed)
     return tree
 
 

@@ -45,7 +45,7 @@ def read_sequences(path: str | Path, strategy: str | None = None) -> dict[str, S
     """{strategy: Sequences} of one object, the strategies in alphabetical order; or of one strategy alone."""
     arrays = read_arrays(path, f"{strategy}." if strategy else "")
     strategies = sorted({key.rpartition(".")[0] for key in arrays})
-    return {one: Sequences(*(arrays[f"{one}.{part.name}"] for part in fields(Sequences))) for one in strategies}
+    return {name: Sequences(*(arrays[f"{name}.{part.name}"] for part in fields(Sequences))) for name in strategies}
 
 
 BATCH = 64  # planes followed at once, so that their imprints take a few MB until they are stored as bytes
@@ -74,10 +74,10 @@ def sample_contours(
     used = vertices[np.unique(surface.mesh.faces)]
     centre = (used.min(axis=0) + used.max(axis=0)) / 2
     pairs_drawn = draw_pairs(points, DRAWS * int(count), generator)
-    accepted, tried = [], 0
-    while len(accepted) < count and tried < len(pairs_drawn):
-        pairs = pairs_drawn[tried : tried + min(BATCH, int(count) - len(accepted))]
-        tried += len(pairs)
+    accepted, attempts = [], 0
+    while len(accepted) < count and attempts < len(pairs_drawn):
+        pairs = pairs_drawn[attempts : attempts + min(BATCH, int(count) - len(accepted))]
+        attempts += len(pairs)
         planes = np.concatenate([np.broadcast_to(centre, (len(pairs), 1, 3)), vertices[pairs]], axis=1)
         sequences = follow_many(surface, planes, frames, cells, pitch)
         accepted += [  # imprints, the only large part, as 0..255
@@ -85,7 +85,7 @@ def sample_contours(
             for pair, sequence in zip(pairs, sequences, strict=True)
             if not isinstance(sequence, str)
         ]
-    statistics = {"sequences": len(accepted), "refused": tried - len(accepted)}
+    statistics = {"sequences": len(accepted), "refused": attempts - len(accepted)}
     numbers = [(sequence.loops, sequence.share, np.mean(sequence.pitches < pitch)) for _, sequence in accepted]
     means = np.mean(numbers, axis=0).tolist() if accepted else (None,) * 3
     return _stack(accepted, int(frames), cells), statistics | dict(
@@ -111,12 +111,12 @@ def draw_pairs(points: np.ndarray, count: int, generator: np.random.Generator) -
     """
     points = np.unique(points)
     total = len(points) * (len(points) - 1) // 2
-    chosen = generator.choice(total, size=min(count, total), replace=False) if total else np.zeros(0, dtype=np.int64)
+    numbers = generator.choice(total, size=min(count, total), replace=False) if total else np.zeros(0, dtype=np.int64)
     # Pair number i is (low, high), low < high: the pairs of `high` begin at high (high - 1) / 2.
-    high = ((1 + np.sqrt(8.0 * chosen + 1)) / 2).astype(np.int64)
-    high -= high * (high - 1) // 2 > chosen  # the root of a large number may be rounded up
-    high += high * (high + 1) // 2 <= chosen  # or down
-    pairs = np.stack([chosen - high * (high - 1) // 2, high], axis=1)
+    high = ((1 + np.sqrt(8.0 * numbers + 1)) / 2).astype(np.int64)
+    high -= high * (high - 1) // 2 > numbers  # the root of a large number may be rounded up
+    high += high * (high + 1) // 2 <= numbers  # or down
+    pairs = np.stack([numbers - high * (high - 1) // 2, high], axis=1)
     turned = generator.random(len(pairs)) < 0.5
     pairs[turned] = pairs[turned, ::-1]
     return points[pairs]

@@ -69,7 +69,7 @@ def finished_on_cluster(
     ValueError where `stage` is given and a worker has other code of it.
     """
     sender = _Sender(client, function, tasks, root, f"{desc} {uuid.uuid4().hex[:8]}", stage)
-    waiting, running, done = list(reversed(tasks)), {}, queue.SimpleQueue()
+    waiting, running, arrivals = list(reversed(tasks)), {}, queue.SimpleQueue()
     try:
         while waiting or running:
             threads: Any = client.nthreads()
@@ -78,9 +78,9 @@ def finished_on_cluster(
                 task = waiting.pop()
                 future = sender.send(task)
                 running[future.key] = task, future
-                future.add_done_callback(done.put)
+                future.add_done_callback(arrivals.put)
             try:
-                future = done.get(timeout=NEWS)
+                future = arrivals.get(timeout=NEWS)
             except queue.Empty:
                 continue
             result = _result(future, running)
@@ -107,9 +107,9 @@ class _Sender:
         """The future of one task."""
         files = {path: digest for path, digest in task.files.items() if digest}
         common = {path: self._common(path, digest) for path, digest in files.items() if digest in self.common}
-        own = {path: (self.root / path).read_bytes() for path in files if path not in common}
-        given = self.code, self.function, cloudpickle.dumps(task), own, list(common), *common.values()
-        return self.client.submit(_work, *given, key=f"{self.desc}-{task.name}")
+        contents = {path: (self.root / path).read_bytes() for path in files if path not in common}
+        arguments = self.code, self.function, cloudpickle.dumps(task), contents, list(common), *common.values()
+        return self.client.submit(_work, *arguments, key=f"{self.desc}-{task.name}")
 
     def _common(self, path, digest):
         if digest not in self.sent:
@@ -123,7 +123,7 @@ def _result(future: Future, running: Mapping[Any, tuple[Task, Future]]) -> Any:
         return future.result()
     except KilledWorker as error:
         # Items that waited on the same workers are lost as often: all of them are named.
-        lost = [task.name for task, other in running.values() if other.status == "error"]
+        lost = [task.name for task, job in running.values() if job.status == "error"]
         often = f"{', '.join(lost)}: lost {error.allowed_failures + 1} workers"
         raise OSError(f"{often}: is their memory too small? The logs of the workers may tell more") from None
     except CancelledError:
@@ -135,12 +135,17 @@ def _content(content: bytes) -> bytes:
 
 
 def _work(
-    code: tuple[str, str], function: bytes, task: bytes, own: Mapping[str, bytes], paths: Sequence[str], *common: bytes
+    code: tuple[str, str],
+    function: bytes,
+    task: bytes,
+    contents: Mapping[str, bytes],
+    paths: Sequence[str],
+    *common: bytes,
 ) -> Any:
     """Runs on a worker: function(task, folder), with the task's files below the folder, which is removed afterwards."""
     _check_code(*code)
     with tempfile.TemporaryDirectory(dir=get_worker().local_directory) as folder:
-        for path, content in [*own.items(), *zip(paths, common, strict=True)]:
+        for path, content in [*contents.items(), *zip(paths, common, strict=True)]:
             file = Path(folder, path)
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
@@ -148,8 +153,8 @@ def _work(
 
 
 def _check_code(stage, digest):
-    if stage and (found := stage_digest(stage)) != digest:
+    if stage and (actual := stage_digest(stage)) != digest:
         raise ValueError(
-            f"the worker on {socket.gethostname()} has other code of the stage {stage} ({found}) than this machine "
+            f"the worker on {socket.gethostname()} has other code of the stage {stage} ({actual}) than this machine "
             f"({digest}): install the same version there, and start the worker anew"
         )

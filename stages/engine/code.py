@@ -35,14 +35,14 @@ def stage_files(stage: str) -> list[Path]:
 
 def files_behind(starts: Iterable[Path | None]) -> list[Path]:
     """These files and all that they import or read as part of their code, in alphabetical order."""
-    found, ahead = set(), set(starts)
+    files, ahead = set(), set(starts)
     while ahead:
         path = ahead.pop()
-        if path is None or path in found:
+        if path is None or path in files:
             continue
-        found.add(path)
-        ahead |= imported_files(path) - found
-    return sorted(found)
+        files.add(path)
+        ahead |= imported_files(path) - files
+    return sorted(files)
 
 
 def stage_digests(stage: str) -> dict[str, str]:
@@ -74,8 +74,14 @@ def code_text(text: str) -> str:
             node.body = body or [ast.Pass()]
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             node.returns = None
-            every = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs, node.args.vararg, node.args.kwarg]
-            for argument in every:
+            arguments = [
+                *node.args.posonlyargs,
+                *node.args.args,
+                *node.args.kwonlyargs,
+                node.args.vararg,
+                node.args.kwarg,
+            ]
+            for argument in arguments:
                 if argument is not None:
                     argument.annotation = None
     return ast.unparse(tree)
@@ -126,10 +132,10 @@ def local_names(nodes: Iterable[ast.AST]) -> list[str]:
 @cache
 def imported_files(path: Path) -> set[Path]:
     """The files of both packages that one file imports, anywhere in it, and the data files beside it that it reads."""
-    facts, found = _facts(path), set()
+    facts, files = _facts(path), set()
     for source, name in facts.imports:
-        found |= _files_behind(source, name) if name else _files_of(source)
-    return (found | (_data_files(path) if facts.reads_data else set())) - {path}
+        files |= _files_behind(source, name) if name else _files_of(source)
+    return (files | (_data_files(path) if facts.reads_data else set())) - {path}
 
 
 @dataclass(frozen=True)
@@ -161,8 +167,8 @@ def _facts(path: Path) -> Facts:
     # all that Facts follow from; another Python writes the same tree as another text
     parts = OWN, str(path.relative_to(ROOT)).encode(), content, repr(sys.version_info[:2]).encode()
     key = hashlib.sha256(b"\0".join(parts)).hexdigest()[:32]
-    kept = _kept().get(key)
-    _ASKED[key] = Facts(**kept) if kept else _work_out(path, content)
+    entry = _kept().get(key)
+    _ASKED[key] = Facts(**entry) if entry else _work_out(path, content)
     return _ASKED[key]
 
 
@@ -170,10 +176,10 @@ def _facts(path: Path) -> Facts:
 def _kept() -> dict[str, dict[str, Any]]:
     """The Facts of an earlier process; none where there was none, or its file is damaged."""
     try:
-        found = json.loads((ROOT / KEPT).read_bytes())
+        entries = json.loads((ROOT / KEPT).read_bytes())
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return entries if isinstance(entries, dict) else {}
 
 
 def keep_facts() -> None:
@@ -185,7 +191,7 @@ def _work_out(path: Path, content: bytes) -> Facts:
     """The Facts of a file, from its content."""
     if path.suffix != ".py":
         return Facts(hashlib.sha256(content).hexdigest()[:16])
-    text, here = content.decode(), _package(path)
+    text, package = content.decode(), _package(path)
     tree = ast.parse(text)
     imports: set[tuple[str, str]] = set()
     reads_data = False
@@ -193,12 +199,12 @@ def _work_out(path: Path, content: bytes) -> Facts:
         if isinstance(node, ast.Import):
             imports |= {(alias.name, "") for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            imports |= {(_absolute(node, here), alias.name) for alias in node.names}
+            imports |= {(_absolute(node, package), alias.name) for alias in node.names}
         elif isinstance(node, ast.Name | ast.alias) and _named(node) in ("__file__", "resources"):
             reads_data = True
-    own = sorted(one for one in imports if one[0].split(".")[0] in PACKAGES)
+    internal = sorted(pair for pair in imports if pair[0].split(".")[0] in PACKAGES)
     digest = hashlib.sha256(code_text(text).encode()).hexdigest()[:16]
-    return Facts(digest, own, reads_data, _defined(tree), _handed_on(tree, here), _does_more(tree))
+    return Facts(digest, internal, reads_data, _defined(tree), _handed_on(tree, package), _does_more(tree))
 
 
 def _files_behind(source: str, name: str) -> set[Path]:
@@ -234,27 +240,27 @@ def _defined(tree: ast.Module) -> list[str]:
     return sorted(named | {target.id for target in assigned if isinstance(target, ast.Name)})
 
 
-def _handed_on(tree: ast.Module, here: str) -> dict[str, tuple[str, str]]:
+def _handed_on(tree: ast.Module, package: str) -> dict[str, tuple[str, str]]:
     """{name: (module, name there)} of what a package's `__init__` hands on, by import or by a dict of modules."""
-    found = {}
+    names = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
-            found |= {alias.asname or alias.name: (_absolute(node, here), alias.name) for alias in node.names}
+            names |= {alias.asname or alias.name: (_absolute(node, package), alias.name) for alias in node.names}
         elif isinstance(node, ast.Dict):
             for name, module in zip(node.keys, node.values, strict=True):
                 if isinstance(name, ast.Constant) and isinstance(module, ast.Constant):
-                    found[str(name.value)] = f"{here}.{str(module.value).lstrip('.')}", str(name.value)
-    return found
+                    names[str(name.value)] = f"{package}.{str(module.value).lstrip('.')}", str(name.value)
+    return names
 
 
 def _busy(module: str) -> set[Path]:
     """The `__init__` files above a module that do more than import: what they do is code that runs."""
-    parts, found = module.split("."), set()
+    parts, files = module.split("."), set()
     for depth in range(1, len(parts)):
         path = _module(".".join(parts[:depth]))
         if path is not None and path.name == "__init__.py" and _facts(path).does_more:
-            found.add(path)
-    return found
+            files.add(path)
+    return files
 
 
 def _does_more(tree: ast.Module) -> bool:
@@ -280,28 +286,28 @@ def _package(path: Path) -> str:
     return ".".join(path.parent.relative_to(ROOT).parts)
 
 
-def _absolute(node: ast.ImportFrom, here: str) -> str:
+def _absolute(node: ast.ImportFrom, package: str) -> str:
     if not node.level:
         return node.module or ""
-    base = here.split(".")[: len(here.split(".")) - node.level + 1]
+    base = package.split(".")[: len(package.split(".")) - node.level + 1]
     return ".".join([*base, *([node.module] if node.module else [])])
 
 
 def _data_files(path: Path) -> set[Path]:
     """The files below a module's folder that are no Python: templates, shaders, scripts."""
-    every = path.parent.rglob("*.*")
-    return {file for file in every if file.is_file() and file.suffix != ".py" and "__pycache__" not in file.parts}
+    paths = path.parent.rglob("*.*")
+    return {file for file in paths if file.is_file() and file.suffix != ".py" and "__pycache__" not in file.parts}
 
 
 def _running(tree: ast.AST) -> list[ast.AST]:
     """All nodes of a tree but those that only type checkers read."""
-    found, ahead = [], [tree]
+    nodes, ahead = [], [tree]
     while ahead:
         node = ahead.pop()
         if not _is_for_types(node):
-            found.append(node)
+            nodes.append(node)
             ahead += ast.iter_child_nodes(node)
-    return found
+    return nodes
 
 
 def _named(node: ast.Name | ast.alias) -> str:

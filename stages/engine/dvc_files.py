@@ -28,14 +28,18 @@ def forget_killed(path: Path, program: str) -> None:
     """
     try:
         listed = json.loads(path.read_text())
-        reads = {name: [one for one in all_ if one["cmd"] != program] for name, all_ in listed.get("read", {}).items()}
-        writes = {name: one for name, one in listed.get("write", {}).items() if one["cmd"] != program}
+        reads = {
+            name: [entry for entry in all_ if entry["cmd"] != program] for name, all_ in listed.get("read", {}).items()
+        }
+        writes = {name: entry for name, entry in listed.get("write", {}).items() if entry["cmd"] != program}
     except FileNotFoundError:
         return
     except (ValueError, TypeError, KeyError, AttributeError):
         path.unlink()
         return
-    write_text(path, json.dumps({"read": {name: left for name, left in reads.items() if left}, "write": writes}))
+    write_text(
+        path, json.dumps({"read": {name: entries for name, entries in reads.items() if entries}, "write": writes})
+    )
 
 
 def keep_lock(root: Path) -> bool:

@@ -68,7 +68,7 @@ class Objects:
         A damaged entry is named on the screen and dropped.
         """
         try:
-            content: Any = self._ask(lambda kept: kept.get(key))
+            content: Any = self._ask(lambda cache: cache.get(key))
         except ValueError as error:  # pickled; what the disk itself says goes on
             return self._damaged(error)
         if content is None:
@@ -89,7 +89,7 @@ class Objects:
 
     def keep(self, key: str, content: bytes) -> None:
         """Keeps what `archive` has made under a key."""
-        self._ask(lambda kept: kept.set(key, content))
+        self._ask(lambda cache: cache.set(key, content))
 
     def _ask(self, work: Callable[[diskcache.Cache], Any]) -> Any:
         """work(cache); a damaged cache is begun anew. OSError where the disk is full or cannot be written to."""
@@ -127,13 +127,13 @@ def archive(rows: Sequence[Mapping[str, Any]], source: Path) -> bytes:
     return stream.getvalue()
 
 
-def key_of(code: str, function: str, given: Mapping[str, Any]) -> str:
+def key_of(code: str, function: str, arguments: Mapping[str, Any]) -> str:
     """The hash of what all items of a call have in common.
 
-    code: digest of the stage's code; function and given: what runs, with which arguments. Paths among them do not
+    code: digest of the stage's code; function, arguments: what runs, and with which values. Paths among them do not
     count: they say where, and what is read there counts by its content.
     """
-    plain = {key: value for key, value in given.items() if not isinstance(value, Path)}
+    plain = {key: value for key, value in arguments.items() if not isinstance(value, Path)}
     return hashlib.sha256(f"{code} {function} {joblib.hash(plain)}".encode()).hexdigest()
 
 

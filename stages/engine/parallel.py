@@ -56,9 +56,9 @@ def parallel_map(
     An exception of an item ends the map: functions that may meet bad input return the reason instead.
     """
     tasks = [Task(str(k), item) for k, item in enumerate(items)]
-    done = finished(functools.partial(_apply, function), tasks, Path(), desc, backend, workers)
-    found = {task.name: result for task, result in done}
-    return [found[task.name] for task in tasks]
+    pairs = finished(functools.partial(_apply, function), tasks, Path(), desc, backend, workers)
+    results = {task.name: result for task, result in pairs}
+    return [results[task.name] for task in tasks]
 
 
 def finished(
@@ -96,10 +96,10 @@ def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[
         # Caches make a worker grow; joblib then renews it between two items, loses none, and warns.
         warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
         with parallel_config(backend, n_jobs=workers), interrupts_wait():
-            done: Any = Parallel(return_as="generator_unordered")(
+            pairs: Any = Parallel(return_as="generator_unordered")(
                 delayed(_named)(function, task, root) for task in tasks
             )
-        yield from done
+        yield from pairs
 
 
 @contextmanager

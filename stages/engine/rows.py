@@ -67,8 +67,8 @@ def write_rows(
         for number, row in enumerate(rows):
             _check(path, number, row, names)
             measured = None if _empty(row.get("seconds")) else clock()
-            known = {**row, "dataset": dataset, "clock": measured, "seed": seed}
-            table.writerow([_cell(name, known.get(name)) for name in names])
+            cells = {**row, "dataset": dataset, "clock": measured, "seed": seed}
+            table.writerow([_cell(name, cells.get(name)) for name in names])
 
 
 def _check(path, number, row, names):
@@ -111,18 +111,18 @@ def read_rows(path: Path) -> pd.DataFrame:
 
 def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> pd.DataFrame:
     """Some columns of the rows of some metrics; no other is held in memory, and equal texts are one."""
-    found = (row for row in rows if row["metric"] in metrics)
-    values = ([row.get(name) for name in columns] for row in found)
+    selected = (row for row in rows if row["metric"] in metrics)
+    values = ([row.get(name) for name in columns] for row in selected)
     cells = (tuple(sys.intern(value) if isinstance(value, str) else value for value in row) for row in values)
     return pd.DataFrame(cells, columns=list(columns))
 
 
 def named_means(values: Iterable[tuple[str, float]]) -> dict[str, float]:
     """{name: the mean of its values}, for the gate; six digits."""
-    found: dict[str, list[float]] = {}
+    by_name: dict[str, list[float]] = {}
     for name, value in values:
-        found.setdefault(name, []).append(value)
-    return {name: round(float(np.mean(own)), 6) for name, own in found.items()}
+        by_name.setdefault(name, []).append(value)
+    return {name: round(float(np.mean(group)), 6) for name, group in by_name.items()}
 
 
 # Objects of the household set whose three sizes normalisation makes equal: 50 objects are 40 shapes.
@@ -132,8 +132,8 @@ BENCHMARK = re.compile(r"([A-Z][A-Za-z]+)_\d+")  # CLASS_ID: a mesh of the Princ
 
 def unit(item: str) -> str:
     """The unit of an object: its shape if other objects are copies of it, its class if its name says it."""
-    found = COPIES.fullmatch(item) or BENCHMARK.fullmatch(item)
-    return found[1] if found else item
+    match = COPIES.fullmatch(item) or BENCHMARK.fullmatch(item)
+    return match[1] if match else item
 
 
 def by_unit(values: "pd.Series") -> "pd.Series":
@@ -147,12 +147,12 @@ def by_unit(values: "pd.Series") -> "pd.Series":
     """
     values = values.dropna()
     if values.index.nlevels == 1 and values.index.name == "item":
-        units = [unit(str(one)) for one in values.index]
+        units = [unit(str(label)) for label in values.index]
         distinct = len(set(units)) == len(units)
         return values.set_axis(units) if distinct else values.groupby(units, sort=False).mean()
     if "item" in values.index.names:
         levels = [values.index.get_level_values(depth) for depth in range(values.index.nlevels)]
-        merged = [[unit(str(one)) for one in level] if level.name == "item" else level for level in levels]
+        merged = [[unit(str(label)) for label in level] if level.name == "item" else level for level in levels]
         values = values.groupby(merged, sort=False).mean()
     for depth in range(values.index.nlevels - 1, 0, -1):
         values = values.groupby(level=list(range(depth)), sort=False).mean()

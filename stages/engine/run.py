@@ -104,10 +104,10 @@ class StageRun:
         values: Mapping[str, Any] = names if isinstance(names, Mapping) else {name: name for name in names}
         few = _few.get()
         values = few.of(values) if few else values
-        given = process.keywords if isinstance(process, functools.partial) else {}
+        arguments = process.keywords if isinstance(process, functools.partial) else {}
         function = process.func if isinstance(process, functools.partial) else process
         stage = self.stage if _is_of_stages(function) else ""
-        call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", given)
+        call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", arguments)
         tasks = self._tasks(call, values, reads, made_of or {})
         root, desc = self.workspace.root, f"{self.stage} {self.dataset}"
         work = functools.partial(make, process, root, self.dataset)
@@ -134,10 +134,10 @@ class StageRun:
 
     def _taken(self, task: Task, objects: Objects, rows: ItemRows) -> bool:
         """Whether an item's files and rows are kept; then they are taken from there."""
-        found = objects.take(task.key, self.folder)
-        if found is not None:
-            rows.put(task.name, found)
-        return found is not None
+        stored = objects.take(task.key, self.folder)
+        if stored is not None:
+            rows.put(task.name, stored)
+        return stored is not None
 
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
@@ -146,7 +146,7 @@ class StageRun:
         tasks = []
         for name, value in values.items():
             files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
-            key = item_key(call, name, {one: digest(path) for one, path in files.items()}, made_of.get(name, ""))
+            key = item_key(call, name, {file: digest(path) for file, path in files.items()}, made_of.get(name, ""))
             below = {os.path.relpath(path, self.workspace.root): digest(path) for path in files.values()}
             tasks.append(Task(name, value, below, key))
         return tasks

@@ -77,16 +77,16 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     if not isinstance(values, dict):
         raise ParamsError(f"{section}: {values!r} is not a section of settings")
     typed = OmegaConf.structured(schema)
-    known: Any = OmegaConf.to_container(typed, throw_on_missing=False)
-    _check_keys(section, values, list(known))
+    defaults: Any = OmegaConf.to_container(typed, throw_on_missing=False)
+    _check_keys(section, values, list(defaults))
     _check_ranges(section, values)
     try:
         return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
-        said = str(error).splitlines()[0]
-        remedy = next((f": {words}" for kind, words in REMEDIES.items() if f" {kind}" in said), "")
-        raise ParamsError(f"{key}: {said}{remedy}") from None
+        reason = str(error).splitlines()[0]
+        remedy = next((f": {words}" for kind, words in REMEDIES.items() if f" {kind}" in reason), "")
+        raise ParamsError(f"{key}: {reason}{remedy}") from None
     except ValueError as error:  # a schema's own check
         raise ParamsError(f"{section}: {error}") from None
 
@@ -116,8 +116,8 @@ def _check_ranges(where: str, values: dict[str, Any]) -> None:
         for number in _numbers(value):
             if not least <= number <= most:
                 low = "above 0" if least == ABOVE_0 else f"{least:g} or more"
-                said = low if most == np.inf else f"between {0 if least == ABOVE_0 else least:g} and {most:g}"
-                raise ParamsError(f"{where}.{key}: {number:g} must be {said}")
+                bounds = low if most == np.inf else f"between {0 if least == ABOVE_0 else least:g} and {most:g}"
+                raise ParamsError(f"{where}.{key}: {number:g} must be {bounds}")
 
 
 def _numbers(value: Any) -> Iterator[float]:
@@ -127,12 +127,12 @@ def _numbers(value: Any) -> Iterator[float]:
         yield from _numbers(part)
 
 
-def _check_keys(where: str, values: dict[str, Any], known: list[Any]) -> None:
+def _check_keys(where: str, values: dict[str, Any], keys: list[Any]) -> None:
     for key in values:
-        if key not in known:
+        if key not in keys:
             name = f"{where}.{key}" if where else key
-            near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
-            hint = f"did you mean {where + '.' if where else ''}{near[0]}?" if near else f"known: {', '.join(known)}"
+            near = difflib.get_close_matches(key, keys, n=1, cutoff=0.5)
+            hint = f"did you mean {where + '.' if where else ''}{near[0]}?" if near else f"known: {', '.join(keys)}"
             raise ParamsError(f"unknown setting {name}: {hint}")
 
 
@@ -251,17 +251,17 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
     parser.add_argument("dataset", nargs="?", default="", help="a data set that params.yaml names")
     parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
     errors_in_one_line(stage)
-    given = parser.parse_args()
-    check_clone(given.root)
-    workspace = Workspace(given.root)
+    options = parser.parse_args()
+    check_clone(options.root)
+    workspace = Workspace(options.root)
     if stage not in workspace.params["graph"]:
         return workspace  # a stage about all sets
-    return workspace.on(given.dataset or _only_set(workspace, stage))
+    return workspace.on(options.dataset or _only_set(workspace, stage))
 
 
 def _only_set(workspace: Workspace, stage: str) -> str:
-    known = list(workspace.params["graph"][stage])
-    if len(known) != 1:
-        choice = f"one of {', '.join(known)}" if known else "none is switched on: see `python -m stages.compose --help`"
+    sets = list(workspace.params["graph"][stage])
+    if len(sets) != 1:
+        choice = f"one of {', '.join(sets)}" if sets else "none is switched on: see `python -m stages.compose --help`"
         raise ValueError(f"name the data set: {choice}")
-    return known[0]
+    return sets[0]

@@ -71,13 +71,13 @@ def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: floa
 
 def of_units(values: ArrayLike) -> np.ndarray:
     """The finite values as `interval` counts them: those of a Series over items by unit, all others each by itself."""
-    known: Any = values  # a Series, maybe; the core install has no pandas to ask
-    if "item" in getattr(getattr(known, "index", None), "names", ()):
-        known = by_unit(known)
-    found = np.asarray(known, dtype=np.float64)
-    if found.ndim != 1:
-        raise ValueError(f"values must have shape (k,), got {found.shape}")
-    return found[np.isfinite(found)]
+    series: Any = values  # a Series, maybe; the core install has no pandas to ask
+    if "item" in getattr(getattr(series, "index", None), "names", ()):
+        series = by_unit(series)
+    numbers = np.asarray(series, dtype=np.float64)
+    if numbers.ndim != 1:
+        raise ValueError(f"values must have shape (k,), got {numbers.shape}")
+    return numbers[np.isfinite(numbers)]
 
 
 def p_value(values: ArrayLike, shared: float = 0.0) -> float:
@@ -102,11 +102,11 @@ def discoveries(p_values: ArrayLike, rate: float = 0.05) -> np.ndarray:
     Benjamini and Hochberg, Controlling the false discovery rate, 1995, by scipy.
     """
     p_values = np.asarray(p_values, dtype=np.float64)
-    known = np.isfinite(p_values)
-    found = np.zeros(len(p_values), dtype=bool)
-    if known.any():
-        found[known] = stats.false_discovery_control(p_values[known]) <= rate
-    return found
+    finite = np.isfinite(p_values)
+    holds = np.zeros(len(p_values), dtype=bool)
+    if finite.any():
+        holds[finite] = stats.false_discovery_control(p_values[finite]) <= rate
+    return holds
 
 
 def interval_metrics(values: ArrayLike, seed: int = 0) -> dict[str, float]:
@@ -192,15 +192,15 @@ def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[flo
 
 def variance_between(effects: np.ndarray, within: np.ndarray) -> float:
     """The variance between sets by restricted maximum likelihood (Viechtbauer 2005); effects, within: (k,)."""
-    found = float(effects.var(ddof=1))
+    variance = float(effects.var(ddof=1))
     for _ in range(ROUNDS):
-        weights, before = 1 / (within + found), found
+        weights, before = 1 / (within + variance), variance
         mean = weights @ effects / weights.sum()
         step = (weights**2 @ ((effects - mean) ** 2 - within)) / (weights**2).sum() + 1 / weights.sum()
-        found = max(0.0, float(step))
-        if abs(found - before) <= 1e-9 * (found + within.min()):
+        variance = max(0.0, float(step))
+        if abs(variance - before) <= 1e-9 * (variance + within.min()):
             break
-    return found if found > 1e-6 * within.min() else 0.0
+    return variance if variance > 1e-6 * within.min() else 0.0
 
 
 BROKEN = 0.5  # share of the lead that is left at the breaking point
@@ -239,10 +239,10 @@ def breaking_interval(
     if len(left) < 2:
         return at, at, at
     sign = 1 if severities[-1] >= unharmed else -1  # harsher is more, or less
-    found = sign * _first_falls(severities, resampled_means(left, resamples(len(left), seed)), unharmed)
-    found[np.isnan(found)] = np.inf
+    points = sign * _first_falls(severities, resampled_means(left, resamples(len(left), seed)), unharmed)
+    points[np.isnan(points)] = np.inf
     tail = expanded_levels(len(left))
-    low, high = np.quantile(found, tail[0], method="lower"), np.quantile(found, tail[1], method="higher")
+    low, high = np.quantile(points, tail[0], method="lower"), np.quantile(points, tail[1], method="higher")
     mild, harsh = (sign * float(end) if np.isfinite(end) else float("nan") for end in (low, high))
     return at, mild, harsh
 
@@ -254,9 +254,9 @@ def resamples(units: int, seed: int = 0) -> np.ndarray:
 
 def resampled_means(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """(r, k) means of values (n, k) over the units that counts (r, n) name; NaN left out, NaN where nothing is left."""
-    known = np.isfinite(values)
+    finite = np.isfinite(values)
     with np.errstate(invalid="ignore"):
-        return (counts @ np.where(known, values, 0.0)) / (counts @ known)
+        return (counts @ np.where(finite, values, 0.0)) / (counts @ finite)
 
 
 def expanded_levels(units: int) -> tuple[float, float]:
@@ -277,8 +277,8 @@ def _first_falls(severities, left, unharmed):
     k, rows = (left < BROKEN).argmax(axis=1), np.arange(len(left))  # 0 where it never falls
     before, after = left[rows, k - 1], left[rows, k]
     with np.errstate(invalid="ignore", divide="ignore"):
-        found = at[k - 1] + (before - BROKEN) / (before - after) * (at[k] - at[k - 1])
-    return np.where(k > 0, found, np.nan)
+        points = at[k - 1] + (before - BROKEN) / (before - after) * (at[k] - at[k - 1])
+    return np.where(k > 0, points, np.nan)
 
 
 class Split(NamedTuple):

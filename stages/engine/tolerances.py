@@ -66,23 +66,23 @@ class Tolerances:
 
     def with_pairs(self, metrics: Mapping[str, float]) -> dict[str, float]:
         """The metrics and the differences of those pairs that are both there."""
-        found = dict(metrics)
+        values = dict(metrics)
         for name, (first, second) in self.pairs.items():
             pattern = re.compile(re.escape(first).replace(r"\*", "(.+)"))
             for metric in metrics:
                 if (fits := pattern.fullmatch(metric)) and (
-                    other := second.replace("*", "".join(fits.groups()))
+                    partner := second.replace("*", "".join(fits.groups()))
                 ) in metrics:
-                    found[".".join([PAIRS, name, *fits.groups()])] = metrics[metric] - metrics[other]
-        return found
+                    values[".".join([PAIRS, name, *fits.groups()])] = metrics[metric] - metrics[partner]
+        return values
 
     def check(self, metrics: Iterable[str]) -> None:
         """ValueError for a pattern that fits none of the metrics, or a pair of metrics that are not there."""
-        known = [*self.with_pairs(dict.fromkeys(metrics, 0.0))]
-        wanted = [rule.metric for rule in self.rules] + [name for pair in self.pairs.values() for name in pair]
-        for pattern in wanted:
-            if not any(fnmatchcase(name, pattern) for name in known):
-                close = "".join(f", did you mean {name}?" for name in get_close_matches(pattern, known, 1))
+        names = [*self.with_pairs(dict.fromkeys(metrics, 0.0))]
+        patterns = [rule.metric for rule in self.rules] + [name for pair in self.pairs.values() for name in pair]
+        for pattern in patterns:
+            if not any(fnmatchcase(name, pattern) for name in names):
+                close = "".join(f", did you mean {name}?" for name in get_close_matches(pattern, names, 1))
                 raise ValueError(f"a tolerance is for {pattern}, but no metric is called so{close}")
 
 
@@ -122,11 +122,11 @@ def widest_moves(runs: Iterable[Mapping[str, float]], baseline: Mapping[str, flo
     return {name: float(f"{wider * move:.3g}") for name, move in moves.items() if move > DIGITS * abs(baseline[name])}
 
 
-def _rule(path: Path, given: Any) -> Rule:
-    names = [one.name for one in fields(Rule)]
-    if not isinstance(given, dict) or "metric" not in given or set(given) - set(names):
-        raise ValueError(f"{path}: a rule has metric and some of {', '.join(names[1:])}, got {given}")
-    rule = Rule(**given)
+def _rule(path: Path, entry: Any) -> Rule:
+    names = [attribute.name for attribute in fields(Rule)]
+    if not isinstance(entry, dict) or "metric" not in entry or set(entry) - set(names):
+        raise ValueError(f"{path}: a rule has metric and some of {', '.join(names[1:])}, got {entry}")
+    rule = Rule(**entry)
     numbers = [number for number in (rule.abs, rule.rel) if isinstance(number, int | float) and number >= 0]
     if len(numbers) < 2 or rule.direction not in DIRECTIONS:
         raise ValueError(f"{path}, {rule.metric}: abs and rel are at least 0, direction is one of {DIRECTIONS}")
@@ -134,6 +134,6 @@ def _rule(path: Path, given: Any) -> Rule:
 
 
 def _pair(path: Path, name: str, pair: Any) -> tuple[str, str]:
-    if not isinstance(pair, list) or [str(one).count("*") for one in pair] not in ([0, 0], [1, 1]):
+    if not isinstance(pair, list) or [str(metric).count("*") for metric in pair] not in ([0, 0], [1, 1]):
         raise ValueError(f"{path}: pair {name!r} must list two metrics, with one * each or none, got {pair}")
     return pair[0], pair[1]

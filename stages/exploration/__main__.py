@@ -34,12 +34,12 @@ def summary(rows: Rows, seed: int) -> dict[str, Any]:
     """{group: {method: {way: {accuracy, touches, belief: {mean, low, high}}}}} at the headline confidence."""
     tree, values = {}, defaultdict(list)
     for row in rows:
-        if row["metric"] == "accuracy" and all(row.get(key) == wanted for key, wanted in HEADLINE.items()):
+        if row["metric"] == "accuracy" and all(row.get(key) == setting for key, setting in HEADLINE.items()):
             for key in ("value", "touches", "belief"):
                 values[row["group"], row["method"], row["way"], key].append(row[key])
-    for (name, method, way, key), found in values.items():
+    for (name, method, way, key), numbers in values.items():
         branch = tree.setdefault(name, {}).setdefault(method, {}).setdefault(way, {})
-        branch["accuracy" if key == "value" else key] = interval_metrics(found, seed)
+        branch["accuracy" if key == "value" else key] = interval_metrics(numbers, seed)
     return tree
 
 

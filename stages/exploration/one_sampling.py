@@ -35,20 +35,20 @@ def read_set(folder: Path, objects: list[str], method: str) -> tuple[np.ndarray,
 
     folder: data/SET/imprints. Raises ValueError with the reason if they cannot be compared.
     """
-    missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
+    missing = [entry for entry in objects if not (folder / f"{entry}.npz").exists()]
     if missing:
         raise ValueError(f"no imprints of {', '.join(missing)}")
     if len(objects) < 2:
         raise ValueError("at least two objects are needed")
-    stored = {one: read_imprints(folder / f"{one}.npz") for one in objects}
-    without = [one for one, by_method in stored.items() if method not in by_method]
+    stored = {entry: read_imprints(folder / f"{entry}.npz") for entry in objects}
+    without = [entry for entry, by_method in stored.items() if method not in by_method]
     if without:
         raise ValueError(f"no imprints by {method} of {', '.join(without)}")
     imprints = [by_method[method] for by_method in stored.values()]
-    count = min(len(one.images) for one in imprints)
-    samples = np.concatenate([features(one.images[:count]) for one in imprints])
-    places = np.concatenate([one.positions[:count] for one in imprints]).astype(np.float64)
-    return samples, places, np.repeat(np.arange(len(objects)), count), max(one.width for one in imprints)
+    count = min(len(entry.images) for entry in imprints)
+    samples = np.concatenate([features(entry.images[:count]) for entry in imprints])
+    places = np.concatenate([entry.positions[:count] for entry in imprints]).astype(np.float64)
+    return samples, places, np.repeat(np.arange(len(objects)), count), max(entry.width for entry in imprints)
 
 
 def process(item: str, folder: Path, data: Path, sets: dict[str, list[str]], settings: Params, seed: int) -> Rows:

@@ -28,20 +28,20 @@ def run(workspace: Workspace) -> None:
         stage.each(functools.partial(process, data=workspace.data, settings=settings), names, READS)
         work = functools.partial(recognise, made=stage.folder, names=names, settings=settings, seed=stage.seed)
         stage.each(work, ["all objects"], ["face_needs"])
-        found = summary(stage.rows)
-        stage.metrics(found)
-    said = ", ".join(f"{name} {value:.0f}" for name, value in found.items())
-    print(f"face_needs: {workspace.dataset}, {len(names)} objects; median faces: {said}")
+        medians = summary(stage.rows)
+        stage.metrics(medians)
+    text = ", ".join(f"{name} {value:.0f}" for name, value in medians.items())
+    print(f"face_needs: {workspace.dataset}, {len(names)} objects; median faces: {text}")
 
 
 def summary(rows: Rows) -> dict[str, float]:
     """{task, or task_condition: the median face count over the objects}."""
-    found: dict[str, list[float]] = {}
+    counts: dict[str, list[float]] = {}
     for row in rows:
         if row["metric"] == "faces":
             name = row["task"] if row["condition"] is None else f"{row['task']}_{row['condition']:g}"
-            found.setdefault(name, []).append(row["value"])
-    return {name: float(np.median(values)) for name, values in found.items()}
+            counts.setdefault(name, []).append(row["value"])
+    return {name: float(np.median(values)) for name, values in counts.items()}
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     images = felt(mesh, chain, read_points(data / f"salient_points/{name}.npz")[settings.detector], settings)
     off = differences(images)
     rows += [row(name, "felt", reading, faces[coarsest(off <= reading)]) for reading in settings.readings]
-    write_arrays(folder / f"{name}.npz", faces=faces, features=np.stack([features(own) for own in images]))
+    write_arrays(folder / f"{name}.npz", faces=faces, features=np.stack([features(imprints) for imprints in images]))
     return rows
 
 
@@ -61,9 +61,9 @@ def seen(mesh: Mesh, chain: Sequence[Level], size: float, distance: float, setti
     cameras = tuple(Camera(tuple(target + distance * way), target, settings.angle, screen) for way in along)
     scene = Scene((Placed("object", (0.0, 0.0, 0.0), 0.0, size),), cameras, settings.tolerance)
     frames = Frames(scene, {"object": mesh}, [chain[0]])
-    every = range(len(cameras))
-    frames.measure((frame, 0, chain[0], level) for level in chain for frame in every)
-    return np.array([max(frames.between(frame, 0, chain[0], level) for frame in every) for level in chain])
+    indices = range(len(cameras))
+    frames.measure((frame, 0, chain[0], level) for level in chain for frame in indices)
+    return np.array([max(frames.between(frame, 0, chain[0], level) for frame in indices) for level in chain])
 
 
 def felt(mesh: Mesh, chain: Sequence[Level], places: np.ndarray, settings: Params) -> np.ndarray:
@@ -89,14 +89,14 @@ def recognise(item: str, folder: Path, made: Path, names: Sequence[str], setting
     median of the objects' faces there. made: the folder with what `process` wrote.
     """
     stored = {name: read_arrays(made / f"{name}.npz") for name in names}
-    found = accuracies({name: own["features"] for name, own in stored.items()}, settings, seed)
+    shares = accuracies({name: arrays["features"] for name, arrays in stored.items()}, settings, seed)
     rows = []
-    for name, accuracy in found.items():
+    for name, accuracy in shares.items():
         faces = stored[name]["faces"]
         rows.append(row(name, "recognised", settings.slack, faces[_enough(accuracy[: len(faces)], settings)]))
         rows.append({"item": name, "task": "recognised", "metric": "accuracy", "value": float(accuracy[0])})
-    level = _enough(np.mean(list(found.values()), axis=0), settings)
-    together = np.median([own["faces"][min(level, len(own["faces"]) - 1)] for own in stored.values()])
+    level = _enough(np.mean(list(shares.values()), axis=0), settings)
+    together = np.median([arrays["faces"][min(level, len(arrays["faces"]) - 1)] for arrays in stored.values()])
     return [*rows, row(None, "recognised", settings.slack, together) | {"metric": "faces_together"}]
 
 
@@ -110,15 +110,17 @@ def accuracies(samples: Mapping[str, np.ndarray], settings: Params, seed: int) -
     samples: dict name -> (levels, k, features), finest first. All objects are learned from the same level, one that has
     fewer levels from its last; asked about are touches of the full meshes. Each place is held out once a folding.
     """
-    levels = max(len(own) for own in samples.values())
-    learned = [np.concatenate([own[min(level, len(own) - 1)] for own in samples.values()]) for level in range(levels)]
-    truth = np.repeat(np.arange(len(samples)), [own.shape[1] for own in samples.values()])
+    levels = max(len(stack) for stack in samples.values())
+    learned = [
+        np.concatenate([stack[min(level, len(stack) - 1)] for stack in samples.values()]) for level in range(levels)
+    ]
+    truth = np.repeat(np.arange(len(samples)), [stack.shape[1] for stack in samples.values()])
     right = np.zeros((levels, len(truth)))
     for repetition in range(settings.repetitions):
         folds = StratifiedKFold(settings.folds, shuffle=True, random_state=seed + repetition)
         for train, test in folds.split(truth, truth):
-            for level, known in enumerate(learned):
-                model = classifier("knn").fit(known[train], truth[train])
+            for level, touches in enumerate(learned):
+                model = classifier("knn").fit(touches[train], truth[train])
                 right[level, test] += model.predict(learned[0][test]) == truth[test]
     share = right / settings.repetitions
     return {name: share[:, truth == number].mean(axis=1) for number, name in enumerate(samples)}

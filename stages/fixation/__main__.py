@@ -37,8 +37,8 @@ def task_rows(tasks: Mapping[str, Mapping[str, str]], curves: Mapping[str, tuple
     """Rows of the class of every object in every task, and of the sums of squared distances over the clusters."""
     rows: Rows = [
         {"item": name, "task": task, "metric": "class", "label": label}
-        for task, known in tasks.items()
-        for name, label in known.items()
+        for task, classes in tasks.items()
+        for name, label in classes.items()
     ]
     for task, (curve, chosen) in curves.items():
         row = {"task": task, "metric": "ssd"}
@@ -50,23 +50,23 @@ def train(
     stage: StageRun, method: Method, settings: Params, objects: list[str], tasks: Mapping[str, Mapping[str, str]]
 ) -> None:
     """Trains the heads or networks of one method and computes its maps, before these are projected to the vertices."""
-    given = {"made": stage.folder, "method": method, "settings": settings, "seed": stage.seed}
+    common = {"made": stage.folder, "method": method, "settings": settings, "seed": stage.seed}
     if method.mode in TRAINED:
         inputs = [ALL_PICTURES]
         if method.mode == "last_block":
-            stage.each(functools.partial(backbone.cache_trunk, **given), objects, [PICTURES])
+            stage.each(functools.partial(backbone.cache_trunk, **common), objects, [PICTURES])
             inputs = [TRUNK.format(method.name), RATE.format(method.name)]
-            choose = functools.partial(finetune.choose_rate, objects=objects, tasks=tasks, **given)
+            choose = functools.partial(finetune.choose_rate, objects=objects, tasks=tasks, **common)
             stage.each(choose, [method.name], inputs[:1])
-        learn = functools.partial(finetune.train_network, objects=objects, tasks=tasks, **given)
+        learn = functools.partial(finetune.train_network, objects=objects, tasks=tasks, **common)
         stage.each(learn, tasks.keys(), inputs)
         return
     if method.mode == "random":
-        prepare = functools.partial(backbone.prepare_random_network, objects=objects, **given)
+        prepare = functools.partial(backbone.prepare_random_network, objects=objects, **common)
         stage.each(prepare, [method.name], [ALL_PICTURES])
     reads = [PICTURES, NETWORK.format(method.name)]  # only a random method has one
-    stage.each(functools.partial(backbone.compute_maps, **given), objects, reads)
-    stage.each(functools.partial(finetune.train_head, tasks=tasks, **given), tasks.keys(), [f"{POOLED}/{method.name}"])
+    stage.each(functools.partial(backbone.compute_maps, **common), objects, reads)
+    stage.each(functools.partial(finetune.train_head, tasks=tasks, **common), tasks.keys(), [f"{POOLED}/{method.name}"])
 
 
 def made_by(method: Method) -> list[str]:
@@ -82,10 +82,10 @@ def run(workspace: Workspace) -> None:
     check(settings)
     views = len(viewpoint_sphere(settings.parallels, settings.azimuths))
     methods, missing = available(settings)
-    data, each = workspace.data, dataclasses.replace(settings, methods=[])  # what an object or one method depends on
+    data, common = workspace.data, dataclasses.replace(settings, methods=[])  # what an object or one method depends on
     with StageRun(workspace, "fixation", COLUMNS, inputs=("meshes", "salient_points", "weights")) as stage:
         objects, seed = stage.objects, stage.seed
-        take = functools.partial(backbone.take_pictures, data=data, settings=each)
+        take = functools.partial(backbone.take_pictures, data=data, settings=common)
         measures: dict[str, dict[str, float]] = {}  # of each object's shape
         for row in stage.each(take, objects, reads=("meshes/{}.npz",)):
             measures.setdefault(row["item"], {})[row["metric"]] = row["value"]
@@ -93,15 +93,15 @@ def run(workspace: Workspace) -> None:
         tasks, curves = assign_classes(measures, source, seed, workspace.root / SEMANTICS)
         stage.rows += task_rows(tasks, curves)
         for method in methods:
-            train(stage, method, each, objects, tasks)
+            train(stage, method, common, objects, tasks)
         measure = functools.partial(
             attention.measure_attention,
-            data=data, made=stage.folder, settings=each, methods=methods, tasks=tasks, seed=seed,
+            data=data, made=stage.folder, settings=common, methods=methods, tasks=tasks, seed=seed,
         )  # fmt: skip
         reads = ["meshes/{}.npz", "salient_points/{}.npz", "weights/ground_truth/{}.npz", PICTURES]
         stage.each(measure, objects, [*reads, *(path for method in methods for path in made_by(method))])
         stage.rows += [{"method": name, "metric": "accuracy", "note": reason} for name, reason in missing.items()]
-        stage.metrics(summary(stage.rows, {task: len(set(known.values())) for task, known in tasks.items()}, seed))
+        stage.metrics(summary(stage.rows, {task: len(set(classes.values())) for task, classes in tasks.items()}, seed))
         for cache in HIDDEN:
             shutil.rmtree(stage.folder / cache, ignore_errors=True)
     print(f"fixation: {len(objects)} objects, {views} views, tasks {', '.join(tasks)}, {len(methods)} methods")

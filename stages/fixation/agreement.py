@@ -43,17 +43,17 @@ def agreement_rows(
         truth = visible_truth(fixations, mask)
         if truth is None:
             continue
-        found = {
+        measures = {
             "pcc": cc(values[mask], truth),
             "pcc_masked": pearson(min_max_scaled(values) * mask, min_max_scaled(fixations["density"]) * mask),
         }
         if distances:
             least, mean = centre_distance(mesh.vertices, fixations["density"], values, mask)
-            found |= {"distance": least, "distance_mean": mean, "distance_share": least / mesh.diagonal}
-            found["distance_maximum"] = centre_distance(mesh.vertices, fixations["density"], values, mask, top=1)[0]
-            found["half_share"] = half_share(values[mask], fixations["areas"][mask])
-        known = {metric: value if np.isfinite(value) else None for metric, value in found.items()}
-        rows += [{"view": view, "metric": metric, "value": value} for metric, value in known.items()]
+            measures |= {"distance": least, "distance_mean": mean, "distance_share": least / mesh.diagonal}
+            measures["distance_maximum"] = centre_distance(mesh.vertices, fixations["density"], values, mask, top=1)[0]
+            measures["half_share"] = half_share(values[mask], fixations["areas"][mask])
+        cells = {metric: value if np.isfinite(value) else None for metric, value in measures.items()}
+        rows += [{"view": view, "metric": metric, "value": value} for metric, value in cells.items()]
     truth = GroundTruth(fixations["amounts"], fixations["density"], fixations["areas"])
     return rows + [
         {"view": ALL_VIEWS, "metric": metric, "value": function(whole, truth)}
@@ -73,11 +73,11 @@ def min_max_scaled(values: np.ndarray) -> np.ndarray:
     return (values - low) / (high - low) if high > low else np.zeros_like(values)
 
 
-def pearson(one: np.ndarray, other: np.ndarray) -> float:
+def pearson(first: np.ndarray, second: np.ndarray) -> float:
     """Pearson's correlation of two arrays (n,); NaN where one is constant."""
-    one, other = one - one.mean(), other - other.mean()
-    size = np.sqrt((one @ one) * (other @ other))
-    return float(one @ other / size) if size > 0 else np.nan
+    first, second = first - first.mean(), second - second.mean()
+    size = np.sqrt((first @ first) * (second @ second))
+    return float(first @ second / size) if size > 0 else np.nan
 
 
 def task_correlations(values: np.ndarray, seen: np.ndarray, names: Sequence[str]) -> list[dict]:
@@ -86,16 +86,16 @@ def task_correlations(values: np.ndarray, seen: np.ndarray, names: Sequence[str]
     values (v, t, n), seen (v, n); over the vertices visible in a view. Views where one of the maps is constant are left
     out.
     """
-    found = np.full((len(values), len(names), len(names)), np.nan)
+    matrices = np.full((len(values), len(names), len(names)), np.nan)
     for view, visible in enumerate(seen):
         part = values[view][:, visible]
         varied = np.flatnonzero(np.ptp(part, axis=1) > 0) if visible.any() else []
         if len(varied) > 1:
-            found[view][np.ix_(varied, varied)] = np.corrcoef(part[varied])
+            matrices[view][np.ix_(varied, varied)] = np.corrcoef(part[varied])
     rows = []
     for i, j in itertools.combinations(range(len(names)), 2):
-        own = found[:, i, j][np.isfinite(found[:, i, j])]
-        value = float(own.mean()) if len(own) else None
+        finite = matrices[:, i, j][np.isfinite(matrices[:, i, j])]
+        value = float(finite.mean()) if len(finite) else None
         rows.append({"task": f"{names[i]}~{names[j]}", "view": ALL_VIEWS, "metric": "pcc_tasks", "value": value})
     return rows
 
@@ -104,34 +104,34 @@ MODEL = "ewigc"
 COLUMNS = ["item", "method", "task", "view", "split", "metric", "value"]
 
 
-def summary(rows: Sequence[dict], chosen: Mapping[str, int], seed: int) -> dict[str, dict]:
+def summary(rows: Sequence[dict], classes: Mapping[str, int], seed: int) -> dict[str, dict]:
     """dict for the metric file: classes and mean accuracy of each task, mean agreement of the fused model and controls.
 
-    chosen: dict task -> number of classes. Agreement: the Pearson correlation in the three views, averaged per object,
+    classes: dict task -> number of classes. Agreement: the Pearson correlation in the three views, averaged per object,
     with its interval over the objects.
     """
     frame = pd.DataFrame(rows).reindex(columns=COLUMNS)
-    found: dict[str, dict] = {"classes": {task: int(count) for task, count in chosen.items()}}
+    tree: dict[str, dict] = {"classes": {task: int(count) for task, count in classes.items()}}
     accuracies = frame.loc[(frame["metric"] == "accuracy") & frame["value"].notna()]
     for key, part in accuracies.groupby(["method", "split"]):
         method, split = cast(tuple[str, str], key)
-        found.setdefault("accuracy", {}).setdefault(method, {})[split] = round(float(np.mean(part["value"])), 6)
+        tree.setdefault("accuracy", {}).setdefault(method, {})[split] = round(float(np.mean(part["value"])), 6)
     for name, values in agreement(frame).items():
         mean, low, high = np.round(interval(values, seed=seed), 6).tolist()
         ends = {"low": low, "high": high} if np.isfinite(low) else {}
-        found.setdefault("pcc", {})[name] = {"value": mean} | ends
-    return found
+        tree.setdefault("pcc", {})[name] = {"value": mean} | ends
+    return tree
 
 
 def agreement(frame: pd.DataFrame) -> dict[str, pd.Series]:
     """dict method -> Series object -> mean pcc over the views, of the fused models, rivals and controls."""
     views = frame.loc[(frame["metric"] == "pcc") & (frame["view"] != ALL_VIEWS)]
-    own = views.loc[(views["task"] == MODEL) | views["method"].isin(["control", "rival"])]
-    found = {}
-    for key, part in own.groupby(["method", "task"], sort=True):
+    selected = views.loc[(views["task"] == MODEL) | views["method"].isin(["control", "rival"])]
+    means = {}
+    for key, part in selected.groupby(["method", "task"], sort=True):
         method, task = cast(tuple[str, str], key)
-        found[task if method in ("control", "rival") else method] = part.groupby("item")["value"].mean()
-    return found
+        means[task if method in ("control", "rival") else method] = part.groupby("item")["value"].mean()
+    return means
 
 
 def half_share(values: np.ndarray, areas: np.ndarray) -> float:

@@ -74,7 +74,7 @@ def measure_attention(
             apart = nearer(mesh, [viewpoints[view] for view in evaluated], seen[evaluated], looks)
             rows += [row | {"task": ITSELF, "metric": metric, "value": value} for metric, value in apart.items()]
         rows.append(row | {"metric": "views", "value": len(viewpoints), "seconds": network_seconds})
-        rows += [row | one for one in task_correlations(values[:, : len(cams)], seen, list(cams))]
+        rows += [row | cells for cells in task_correlations(values[:, : len(cams)], seen, list(cams))]
         row["view"] = ALL_VIEWS
         rows += [row | {"task": task, "metric": "entropy", "value": bit} for task, bit in bits.items()]
         rows += [row | {"task": task, "metric": "alive", "value": alive(cam)} for task, cam in cams.items()]
@@ -139,10 +139,10 @@ def baseline_rows(
     rows = ground_truth.rows(
         "control", "centre_prior", prior[ground_truth.evaluated, 0], mean_over_views(prior, ground_truth.seen)[0], None
     )
-    found = {"random": rng(seed, f"{ground_truth.name} noise").random(len(mesh.vertices))}
+    maps = {"random": rng(seed, f"{ground_truth.name} noise").random(len(mesh.vertices))}
     saliency = read_saliency(data / "salient_points" / f"{ground_truth.name}.npz")
-    found |= {rival: saliency[rival].astype(np.float64) for rival in RIVALS if rival in saliency}
-    for rival, values in found.items():
+    maps |= {rival: saliency[rival].astype(np.float64) for rival in RIVALS if rival in saliency}
+    for rival, values in maps.items():
         method = "control" if rival == "random" else "rival"
         rows += ground_truth.rows(method, rival, np.stack([values] * len(ground_truth.evaluated)), values, None)
     return rows
@@ -165,5 +165,5 @@ class GroundTruth:
             return []
         row = {"item": self.name, "method": method, "task": task, "seconds": seconds}
         visible = self.seen[self.evaluated]
-        found = agreement_rows(self.mesh, self.fixations, visible, by_view, whole, distances=task not in TASKS)
-        return [row | one for one in found]
+        entries = agreement_rows(self.mesh, self.fixations, visible, by_view, whole, distances=task not in TASKS)
+        return [row | cells for cells in entries]

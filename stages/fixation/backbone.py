@@ -122,11 +122,11 @@ def check(settings: Params) -> None:
 
 def available(settings: Params) -> tuple[list[Method], dict[str, str]]:
     """(methods that can run, dict of the others -> reason): methods without available weights are left out."""
-    found, missing = [], {}
+    usable, missing = [], {}
     for method in [method_named(name) for name in dict.fromkeys(settings.methods)]:
         try:
             build(method.network, 2, MODES[method.mode], 0, settings.source)
-            found.append(method)
+            usable.append(method)
             if method.mode == "last_block" and not published_layers(method.network, settings.source):
                 print(f"fixation: {method.name}: no package registry has ImageNet's weights of the fully connected "
                       "layers, they start at random: set fixation.source=download on a machine with a network",
@@ -134,7 +134,7 @@ def available(settings: Params) -> tuple[list[Method], dict[str, str]]:
         except FetchError as error:
             print(f"fixation: {method.name} is left out: {error}", file=sys.stderr)
             missing[method.name] = str(error)
-    return found, missing
+    return usable, missing
 
 
 BATCH = 16
@@ -152,7 +152,7 @@ def prepare_random_network(
     with repeatable(seed):
         network = build(method.network, 2, MODES[method.mode], seed, settings.source)
         few = objects[:: -(-len(objects) // CALIBRATION_PICTURES)]
-        images = network_inputs(np.stack([read_pictures(made, one)[0][0] for one in few]))
+        images = network_inputs(np.stack([read_pictures(made, item)[0][0] for item in few]))
         recalibrate(network, lambda ids: images[ids], np.arange(len(few)))
     write_state(folder, name, network)
     return []
@@ -193,11 +193,11 @@ def folded_network(made: Path, method: Method, source: str, seed: int, state: st
 @torch.inference_mode()
 def last_maps(network: Network, pictures: np.ndarray) -> np.ndarray:
     """(v, C, i, j) f4: the last feature maps of grey pictures (v, h, w) u1."""
-    device, found = device_of(network), []
+    device, batches = device_of(network), []
     for k in range(0, len(pictures), BATCH):
         with explain_out_of_memory(), mixed_precision(device):
-            found.append(network.convolutions(network_inputs(pictures[k : k + BATCH], device)).float().cpu().numpy())
-    return np.concatenate(found)
+            batches.append(network.convolutions(network_inputs(pictures[k : k + BATCH], device)).float().cpu().numpy())
+    return np.concatenate(batches)
 
 
 def read_maps(folder: Path, method: str, name: str) -> tuple[np.ndarray, float]:
@@ -257,12 +257,12 @@ def trunk_of(method: Method, source: str, seed: int) -> torch.nn.Module:
 @torch.inference_mode()
 def trunk_maps(trunk: torch.nn.Module, pictures: np.ndarray, change: Transform) -> np.ndarray:
     """(v, C, i, j) f2: the trunk's maps of grey pictures (v, h, w) u1, first passed to `change`."""
-    device, found = device_of(trunk), []
+    device, batches = device_of(trunk), []
     for k in range(0, len(pictures), BATCH):
         with explain_out_of_memory():
             maps = trunk(normalise(change(to_images(pictures[k : k + BATCH], device))))
-            found.append(maps.clamp(-LARGEST, LARGEST).half().cpu().numpy())
-    return np.concatenate(found)
+            batches.append(maps.clamp(-LARGEST, LARGEST).half().cpu().numpy())
+    return np.concatenate(batches)
 
 
 def read_trunk(made: Path, method: str, objects: Sequence[str]) -> tuple[torch.Tensor, float, float]:

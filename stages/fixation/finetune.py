@@ -58,13 +58,13 @@ def choose_rate(
     It is the one with the best accuracy on the validation views after one pass, on the task with the most classes.
     name: of the method; made: the folder of the trunk's maps; objects: all of them.
     """
-    task = max(tasks, key=lambda one: len(set(tasks[one].values())))
+    task = max(tasks, key=lambda candidate: len(set(tasks[candidate].values())))
     labels = labels_of(objects, tasks[task], settings)
     part, validation, _ = divided(labels, seed)
     with repeatable(seed), Stopwatch() as watch:
-        given = {"epochs": 1, "batch": settings.batch, "momentum": settings.momentum, "seed": seed}
+        options = {"epochs": 1, "batch": settings.batch, "momentum": settings.momentum, "seed": seed}
         lesson, _, _ = lesson_of(made, method, settings, objects, labels.max() + 1, seed)
-        rate, accuracy = search_rate(lesson, labels, part, validation, settings.rates, **given)
+        rate, accuracy = search_rate(lesson, labels, part, validation, settings.rates, **options)
     write_arrays(folder / ".rates" / f"{name}.npz", rate=rate, seconds=watch.seconds)
     note = f"validation accuracy {accuracy:.3f} after one pass"
     return [{"method": name, "task": task, "metric": "rate", "value": rate, "seconds": watch.seconds, "note": note}]
@@ -96,38 +96,38 @@ def train_network(
         lesson, trunk, copies = lesson_of(made, method, settings, objects, labels.max() + 1, seed)
         model = train_model(lesson, labels, part, **options, checkpoint=folder / "training.pt")
     with repeatable(seed), Stopwatch() as looking:
-        cams, found = look(model, lesson, len(labels))
+        cams, predicted = look(model, lesson, len(labels))
     seconds = (looking.seconds + trunk / len(tasks)) / len(objects)
     cams = cams.reshape(len(objects), -1, *cams.shape[1:])
     write_arrays(folder / ".cams" / method.name / f"{task}.npz", cams=cams, objects=np.array(objects), seconds=seconds)
     paid = training.seconds + (copies + float(stored.get("seconds", 0))) / len(tasks)
     row = {"method": method.name, "task": task, "split": "views"}
     return [
-        row | {"metric": "accuracy", "value": float((found[test] == labels[test]).mean()), "seconds": paid},
+        row | {"metric": "accuracy", "value": float((predicted[test] == labels[test]).mean()), "seconds": paid},
         row | {"metric": "chance", "value": majority_accuracy(labels, part, test)},
     ]
 
 
-def labels_of(objects: Sequence[str], known: Mapping[str, str], settings: Params) -> np.ndarray:
+def labels_of(objects: Sequence[str], classes: Mapping[str, str], settings: Params) -> np.ndarray:
     """(n,) i8: the number of the class of each picture of the objects, -1 for an object without one."""
-    names, views = sorted(set(known.values())), settings.parallels * settings.azimuths + 2
-    return np.repeat([names.index(known[name]) if name in known else -1 for name in objects], views)
+    names, views = sorted(set(classes.values())), settings.parallels * settings.azimuths + 2
+    return np.repeat([names.index(classes[name]) if name in classes else -1 for name in objects], views)
 
 
 def divided(labels: np.ndarray, seed: int) -> list[np.ndarray]:
     """[train, validation, test]: ids of the pictures with a class."""
-    own = np.flatnonzero(labels >= 0)
-    return [own[ids] for ids in random_views(len(own), rng(seed, "fixation views"))]
+    labelled = np.flatnonzero(labels >= 0)
+    return [labelled[ids] for ids in random_views(len(labelled), rng(seed, "fixation views"))]
 
 
 def lesson_of(
     made: Path, method: Method, settings: Params, objects: Sequence[str], classes: int, seed: int
 ) -> tuple[Task, float, float]:
     """(the Task of a method, seconds of its trunk for the pictures, and for their augmented copies)."""
-    own = method.mode == OF_LAST_BLOCK
-    network = build(method.network, classes, MODES[method.mode], seed, settings.source, fully_connected=own)
+    cached = method.mode == OF_LAST_BLOCK
+    network = build(method.network, classes, MODES[method.mode], seed, settings.source, fully_connected=cached)
     network = network.to(choose_device(settings.device))
-    if own:
+    if cached:
         maps, once, again = read_trunk(made, method.name, objects)
         return cached_task(network, method, maps), once, again
     return training_task(network, np.concatenate([read_pictures(made, name)[0] for name in objects])), 0.0, 0.0
@@ -154,22 +154,22 @@ def training_task(network: Network, pictures: np.ndarray) -> Task:
 def look(model: torch.nn.Module, lesson: Task, count: int) -> tuple[np.ndarray, np.ndarray]:
     """((n, i, j) f4 Grad-CAM maps, (n,) i8 predicted classes) of the first `count` pictures of a task."""
     assert isinstance(model, Network)
-    found = []
+    batches = []
     for ids in torch.arange(count).split(BATCH):
         with explain_out_of_memory(), mixed_precision(device_of(model)):
-            found.append(grad_cam(model.convolutions(lesson.inputs(ids)), model.classify))
-    cams, classes = zip(*found, strict=True)
+            batches.append(grad_cam(model.convolutions(lesson.inputs(ids)), model.classify))
+    cams, classes = zip(*batches, strict=True)
     return np.concatenate(cams), np.concatenate(classes)
 
 
 def read_cams(made: Path, method: str, name: str, tasks: Sequence[str]) -> tuple[dict[str, np.ndarray], float]:
     """(dict task -> (v, i, j) f4 Grad-CAM maps of one object, seconds of its networks)."""
-    found, seconds = {}, 0.0
+    cams, seconds = {}, 0.0
     for task in tasks:
         stored = read_arrays(made / ".cams" / method / f"{task}.npz")
-        found[task] = stored["cams"][stored["objects"].tolist().index(name)]
+        cams[task] = stored["cams"][stored["objects"].tolist().index(name)]
         seconds += float(stored["seconds"])
-    return found, seconds
+    return cams, seconds
 
 
 ITERATIONS = 200  # of the solver; the maps do not need full convergence
@@ -216,31 +216,33 @@ def train_head(
     classes, ids, features = read_features(made, method.name, tasks[task])
     with threadpool_limits(1), Stopwatch() as watch:
         train, validation, test = random_views(len(ids), rng(seed, "fixation views"))
-        tried = [head_accuracy(features, ids, classes, train, validation, penalty) for penalty in settings.penalties]
-        penalty = settings.penalties[int(np.argmax(tried))]
+        accuracies = [
+            head_accuracy(features, ids, classes, train, validation, penalty) for penalty in settings.penalties
+        ]
+        penalty = settings.penalties[int(np.argmax(accuracies))]
         names, numbers = np.unique(classes[ids][train], return_inverse=True)
         weights, bias = fit_head(features[train], numbers, penalty)
     write_arrays(
         folder / "heads" / method.name / f"{task}.npz",
         weights=weights.astype(np.float32), bias=bias.astype(np.float32), classes=names,
     )  # fmt: skip
-    found = names[scores(features[test], weights, bias).argmax(axis=1)]
+    predicted = names[scores(features[test], weights, bias).argmax(axis=1)]
     row = {"method": method.name, "task": task}
     rows = [
-        row | {"split": "views", "metric": "accuracy", "value": float((found == classes[ids][test]).mean())},
+        row | {"split": "views", "metric": "accuracy", "value": float((predicted == classes[ids][test]).mean())},
         row | {"split": "views", "metric": "chance", "value": majority_accuracy(classes[ids], train, test)},
     ]
     rows[0]["seconds"] = watch.seconds
     with threadpool_limits(1):
         unseen = unseen_object_rows(features, ids, classes, settings.penalties, settings.folds, rng(seed, task))
-    return rows + [row | one for one in unseen]
+    return rows + [row | cells for cells in unseen]
 
 
-def read_features(folder: Path, method: str, known: Mapping[str, str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def read_features(folder: Path, method: str, classes: Mapping[str, str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(class names (k,) of the objects, ids (n,) of the object of each picture, features (n, C) of the pictures)."""
-    parts = [read_arrays(folder / ".pooled" / method / f"{name}.npz")["pooled"] for name in known]
+    parts = [read_arrays(folder / ".pooled" / method / f"{name}.npz")["pooled"] for name in classes]
     return (
-        np.array(list(known.values())),
+        np.array(list(classes.values())),
         np.repeat(np.arange(len(parts)), [len(p) for p in parts]),
         np.concatenate(parts),
     )
@@ -251,8 +253,8 @@ def head_accuracy(
 ) -> float:
     """The accuracy on the test pictures of a head fitted to the training pictures."""
     names, numbers = np.unique(classes[ids[train]], return_inverse=True)
-    found = names[scores(features[test], *fit_head(features[train], numbers, penalty)).argmax(axis=1)]
-    return float((found == classes[ids[test]]).mean())
+    predicted = names[scores(features[test], *fit_head(features[train], numbers, penalty)).argmax(axis=1)]
+    return float((predicted == classes[ids[test]]).mean())
 
 
 def unseen_object_rows(
@@ -268,24 +270,24 @@ def unseen_object_rows(
     The penalty is chosen on the next fold, by heads that are trained on neither.
     """
     fold = object_folds(classes, folds, generator)
-    found = []
+    outcomes = []
     numbers = np.unique(fold[fold >= 0])
     for number, following in zip(numbers, np.roll(numbers, -1), strict=True):
         train, test = np.flatnonzero(fold[ids] != number), np.flatnonzero(fold[ids] == number)
         if len(np.unique(classes[ids[train]])) > 1:
-            kept, check = train[fold[ids[train]] != following], train[fold[ids[train]] == following]
+            part, check = train[fold[ids[train]] != following], train[fold[ids[train]] == following]
             penalty = penalties[0]
-            if len(check) and len(np.unique(classes[ids[kept]])) > 1:
-                tried = [head_accuracy(features, ids, classes, kept, check, one) for one in penalties]
-                penalty = penalties[int(np.argmax(tried))]
+            if len(check) and len(np.unique(classes[ids[part]])) > 1:
+                accuracies = [head_accuracy(features, ids, classes, part, check, strength) for strength in penalties]
+                penalty = penalties[int(np.argmax(accuracies))]
             values = (
                 head_accuracy(features, ids, classes, train, test, penalty),
                 majority_accuracy(classes[ids], train, test),
             )
-            found.append((*values, len(test)))
-    if not found:
+            outcomes.append((*values, len(test)))
+    if not outcomes:
         return [{"split": "objects", "metric": "accuracy", "value": None, "note": "each object is a class of its own"}]
-    accuracy, chance, weights = np.array(found).T
+    accuracy, chance, weights = np.array(outcomes).T
     return [
         {"split": "objects", "metric": "accuracy", "value": float(np.average(accuracy, weights=weights))},
         {"split": "objects", "metric": "chance", "value": float(np.average(chance, weights=weights))},

@@ -80,20 +80,20 @@ def subtractive_clusters(points: np.ndarray, radius: float = 0.5) -> np.ndarray:
         raise ValueError(f"radius must be above 0, got {radius}")
     extent = np.ptp(points, axis=0)
     scaled = (points - points.min(axis=0)) / np.where(extent > 0, extent, 1)
-    left = np.concatenate(
+    potential = np.concatenate(
         [_near(scaled[k : k + BLOCK], scaled, radius).sum(axis=1) for k in range(0, len(scaled), BLOCK)]
     )
-    first, centres = left.max(), []
+    first, centres = potential.max(), []
     while True:
-        best = int(left.argmax())
-        share = left[best] / first
+        best = int(potential.argmax())
+        share = potential[best] / first
         if share <= REJECT:
             return np.array(centres, dtype=np.int64)
         apart = np.linalg.norm(scaled[centres] - scaled[best], axis=1).min(initial=np.inf)
         if share > ACCEPT or apart / radius + share >= 1:
             centres.append(best)
-            left = left - left[best] * _near(scaled[best : best + 1], scaled, SQUASH * radius)[0]
-        left[best] = 0
+            potential = potential - potential[best] * _near(scaled[best : best + 1], scaled, SQUASH * radius)[0]
+        potential[best] = 0
 
 
 def _near(some, points, radius):

@@ -73,11 +73,11 @@ def project_to_vertices(pictures: np.ndarray, mesh: Mesh, viewpoint: Viewpoint, 
     pixels.
     """
     pictures, seen = _checked(pictures, mesh, seen)
-    found = np.zeros((len(pictures), len(seen)))
+    projected = np.zeros((len(pictures), len(seen)))
     rows, columns, _ = project(mesh.vertices[seen], viewpoint, pictures.shape[1:])
-    for values, picture in zip(found, pictures, strict=True):
+    for values, picture in zip(projected, pictures, strict=True):
         values[seen] = map_coordinates(picture, [rows, columns], order=1, mode="nearest")
-    return found
+    return projected
 
 
 def project_by_boxes(
@@ -206,11 +206,11 @@ def centre_distance(
     top: as in centres; 1 is the maximum to the letter.
     """
     people, ours = centres(vertices, truth, seen, top), centres(vertices, values, seen, top)
-    found = []
+    gaps = []
     for centre in people:
         if not len(ours):
             break
         distances = np.linalg.norm(ours - centre, axis=1)
-        found.append(distances.min())
+        gaps.append(distances.min())
         ours = np.delete(ours, distances.argmin(), axis=0)
-    return (float(min(found)), float(np.mean(found))) if found else (np.nan, np.nan)
+    return (float(min(gaps)), float(np.mean(gaps))) if gaps else (np.nan, np.nan)

@@ -67,12 +67,12 @@ def semantic_classes(dataset: str, objects: Sequence[str], path: str | Path) -> 
     table = read_table(path)
     if list(table) != ["dataset", "object", "living", "category"]:
         raise ValueError(f"{path} must have the columns dataset, object, living, category, got {', '.join(table)}")  # type: ignore[arg-type]
-    own = table[table["dataset"] == dataset].set_index("object")
-    if own.index.has_duplicates:
-        raise ValueError(f"{path}: {own.index[own.index.duplicated()][0]} appears twice in {dataset}: remove one row")
-    columns = {"level_1": own["living"].to_dict(), "level_2": own["category"].to_dict()}
-    known = {level: [names.get(name) for name in objects] for level, names in columns.items()}
-    return known | {"level_3": list(objects)}
+    rows = table[table["dataset"] == dataset].set_index("object")
+    if rows.index.has_duplicates:
+        raise ValueError(f"{path}: {rows.index[rows.index.duplicated()][0]} appears twice in {dataset}: remove one row")
+    columns = {"level_1": rows["living"].to_dict(), "level_2": rows["category"].to_dict()}
+    classes = {level: [names.get(name) for name in objects] for level, names in columns.items()}
+    return classes | {"level_3": list(objects)}
 
 
 def assign_classes(
@@ -83,22 +83,22 @@ def assign_classes(
     measures: dict object -> dict of the measures that SHAPE_MEASURES names; dataset, path: as in semantic_classes.
     Objects without a class in a level, and tasks with one class alone, are left out with a message.
     """
-    objects, found, curves = list(measures), {}, {}
+    objects, tasks, curves = list(measures), {}, {}
     for task, names in SHAPE_MEASURES.items():
         labels, curve = cluster_objects([[measures[name][key] for key in names] for name in objects], seed)
-        found[task] = {name: f"{label}" for name, label in zip(objects, labels, strict=True)}
+        tasks[task] = {name: f"{label}" for name, label in zip(objects, labels, strict=True)}
         if curve:
             curves[task] = (curve, labels.max() + 1)
     for level, names in semantic_classes(dataset, objects, path).items():
-        found[level] = {name: label for name, label in zip(objects, names, strict=True) if label is not None}
-        if len(found[level]) < len(objects):
-            missing = [name for name in objects if name not in found[level]]
+        tasks[level] = {name: label for name, label in zip(objects, names, strict=True) if label is not None}
+        if len(tasks[level]) < len(objects):
+            missing = [name for name in objects if name not in tasks[level]]
             print(f"fixation: {level} leaves out {len(missing)} objects that {SEMANTICS} does not contain: "
                   f"{', '.join(missing[:5])}{', ...' if len(missing) > 5 else ''}", file=sys.stderr)  # fmt: skip
-    for task in [task for task, classes in found.items() if len(set(classes.values())) < 2]:
+    for task in [task for task, classes in tasks.items() if len(set(classes.values())) < 2]:
         print(f"fixation: task {task} is left out, it has fewer than two classes", file=sys.stderr)
-        del found[task]
-    return found, curves
+        del tasks[task]
+    return tasks, curves
 
 
 TRAIN, VALIDATION = 0.6, 0.2  # shares of the views, the rest is for testing; T3.3.2

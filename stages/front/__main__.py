@@ -42,25 +42,25 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     parser.add_argument("--minutes", type=float, default=MINUTES, help="stop after these; a later call goes on (60)")
     parser.add_argument("--seed", type=int, default=0, help="of all random numbers (default: %(default)s)")
     parser.add_argument("--classes", default="furniture", help="data set of the classes (default: %(default)s)")
-    given = parser.parse_args(argv)
+    options = parser.parse_args(argv)
     with from_extra():
         from . import known
         from .known import halves, read_objects
         from .search import OutOfTime, Search
         from .senses import Senses
-    shapes, classes, files = read_objects(root / "data", SHAPES, given.classes)
-    searched, unseen = halves(shapes, classes, given.seed)
-    folder = root / "build/front" / f"{SHAPES}-{given.classes}-{given.seed}"
+    shapes, classes, files = read_objects(root / "data", SHAPES, options.classes)
+    searched, unseen = halves(shapes, classes, options.seed)
+    folder = root / "build/front" / f"{SHAPES}-{options.classes}-{options.seed}"
     meshes = hashlib.sha256("".join(f"{name} {sha256(path)}" for name, path in sorted(files.items())).encode())
     made_of = {"code": stage_digest("front"), "meshes": meshes.hexdigest()[:16]}
-    search = Search(folder, made_of, Senses(files, folder / "felt", given.seed), given.seed, given.minutes)
+    search = Search(folder, made_of, Senses(files, folder / "felt", options.seed), options.seed, options.minutes)
     try:
-        found = search.run(searched, unseen, given.trials)
+        rows = search.run(searched, unseen, options.trials)
     except OutOfTime:
-        print(f"front: {given.minutes:g} minutes are over; run it again to go on", file=sys.stderr)
+        print(f"front: {options.minutes:g} minutes are over; run it again to go on", file=sys.stderr)
         return 1
-    paths = known.write(root / "reports/measurements", (SHAPES, given.classes), found, given.seed)
-    print(f"front: {len(found)} rows in {' and '.join(map(str, paths))}; `python -m stages.report` shows them")
+    paths = known.write(root / "reports/measurements", (SHAPES, options.classes), rows, options.seed)
+    print(f"front: {len(rows)} rows in {' and '.join(map(str, paths))}; `python -m stages.report` shows them")
     return 0
 
 

@@ -43,13 +43,13 @@ class Objects:
 
         ValueError for fewer than six.
         """
-        few, taken, sets = self.shapes[:shapes], Counter(), []
+        few, uses, sets = self.shapes[:shapes], Counter(), []
         if len(few) < SIX:
             raise ValueError(f"{len(few)} shapes to tell apart are too few: {SIX} are needed")
         for number in range(count):
             order = rng(seed, f"six {number}").permutation(few).tolist()
-            sets.append(sorted(sorted(order, key=lambda name: taken[name])[:SIX]))  # of equals in the order drawn
-            taken.update(sets[-1])
+            sets.append(sorted(sorted(order, key=lambda name: uses[name])[:SIX]))  # of equals in the order drawn
+            uses.update(sets[-1])
         return sets
 
 
@@ -72,11 +72,11 @@ def _halved(names, seed):
 
 def shapes_of(names: Iterable[str]) -> list[str]:
     """The names without those that are another size of a shape among them."""
-    every = set(names)
+    distinct = set(names)
     return sorted(
         name
-        for name in every
-        if not any(name.endswith(size) and f"{name.removesuffix(size)}large" in every for size in SIZES)
+        for name in distinct
+        if not any(name.endswith(size) and f"{name.removesuffix(size)}large" in distinct for size in SIZES)
     )
 
 
@@ -93,8 +93,8 @@ def read_objects(data: Path, shapes: str, classes: str) -> tuple[list[str], dict
         if not names:
             remedy = f"`python -m stages.compose 'sets=[{shapes},{classes}]'`, then `dvc repro meshes@{dataset}`"
             raise ValueError(f"{folder} holds no meshes: {remedy}")
-        if both := sorted(files.keys() & set(names)):
-            raise ValueError(f"{', '.join(both)}: objects of both {shapes} and {classes}; name other --classes")
+        if shared := sorted(files.keys() & set(names)):
+            raise ValueError(f"{', '.join(shared)}: objects of both {shapes} and {classes}; name other --classes")
         files |= {name: folder / f"{name}.npz" for name in names}
     groups = read_classes(data / classes / "meshes")
     if few := [name for name, members in groups.items() if len(members) < 2]:
@@ -132,7 +132,7 @@ def known(senses: Senses, objects: Objects, choice: Choice, effort: Effort, seed
     classes, of which it was left out. Objects that no split could ask about have a row without value, which says so.
     """
     with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
-        asked = {
+        by_split = {
             Split.REGIONS: list(_of_regions(senses, objects, choice, effort, seed)),
             Split.OBJECTS: list(_of_objects(senses, objects, choice, effort, seed)),
         }
@@ -140,25 +140,25 @@ def known(senses: Senses, objects: Objects, choice: Choice, effort: Effort, seed
     groups[Split.OBJECTS] = {name: label for label, names in objects.classes.items() for name in names}
     return [
         _row(name, group, split, senses.feel(name, choice), choice, answers)
-        for split, answers in asked.items()
+        for split, answers in by_split.items()
         for name, group in groups[split].items()
     ]
 
 
 def _row(name, group, split, felt: Felt, choice, answers: list[Answers]):
     """The row of one object; its seconds are those from its mesh to its name, in order."""
-    own = [one for one in answers if name in one.right]
+    relevant = [answer for answer in answers if name in answer.right]
     row = {"item": name, "group": group, "split": split, "metric": "accuracy", "value": None, "faces": felt.faces}
     row |= choice.columns
-    if not own:
+    if not relevant:
         return row | {"seconds": None, "note": "too few touches in a region of it, or apart from it"}
     seconds = {part: felt.seconds[part] for part in ("simplifying", "looking")}
     seconds["pressing"] = felt.seconds["surfaces"] + choice.touches * felt.seconds["pressing"]
-    seconds["asking"] = float(np.mean([one.asking for one in own]))
+    seconds["asking"] = float(np.mean([answer.asking for answer in relevant]))
     learned = felt.seconds["simplifying"] + felt.seconds["looking"] + felt.seconds["surfaces"]
     learned += len(felt.learned) * felt.seconds["pressing"]
-    training = float(np.mean([one.learning / len(one.right) for one in own])) + learned
-    value = float(np.mean([one.right[name] for one in own]))
+    training = float(np.mean([answer.learning / len(answer.right) for answer in relevant])) + learned
+    value = float(np.mean([answer.right[name] for answer in relevant]))
     return row | seconds | {"training": training, "value": value, "seconds": sum(seconds.values()), "note": None}
 
 
@@ -166,17 +166,17 @@ def _of_regions(senses, objects, choice, effort, seed) -> Iterator[Answers]:
     """Each set of six, with a region of each shape held out, where touches apart from it are left."""
     for number, names in enumerate(objects.sixes(effort.shapes, effort.sixes, seed)):
         felt = [senses.feel(name, choice) for name in names]
-        count = min(len(one.places) for one in felt)
+        count = min(len(item.places) for item in felt)
         truth = np.repeat(np.arange(len(names)), count)
-        learned, asked, places = (
-            np.concatenate([getattr(one, part)[:count] for one in felt]) for part in ("learned", "asked", "places")
+        learned, queries, places = (
+            np.concatenate([getattr(item, part)[:count] for item in felt]) for part in ("learned", "asked", "places")
         )
         for repetition in range(effort.regions):
             random = rng(seed, f"regions {number} {repetition}")
             draws = (region_holdout(truth, places, WIDTH, int(random.integers(2**31))) for _ in range(ATTEMPTS))
-            train, test = next((found for found in draws if found is not None), ([], []))
+            train, test = next((split for split in draws if split is not None), ([], []))
             if len(test) and np.bincount(truth[test]).min() >= choice.touches:
-                yield _ask(choice, learned[train], truth[train], asked[test], truth[test], names, names, random)
+                yield _ask(choice, learned[train], truth[train], queries[test], truth[test], names, names, random)
 
 
 def _of_objects(senses, objects, choice, effort, seed) -> Iterator[Answers]:
@@ -187,17 +187,17 @@ def _of_objects(senses, objects, choice, effort, seed) -> Iterator[Answers]:
     for fold in range(effort.folds):
         random = rng(seed, f"objects {fold // turns}")
         orders = [random.permutation(objects.classes[label]).tolist() for label in labels]
-        left = [order[fold % turns] for order in orders]
-        rest = [(k, felt[name]) for k, order in enumerate(orders) for name in order if name != left[k]]
-        learned = np.concatenate([one.learned for _, one in rest])
-        truth = np.repeat([k for k, _ in rest], [len(one.learned) for _, one in rest])
-        asked = np.concatenate([felt[name].asked for name in left])
-        owners = np.repeat(np.arange(len(left)), [len(felt[name].asked) for name in left])
+        held_out = [order[fold % turns] for order in orders]
+        rest = [(k, felt[name]) for k, order in enumerate(orders) for name in order if name != held_out[k]]
+        learned = np.concatenate([item.learned for _, item in rest])
+        truth = np.repeat([k for k, _ in rest], [len(item.learned) for _, item in rest])
+        queries = np.concatenate([felt[name].asked for name in held_out])
+        owners = np.repeat(np.arange(len(held_out)), [len(felt[name].asked) for name in held_out])
         random = rng(seed, f"objects {fold}")
-        yield _ask(choice, learned, truth, asked, owners, left, labels, random)
+        yield _ask(choice, learned, truth, queries, owners, held_out, labels, random)
 
 
-def _ask(choice, learned, truth, asked, owners, names, answers, random) -> Answers:
+def _ask(choice, learned, truth, queries, owners, names, answers, random) -> Answers:
     """Learns samples (k, 41) of truth (k,), and asks about samples of owners: ids of `names` and of `answers`.
 
     Each touch is asked about once with `choice.touches` - 1 others of its object; what most of them say is the answer.
@@ -207,9 +207,9 @@ def _ask(choice, learned, truth, asked, owners, names, answers, random) -> Answe
         model.fit(learned, truth)
     together = draw_combinations(owners, choice.touches, random)
     with Stopwatch() as asking:
-        said = majority(model.predict(asked)[together].ravel(), choice.touches)
-    right = {name: float((said[owners == k] == k).mean()) for k, name in enumerate(names)}
-    return Answers(right, learning.seconds, choice.touches * asking.seconds / len(asked))
+        predicted = majority(model.predict(queries)[together].ravel(), choice.touches)
+    right = {name: float((predicted[owners == k] == k).mean()) for k, name in enumerate(names)}
+    return Answers(right, learning.seconds, choice.touches * asking.seconds / len(queries))
 
 
 COLUMNS = {

@@ -59,14 +59,16 @@ class Search:
         self._check(made_of)
 
     def _check(self, made_of):
-        known = self.study.user_attrs.get(MADE_OF)
-        if known is None:
+        stored = self.study.user_attrs.get(MADE_OF)
+        if stored is None:
             self.study.set_user_attr(MADE_OF, made_of)
             return
-        other = [f"{key} {known.get(key)}, now {value}" for key, value in made_of.items() if known.get(key) != value]
-        if other:
+        changes = [
+            f"{key} {stored.get(key)}, now {value}" for key, value in made_of.items() if stored.get(key) != value
+        ]
+        if changes:
             raise ValueError(
-                f"{self.folder} holds a study of another version ({'; '.join(other)}), whose results cannot be "
+                f"{self.folder} holds a study of another version ({'; '.join(changes)}), whose results cannot be "
                 f"compared: remove that folder to search anew, or check out the version that it was made with"
             )
 
@@ -83,7 +85,7 @@ class Search:
             self._asked("confirmation", unseen, choice, CONFIRMATION, roles.get(choice))
         for choice in one_choice_changed(smallest_of(rows)):
             self._asked("one_choice", unseen, choice, CONFIRMATION)
-        return [row for found in self._found.values() for row in found]
+        return [row for group in self._found.values() for row in group]
 
     def _wide(self, searched, trials):
         """{choice: its rows} of the choices that the study proposes, until it has asked about so many."""
@@ -95,7 +97,7 @@ class Search:
             elif trial.state == TrialState.RUNNING:  # a killed run has left it
                 rows |= self._tell(trial.number, trial.params, searched)
         options: dict[str, Any] = {
-            name: optuna.distributions.CategoricalDistribution(every) for name, every in SPACE.items()
+            name: optuna.distributions.CategoricalDistribution(values) for name, values in SPACE.items()
         }
         while (number := len(self.study.get_trials(deepcopy=False))) < trials:
             # Drawn anew for each trial, so that a run that was stopped goes on like one that was not.
@@ -120,10 +122,10 @@ class Search:
         if not path.exists():
             if time.monotonic() > self._end:
                 raise OutOfTime
-            found = known(self.senses, objects, choice, effort, self.seed)
-            write_json(path, found)
-            told = " ".join(f"{value:.3g}" for value in aims(found)[:3])
-            print(f"front: {rung} {choice.name}: {told} (regions, objects, seconds)", file=sys.stderr)
+            rows = known(self.senses, objects, choice, effort, self.seed)
+            write_json(path, rows)
+            text = " ".join(f"{value:.3g}" for value in aims(rows)[:3])
+            print(f"front: {rung} {choice.name}: {text} (regions, objects, seconds)", file=sys.stderr)
         common = {"rung": rung, "number": self._numbers.setdefault(choice, len(self._numbers)), "role": role}
         self._found[rung, choice] = [{**row, **common} for row in read_json(path)]
         return self._found[rung, choice]
@@ -148,22 +150,24 @@ def aims(rows: Rows) -> list[float]:
 
     Means over the objects. Accuracy 0 where no split could be drawn: what cannot be asked about is no good.
     """
-    found = [_mean([row["value"] for row in rows if row["split"] == split]) for split in (Split.REGIONS, Split.OBJECTS)]
-    return [*found, *(_mean([row[key] for row in rows]) for key in ("seconds", "faces", "touches"))]
+    accuracies = [
+        _mean([row["value"] for row in rows if row["split"] == split]) for split in (Split.REGIONS, Split.OBJECTS)
+    ]
+    return [*accuracies, *(_mean([row[key] for row in rows]) for key in ("seconds", "faces", "touches"))]
 
 
 def losses(rows: Iterable[Rows]) -> np.ndarray:
     """(k, 5) the `aims` of the rows of k choices, each with less as the better."""
     signs = np.array([-1 if direction == "maximize" else 1 for direction in DIRECTIONS])
-    return signs * np.array([aims(own) for own in rows])
+    return signs * np.array([aims(part) for part in rows])
 
 
 def smallest_of(rows: Mapping[Key, Rows]) -> Key:
     """The choice of the fewest seconds whose accuracy, the mean of both kinds, is WITHIN that of the best one."""
-    found = {choice: aims(own) for choice, own in rows.items()}
-    score = {choice: (regions + objects) / 2 for choice, (regions, objects, *_) in found.items()}
-    near: list[Any] = [choice for choice in found if score[choice] >= max(score.values()) - WITHIN]
-    return min(near, key=lambda choice: (found[choice][2:], choice))
+    measures = {choice: aims(part) for choice, part in rows.items()}
+    score = {choice: (regions + objects) / 2 for choice, (regions, objects, *_) in measures.items()}
+    near: list[Any] = [choice for choice in measures if score[choice] >= max(score.values()) - WITHIN]
+    return min(near, key=lambda choice: (measures[choice][2:], choice))
 
 
 def _mean(values):
@@ -179,25 +183,25 @@ def ranks(losses: ArrayLike) -> np.ndarray:
     losses = np.asarray(losses, dtype=np.float64)
     no_worse = (losses[:, None] <= losses[None]).all(axis=2)
     dominates = np.logical_and(no_worse, (losses[:, None] < losses[None]).any(axis=2))
-    found = np.full(len(losses), -1)
+    ranked = np.full(len(losses), -1)
     for rank in range(len(losses)):
-        left = found < 0
-        found[left & ~dominates[left].any(axis=0)] = rank
-    return found
+        unranked = ranked < 0
+        ranked[unranked & ~dominates[unranked].any(axis=0)] = rank
+    return ranked
 
 
 def crowding(losses: ArrayLike) -> np.ndarray:
     """(k,) how far each choice stands from its neighbours, summed over the aims; inf at the ends of an aim."""
     losses = np.asarray(losses, dtype=np.float64)
-    found = np.zeros(len(losses))
+    distances = np.zeros(len(losses))
     for column in losses.T:
         order = np.argsort(column, kind="stable")
         span = np.ptp(column)
         if span == 0:
             continue
-        found[order[[0, -1]]] = np.inf
-        found[order[1:-1]] += (column[order[2:]] - column[order[:-2]]) / span
-    return found
+        distances[order[[0, -1]]] = np.inf
+        distances[order[1:-1]] += (column[order[2:]] - column[order[:-2]]) / span
+    return distances
 
 
 def best_share(losses: ArrayLike) -> np.ndarray:
@@ -205,7 +209,7 @@ def best_share(losses: ArrayLike) -> np.ndarray:
     losses = np.asarray(losses, dtype=np.float64)
     rank = ranks(losses)
     apart = np.zeros(len(losses))
-    for one in np.unique(rank):
-        apart[rank == one] = crowding(losses[rank == one])
+    for level in np.unique(rank):
+        apart[rank == level] = crowding(losses[rank == level])
     order = np.lexsort((-apart, rank))
     return np.sort(order[: max(1, len(losses) // SHARE)])

@@ -60,11 +60,11 @@ class Senses:
 
     def feel(self, name: str, choice: Choice) -> Felt:
         """The first `choice.points` touches of an object; those where the array cannot stand are left out."""
-        found = self._touches(name, choice)
-        first = found["rank"] < choice.points
-        seconds = dict(zip(SECONDS, found["seconds"].tolist(), strict=True))
+        arrays = self._touches(name, choice)
+        first = arrays["rank"] < choice.points
+        seconds = dict(zip(SECONDS, arrays["seconds"].tolist(), strict=True))
         return Felt(
-            found["learned"][first], found["asked"][first], found["places"][first], int(found["faces"]), seconds
+            arrays["learned"][first], arrays["asked"][first], arrays["places"][first], int(arrays["faces"]), seconds
         )
 
     def _touches(self, name, choice):
@@ -102,8 +102,8 @@ class Senses:
         if not path.exists():
             write_arrays(path, **dict(looks(mesh, choice, options)))
         look = f"{choice.method}-{choice.viewpoints}"
-        found = read_arrays(path, look)
-        return found[f"{look} points"], float(found[f"{look} seconds"])
+        arrays = read_arrays(path, look)
+        return arrays[f"{look} points"], float(arrays[f"{look} seconds"])
 
     def _warm_up(self):
         """Looks at and presses a small mesh in every way, once, so that no seconds hold the loading of code."""
@@ -153,8 +153,8 @@ def looks(mesh: Mesh, choice: Choice, options: Options) -> Iterator[tuple[str, n
         pictures[viewpoint], cost[viewpoint] = _picture(mesh, viewpoint, settings)
     for name in SPACE["viewpoints"]:
         viewpoints = viewpoint_set(name)
-        maps = {channel: np.stack([pictures[one][channel] for one in viewpoints]) for channel in CHANNELS}
-        mask = np.stack([pictures[one]["mask"] for one in viewpoints])
+        maps = {channel: np.stack([pictures[view][channel] for view in viewpoints]) for channel in CHANNELS}
+        mask = np.stack([pictures[view]["mask"] for view in viewpoints])
         with Stopwatch() as lines:
             sight = ViewMaps(replace(mesh), viewpoints, maps, mask)
             sight.vertex_values(sight.maps[CHANNELS[0]])  # factors the equations of the smoothing, which all need
@@ -162,7 +162,7 @@ def looks(mesh: Mesh, choice: Choice, options: Options) -> Iterator[tuple[str, n
             with Stopwatch() as finding:
                 points = METHODS[method].find(sight.mesh, sight, options, MOST).points
             parts = ("picture", *METHODS[method].channels)
-            seconds = sum(cost[one][part] for one in viewpoints for part in parts)
+            seconds = sum(cost[view][part] for view in viewpoints for part in parts)
             yield f"{method}-{name} points", points
             yield f"{method}-{name} seconds", np.array(seconds + lines.seconds + finding.seconds)
 
@@ -195,11 +195,11 @@ def press_both(
         near = whole.used[KDTree(whole.vertices[whole.used]).query(mesh.vertices[points])[1]]
         can = touchable(surface.mesh, near)
     rank = np.flatnonzero(can & touchable(mesh, points))
-    with Stopwatch() as each:
-        asked = features(press_many(surface, near[rank], cells, sensor.pitch, contact=sensor.contact))
-    learned = asked
+    with Stopwatch() as pressing:
+        queries = features(press_many(surface, near[rank], cells, sensor.pitch, contact=sensor.contact))
+    learned = queries
     if mesh is not whole:
         learned = features(press_many(Surface(mesh), points[rank], cells, sensor.pitch, contact=sensor.contact))
-    seconds = np.array([*before, once.seconds, each.seconds / max(len(rank), 1)])
-    return {"learned": learned, "asked": asked, "places": mesh.vertices[points[rank]], "rank": rank,
+    seconds = np.array([*before, once.seconds, pressing.seconds / max(len(rank), 1)])
+    return {"learned": learned, "asked": queries, "places": mesh.vertices[points[rank]], "rank": rank,
             "faces": np.array(len(mesh.faces)), "seconds": seconds}  # fmt: skip

@@ -67,9 +67,9 @@ DEFAULT = Choice("glance", "", 0, 60, 16, WHOLE, 1, "knn")  # what the pipeline 
 
 def one_choice_changed(choice: Choice) -> Iterator[Choice]:
     """The choices that differ from one in a single stage; where pictures come in, they are the default's."""
-    own = {field.name: getattr(choice, field.name) or SPACE[field.name][0] for field in fields(choice)}
-    every = (choice_of(own | {name: option}) for name, options in SPACE.items() for option in options)
-    yield from dict.fromkeys(other for other in every if other != choice)
+    values = {field.name: getattr(choice, field.name) or SPACE[field.name][0] for field in fields(choice)}
+    choices = (choice_of(values | {name: option}) for name, options in SPACE.items() for option in options)
+    yield from dict.fromkeys(other for other in choices if other != choice)
 
 
 @dataclass(frozen=True)

@@ -33,13 +33,13 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     surface, imprints, rows = Surface(mesh), {}, []
     cells = settings.cells[0], settings.cells[1]
-    found = read_points(data / "salient_points" / f"{name}.npz")
+    by_method = read_points(data / "salient_points" / f"{name}.npz")
     for method in sorted(settings.methods):
-        if method not in found:
-            raise ValueError(f"imprints.methods: {method} is not among salient_points.methods: {', '.join(found)}")
+        if method not in by_method:
+            raise ValueError(f"imprints.methods: {method} is not among salient_points.methods: {', '.join(by_method)}")
         with Stopwatch() as watch:
-            felt = touch(surface, found[method], cells, settings.pitch, settings.contact)
-        points = found[method][felt.can]
+            felt = touch(surface, by_method[method], cells, settings.pitch, settings.contact)
+        points = by_method[method][felt.can]
         imprints[method] = Imprints(felt.images, points, mesh.vertices[points], settings.pitch)
         values = {"imprints": len(points), **_shape_of(felt), "refused": int((~felt.can).sum())}
         common = {"item": name, "method": method}

@@ -39,21 +39,21 @@ def write_imprints(path: str | Path, imprints: dict[str, Imprints]) -> None:
     """Writes {method: Imprints} as the arrays METHOD.images, .vertices, .positions and .pitch."""
     arrays = {}
     for method in sorted(imprints):
-        one = imprints[method]
-        arrays[f"{method}.images"] = one.images.astype(np.float32)
-        arrays[f"{method}.vertices"] = one.vertices.astype(np.int64)
-        arrays[f"{method}.positions"] = one.positions.astype(np.float32)
-        arrays[f"{method}.pitch"] = np.float64(one.pitch)
+        entry = imprints[method]
+        arrays[f"{method}.images"] = entry.images.astype(np.float32)
+        arrays[f"{method}.vertices"] = entry.vertices.astype(np.int64)
+        arrays[f"{method}.positions"] = entry.positions.astype(np.float32)
+        arrays[f"{method}.pitch"] = np.float64(entry.pitch)
     write_arrays(path, **arrays)
 
 
 def read_imprints(path: str | Path) -> dict[str, Imprints]:
     """{method: Imprints} of one object, the methods in alphabetical order."""
-    arrays, found = read_arrays(path), {}
+    arrays, imprints = read_arrays(path), {}
     for method in sorted({key.rpartition(".")[0] for key in arrays}):
         *places, pitch = (arrays[f"{method}.{part}"] for part in PARTS)
-        found[method] = Imprints(*places, pitch=np.float64(pitch))  # stays double beside f4 positions
-    return found
+        imprints[method] = Imprints(*places, pitch=np.float64(pitch))  # stays double beside f4 positions
+    return imprints
 
 
 class FaceCentres(Surface):
@@ -70,18 +70,18 @@ class FaceCentres(Surface):
 
     def measure(self, centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray) -> np.ndarray:
         """As `Surface.measure`, to the centres of the faces; a cell without a face keeps its distance."""
-        found = super().measure(centres, axes, cells, pitches)
-        normals = np.broadcast_to(axes[:, None, None, 2], (*found.shape, 3))
+        distances = super().measure(centres, axes, cells, pitches)
+        normals = np.broadcast_to(axes[:, None, None, 2], (*distances.shape, 3))
         places = cell_places(centres, axes, cells, pitches)
-        hit = np.isfinite(found)
-        down = np.where(found[hit] >= 0, 1.0, -1.0)[:, None] * normals[hit]
-        origins = places[hit] - found[hit][:, None] * normals[hit] + 10 * LIFT * self.mesh.diagonal * down
+        hit = np.isfinite(distances)
+        down = np.where(distances[hit] >= 0, 1.0, -1.0)[:, None] * normals[hit]
+        origins = places[hit] - distances[hit][:, None] * normals[hit] + 10 * LIFT * self.mesh.diagonal * down
         face = self._scene.cast(origins, -down).face
         reached = face >= 0
-        exact = found[hit]
+        exact = distances[hit]
         exact[reached] = np.einsum("ij,ij->i", places[hit] - self._centres[face], normals[hit])[reached]
-        found[hit] = exact
-        return found
+        distances[hit] = exact
+        return distances
 
 
 def cell_places(centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray) -> np.ndarray:

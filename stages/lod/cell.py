@@ -112,16 +112,19 @@ def _cell_rows(inputs, row, keep, folder, settings, seed):
             rings = keep.rings
             if settings.shrink:
                 rings = shrunk_rings(inputs.mesh, row["asked"], keep.vertices, rings)
-        made = _simplified(inputs, row["asked"], keep, rings, settings, seed)
+        simplified = _simplified(inputs, row["asked"], keep, rings, settings, seed)
     except InfeasibleTarget as error:
         return [row | {"note": f"infeasible: {error}", "infeasible": True}]
     except Exception as error:  # whatever pymeshlab raises: noted, and the other cells go on
         return [row | {"note": " ".join(str(error).split()) or type(error).__name__}]
-    write_mesh(folder / inputs.name / file_name(row["method"], row["target"]), made.mesh)
-    kept, count = rings[rings >= 0], len(made.mesh.faces)
+    write_mesh(folder / inputs.name / file_name(row["method"], row["target"]), simplified.mesh)
+    kept, count = rings[rings >= 0], len(simplified.mesh.faces)
     row |= {"faces": count, "kept": len(kept), "shrunk": bool((rings < keep.rings).any())}
     row |= {"rings": float(kept.mean()) if len(kept) else None}
-    return [row | {"value": count, "seconds": watch.seconds + made.seconds}, *(row | part for part in made.errors)]
+    return [
+        row | {"value": count, "seconds": watch.seconds + simplified.seconds},
+        *(row | part for part in simplified.errors),
+    ]
 
 
 def _simplified(inputs, faces, keep, rings, settings, seed):

@@ -42,11 +42,11 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int, ga
     """Simplifies one object by every method to every target; gaze: measure the error weighted by human gaze, too."""
     warm_up(settings.backend)
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
-    found = data / "salient_points" / f"{name}.npz"
+    path = data / "salient_points" / f"{name}.npz"
     height, width = settings.size
     pictures = take_pictures(mesh, viewpoint_set(settings.viewpoints), (height, width))
     looked_at = human_gaze(data / GAZE.format(name)) if gaze else None
-    subject = ObjectInputs(name, mesh, read_strong_points(found), read_saliency(found), pictures, looked_at)
+    subject = ObjectInputs(name, mesh, read_strong_points(path), read_saliency(path), pictures, looked_at)
     rows = [row for method in settings.methods for row in measure_cells(subject, method, folder, settings, seed)]
     write_table(folder / name / "curve.csv", pd.DataFrame(rows).drop(columns=["seconds", "note"]))
     return rows

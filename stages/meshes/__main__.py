@@ -33,11 +33,11 @@ def process(item: MeshFile, folder: Path, without_plane: bool, colours: str) -> 
     row = {"item": item.name, "metric": "faces", "value": None}
     try:
         with Stopwatch() as watch:
-            mesh, known = prepare_mesh(item, without_plane, colours)
+            mesh, entry = prepare_mesh(item, without_plane, colours)
             write_mesh(folder / f"{item.name}.npz", mesh)
     except MeshError as error:
         return [row | {"note": str(error)}]
-    return [row | {"value": known["faces"], "seconds": watch.seconds, "_manifest": known}]
+    return [row | {"value": entry["faces"], "seconds": watch.seconds, "_manifest": entry}]
 
 
 def content_hash(item: MeshFile, colours: str) -> str:
@@ -51,8 +51,8 @@ def content_hash(item: MeshFile, colours: str) -> str:
         beside = {} if colours == "vertex" else item.beside()
     except (OSError, ValueError, RuntimeError) as error:
         content = str(error).encode()
-    known = (item.name, item.file, item.suffix, item.up, item.unit, item.licence, item.creator)
-    digest = hashlib.sha256(repr(known).encode() + content)
+    parts = (item.name, item.file, item.suffix, item.up, item.unit, item.licence, item.creator)
+    digest = hashlib.sha256(repr(parts).encode() + content)
     for name, data in sorted(beside.items()):
         digest.update(name.encode() + data)
     return digest.hexdigest()
@@ -82,11 +82,13 @@ def run(workspace: Workspace) -> None:
         write_table(stage.folder / "manifest.csv", pd.DataFrame(manifest))
         write_table(stage.folder / "refused.csv", pd.DataFrame(refused, columns=REFUSED))
         if settings.classes:
-            accepted = {known["object"]: None for known in manifest}  # quickly looked up, in order
-            pairs = [(name, one) for name, objects in settings.classes.items() for one in objects if one in accepted]
+            accepted = {entry["object"]: None for entry in manifest}  # quickly looked up, in order
+            pairs = [
+                (name, member) for name, objects in settings.classes.items() for member in objects if member in accepted
+            ]
             write_table(stage.folder / CLASSES, pd.DataFrame(pairs, columns=["class", "object"]))
             stage.rows += small_classes(settings.classes, list(accepted))
-        closed = sum(known["watertight"] for known in manifest)
+        closed = sum(entry["watertight"] for entry in manifest)
         stage.metrics({"objects": len(manifest), "refused": len(refused), "watertight": closed})
     print(f"meshes: {workspace.dataset}, {len(manifest)} objects, {closed} watertight, {len(refused)} refused")
 

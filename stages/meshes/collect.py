@@ -36,8 +36,8 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
         content, painted = item.content(), colours != "vertex"
         needed = painted or item.suffix in (DEPTH, ".gltf")
         beside = item.beside() if needed else {}
-        there = ZipResolver({name: data for name, data in beside.items() if data})
-        parsed = parse(content, item.suffix, there if needed else None, every_colour=painted)
+        resolver = ZipResolver({name: data for name, data in beside.items() if data})
+        parsed = parse(content, item.suffix, resolver if needed else None, every_colour=painted)
         raw, notes = clean(settled(parsed if item.up == AUTO else replace(parsed, up=item.up)))
         notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:
@@ -103,7 +103,7 @@ def chosen_objects(objects: Sequence[str], classes: Mapping[str, Sequence[str]])
 def small_classes(classes: Mapping[str, Sequence[str]], accepted: Sequence[str]) -> Iterator[dict[str, Any]]:
     """Rows with a note, one per class that is left with fewer than two objects."""
     for name, objects in classes.items():
-        left = len(set(objects) & set(accepted))
-        if left < 2:
-            note = f"class {name} has {left} of its {len(objects)} objects: none of it can be held out"
-            yield {"group": name, "metric": "objects", "value": left, "note": note}
+        count = len(set(objects) & set(accepted))
+        if count < 2:
+            note = f"class {name} has {count} of its {len(objects)} objects: none of it can be held out"
+            yield {"group": name, "metric": "objects", "value": count, "note": note}

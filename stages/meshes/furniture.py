@@ -79,7 +79,9 @@ def furniture_files(everything: bool = False) -> tuple[Path, dict[str, tuple[str
     if not zipfile.is_zipfile(extract):
         _extract(fetch_debian(PACKAGE, HASH), extract, everything)
     with zipfile.ZipFile(extract) as stored:
-        comments = {one.filename.removesuffix(".obj"): one.comment.decode() for one in stored.infolist() if one.comment}
+        comments = {
+            entry.filename.removesuffix(".obj"): entry.comment.decode() for entry in stored.infolist() if entry.comment
+        }
     metadata = {name: (comment.split("\n")[0], comment.split("\n")[1]) for name, comment in comments.items()}
     return extract, metadata
 
@@ -92,11 +94,11 @@ def _extract(package, extract, everything):
                 continue
             archive = io.BytesIO(stream.read())
             entries = _entries(next(read_members(archive, [CATALOGUE]))[1])
-            every = {
+            models = {
                 re.sub(r"[^\w-]", "_", f"{library}__{entry}"): (library, entry)
                 for entry in sorted(filter(None, entries))
             }
-            for name, (where, entry) in (every if everything else FURNITURE).items():
+            for name, (where, entry) in (models if everything else FURNITURE).items():
                 if where == library:
                     _copy(archive, entries[entry], name, target)
 
@@ -153,16 +155,16 @@ def files_beside(path: Path) -> dict[str, bytes]:
 
 def files_named(content: bytes, suffix: str, read: Callable[[str], bytes]) -> dict[str, bytes]:
     """As `files_beside`, of the bytes of a mesh file; read(name, relative to it) raises OSError or ValueError."""
-    found: dict[str, bytes] = {}
-    wanted = _named(content, suffix)
-    while wanted:
-        name = wanted.pop(0)
+    files: dict[str, bytes] = {}
+    pending = _named(content, suffix)
+    while pending:
+        name = pending.pop(0)
         try:
-            found[name] = read(name.replace("\\", "/"))
+            files[name] = read(name.replace("\\", "/"))
         except (OSError, ValueError):
-            found[name] = b""
-        wanted += [other for other in _named(found[name], Path(name).suffix) if other not in found]
-    return found
+            files[name] = b""
+        pending += [other for other in _named(files[name], Path(name).suffix) if other not in files]
+    return files
 
 
 def _named(content, suffix):

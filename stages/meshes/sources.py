@@ -128,9 +128,9 @@ def folder(settings: Params) -> list[MeshFile]:
     if not files:
         raise MeshError(f"meshes.folder={settings.folder!r} holds no mesh file ({', '.join(FORMATS)})")
     if len(files) < len(everything):
-        others = sorted({path.suffix or path.name for path in everything} - {path.suffix for path in files})
+        formats = sorted({path.suffix or path.name for path in everything} - {path.suffix for path in files})
         ignored = len(everything) - len(files)
-        print(f"meshes: {ignored} files of other formats ignored ({', '.join(others)})", file=sys.stderr)
+        print(f"meshes: {ignored} files of other formats ignored ({', '.join(formats)})", file=sys.stderr)
     by_name = {}
     for path in files:
         name = str(path.relative_to(root).with_suffix("")).replace("/", "__").replace("\\", "__")
@@ -213,10 +213,10 @@ def _mesh_files(files, settings, up, suffix=None):
     ]
 
 
-def collection_files(folder: str | Path, source: str, what: str, url: str) -> dict[str, Callable[[], bytes]]:
+def collection_files(folder: str | Path, source: str, files: str, url: str) -> dict[str, Callable[[], bytes]]:
     """All files of a collection in a folder or zip archive: dict path -> function that reads the bytes.
 
-    source, what, url: the collection, its files and where it is published, for the message. Raises FetchError, in one
+    source, files, url: the collection, its files and where it is published, for the message. Raises FetchError, in one
     line that says what to get, from where, and where to put it, when the collection is missing.
     """
     root = Path(folder).expanduser()
@@ -226,7 +226,7 @@ def collection_files(folder: str | Path, source: str, what: str, url: str) -> di
         with zipped(root) as archive:
             return {name: Content(partial(_member, root, name)) for name in sorted(archive.namelist())}
     raise FetchError(
-        f"meshes.folder={str(folder)!r} does not hold the {source} data: get {what} from {url}, put it there as a"
+        f"meshes.folder={str(folder)!r} does not hold the {source} data: get {files} from {url}, put it there as a"
         " folder or a zip archive with these names inside, or set meshes.folder to the folder or archive"
     )
 
@@ -267,8 +267,8 @@ SOURCES = {
 
 
 def _select_objects(available, wanted):
-    known, chosen = set(available), set(wanted)
-    missing = [name for name in wanted if name not in known]
+    names, chosen = set(available), set(wanted)
+    missing = [name for name in wanted if name not in names]
     if missing:
         raise MeshError(
             f"meshes.objects names {', '.join(missing)}, which the source does not have. It has {', '.join(available)}"
@@ -291,8 +291,8 @@ def read_mat(content: bytes, names: Sequence[str]) -> list[np.ndarray]:
     if order is None:
         raise MeshError("unreadable as a MATLAB file before version 7.3")
     try:
-        found = _variables(memoryview(content)[128:], order)
-        stored = {name: value for name, value in found if value is not None}
+        pairs = _variables(memoryview(content)[128:], order)
+        stored = {name: value for name, value in pairs if value is not None}
     except Exception as error:  # struct, zlib and numpy raise many types
         raise MeshError(f"unreadable as a MATLAB file before version 7.3 ({type(error).__name__}: {error})") from None
     missing = [name for name in names if name not in stored]

@@ -66,13 +66,13 @@ def process(model: Model, folder: Path, grasps: Grasps, repetitions: int, seed: 
     """Rows of one classifier: slip of unseen objects, slip of objects left out, recognition of objects."""
     common = {"components": model.components or grasps.electrodes.shape[1], "classifier": model.classifier}
     common |= {"scaled": "training", "metric": "accuracy"}
-    own = Grasps(**vars(grasps) | {"electrodes": _scaled_apart(grasps)})
+    scaled = Grasps(**vars(grasps) | {"electrodes": _scaled_apart(grasps)})
     with threadpool_limits(1):  # equal sums on any number of cores
         return [
             *(common | row for row in publisher_split_rows(model, grasps)),
             *(common | row for row in _left_out_rows(model, grasps)),
             *(common | row for row in recognition_rows(model, grasps, repetitions, seed)),
-            *(common | {"scaled": "own"} | row for row in publisher_split_rows(model, own)),
+            *(common | {"scaled": "own"} | row for row in publisher_split_rows(model, scaled)),
         ]
 
 
@@ -82,21 +82,21 @@ def drift_rows(grasps: Grasps, seed: int) -> Iterator[dict]:
     drift_drawn: the same of as many training objects, drawn at random, from the others: the largest of 200 draws.
     """
     for palm in PALMS:
-        here, random = grasps.palms == palm, rng(seed, f"drift {palm}")
-        train, test = grasps.electrodes[here & ~grasps.test], grasps.electrodes[here & grasps.test]
-        names, count = grasps.objects[here & ~grasps.test], len(np.unique(grasps.objects[here & grasps.test]))
-        drawn = [np.isin(names, random.choice(np.unique(names), count, replace=False)) for _ in range(DRAWN)]
+        mask, random = grasps.palms == palm, rng(seed, f"drift {palm}")
+        train, test = grasps.electrodes[mask & ~grasps.test], grasps.electrodes[mask & grasps.test]
+        names, count = grasps.objects[mask & ~grasps.test], len(np.unique(grasps.objects[mask & grasps.test]))
+        draws = [np.isin(names, random.choice(np.unique(names), count, replace=False)) for _ in range(DRAWN)]
         common = {"task": "slip", "split": Split.TEST_OBJECTS, "palm": palm, "count": len(test)}
         yield common | {"metric": "drift", "value": _distance(train, names, test)}
-        largest = max(_distance(train[~out], names[~out], train[out]) for out in drawn)
+        largest = max(_distance(train[~out], names[~out], train[out]) for out in draws)
         yield common | {"metric": "drift_drawn", "value": largest}
 
 
 def publisher_split_rows(model: Model, grasps: Grasps) -> Iterator[dict]:
     """Slip, trained on the 41 objects, tested on the ten that the publisher keeps; all palms, and each alone."""
     for palm in ("all", *PALMS):
-        here = np.isin(grasps.palms, PALMS if palm == "all" else [palm])
-        train, test = np.flatnonzero(here & ~grasps.test), np.flatnonzero(here & grasps.test)
+        mask = np.isin(grasps.palms, PALMS if palm == "all" else [palm])
+        train, test = np.flatnonzero(mask & ~grasps.test), np.flatnonzero(mask & grasps.test)
         yield from _slip_rows(model, grasps, train, test, {"split": Split.TEST_OBJECTS, "palm": palm})
 
 
@@ -126,9 +126,9 @@ def summary(rows: Rows) -> dict[str, float]:
 
 def _left_out_rows(model: Model, grasps: Grasps) -> Iterator[dict]:
     """Slip within the 41 objects: each is left out of training once, in groups."""
-    own = np.unique(grasps.objects[~grasps.test])
+    names = np.unique(grasps.objects[~grasps.test])
     for k in range(GROUPS):
-        out = np.isin(grasps.objects, own[k::GROUPS])
+        out = np.isin(grasps.objects, names[k::GROUPS])
         train, test = np.flatnonzero(~grasps.test & ~out), np.flatnonzero(out)
         yield from _slip_rows(model, grasps, train, test, {"split": Split.OBJECTS, "palm": "all"})
 
@@ -137,9 +137,9 @@ def _slip_rows(model: Model, grasps: Grasps, train: np.ndarray, test: np.ndarray
     """A row per object of the test part."""
     answers, seconds = model.answers(grasps, train, test, 0, "slipped")
     for name in np.unique(grasps.objects[test]):
-        own = grasps.objects[test] == name
-        row = {"item": str(name), "value": float((answers[own] == grasps.slipped[test][own]).mean())}
-        yield {"task": "slip", **about, **row, "count": int(own.sum()), "seconds": seconds}
+        mask = grasps.objects[test] == name
+        row = {"item": str(name), "value": float((answers[mask] == grasps.slipped[test][mask]).mean())}
+        yield {"task": "slip", **about, **row, "count": int(mask.sum()), "seconds": seconds}
 
 
 def _distance(train: np.ndarray, names: np.ndarray, test: np.ndarray) -> float:
@@ -151,6 +151,6 @@ def _scaled_apart(grasps: Grasps) -> np.ndarray:
     scaled = np.empty_like(grasps.electrodes)
     for palm in PALMS:
         for test in (False, True):
-            own = (grasps.palms == palm) & (grasps.test == test)
-            scaled[own] = StandardScaler().fit_transform(grasps.electrodes[own])
+            mask = (grasps.palms == palm) & (grasps.test == test)
+            scaled[mask] = StandardScaler().fit_transform(grasps.electrodes[mask])
     return scaled

@@ -31,9 +31,9 @@ class Touches:
     labels: np.ndarray
     alike: np.ndarray
 
-    def of(self, own: np.ndarray) -> "Touches":
-        """The part that the ids or the mask `own` names."""
-        return Touches(self.samples[own], self.labels[own], self.alike[own][:, own])
+    def of(self, index: np.ndarray) -> "Touches":
+        """The part that the ids or the mask `index` names."""
+        return Touches(self.samples[index], self.labels[index], self.alike[index][:, index])
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def measure(run: StageRun, images: dict[str, np.ndarray], repetitions: int) -> N
         touches = describe(images)
         sets = class_sets(touches, repetitions, run.seed)
     work = functools.partial(process, touches=touches, seed=run.seed)
-    run.each(work, sets, made_of={name: repr(one) for name, one in sets.items()})
+    run.each(work, sets, made_of={name: repr(class_set) for name, class_set in sets.items()})
     run.rows += neighbour_rows(images)
 
 
@@ -75,67 +75,70 @@ def describe(images: dict[str, np.ndarray]) -> Touches:
 
 def class_sets(touches: Touches, repetitions: int, seed: int) -> dict[str, ClassSet]:
     """{name: ClassSet} of all sets; a drawn set has one repetition, the other sets have all."""
-    names, every = [str(name) for name in np.unique(touches.labels)], tuple(range(repetitions))
+    names, numbers = [str(name) for name in np.unique(touches.labels)], tuple(range(repetitions))
     resembling = confusable(touches.alike, touches.labels)
     shares = {name: resembling[touches.labels == name].mean() for name in names}
     ranked = sorted(names, key=lambda name: -shares[name])
-    found = {"all": ClassSet("all", tuple(names), every, True)}
+    sets = {"all": ClassSet("all", tuple(names), numbers, True)}
     for name, count in COUNTS.items():
         if count > len(names):
             continue
-        found[name] = ClassSet(name, tuple(names[:count]), every, True)
-        found[f"{name}_alike"] = ClassSet(f"{name}_alike", tuple(ranked[:count]), every, True)
-        for k in every:
-            drawn = tuple(str(one) for one in rng(seed, f"{name} {k}").choice(names, count, replace=False))
-            found[f"{name}_drawn {k}"] = ClassSet(f"{name}_drawn", drawn, (k,), False)
-    return found
+        sets[name] = ClassSet(name, tuple(names[:count]), numbers, True)
+        sets[f"{name}_alike"] = ClassSet(f"{name}_alike", tuple(ranked[:count]), numbers, True)
+        for k in numbers:
+            sample = tuple(str(label) for label in rng(seed, f"{name} {k}").choice(names, count, replace=False))
+            sets[f"{name}_drawn {k}"] = ClassSet(f"{name}_drawn", sample, (k,), False)
+    return sets
 
 
-def process(one: ClassSet, folder: Path, touches: Touches, seed: int) -> Rows:
+def process(class_set: ClassSet, folder: Path, touches: Touches, seed: int) -> Rows:
     """Rows of one set: without selection, selected before the split, and in the training part alone."""
     with threadpool_limits(1):
-        return list(_set_rows(one, touches.of(np.isin(touches.labels, one.classes)), seed))
+        return list(_set_rows(class_set, touches.of(np.isin(touches.labels, class_set.classes)), seed))
 
 
 def neighbour_rows(images: dict[str, np.ndarray]) -> Iterator[dict]:
     """Rows: per class the mean correlation of touches with neighbouring numbers, and of any two of its touches."""
     for name, touches in images.items():
-        found = np.corrcoef(touches.reshape(len(touches), -1))
-        pairs = {"neighbour_correlation": np.diag(found, 1), "pair_correlation": found[np.triu_indices(len(found), 1)]}
+        matrix = np.corrcoef(touches.reshape(len(touches), -1))
+        pairs = {
+            "neighbour_correlation": np.diag(matrix, 1),
+            "pair_correlation": matrix[np.triu_indices(len(matrix), 1)],
+        }
         yield from ({"group": name, "metric": metric, "value": float(np.mean(v))} for metric, v in pairs.items())
 
 
 def summary(rows: Rows) -> dict[str, float]:
     """{metric: number} of a run: the mean accuracy of kNN on all classes by split, and the share of similar touches."""
     whole = [row for row in rows if row["group"] == "all" and row["method"] == "all" and row.get("value") is not None]
-    found = {"share_similar": whole[0]["value"]}
+    numbers = {"share_similar": whole[0]["value"]}
     for split in (*SPLITS, Split.FOLDS):
-        wanted = {"split": split, "classifier": "knn", "scaling": TRAINING, "metric": "accuracy"}
-        own = [row["value"] for row in whole if wanted.items() <= row.items()]
-        found[f"accuracy_{split}"] = round(float(np.mean(own)), 6)
-    return found
+        criteria = {"split": split, "classifier": "knn", "scaling": TRAINING, "metric": "accuracy"}
+        values = [row["value"] for row in whole if criteria.items() <= row.items()]
+        numbers[f"accuracy_{split}"] = round(float(np.mean(values)), 6)
+    return numbers
 
 
-def _set_rows(one: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
-    common, chosen = {"group": one.group, "classes": len(one.classes)}, " ".join(sorted(one.classes))
+def _set_rows(class_set: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
+    common, chosen = {"group": class_set.group, "classes": len(class_set.classes)}, " ".join(sorted(class_set.classes))
     kept = ~confusable(touches.alike, touches.labels)
     share = {"metric": "share_similar", "value": 1 - kept.sum() / len(kept)}
-    yield {**common, "chosen": chosen, "method": "all", **share, "repetition": one.repetitions[0]}
+    yield {**common, "chosen": chosen, "method": "all", **share, "repetition": class_set.repetitions[0]}
     parts = {"all": touches, "selected": touches.of(kept), "selected_training": touches}
-    for method, own in (parts | {"selected_control": touches.of(kept)}).items():
-        counts = {name: int((own.labels == name).sum()) for name in sorted(one.classes)}
+    for method, part in (parts | {"selected_control": touches.of(kept)}).items():
+        counts = {name: int((part.labels == name).sum()) for name in sorted(class_set.classes)}
         poorest = min(counts, key=lambda name: counts[name])
         if counts[poorest] < MIN_IMPRINTS:
             row = {**common, "method": method, "split": Split.RANDOM, "metric": "accuracy"}
             note = f"{poorest} keeps {counts[poorest]} touches, {MIN_IMPRINTS} are needed"
-            yield {**row, "repetition": one.repetitions[0], "note": note}
+            yield {**row, "repetition": class_set.repetitions[0], "note": note}
             continue
-        for repetition in one.repetitions:
+        for repetition in class_set.repetitions:
             number = split_number(seed, repetition)
             if method == "selected_control":
-                own = touches.of(as_many(touches.labels, kept, np.random.default_rng(number)))
-            scalings = (TRAINING,) if one.group in COUNTS else SCALINGS if method == "all" else WITHOUT_TWICE
-            rows = _split_rows(own, method, number, one.folds, scalings)
+                part = touches.of(as_many(touches.labels, kept, np.random.default_rng(number)))
+            scalings = (TRAINING,) if class_set.group in COUNTS else SCALINGS if method == "all" else WITHOUT_TWICE
+            rows = _split_rows(part, method, number, class_set.folds, scalings)
             yield from ({**common, "method": method, "repetition": repetition, **row} for row in rows)
 
 
@@ -155,7 +158,7 @@ def _split_rows(touches: Touches, method: str, number: int, folds: bool, scaling
                 seconds = answers.seconds if scaling == TRAINING else None  # the scale costs nothing
                 yield {**row, "metric": "accuracy", "value": value, "seconds": seconds}
                 if validity:
-                    yield from ({**row, **one} for one in answers.validity)
+                    yield from ({**row, **cells} for cells in answers.validity)
     if folds and not selected:
         for name in CLASSIFIERS:
             value = _cross_validated(name, samples, labels, number)

@@ -55,9 +55,9 @@ class TouchSeries:
     names: np.ndarray
     test: np.ndarray
 
-    def of(self, own: np.ndarray) -> "TouchSeries":
-        """The part that the ids or the mask `own` names."""
-        return TouchSeries(self.values[own], self.labels[own], self.names[own], self.test[own])
+    def of(self, index: np.ndarray) -> "TouchSeries":
+        """The part that the ids or the mask `index` names."""
+        return TouchSeries(self.values[index], self.labels[index], self.names[index], self.test[index])
 
 
 def read_touch_events(path: str | Path) -> dict[str, TouchSeries]:
@@ -79,18 +79,20 @@ def read_grasp_series(path: str | Path) -> dict[str, TouchSeries]:
     anything else.
     """
     root = open_root(path, GRASPS)
-    homes = sorted((one for one in root.iterdir() if one.is_dir() and one.name[0] != "_"), key=lambda one: one.name)
+    homes = sorted(
+        (entry for entry in root.iterdir() if entry.is_dir() and entry.name[0] != "_"), key=lambda entry: entry.name
+    )
     files = [file for home in homes for file in sorted(home.iterdir(), key=str)]
     if not files or not (listed := root / "_setup/test.list").exists():
         raise ValueError(f"{path} has no {'_setup/test.list' if files else 'grasp'}; expected {GRASPS}")
-    kept = {Path(line).name for line in listed.read_text().splitlines()}
+    tested = {Path(line).name for line in listed.read_text().splitlines()}
     names = np.array([file.name for file in files])
-    if missing := kept - {*names}:
+    if missing := tested - {*names}:
         raise ValueError(f"{path} lacks {min(missing)}, which _setup/test.list names: download it again")
     values = np.stack([np.concatenate(fingers(file)) for file in files])
     values = values.clip(0).reshape(len(files), -1, 1, values.shape[-1])
     labels = np.array([home.name for home in homes for _ in home.iterdir()])
-    return {"grasps": TouchSeries(values, labels, names, np.isin(names, [*kept]))}
+    return {"grasps": TouchSeries(values, labels, names, np.isin(names, [*tested]))}
 
 
 def spread_taxels(count: int) -> np.ndarray:
@@ -104,11 +106,11 @@ def spread_taxels(count: int) -> np.ndarray:
 
 def _events(root: Path | zipfile.Path, folder: str, path: str | Path) -> TouchSeries:
     parts = [_part(root, f"{folder}/{part}", path) for part in ("train", "test")]
-    shapes = sorted({one.shape for files in parts for _, _, one in files})
+    shapes = sorted({touch.shape for files in parts for _, _, touch in files})
     if len(shapes) > 1:
         raise ValueError(f"{path}: touches of {folder} differ in shape, {shapes}: download the archive again")
-    found = [(label, f"{name}", values) for files in parts for label, name, values in files]
-    labels, names, values = (np.array(column) for column in zip(*found, strict=True))
+    events = [(label, f"{name}", values) for files in parts for label, name, values in files]
+    labels, names, values = (np.array(column) for column in zip(*events, strict=True))
     return TouchSeries(values, labels, names, np.repeat([False, True], [len(files) for files in parts]))
 
 
@@ -117,11 +119,11 @@ def _part(root: Path | zipfile.Path, inside: str, path: str | Path) -> Sequence[
     folder = root / inside
     files = list(folder.iterdir()) if folder.is_dir() else []
     named = [(re.fullmatch(r"sample_(\d+)_label_(\d+)\.npy", file.name), file) for file in files]
-    known = sorted((int(match[1]), f"{int(match[2]):02}", file) for match, file in named if match)
-    if not known or [number for number, *_ in known] != list(range(len(known))):
-        gap = next((k for k, (number, *_) in enumerate(known) if number != k), len(known))
+    numbered = sorted((int(match[1]), f"{int(match[2]):02}", file) for match, file in named if match)
+    if not numbered or [number for number, *_ in numbered] != list(range(len(numbered))):
+        gap = next((k for k, (number, *_) in enumerate(numbered) if number != k), len(numbered))
         raise ValueError(f"{path} has no {inside}/sample_{gap}_label_L.npy; expected {EVENTS}")
-    return [(label, f"{folder.name} {number}", _touch(file)) for number, label, file in known]
+    return [(label, f"{folder.name} {number}", _touch(file)) for number, label, file in numbered]
 
 
 def _touch(file: Path | zipfile.Path) -> np.ndarray:
@@ -165,8 +167,8 @@ def parts(series: TouchSeries) -> Iterator[tuple[str, np.ndarray]]:
     yield "test", series.test
     number = np.zeros(len(series.labels), dtype=int)
     for label in np.unique(series.labels):
-        own = series.labels == label
-        number[own] = np.arange(own.sum()) % FOLDS
+        mask = series.labels == label
+        number[mask] = np.arange(mask.sum()) % FOLDS
     for k in range(number.max() + 1):
         yield "training", number == k
 
@@ -177,16 +179,16 @@ def summary(rows: Rows) -> dict[str, float]:
 
 
 def _rows(method: str, series: TouchSeries, part: str, out: np.ndarray, repetitions: int, seed: int) -> Iterator[dict]:
-    known, asked = series.of(~out), series.of(out)
-    choice = choose(method, known.values, known.labels, repetitions, seed)
-    model = choice.fitted(binned(known.values, choice.bins), known.labels)
-    answers = model.predict(binned(asked.values, choice.bins))
+    training, test = series.of(~out), series.of(out)
+    choice = choose(method, training.values, training.labels, repetitions, seed)
+    model = choice.fitted(binned(training.values, choice.bins), training.labels)
+    answers = model.predict(binned(test.values, choice.bins))
     common = {
         "part": part,
         "split": Split.OBJECTS,
         "bins": choice.bins,
         "parameter": choice.parameter,
-        "train": len(known.labels),
+        "train": len(training.labels),
     }
-    for name, label, answer in zip(asked.names, asked.labels, answers, strict=True):
+    for name, label, answer in zip(test.names, test.labels, answers, strict=True):
         yield common | {"item": f"{label}/{name}", "value": float(answer == label)}

@@ -70,9 +70,9 @@ def binned(values: np.ndarray, bins: int, heard: float = 1.0) -> np.ndarray:
     heard: the share of the steps, from the first, that is there; the last of the bins may be cut short.
     """
     steps = values.shape[-1]
-    there = round(steps * heard)
+    length = round(steps * heard)
     starts = np.linspace(0, steps, bins + 1).round().astype(int)[:-1]
-    sums = np.add.reduceat(values[..., :there], starts[starts < there], axis=-1, dtype=np.float64)
+    sums = np.add.reduceat(values[..., :length], starts[starts < length], axis=-1, dtype=np.float64)
     return np.log1p(sums).reshape(len(values), -1)
 
 
@@ -88,11 +88,11 @@ def choose(method: str, values: np.ndarray, labels: np.ndarray, repetitions: int
     Of equals, the fewest bins. Nothing but these touches is looked at.
     """
     folds = foldings(labels, repetitions, seed)
-    tried = []
+    candidates = []
     for bins in BINS:
         features = binned(values, bins)
-        tried += _tried(method, bins, rotated(features) if method in LINEAR else features, labels, folds)
-    return max(tried, key=lambda choice: choice.accuracy)
+        candidates += _tried(method, bins, rotated(features) if method in LINEAR else features, labels, folds)
+    return max(candidates, key=lambda choice: choice.accuracy)
 
 
 def rotated(features: np.ndarray) -> np.ndarray:
@@ -127,12 +127,12 @@ def random_split(labels: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarra
 def block_split(labels: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
     """(train, test): of each class a run of neighbours, a quarter of its touches; the labels in order of recording."""
     random, train, test = np.random.default_rng(number), [], []
-    for one in np.unique(labels):
-        own = np.flatnonzero(labels == one)
-        length = round(HOLDOUT * len(own))
-        start = random.integers(len(own) - length + 1)
-        test.append(own[start : start + length])
-        train.append(np.delete(own, np.arange(start, start + length)))
+    for label in np.unique(labels):
+        ids = np.flatnonzero(labels == label)
+        length = round(HOLDOUT * len(ids))
+        start = random.integers(len(ids) - length + 1)
+        test.append(ids[start : start + length])
+        train.append(np.delete(ids, np.arange(start, start + length)))
     return np.concatenate(train), np.concatenate(test)
 
 

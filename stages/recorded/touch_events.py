@@ -47,13 +47,13 @@ def process(
 ) -> Rows:
     """Rows of one method on one group."""
     group, method = trial
-    known, asked = (recordings[group].of(own) for own in (~recordings[group].test, recordings[group].test))
+    training, test = (recordings[group].of(mask) for mask in (~recordings[group].test, recordings[group].test))
     # Equal sums on any number of cores. Where nothing is heard yet, the features have no variance to divide by.
     with threadpool_limits(1), np.errstate(divide="ignore", invalid="ignore"):
-        choice = choose(method, known.values, known.labels, repetitions, seed)
+        choice = choose(method, training.values, training.labels, repetitions, seed)
         common = {"group": group, "method": method, "bins": choice.bins, "parameter": choice.parameter}
-        rows = [*_published(choice, known, asked), *_within(choice, known, seed)]
-    return [common | {"metric": "accuracy", "heard": 1.0, "cells": known.values.shape[1]} | row for row in rows]
+        rows = [*_published(choice, training, test), *_within(choice, training, seed)]
+    return [common | {"metric": "accuracy", "heard": 1.0, "cells": training.values.shape[1]} | row for row in rows]
 
 
 def summary(rows: Rows) -> dict[str, float]:
@@ -65,8 +65,8 @@ def summary(rows: Rows) -> dict[str, float]:
 def by_object(labels: np.ndarray, answers: np.ndarray) -> Iterator[dict]:
     """A row for each object: the share of its touches that are recognised."""
     for name in np.unique(labels):
-        own = labels == name
-        yield {"item": str(name), "value": float((answers[own] == name).mean()), "count": int(own.sum())}
+        mask = labels == name
+        yield {"item": str(name), "value": float((answers[mask] == name).mean()), "count": int(mask.sum())}
 
 
 def disturbed(values: np.ndarray, disturbance: str, severity: float, random: np.random.Generator) -> np.ndarray:
@@ -80,39 +80,39 @@ def disturbed(values: np.ndarray, disturbance: str, severity: float, random: np.
         return np.where(np.isin(np.arange(count), dead)[:, None, None], 0, values)
     if disturbance == "dropped_events":
         return values * (random.random(values.shape) >= severity)
-    found, (*place, step) = np.zeros_like(values), np.nonzero(values)
+    shifted, (*place, step) = np.zeros_like(values), np.nonzero(values)
     moved = np.rint(step + random.normal(0, severity, len(step))).astype(int).clip(0, values.shape[-1] - 1)
-    np.add.at(found, (*place, moved), 1)
-    return found
+    np.add.at(shifted, (*place, moved), 1)
+    return shifted
 
 
-def _published(choice: Choice, known: TouchSeries, asked: TouchSeries) -> Iterator[dict]:
+def _published(choice: Choice, training: TouchSeries, test: TouchSeries) -> Iterator[dict]:
     with Stopwatch() as watch:
-        model = choice.fitted(binned(known.values, choice.bins), known.labels)
-    answers = model.predict(binned(asked.values, choice.bins))
-    common = {"part": "test", "train": len(known.labels), "test": len(asked.labels)}
-    yield from (common | row for row in by_object(asked.labels, answers))
+        model = choice.fitted(binned(training.values, choice.bins), training.labels)
+    answers = model.predict(binned(test.values, choice.bins))
+    common = {"part": "test", "train": len(training.labels), "test": len(test.labels)}
+    yield from (common | row for row in by_object(test.labels, answers))
     yield common | {"metric": "training_seconds", "value": watch.seconds, "seconds": watch.seconds}
-    single = [known.values[k : k + 1] for k in range(min(TIMED, len(known.labels)))]
-    one = [_seconds(lambda touch=touch: model.predict(binned(touch, choice.bins))) for touch in single]
-    yield common | {"metric": "milliseconds", "value": 1000 * float(np.median(one))}
+    single = [training.values[k : k + 1] for k in range(min(TIMED, len(training.labels)))]
+    timings = [_seconds(lambda touch=touch: model.predict(binned(touch, choice.bins))) for touch in single]
+    yield common | {"metric": "milliseconds", "value": 1000 * float(np.median(timings))}
     yield FOLDED | {"metric": "cross_validated", "value": choice.accuracy}
 
 
-def _within(choice: Choice, known: TouchSeries, seed: int) -> Iterator[dict]:
+def _within(choice: Choice, training: TouchSeries, seed: int) -> Iterator[dict]:
     """Within the training part, each touch held out one time: by share heard, by taxels, and with disturbances."""
-    labels, folds = known.labels, foldings(known.labels, 1, seed)
+    labels, folds = training.labels, foldings(training.labels, 1, seed)
     for heard in HEARD:
-        features = binned(known.values, choice.bins, heard)
+        features = binned(training.values, choice.bins, heard)
         yield from (FOLDED | {"heard": heard} | row for row in _folded(choice, features, labels, folds))
     for count in TAXELS[:-1]:  # all of them are what was heard in full
-        features = binned(known.values[:, spread_taxels(count)], choice.bins)
+        features = binned(training.values[:, spread_taxels(count)], choice.bins)
         yield from (FOLDED | {"cells": count} | row for row in _folded(choice, features, labels, folds))
-    features = binned(known.values, choice.bins)
+    features = binned(training.values, choice.bins)
     models = [choice.fitted(features[train], labels[train]) for train, _ in folds]
     for kind, severities in SEVERITIES.items():
         for severity in severities:
-            change = functools.partial(_again, known.values, choice.bins, kind, severity, seed)
+            change = functools.partial(_again, training.values, choice.bins, kind, severity, seed)
             answers = _answers(models, folds, change, labels)
             common = FOLDED | {"disturbance": kind, "severity": severity}
             yield from (common | row for row in by_object(labels, answers))

@@ -32,19 +32,19 @@ def run(workspace: Workspace) -> None:
     with StageRun(workspace, "recorded_networks", COLUMNS) as stage:
         check_passes(settings.passes, "recorded_networks.passes")
         absent = {method: why for method in settings.networks if (why := why_absent(method, settings))}
-        wanted = trials(recordings, settings)
-        possible = {one.name: one for one in wanted if one.weights != "imagenet" or one.method not in absent}
+        planned = trials(recordings, settings)
+        possible = {trial.name: trial for trial in planned if trial.weights != "imagenet" or trial.method not in absent}
         for method, why in absent.items():
             print(f"recorded_networks: {method}: {why}", file=sys.stderr)
-        each = dataclasses.replace(
+        common = dataclasses.replace(
             settings, networks={}, weights=[], repetitions={}, passes=[]
         )  # a trial itself says these
-        work = functools.partial(process, recordings=recordings, settings=each, seed=stage.seed)
-        stage.each(work, possible, made_of={name: repr(one) for name, one in possible.items()})
+        work = functools.partial(process, recordings=recordings, settings=common, seed=stage.seed)
+        stage.each(work, possible, made_of={name: repr(trial) for name, trial in possible.items()})
         stage.metrics(summary(stage.rows))
-        stage.rows += absent_rows([one for one in wanted if one.name not in possible])
+        stage.rows += absent_rows([trial for trial in planned if trial.name not in possible])
         stage.rows += neighbour_rows(recorded.kind, recorded.path(workspace.root), recorded.repetitions, stage.seed)
-    print(f"recorded_networks: {workspace.dataset}, {len(possible)} of {len(wanted)} trials")
+    print(f"recorded_networks: {workspace.dataset}, {len(possible)} of {len(planned)} trials")
 
 
 def why_absent(method: str, settings: Params) -> str:
@@ -61,7 +61,7 @@ def absent_rows(left_out: list[Trial]) -> Rows:
     """A row without a value per network, mode, number of passes and data."""
     columns = ("method", "weights", "mode", "data", "passes")
     about = dict.fromkeys(
-        (one.method, one.weights, one.mode, run.data, run.passes) for one in left_out for run in one.runs
+        (trial.method, trial.weights, trial.mode, run.data, run.passes) for trial in left_out for run in trial.runs
     )
     note = {"metric": "accuracy", "value": None, "note": "not run: weights not at hand"}
     return [dict(zip(columns, values, strict=True)) | note for values in about]
@@ -69,12 +69,12 @@ def absent_rows(left_out: list[Trial]) -> Rows:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{data.split.method.mode.weights: the mean accuracy}; the name of trainings to convergence ends with it."""
-    found = []
+    pairs = []
     for row in rows:
         if row["metric"] == "accuracy" and "item" not in row and row["value"] is not None:
             name = ".".join(row[column] for column in ("data", "split", "method", "mode", "weights"))
-            found.append((name + (".converged" if row["passes"] == CONVERGED else ""), row["value"]))
-    return named_means(found)
+            pairs.append((name + (".converged" if row["passes"] == CONVERGED else ""), row["value"]))
+    return named_means(pairs)
 
 
 if __name__ == "__main__":

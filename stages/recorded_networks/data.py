@@ -62,10 +62,10 @@ def _pressure(path: Path) -> dict[str, Recording]:
 def _grasps(path: Path) -> dict[str, Recording]:
     # A reflected fingertip is another finger's and a moved one none, so grasps are not augmented.
     grasps = read_grasps(path)
-    kept = tuple(np.unique(grasps.objects[grasps.test]).tolist())
+    test_names = tuple(np.unique(grasps.objects[grasps.test]).tolist())
     return {
         "grasps_object": Recording(grasp_images(grasps, "objects"), (Split.RANDOM, Split.BLOCKS), False),
-        "grasps_slip": Recording(grasp_images(grasps, "slipped"), (Split.TEST_OBJECTS,), False, kept),
+        "grasps_slip": Recording(grasp_images(grasps, "slipped"), (Split.TEST_OBJECTS,), False, test_names),
     }
 
 
@@ -157,8 +157,8 @@ def frozen_features(recording: Recording, method: str, weights: str, draw: int, 
     )
 
 
-def _task(model: torch.nn.Module, drawn: Callable, inputs: Callable, finish: Callable) -> Task:
-    return Task(model=model, training_inputs=drawn, inputs=inputs, finish=finish, encode=normalise)
+def _task(model: torch.nn.Module, augmented: Callable, inputs: Callable, finish: Callable) -> Task:
+    return Task(model=model, training_inputs=augmented, inputs=inputs, finish=finish, encode=normalise)
 
 
 QUARTER = 0.25  # of the objects or recordings, held out; as many as of the touches (T5.3)
@@ -190,8 +190,8 @@ def object_split(labels: np.ndarray, groups: np.ndarray, number: int) -> tuple[n
     names = np.unique(groups)
     lowest = np.array([labels[groups == name].min() for name in names])
     for label in np.unique(lowest):
-        own = names[lowest == label]
-        out.append(random.choice(own, max(1, round(QUARTER * len(own))), replace=False))
+        members = names[lowest == label]
+        out.append(random.choice(members, max(1, round(QUARTER * len(members))), replace=False))
     held = np.isin(groups, np.concatenate(out))
     for part in (held, ~held):
         if missing := set(labels) - set(labels[part]):

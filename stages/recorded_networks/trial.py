@@ -59,14 +59,14 @@ class Trial:
     @property
     def name(self) -> str:
         """Tells the trial apart from all others of the stage."""
-        own = () if (self.weights, self.mode) == ("imagenet", "frozen") else self.runs[0][:3]
-        ends = {one.passes for one in self.runs} - {PRINTED}
-        return "-".join(map(str, (self.method, self.weights, self.mode, *own, *sorted(ends))))
+        detail = () if (self.weights, self.mode) == ("imagenet", "frozen") else self.runs[0][:3]
+        ends = {run.passes for run in self.runs} - {PRINTED}
+        return "-".join(map(str, (self.method, self.weights, self.mode, *detail, *sorted(ends))))
 
 
 def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
     """All that is trained. ValueError for a mode that is not one of MODES."""
-    found = []
+    planned = []
     for method, modes in settings.networks.items():
         for mode, weights, passes in itertools.product(modes, settings.weights, settings.passes):
             if mode not in MODES:
@@ -84,8 +84,8 @@ def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
                 draws = [[run] for run in runs]
             elif weights == "imagenet":
                 draws = [runs]
-            found += [Trial(method, weights, mode, tuple(together)) for together in draws]
-    return found
+            planned += [Trial(method, weights, mode, tuple(together)) for together in draws]
+    return planned
 
 
 @explain_out_of_memory()
@@ -95,12 +95,12 @@ def process(trial: Trial, folder: Path, recordings: dict[str, Recording], settin
     common = {"method": trial.method, "weights": trial.weights, "mode": trial.mode, "size": settings.size}
     common["pretrained"] = available_weights(trial.method, settings.source) if trial.weights == "imagenet" else "none"
     rows = []
-    for one in trial.runs:
-        features, seconds = cached.get(one.data, (torch.empty(0), 0.0))
-        found = _train(trial, one, recordings[one.data], features, settings, seed)
-        if "seconds" in found[0]:
-            found[0]["seconds"] += seconds  # of the features, shared by several runs and counted in each
-        rows += [common | one._asdict() | row for row in found]
+    for run in trial.runs:
+        features, seconds = cached.get(run.data, (torch.empty(0), 0.0))
+        run_rows = _train(trial, run, recordings[run.data], features, settings, seed)
+        if "seconds" in run_rows[0]:
+            run_rows[0]["seconds"] += seconds  # of the features, shared by several runs and counted in each
+        rows += [common | run._asdict() | row for row in run_rows]
     return rows
 
 
@@ -108,28 +108,28 @@ def frozen_features_by_data(
     trial: Trial, recordings: dict[str, Recording], settings: Params, seed: int
 ) -> dict[str, tuple[torch.Tensor, float]]:
     """{data: (features, seconds that they took)}; what has the same images has the same features."""
-    found: dict[str, tuple[torch.Tensor, float]] = {}
+    cached: dict[str, tuple[torch.Tensor, float]] = {}
     for data in dict.fromkeys(run.data for run in trial.runs):
         images = recordings[data].touches.images
-        same = [one for one in found if np.array_equal(recordings[one].touches.images, images)]
+        same = [name for name in cached if np.array_equal(recordings[name].touches.images, images)]
         if same:
-            found[data] = found[same[0]]
+            cached[data] = cached[same[0]]
             continue
         with repeatable(seed), Stopwatch() as watch:
             features = frozen_features(
                 recordings[data], trial.method, trial.weights, trial.runs[0].repetition, settings
             )
-        found[data] = features, watch.seconds
-    return found
+        cached[data] = features, watch.seconds
+    return cached
 
 
-def _train(trial: Trial, one: Run, recording: Recording, features: torch.Tensor, settings: Params, seed: int) -> Rows:
+def _train(trial: Trial, run: Run, recording: Recording, features: torch.Tensor, settings: Params, seed: int) -> Rows:
     """Rows of one training, the accuracy first; of one that diverged a row with a note."""
     mode, labels, classes = trial.mode, recording.touches.labels, len(recording.touches.classes)
-    fit, validation, test = parts(recording, one.split, split_number(seed, one.repetition))
-    train, converged = np.sort(np.concatenate([fit, validation])), one.passes == CONVERGED
+    fit, validation, test = parts(recording, run.split, split_number(seed, run.repetition))
+    train, converged = np.sort(np.concatenate([fit, validation])), run.passes == CONVERGED
     learned, learning = fit if converged else train, Learning(validation if converged else None, settings.patience)
-    head, order = (int(value) for value in rng(seed, f"{one.data} {one.repetition}").integers(2**31, size=2))
+    head, order = (int(value) for value in rng(seed, f"{run.data} {run.repetition}").integers(2**31, size=2))
     with repeatable(order), Stopwatch() as watch:
         if mode == "frozen":
             network, task = frozen(features, classes, learned, trial.method, head)
@@ -137,21 +137,25 @@ def _train(trial: Trial, one: Run, recording: Recording, features: torch.Tensor,
             network, task = finetuned(recording, learned, trial.method, trial.weights, head, settings)
         training = {"batch": settings.batch[mode], "momentum": settings.momentum}
         epochs = passes(mode, len(train), settings)
-        tried = max(1, round(settings.search_epochs[mode] * epochs / settings.epochs[mode]))
-        rate, validated = search_rate(task, labels, fit, validation, settings.rates[mode], epochs=tried, **training)
+        few_epochs = max(1, round(settings.search_epochs[mode] * epochs / settings.epochs[mode]))
+        rate, validated = search_rate(
+            task, labels, fit, validation, settings.rates[mode], epochs=few_epochs, **training
+        )
         most = settings.most_epochs if converged else epochs
         try:
             model = train_model(task, labels, learned, rate, epochs=most, learning=learning, **training)
         except Diverged as error:
             return [{"metric": "accuracy", "value": None, "note": str(error)}]
-        found, known, kept = (predict_probabilities(model, task.inputs, ids) for ids in (test, learned, validation))
+        on_test, on_learned, on_validation = (
+            predict_probabilities(model, task.inputs, ids) for ids in (test, learned, validation)
+        )
     commonest = np.bincount(labels[train], minlength=classes).argmax()
     values = {
-        "accuracy": accuracy(found, labels[test]),
-        "train_accuracy": accuracy(known, labels[learned]),
+        "accuracy": accuracy(on_test, labels[test]),
+        "train_accuracy": accuracy(on_learned, labels[learned]),
         "chance": 1 / classes,
         "majority": float((labels[test] == commonest).mean()),
-        "validation_accuracy": accuracy(kept, labels[validation]) if converged else validated,
+        "validation_accuracy": accuracy(on_validation, labels[validation]) if converged else validated,
         "learning_rate": rate,
         "epochs": len(learning.curve),
         "parameters": count_parameters(network),
@@ -160,18 +164,18 @@ def _train(trial: Trial, one: Run, recording: Recording, features: torch.Tensor,
     rows: list[dict] = [{"metric": key, "value": value} for key, value in values.items()]
     rows[0]["seconds"] = watch.seconds
     for name in recording.test_objects:
-        own = groups_of(recording)[test] == name
-        value = accuracy(found[torch.as_tensor(own)], labels[test][own])
+        mask = groups_of(recording)[test] == name
+        value = accuracy(on_test[torch.as_tensor(mask)], labels[test][mask])
         rows.append({"item": name, "metric": "accuracy", "value": value})
-    return rows + class_rows(found, labels[test], recording.touches.classes)
+    return rows + class_rows(on_test, labels[test], recording.touches.classes)
 
 
-def class_rows(found: torch.Tensor, labels: np.ndarray, classes: Sequence[str]) -> list[dict]:
+def class_rows(answers: torch.Tensor, labels: np.ndarray, classes: Sequence[str]) -> list[dict]:
     """Rows of the accuracy on the test touches of each class; an object of its own in most recordings."""
     return [
-        {"group": name, "metric": "class_accuracy", "value": accuracy(found[torch.as_tensor(own)], labels[own])}
-        for name, own in ((name, labels == number) for number, name in enumerate(classes))
-        if own.any()
+        {"group": name, "metric": "class_accuracy", "value": accuracy(answers[torch.as_tensor(mask)], labels[mask])}
+        for name, mask in ((name, labels == number) for number, name in enumerate(classes))
+        if mask.any()
     ]
 
 

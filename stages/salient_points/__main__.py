@@ -39,18 +39,20 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int) ->
     options = Options(learned, settings.selection, settings.radius, settings.smoothing, seed, name)
     with Stopwatch() as reading:
         maps = read_view_maps(data / "conspicuity" / f"{name}.npz", mesh)
-    found, seconds = find_all(mesh, maps, methods, options, settings.count)
-    write_points(folder / f"{name}.npz", found)
-    standard = next((result.saliency for result in found.values() if result.saliency is not None), None)
-    cost = {method: seconds[method] + (reading.seconds if method_named(method).channels else 0) for method in found}
+    detections, seconds = find_all(mesh, maps, methods, options, settings.count)
+    write_points(folder / f"{name}.npz", detections)
+    standard = next((result.saliency for result in detections.values() if result.saliency is not None), None)
+    cost = {
+        method: seconds[method] + (reading.seconds if method_named(method).channels else 0) for method in detections
+    }
     rows = [
         row
-        for method, result in found.items()
+        for method, result in detections.items()
         for row in measurement_rows(name, method, result, mesh, standard, cost[method])
     ]
     ground_truth = data / "weights" / "ground_truth" / f"{name}.npz"
     if ground_truth.exists():
-        agreed = agreement_rows(mesh, read_arrays(ground_truth), found)
+        agreed = agreement_rows(mesh, read_arrays(ground_truth), detections)
         rows += [{"item": name, "seconds": cost.get(row["method"])} | row for row in agreed]
     return rows
 
@@ -66,14 +68,14 @@ def run(workspace: Workspace) -> None:
         work = functools.partial(process, data=workspace.data, settings=settings, seed=stage.seed)
         rows = stage.each(work, stage.objects, READS)
         stage.metrics(summary(rows))
-    ran = {row["method"] for row in rows}
-    idle = [method for method in settings.methods if method not in ran]
+    methods = {row["method"] for row in rows}
+    idle = [method for method in settings.methods if method not in methods]
     if idle:
         print(f"salient_points: left out for want of ground truth to learn from: {', '.join(idle)}", file=sys.stderr)
-    found = sum(row["value"] for row in rows if row["metric"] == "points")
+    count = sum(row["value"] for row in rows if row["metric"] == "points")
     print(
         f"salient_points: {workspace.dataset}, {len(stage.objects)} objects, "
-        f"{len(settings.methods) - len(idle)} methods, {found:.0f} points"
+        f"{len(settings.methods) - len(idle)} methods, {count:.0f} points"
     )
 
 

@@ -29,14 +29,14 @@ def mean_spacing(positions: np.ndarray) -> float:
 
 
 def measurement_rows(
-    name: str, method: str, found: Detection, mesh: Mesh, standard: np.ndarray | None, seconds: float
+    name: str, method: str, detection: Detection, mesh: Mesh, standard: np.ndarray | None, seconds: float
 ) -> list[dict]:
     """The tidy rows of one method on one object. standard (n,): the saliency at which all methods are read, or None."""
     values = {
-        "points_strong": found.strong,
-        "points": len(found.points),
-        "spread": mean_spacing(mesh.vertices[found.points]),
-        "saliency_at_points": np.nan if standard is None else float(standard[found.points].mean()),
+        "points_strong": detection.strong,
+        "points": len(detection.points),
+        "spread": mean_spacing(mesh.vertices[detection.points]),
+        "saliency_at_points": np.nan if standard is None else float(standard[detection.points].mean()),
     }
     row = {"item": name, "method": method, "seconds": seconds}
     return [row | {"metric": metric, "value": value} for metric, value in values.items()]
@@ -53,16 +53,18 @@ TOLERANCES = (0.02, 0.05, 0.1)  # of the diagonal: where the errors of the point
 HUMAN = "human"  # the ground truth scored against itself: the best that a density of this smoothness can reach
 
 
-def agreement_rows(mesh: Mesh, ground_truth: Mapping[str, np.ndarray], found: Mapping[str, Detection]) -> list[dict]:
+def agreement_rows(
+    mesh: Mesh, ground_truth: Mapping[str, np.ndarray], detections: Mapping[str, Detection]
+) -> list[dict]:
     """Rows of metrics: cc, nss, auc, sim, kl of every method's saliency, and fne, fpe, wme of its points.
 
-    ground_truth: arrays of stages.weights.training; found: dict method -> Detection. A method that only places
+    ground_truth: arrays of stages.weights.training; detections: dict method -> Detection. A method that only places
     points gets, as its saliency, these points spread as far as the ground truth is. The errors of the points are those
     of the strong ones, at the TOLERANCES (shares of the diagonal), as metric `fne@0.05` and so on.
     """
     truth = GroundTruth(ground_truth["amounts"], ground_truth["density"], ground_truth["areas"])
     rows = [(HUMAN, name, value) for name, value in agreement(ground_truth["density"], truth).items()]
-    for method, result in found.items():
+    for method, result in detections.items():
         values = _as_density(mesh, result) if result.saliency is None else result.saliency
         rows += [(method, name, value) for name, value in agreement(values, truth).items()]
         strong = result.points[: result.strong]
@@ -83,10 +85,10 @@ def _as_density(mesh, result):
     return spread_on_surface(mesh, marks, SPREAD * mesh.diagonal)
 
 
-def write_points(path: Path, found: Mapping[str, Detection]) -> None:
+def write_points(path: Path, detections: Mapping[str, Detection]) -> None:
     """Writes dict method -> Detection: METHOD.points, METHOD.strong and, if any, METHOD.saliency (n,) f4."""
     arrays = {}
-    for method, result in found.items():
+    for method, result in detections.items():
         arrays[f"{method}.points"] = result.points.astype(np.int64)
         arrays[f"{method}.strong"] = np.int64(len(result.points) if result.strong is None else result.strong)
         if result.saliency is not None:

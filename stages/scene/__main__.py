@@ -46,17 +46,17 @@ def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Ro
     """Builds the chains of one object, and the profile of ours; returns one row for each, with the seconds."""
     mesh, options, _ = read_object(data, name, method)
     rows = []
-    for kind, chosen in ((OURS, options), (PLAIN, {})):
+    for kind, arguments in ((OURS, options), (PLAIN, {})):
         with Stopwatch() as watch:
-            levels = build_lod_chain(mesh, seed=seed, **chosen)
+            levels = build_lod_chain(mesh, seed=seed, **arguments)
         write_chain(folder / "levels" / name, kind, levels)
         row = {"item": name, "method": kind, "frame": "all", "metric": "levels", "value": len(levels)}
         rows.append(row | {"seconds": watch.seconds})
         if kind == OURS:
             with Stopwatch() as watch:
-                found = profile(levels)
-            write_arrays(folder / "levels" / name / PROFILE, **asdict(found))
-            rows.append(row | {"metric": "profile", "value": len(found.directions), "seconds": watch.seconds})
+                lod_profile = profile(levels)
+            write_arrays(folder / "levels" / name / PROFILE, **asdict(lod_profile))
+            rows.append(row | {"metric": "profile", "value": len(lod_profile.directions), "seconds": watch.seconds})
     return rows
 
 
@@ -65,34 +65,34 @@ def run(workspace: Workspace) -> None:
     settings, data = workspace.settings(Params), workspace.data
     variant(settings.method)
     with StageRun(workspace, "scene", COLUMNS, inputs=("meshes", "salient_points", "lod")) as stage:
-        every = scenes_of(settings, stage.objects, data, stage.seed)
-        scene, missing = scene_of(every[0], stage.objects)
-        report_missing(every[0], scene, missing)
-        shown = sorted({placed.name for own in every for placed in scene_of(own, stage.objects)[0].objects})
+        scenes = scenes_of(settings, stage.objects, data, stage.seed)
+        scene, missing = scene_of(scenes[0], stage.objects)
+        report_missing(scenes[0], scene, missing)
+        shown = sorted({placed.name for single in scenes for placed in scene_of(single, stage.objects)[0].objects})
         others = [name for name in stage.objects if name not in shown]
         chains = functools.partial(levels_of, data=data, method=settings.method, seed=stage.seed)
         stage.each(chains, shown, reads=(MESH, POINTS))
         factors = dict.fromkeys([1.0, *settings.factors])
-        cases = {case.name: case for case in (Case(own, factor) for own in every for factor in factors)}
+        cases = {case.name: case for case in (Case(single, factor) for single in scenes for factor in factors)}
         values = {name: repr(case) for name, case in cases.items()}
-        own = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
+        files = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
         learned_from = [pattern.format(name) for name in others for pattern in (MESH, CURVE)]
         learned_from += [CURVE.format(name) for name in shown if settings.random]  # a scene has not all that are shown
-        given = {"data": data, "made": stage.folder, "shown": shown, "seed": stage.seed}
-        rows = [*stage.each(functools.partial(measure, **given), cases, [*own, LEVELS], values)]
-        network = functools.partial(measure_network, **given, others=others)
-        rows += stage.each(network, cases, [*own, *learned_from, LEVELS, PLAN], values)
+        common = {"data": data, "made": stage.folder, "shown": shown, "seed": stage.seed}
+        rows = [*stage.each(functools.partial(measure, **common), cases, [*files, LEVELS], values)]
+        network = functools.partial(measure_network, **common, others=others)
+        rows += stage.each(network, cases, [*files, *learned_from, LEVELS, PLAN], values)
         stage.rows = KeptRows([{"group": settings.name} | row for row in stage.rows])
         if not settings.random:
             stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
             export(stage.folder, data, scene, settings)
-        found = summary(rows)
-        stage.metrics(found)
+        numbers = summary(rows)
+        stage.metrics(numbers)
     print(
         f"scene: {workspace.dataset}, {settings.name}, {len(shown)} objects, {len(scene.cameras)} frames: "
-        f"{found['faces_ours']:.0f} faces per frame of {found['faces_full']:.0f}, "
-        f"{found['saved_uniform_error']:.0%} fewer than uniform levels at equal error, "
-        f"{found['held_ours']:.0%} of frames within the tolerance"
+        f"{numbers['faces_ours']:.0f} faces per frame of {numbers['faces_full']:.0f}, "
+        f"{numbers['saved_uniform_error']:.0%} fewer than uniform levels at equal error, "
+        f"{numbers['held_ours']:.0%} of frames within the tolerance"
     )
 
 

@@ -74,12 +74,12 @@ def _budget(setup, kind):
 
 def _online(setup, ours):
     """Planned on frames of their own, so that they render all that they ask about; measured on those of the others."""
-    found = []
+    plans = []
     for method, rendered in (("online", True), ("online_unrendered", False)):
         fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
-        own = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
-        found.append(replace(own, plan=Plan(own.plan.levels, own.plan.chains, setup.frames)))
-    return found
+        planned = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
+        plans.append(replace(planned, plan=Plan(planned.plan.levels, planned.plan.chains, setup.frames)))
+    return plans
 
 
 def _beforehand(setup, ours):
@@ -96,12 +96,12 @@ def _beforehand(setup, ours):
         "beforehand": (lambda coarseness: by_profiles(setup.frames, chains, profiles, 1 / coarseness), 0.0),
         "every_level": (lambda coarseness: by_sums(setup.frames, chains, sums, 1 / coarseness), watch.seconds),
     }
-    found = []
+    plans = []
     for method, (plan_of, before) in ways.items():
-        (own,) = _tuned(setup, method, plan_of, ours, ("displacement",))
+        (tuned,) = _tuned(setup, method, plan_of, ours, ("displacement",))
         once = _planned(method, lambda plan_of=plan_of: plan_of(1.0))  # the price changes nothing of the cost
-        found.append(replace(own, planning=before + once.seconds))
-    return found
+        plans.append(replace(tuned, planning=before + once.seconds))
+    return plans
 
 
 def _uniform(setup, by_size):
@@ -132,17 +132,17 @@ MEASURES: dict[str, Callable[[Plan], float]] = {  # mean error over the frames, 
 
 
 def _tuned(setup, method, plan_of, ours, matched):
-    found = []
+    plans = []
     for name, measure in MEASURES.items():
         if name in matched:
             target = measure(ours)
-            own = _timed(method, name, lambda measure=measure, target=target: rivals.tune(plan_of, measure, target))
-            note = f"even its coarsest plan has less {name} than ours" if measure(own.plan) < target else ""
-            found.append(replace(own, note=note))
+            tuned = _timed(method, name, lambda measure=measure, target=target: rivals.tune(plan_of, measure, target))
+            note = f"even its coarsest plan has less {name} than ours" if measure(tuned.plan) < target else ""
+            plans.append(replace(tuned, note=note))
     if "held" in matched:
         worst, most = lambda plan: float(plan.errors.max()), setup.scene.tolerance
-        found.append(_timed(method, "held", lambda: rivals.tune(plan_of, worst, most, below=True)))
-    return found
+        plans.append(_timed(method, "held", lambda: rivals.tune(plan_of, worst, most, below=True)))
+    return plans
 
 
 def _unrendered(setup, ours):
@@ -194,11 +194,11 @@ def compare(
 
     matched: in what the uniform levels are made equal to ours. others: names of OTHERS, further plans.
     """
-    found = [_planned(OURS, lambda: _budget(setup, OURS))]
-    ours = found[0].plan
+    plans = [_planned(OURS, lambda: _budget(setup, OURS))]
+    ours = plans[0].plan
     for method, by_size in (("uniform", False), ("uniform_size", True)):
-        found += _tuned(setup, method, _uniform(setup, by_size), ours, matched)
-    return [*found, *(each for name in others for each in OTHERS[name](setup, ours))]
+        plans += _tuned(setup, method, _uniform(setup, by_size), ours, matched)
+    return [*plans, *(planned for name in others for planned in OTHERS[name](setup, ours))]
 
 
 def compare_network(
@@ -208,8 +208,8 @@ def compare_network(
 
     matched: in what it is made equal to ours; ASKED: its own counts.
     """
-    found = _tuned(setup, "network", _network(setup, counts), ours, matched)
-    return [*found, _timed("network", ASKED, lambda: _network(setup, counts)(1.0))] if ASKED in matched else found
+    plans = _tuned(setup, "network", _network(setup, counts), ours, matched)
+    return [*plans, _timed("network", ASKED, lambda: _network(setup, counts)(1.0))] if ASKED in matched else plans
 
 
 DIGITS = 9  # decimals of an error, enough for a mesh of unit size

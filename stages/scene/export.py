@@ -42,12 +42,12 @@ def export(folder: Path, data: Path, scene: Scene, settings: Params) -> None:
     for name, chain in chains.items():
         used = sorted(set(plan.loc[plan["item"] == name, "level"]))
         levels = [chain[k] for k in used]
-        found = [describe(name, level, metres_per_unit(chain[0].mesh, sizes[name]), scene) for level in levels]
-        for level, row in zip(levels, found, strict=True):
+        entries = [describe(name, level, metres_per_unit(chain[0].mesh, sizes[name]), scene) for level in levels]
+        for level, row in zip(levels, entries, strict=True):
             write_glb(folder / FOLDER / row["file"], [to_gltf(level.mesh, row["metres_a_unit"])], [row["file"][:-4]])
         if settings.msft_lod:
-            write_lod(folder / FOLDER / f"{name}.glb", levels, found, scene.cameras[0].size[0])
-        rows += found
+            write_lod(folder / FOLDER / f"{name}.glb", levels, entries, scene.cameras[0].size[0])
+        rows += entries
     fullest = _fullest_frame(plan)
     if len(plan):
         write_scene(folder / FOLDER / "scene.glb", scene, meshes, chains, pd.DataFrame(plan[plan["frame"] == fullest]))
@@ -108,7 +108,7 @@ def write_lod(path: Path, levels: Sequence[Level], rows: Sequence[dict], screen_
     def join(tree: dict) -> None:
         # trimesh adds a root node: removed, so that the coarser levels are referenced by the extension alone.
         places = {node.get("name"): node for node in tree["nodes"]}
-        tree["nodes"], tree["scenes"] = [places[each] for each in names], [{"nodes": [0]}]
+        tree["nodes"], tree["scenes"] = [places[name] for name in names], [{"nodes": [0]}]
         if len(names) > 1:
             first, tree["extensionsUsed"] = tree["nodes"][0], [EXTENSION]
             first["extensions"] = {EXTENSION: {"ids": list(range(1, len(names)))}}
@@ -127,18 +127,18 @@ def write_scene(
     path: Path, scene: Scene, meshes: Mapping[str, Mesh], chains: Mapping[str, Sequence[Level]], plan: pd.DataFrame
 ) -> None:
     """Writes a frame's rows of the plan as one GLB: every visible object at its level and place."""
-    shown, names = [], []
+    parts, names = [], []
     for item, level, faces in zip(plan["place"], plan["level"], plan["faces"], strict=True):
         placed = scene.objects[item]
         mesh = world_mesh(chains[placed.name][level].mesh, placed.pose(meshes[placed.name]))
-        shown.append(to_gltf(mesh))
+        parts.append(to_gltf(mesh))
         names.append(f"{item}_{placed.name}_{faces}")
-    write_glb(path, shown, names)
+    write_glb(path, parts, names)
 
 
 def _fullest_frame(plan):
-    shown = plan.groupby("frame")["faces"].sum()
-    return int(shown.idxmax()) if len(shown) else 0
+    faces = plan.groupby("frame")["faces"].sum()
+    return int(faces.idxmax()) if len(faces) else 0
 
 
 EXTENSION = "MSFT_lod"
@@ -148,25 +148,28 @@ SINGLE = 1e-6  # of the largest coordinate: glTF stores 4 bytes a number
 def check_glb(path: Path, meshes: Sequence[Mesh], names: Sequence[str]) -> None:
     """Raises ValueError that names the file unless it holds these Meshes under these names, in their order."""
     try:
-        found = trimesh.load_scene(path, file_type="glb", process=False).geometry
+        loaded = trimesh.load_scene(path, file_type="glb", process=False).geometry
     except Exception as error:  # whatever the reader raises: the file is at fault
         raise ValueError(f"{path} cannot be loaded back: {error}") from error
-    if list(found) != list(names):
-        raise ValueError(f"{path} came back with {', '.join(found) or 'nothing'} in place of {', '.join(names)}")
+    if list(loaded) != list(names):
+        raise ValueError(f"{path} came back with {', '.join(loaded) or 'nothing'} in place of {', '.join(names)}")
     for name, mesh in zip(names, meshes, strict=True):
-        fault = _fault(found[name], mesh)
+        fault = _fault(loaded[name], mesh)
         if fault:
             raise ValueError(f"{path}: {name} came back with other {fault} than were written")
 
 
-def _fault(found, mesh):
+def _fault(loaded, mesh):
     """The part of a loaded mesh that differs from the Mesh: "faces", "positions" or "colours"; or ""."""
-    if not np.array_equal(found.faces, mesh.faces):
+    if not np.array_equal(loaded.faces, mesh.faces):
         return "faces"
     tolerance = SINGLE * np.abs(mesh.vertices).max(initial=0)
-    if found.vertices.shape != mesh.vertices.shape or np.abs(found.vertices - mesh.vertices).max(initial=0) > tolerance:
+    if (
+        loaded.vertices.shape != mesh.vertices.shape
+        or np.abs(loaded.vertices - mesh.vertices).max(initial=0) > tolerance
+    ):
         return "positions"
-    same = mesh.colors is None or np.array_equal(found.visual.vertex_colors[:, :3], mesh.colors)
+    same = mesh.colors is None or np.array_equal(loaded.visual.vertex_colors[:, :3], mesh.colors)
     return "" if same else "colours"
 
 

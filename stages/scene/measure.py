@@ -86,13 +86,13 @@ def measure(case: Case, folder: Path, data: Path, made: Path, shown: Sequence[st
     also writes the table of our plan and pictures.
     """
     setup, saliency = _setup(case, data, made, shown)
-    found = compare(setup, case.matched, case.others)
-    levels = {f"{each.method}.{each.matched}".rstrip("."): each.plan.levels for each in found}
+    plans = compare(setup, case.matched, case.others)
+    levels = {f"{planned.method}.{planned.matched}".rstrip("."): planned.plan.levels for planned in plans}
     write_arrays(folder / PLAN_FILE.format(case.name), **levels)
     if case.in_detail:
-        write_table(folder / TABLE, pd.DataFrame(plan_table(setup, found[0].plan)))
-        write_arrays(folder / "pictures.npz", **pictures(setup, _framed(found)))
-    return _rows(setup, found[0], found, saliency, case, seed)
+        write_table(folder / TABLE, pd.DataFrame(plan_table(setup, plans[0].plan)))
+        write_arrays(folder / "pictures.npz", **pictures(setup, _framed(plans)))
+    return _rows(setup, plans[0], plans, saliency, case, seed)
 
 
 def measure_network(
@@ -116,8 +116,8 @@ def measure_network(
         OURS, "", Plan(read_arrays(made / PLAN_FILE.format(case.name))[OURS], setup.of(OURS), setup.frames), 0.0
     )
     matched = case.matched[:1] if case.settings.random else (*case.matched, *([ASKED] if case.in_detail else []))
-    found = compare_network(setup, _counts(setup, data, model), ours.plan, matched)
-    return _rows(setup, ours, found, saliency, case, seed)
+    plans = compare_network(setup, _counts(setup, data, model), ours.plan, matched)
+    return _rows(setup, ours, plans, saliency, case, seed)
 
 
 def _setup(case, data, made, shown):
@@ -129,18 +129,20 @@ def _setup(case, data, made, shown):
     return setup, {name: values for name, (*_, values) in read.items()}
 
 
-def _rows(setup, ours, found, saliency, case, seed):
-    """All rows of the plans `found`; those of frames and objects only in detail."""
-    framed = _framed(found) if case.in_detail else []
-    shown = [case.in_detail and each.matched in MAIN for each in found]  # 1 - SSIM takes a fourth of the time
-    rows = [row for each, own in zip(found, shown, strict=True) for row in plan_rows(setup, each, saliency, own)]
-    rows += saved_rows(setup, ours, found, seed)
-    rows += [row for each in framed for row in (*frame_rows(setup, each), *object_rows(setup, each))]
+def _rows(setup, ours, plans, saliency, case, seed):
+    """All rows of these plans; those of frames and objects only in detail."""
+    framed = _framed(plans) if case.in_detail else []
+    pictured = [case.in_detail and planned.matched in MAIN for planned in plans]  # 1 - SSIM takes a fourth of the time
+    rows = [
+        row for planned, flag in zip(plans, pictured, strict=True) for row in plan_rows(setup, planned, saliency, flag)
+    ]
+    rows += saved_rows(setup, ours, plans, seed)
+    rows += [row for planned in framed for row in (*frame_rows(setup, planned), *object_rows(setup, planned))]
     return [row | {"factor": case.factor, "group": case.settings.name} for row in rows]
 
 
-def _framed(found):
-    return [each for each in found if each.matched in MAIN and each.method in FRAMED]
+def _framed(plans):
+    return [planned for planned in plans if planned.matched in MAIN and planned.method in FRAMED]
 
 
 def _counts(setup, data, model):
@@ -165,18 +167,18 @@ def plan_table(setup: SceneSetup, plan: Plan) -> list[dict]:
     ]  # fmt: skip
 
 
-def pictures(setup: SceneSetup, found: Sequence[MethodPlan]) -> dict[str, np.ndarray]:
+def pictures(setup: SceneSetup, entries: Sequence[MethodPlan]) -> dict[str, np.ndarray]:
     """Arrays: frames (k,), methods (m,), rgb (k, m, h, w, 3) u1, displacement (k, m, h, w) f2 in pixels."""
-    plans = {each.method: each.plan for each in found}
+    plans = {entry.method: entry.plan for entry in entries}
     methods = [method for method in SHOWN if method in plans]
     order = np.argsort(setup.frames.scale.mean(axis=1), kind="stable")  # far frames first, of few pixels
     frames = np.unique([order[len(order) // 3], order[2 * len(order) // 3], order[-1]])
-    shown = [[(setup.frames, frame, plans[method].shown(frame)) for method in methods] for frame in frames]
+    cells = [[(setup.frames, frame, plans[method].shown(frame)) for method in methods] for frame in frames]
     return {
         "frames": frames,
         "methods": np.array(methods),
-        "rgb": np.stack([[shaded(*one).clip(0, 255).astype(np.uint8) for one in row] for row in shown]),
-        "displacement": np.stack([[displacement_picture(*one).astype(np.float16) for one in row] for row in shown]),
+        "rgb": np.stack([[shaded(*cell).clip(0, 255).astype(np.uint8) for cell in row] for row in cells]),
+        "displacement": np.stack([[displacement_picture(*cell).astype(np.float16) for cell in row] for row in cells]),
     }
 
 
@@ -225,8 +227,8 @@ def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> No
     """Prints which objects are missing, and which take their places where none of the scene's own is present."""
     if missing:
         named = {item.name for item in settings.objects}
-        others = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in named))
-        how = f"with {others} in their places" if others else "without them"
+        stand_ins = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in named))
+        how = f"with {stand_ins} in their places" if stand_ins else "without them"
         print(f"scene: {settings.name} continues {how}; not in data/SET/meshes: {', '.join(missing)}", file=sys.stderr)
 
 

@@ -46,8 +46,8 @@ def choose(
     levels, level, age = [], 0, hold
     for frame in range(len(seen)):
 
-        def lasts(tried, ahead, frame=frame):
-            return error(frame, tried) * approach[frame] ** ahead <= tolerance
+        def lasts(candidate, ahead, frame=frame):
+            return error(frame, candidate) * approach[frame] ** ahead <= tolerance
 
         before = level
         if seen[frame]:
@@ -135,30 +135,30 @@ def _footprint(box):
 
 def _places(radii: Sequence[float], side: float, random: np.random.Generator) -> tuple[np.ndarray, float]:
     """((o, 2) middles of circles that do not overlap, on a square round 0; its side, which grows where it is full)."""
-    found = np.zeros((0, 2))
-    while len(found) < len(radii):
-        radius, others = radii[len(found)], np.array(radii[: len(found)])
+    middles = np.zeros((0, 2))
+    while len(middles) < len(radii):
+        radius, placed = radii[len(middles)], np.array(radii[: len(middles)])
         reach = max(side / 2 - radius, 0)
-        tried = random.uniform(-reach, reach, (TRIES, 2))
-        apart = np.linalg.norm(tried[:, None] - found, axis=2) >= others + radius + GAP
+        candidates = random.uniform(-reach, reach, (TRIES, 2))
+        apart = np.linalg.norm(candidates[:, None] - middles, axis=2) >= placed + radius + GAP
         free = np.flatnonzero(apart.all(axis=1))
         if len(free):
-            found = np.vstack([found, tried[free[0]]])
+            middles = np.vstack([middles, candidates[free[0]]])
         else:
             side *= GROWTH
-    return found, side
+    return middles, side
 
 
 def _camera(objects: Sequence[Item], side: float, random: np.random.Generator) -> list[Keyframe]:
     targets = [[0.0, 0.0, 0.05], *([*item.position[:2], item.size / 2] for item in objects)]
-    seen = [0, *random.integers(len(targets), size=KEYS - 2), random.integers(1, len(targets))]
+    aims = [0, *random.integers(len(targets), size=KEYS - 2), random.integers(1, len(targets))]
     distances = np.geomspace(side * random.uniform(*FAR) + 0.5, random.uniform(*NEAR), KEYS)
     turns = np.radians(random.uniform(0, 360) + np.cumsum(random.uniform(-ASIDE, ASIDE, KEYS)))
     rises = np.radians(random.uniform(*RISE, KEYS))
     along = np.stack([np.cos(turns) * np.cos(rises), np.sin(turns) * np.cos(rises), np.sin(rises)], axis=1)
-    eyes = np.array([targets[k] for k in seen]) + along * distances[:, None]
+    eyes = np.array([targets[k] for k in aims]) + along * distances[:, None]
     eyes[:, 2] = np.maximum(eyes[:, 2], LOWEST)
-    return [Keyframe(eye.tolist(), targets[k]) for eye, k in zip(eyes, seen, strict=True)]
+    return [Keyframe(eye.tolist(), targets[k]) for eye, k in zip(eyes, aims, strict=True)]
 
 
 HALVINGS = 14  # of the span of the tuned factor, which is then known to 0.1 %
@@ -187,8 +187,8 @@ def uniform(frames: Frames, chains: Sequence[Sequence[Level]], full_detail: floa
 def by_counts(frames: Frames, chains: Sequence[Sequence[Level]], counts: np.ndarray) -> Plan:
     """The Plan of the levels nearest, in ratio, to the face counts (frames, objects)."""
     faces = [np.log([level.faces for level in chain]) for chain in chains]
-    nearest = [np.abs(np.log(column)[:, None] - own).argmin(axis=1)
-               for own, column in zip(faces, counts.T, strict=True)]  # fmt: skip
+    nearest = [np.abs(np.log(column)[:, None] - log_faces).argmin(axis=1)
+               for log_faces, column in zip(faces, counts.T, strict=True)]  # fmt: skip
     return Plan(np.stack(nearest, axis=1), chains, frames)
 
 
@@ -218,12 +218,12 @@ def tune(
     the coarsest Plan found whose `measure` is at most `target`.
     """
     kept, other = np.log(SPAN) if below else np.log(SPAN)[::-1]
-    found = plan_of(float(np.exp(kept)))
+    best = plan_of(float(np.exp(kept)))
     for _ in range(HALVINGS):
         middle = (kept + other) / 2
         plan = plan_of(float(np.exp(middle)))
         if measure(plan) <= target if below else measure(plan) >= target:
-            kept, found = middle, plan
+            kept, best = middle, plan
         else:
             other = middle
-    return found
+    return best

@@ -23,13 +23,13 @@ PRECISION = 1e-9  # of a tolerance: rounding of an error equal to it
 
 
 def plan_rows(
-    setup: SceneSetup, found: MethodPlan, saliency: Mapping[str, np.ndarray | None], pictures: bool = True
+    setup: SceneSetup, planned: MethodPlan, saliency: Mapping[str, np.ndarray | None], pictures: bool = True
 ) -> list[dict]:
     """Rows of one MethodPlan over all frames: faces, errors, jumps at switches, and the cost.
 
     saliency: dict name -> (n,) or None, for the displacement weighted by it. pictures: also 1 - SSIM.
     """
-    plan, checks = found.plan, found.plan.checks
+    plan, checks = planned.plan, planned.plan.checks
     spread = np.concatenate([check.displacements for check in checks])
     jumps = [jump for _, _, jump in plan.jumps]
     values = {
@@ -42,35 +42,36 @@ def plan_rows(
         "switches": len(jumps), "switches_per_object": len(jumps) / len(setup.scene.objects),
         "step_worst": max(jumps, default=0.0),
     }  # fmt: skip
-    if found.planning is not None:
-        values["planning_ms"] = 1000 * found.planning / len(plan.levels)  # processor time, of a frame
+    if planned.planning is not None:
+        values["planning_ms"] = 1000 * planned.planning / len(plan.levels)  # processor time, of a frame
     if pictures:
         frames = range(len(plan.levels))
         values["ssim_error"] = float(
             np.mean([picture_error(setup.frames, frame, plan.shown(frame)) for frame in frames])
         )
-    return [_row(setup, found, "all", metric, value) for metric, value in values.items()]
+    return [_row(setup, planned, "all", metric, value) for metric, value in values.items()]
 
 
-def frame_rows(setup: SceneSetup, found: MethodPlan) -> list[dict]:
+def frame_rows(setup: SceneSetup, planned: MethodPlan) -> list[dict]:
     """Rows of each frame: faces and error."""
-    faces, errors = found.plan.faces.sum(axis=1), found.plan.errors
+    faces, errors = planned.plan.faces.sum(axis=1), planned.plan.errors
     return [
-        _row(setup, found, frame, metric, value) | {"seconds": None}  # those of the plan are on its own rows
+        _row(setup, planned, frame, metric, value) | {"seconds": None}  # those of the plan are on its own rows
         for frame in range(len(errors))
         for metric, value in (("faces", int(faces[frame])), ("error", float(errors[frame])))
     ]
 
 
-def object_rows(setup: SceneSetup, found: MethodPlan) -> list[dict]:
+def object_rows(setup: SceneSetup, planned: MethodPlan) -> list[dict]:
     """Rows of each object: its faces, averaged over the frames that show it."""
     rows = []
     for item, placed in enumerate(setup.scene.objects):
         visible = setup.frames.in_view[:, item]
         if visible.any():
-            value = float(found.plan.faces[visible, item].mean())
+            value = float(planned.plan.faces[visible, item].mean())
             rows.append(
-                _row(setup, found, "all", "object_faces", value) | {"item": placed.name, "place": item, "seconds": None}
+                _row(setup, planned, "all", "object_faces", value)
+                | {"item": placed.name, "place": item, "seconds": None}
             )
     return rows
 
@@ -92,8 +93,8 @@ def saved(ours: np.ndarray, others: np.ndarray, names: Sequence[str], seed: int 
     names: of the objects; copies of one shape are not independent, so they are drawn together (cluster bootstrap:
     Davison and Hinkley 1997, section 3.8). With one name alone the interval is NaN.
     """
-    _, which = np.unique(names, return_inverse=True)
-    ours, others = (np.bincount(which, weights=faces) for faces in (ours, others))
+    _, groups = np.unique(names, return_inverse=True)
+    ours, others = (np.bincount(groups, weights=faces) for faces in (ours, others))
     share = float(1 - ours.sum() / max(others.sum(), 1))
     if len(ours) == 1:
         return share, np.nan, np.nan
@@ -126,23 +127,23 @@ def summary(rows: Sequence[dict]) -> dict[str, float]:
     Of several scenes the mean.
     """
     rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all" and row["value"] is not None]
-    found = []
+    pairs = []
     for row in rows:
         method, matched, metric = row["method"], row["matched"], row["metric"]
         if metric in ("faces", "error", "held") and matched in ("", "error") and "unrendered" not in method:
-            found.append((f"{metric}_{method}", row["value"]))
+            pairs.append((f"{metric}_{method}", row["value"]))
         if metric.startswith("saved_"):
-            found.append((f"{metric}_{matched}", row["value"]))
+            pairs.append((f"{metric}_{matched}", row["value"]))
         if (method, matched) == ("ours", "") and metric in OF_OURS:
-            found.append((metric, row["value"]))
-    return named_means(found)
+            pairs.append((metric, row["value"]))
+    return named_means(pairs)
 
 
-def _row(setup, found, frame, metric, value):
+def _row(setup, entry, frame, metric, value):
     return {
-        "item": None, "method": found.method, "kind": setup.scene.kind,
-        "tolerance": setup.scene.tolerance, "matched": found.matched, "frame": frame, "metric": metric, "value": value,
-        "seconds": found.seconds, "note": found.note,
+        "item": None, "method": entry.method, "kind": setup.scene.kind,
+        "tolerance": setup.scene.tolerance, "matched": entry.matched, "frame": frame, "metric": metric, "value": value,
+        "seconds": entry.seconds, "note": entry.note,
     }  # fmt: skip
 
 

@@ -37,7 +37,7 @@ def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]
     Presses it on every object.
     """
     array, _, extent = item.partition(":")
-    arrays = [parts(one) for one in array.split("+")]
+    arrays = [parts(part) for part in array.split("+")]
     (cells, pitch), fine = arrays[0], "+".join(array.split("+")[1:])
     warm_up()
     imprints: dict[str, list[np.ndarray]] = {}
@@ -75,25 +75,25 @@ def touch(
     """
     mesh, points = read_mesh(data / f"meshes/{name}.npz"), read_points(data / f"salient_points/{name}.npz")
     if settings.method not in points:
-        known = ", ".join(points)
-        raise ValueError(f"sensor_size.method={settings.method} is not among salient_points.methods: {known}")
-    chosen = points[settings.method][: settings.touches]
-    chosen = chosen[touchable(mesh, chosen)]
+        names = ", ".join(points)
+        raise ValueError(f"sensor_size.method={settings.method} is not among salient_points.methods: {names}")
+    vertices = points[settings.method][: settings.touches]
+    vertices = vertices[touchable(mesh, vertices)]
     if extent:
         saliency = read_saliency(data / f"salient_points/{name}.npz")[settings.method]
-        chosen = sample_vertices(mesh, saliency, chosen, extent, rng(seed, f"{extent} {name}"))
-    pressed = [press_many(mesh, chosen, (cells, cells), pitch) for cells, pitch in arrays]
-    return np.concatenate([images.reshape(len(chosen), -1) for images in pressed], axis=1)
+        vertices = sample_vertices(mesh, saliency, vertices, extent, rng(seed, f"{extent} {name}"))
+    pressed = [press_many(mesh, vertices, (cells, cells), pitch) for cells, pitch in arrays]
+    return np.concatenate([images.reshape(len(vertices), -1) for images in pressed], axis=1)
 
 
-def chosen_classes(found: Mapping[str, list[str]], wanted: Sequence[str]) -> dict[str, list[str]]:
+def chosen_classes(classes: Mapping[str, list[str]], names: Sequence[str]) -> dict[str, list[str]]:
     """The classes that the settings name, all when they name none; without those that have a single object."""
-    missing = [one for one in wanted if one not in found]
+    missing = [name for name in names if name not in classes]
     if missing:
         raise ValueError(
-            f"sensor_size.classes: no {', '.join(missing)} in meshes.classes; there are {', '.join(found)}"
+            f"sensor_size.classes: no {', '.join(missing)} in meshes.classes; there are {', '.join(classes)}"
         )
-    return {one: found[one] for one in wanted or found if len(found[one]) > 1}
+    return {name: classes[name] for name in names or classes if len(classes[name]) > 1}
 
 
 def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
@@ -106,8 +106,8 @@ def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
             values[row["classifier"]][row["cells"], row["pitch"]].append(row["value"])
     for name, scores in sorted(values.items()):
         arrays = {}
-        for array, found in sorted(scores.items()):
-            arrays["{}-{}".format(*array)] = interval_metrics(found, seed)
+        for array, accuracies in sorted(scores.items()):
+            arrays["{}-{}".format(*array)] = interval_metrics(accuracies, seed)
         means = {parts(item): value["mean"] for item, value in arrays.items()}
         cells, pitch = smallest_sufficient(means, slack)
         again = round(choice_repeatability(scores, slack, seed), 6)
@@ -127,14 +127,16 @@ def run(workspace: Workspace) -> None:
         items += [*settings.pairs, *(f"{ARRAY}:{extent}" for extent in settings.extents)]
         work = functools.partial(process, data=workspace.data, classes=classes, settings=settings, seed=stage.seed)
         rows = stage.each(work, items, reads=("meshes", "salient_points"))
-        found = summary(rows, settings.slack, stage.seed)
-        stage.metrics({name: one["arrays"] for name, one in found.items()})  # the smallest one is a choice, often luck
-        smallest = [{"classifier": name} | one["smallest"] for name, one in found.items()]
+        tree = summary(rows, settings.slack, stage.seed)
+        stage.metrics(
+            {name: entry["arrays"] for name, entry in tree.items()}
+        )  # the smallest one is a choice, often luck
+        smallest = [{"classifier": name} | entry["smallest"] for name, entry in tree.items()]
         about = ("classifier", "cells", "pitch")
-        again = [{key: one[key] for key in about} | {"value": one["again"]} for one in smallest]
-        stage.rows += [one | {"metric": "smallest_chosen_again"} for one in again]
-    for one in smallest:
-        print("sensor_size: {classifier} needs {cells} x {cells} cells, {pitch} apart: {accuracy:.3f}".format(**one))
+        again = [{key: entry[key] for key in about} | {"value": entry["again"]} for entry in smallest]
+        stage.rows += [entry | {"metric": "smallest_chosen_again"} for entry in again]
+    for entry in smallest:
+        print("sensor_size: {classifier} needs {cells} x {cells} cells, {pitch} apart: {accuracy:.3f}".format(**entry))
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ def _splits(imprints, seed, votes):
     objects = [(label, index, images) for label in sorted(imprints) for index, images in enumerate(imprints[label])]
     for fold in range(max(map(len, imprints.values()))):
         train = [(label, images) for label, index, images in objects if index != fold]
-        yield Split.OBJECTS, fold, train, [each for each in objects if each[1] == fold]
+        yield Split.OBJECTS, fold, train, [entry for entry in objects if entry[1] == fold]
     train, test = [], []
     for label, index, images in objects:
         order = rng(seed, f"touches of {label} {index}").permutation(len(images) // votes)
@@ -86,7 +86,7 @@ def _components(*sides):
 
     samples = [np.concatenate([images.reshape(len(images), -1) for images in side]) for side in sides]
     fitted = PCA(COMPONENTS, svd_solver="arpack", random_state=0).fit(samples[0])
-    return [fitted.transform(one) for one in samples]
+    return [fitted.transform(sample) for sample in samples]
 
 
 def check_imprints(imprints: dict[str, list[np.ndarray]]) -> None:
@@ -130,10 +130,10 @@ def sample_vertices(
     for centre in centres:
         inside = salient_region(mesh, saliency, centre)
         inside = inside if extent == "region" else disc(mesh, centre, mesh.vertex_areas[inside].sum())
-        others = inside[(inside != centre) & touchable(mesh, inside)]
-        weights = mesh.vertex_areas[others]
-        drawn = random.choice(others, TOUCHES - 1, replace=len(others) < TOUCHES - 1, p=weights / weights.sum())
-        chosen.append([centre, *drawn])
+        candidates = inside[(inside != centre) & touchable(mesh, inside)]
+        weights = mesh.vertex_areas[candidates]
+        draws = random.choice(candidates, TOUCHES - 1, replace=len(candidates) < TOUCHES - 1, p=weights / weights.sum())
+        chosen.append([centre, *draws])
     return np.ravel(chosen)
 
 
@@ -144,8 +144,8 @@ def salient_region(mesh: Mesh, saliency: np.ndarray, centre: int) -> np.ndarray:
     """
     strong = np.flatnonzero(saliency >= SHARE * saliency[centre])
     _, labels = connected_components(mesh.adjacency[strong][:, strong], directed=False)
-    found = strong[labels == labels[np.searchsorted(strong, centre)]]
-    return found if touchable(mesh, found).sum() >= TOUCHES else disc(mesh, centre, 0.0)
+    region = strong[labels == labels[np.searchsorted(strong, centre)]]
+    return region if touchable(mesh, region).sum() >= TOUCHES else disc(mesh, centre, 0.0)
 
 
 def disc(mesh: Mesh, centre: int, area: float) -> np.ndarray:

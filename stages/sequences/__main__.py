@@ -50,11 +50,13 @@ def layer_rows(trials: list[Trial], classes: int) -> Rows:
     """Rows of the parameters of each layer of the networks for whole sequences (T tables 4.7 and 4.8)."""
     frames, cells = trials[0].frames_and_cells
     films, normals = torch.zeros((1, frames, cells, cells)), torch.zeros((1, frames, 3))
-    both = {
+    networks = {
         "cnn_images": (ImageNet(frames, (cells, cells), classes), films),
         "cnn_normals": (NormalNet(frames, classes), normals),
     }
-    return [{"classifier": name, "metric": "parameters"} | row for name, one in both.items() for row in layers(*one)]
+    return [
+        {"classifier": name, "metric": "parameters"} | row for name, pair in networks.items() for row in layers(*pair)
+    ]
 
 
 def summary(rows: Rows, seed: int) -> dict[str, Any]:
@@ -64,9 +66,9 @@ def summary(rows: Rows, seed: int) -> dict[str, Any]:
         if row["metric"] == "accuracy" and (row["frames"], row["cells"]) == (rows[0]["frames"], rows[0]["cells"]):
             values[row["method"], row["split"], row["classifier"]].append(row["value"])
             tree["chance"] = round(1 / row["classes"], 6)
-    for (method, split, classifier), found in values.items():
+    for (method, split, classifier), accuracies in values.items():
         branch = tree.setdefault(method, {}).setdefault(SPLITS[split], {})
-        branch[classifier] = interval_metrics(found, seed)
+        branch[classifier] = interval_metrics(accuracies, seed)
     return tree
 
 

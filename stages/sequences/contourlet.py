@@ -33,14 +33,14 @@ def directional_std(images: ArrayLike) -> np.ndarray:
         raise ValueError("images hold NaN or infinite values")
     scale = 255.0 if images.dtype.kind in "iu" else 1.0
     whole = [(0, 0), *((0, -side % max(STEPS[0])) for side in images.shape[1:])]
-    found = np.empty((len(images), DIRECTIONS))
+    deviations = np.empty((len(images), DIRECTIONS))
     for start in range(0, len(images), BATCH):
         part = images[start : start + BATCH].astype(np.result_type(images, np.float32))
         # A constant image is then exactly 0; the detail has no mean anyway.
         part = np.pad(part - part.mean(axis=(1, 2), keepdims=True), whole, mode="symmetric")
         halves = [bands.std(axis=(2, 3)) for bands in directional_bands(detail(part))]
-        found[start : start + BATCH] = np.concatenate(halves, axis=1) / scale
-    return found
+        deviations[start : start + BATCH] = np.concatenate(halves, axis=1) / scale
+    return deviations
 
 
 def detail(images: np.ndarray) -> np.ndarray:
@@ -109,7 +109,7 @@ def filters(rows: int, columns: int) -> np.ndarray:
     that its response contains a shift.
     """
     y, x = 2 * np.pi * np.stack(np.meshgrid(np.fft.fftfreq(rows), np.fft.fftfreq(columns), indexing="ij"))
-    found = np.empty((DIRECTIONS, rows, columns), dtype=complex)
+    responses = np.empty((DIRECTIONS, rows, columns), dtype=complex)
     for k in range(DIRECTIONS):
         flat = k >= HALF
         u, v = (y, x) if flat else (x, y)
@@ -122,8 +122,8 @@ def filters(rows: int, columns: int) -> np.ndarray:
             lower = not place >> (4 - level) & 1
             response = response * channel(square_wave(u) * square_wave(wedges * v - middle * u), lower)
             shift = shift + lower * ((1 - middle) * u + wedges * v)
-        found[k] = response * np.exp(1j * shift)
-    return found
+        responses[k] = response * np.exp(1j * shift)
+    return responses
 
 
 def channel(sign: np.ndarray, second: bool) -> np.ndarray:

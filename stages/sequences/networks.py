@@ -134,9 +134,9 @@ class NormalInputs:
     batch = NORMAL_BATCH
 
     def __init__(self, normals: np.ndarray, train: np.ndarray) -> None:
-        chosen = normals[train].astype(np.float64)
-        spread = np.maximum(chosen.std(axis=(0, 1)), 1e-6)
-        self.normals = ((normals - chosen.mean(axis=(0, 1))) / spread).astype(np.float32)
+        training = normals[train].astype(np.float64)
+        spread = np.maximum(training.std(axis=(0, 1)), 1e-6)
+        self.normals = ((normals - training.mean(axis=(0, 1))) / spread).astype(np.float32)
 
     def network(self, classes: int) -> NormalNet:
         """An untrained network for these series."""
@@ -172,8 +172,8 @@ def train_network(
         while passes < epochs and rate > RATE / 2**HALVINGS:
             shuffled, total = train[torch.randperm(len(train)).numpy()], 0.0
             for start in range(0, len(train) - batch + 1, batch):
-                chosen = shuffled[start : start + batch]
-                loss = torch.nn.functional.cross_entropy(network(inputs(chosen)), targets[chosen])
+                ids = shuffled[start : start + batch]
+                loss = torch.nn.functional.cross_entropy(network(inputs(ids)), targets[ids])
                 slopes = torch.autograd.grad(loss, parameters)
                 with torch.no_grad():  # torch.optim loads the compiler, which takes longer than a small training
                     for parameter, slope in zip(parameters, slopes, strict=True):
@@ -191,6 +191,6 @@ def class_probabilities(network: torch.nn.Module, inputs: ImageInputs | NormalIn
     """(n, classes) f4: the softmax for the sequences `ids`; equal probabilities where it is not finite."""
     with repeatable(0):
         parts = [network(inputs(part)).softmax(dim=1) for part in np.array_split(ids, -(-len(ids) // PREDICTION_BATCH))]
-    found = torch.cat(parts)
-    even = torch.full_like(found, 1 / found.shape[1])
-    return torch.where(found.isfinite().all(dim=1, keepdim=True), found, even).numpy()
+    scores = torch.cat(parts)
+    even = torch.full_like(scores, 1 / scores.shape[1])
+    return torch.where(scores.isfinite().all(dim=1, keepdim=True), scores, even).numpy()

@@ -48,8 +48,8 @@ def sequence_features(values: ArrayLike) -> np.ndarray:
         approximation, detail = pywt.dwt(approximation, WAVELET, mode=MODE, axis=1)
         bands.append(detail)
     least = CONSTANT * np.abs(values).max(axis=1)
-    found = np.stack([_statistics(band, least) for band in (*bands, values)], axis=2)
-    return found.reshape(len(values), np.prod(found.shape[1:]))
+    statistics = np.stack([_statistics(band, least) for band in (*bands, values)], axis=2)
+    return statistics.reshape(len(values), np.prod(statistics.shape[1:]))
 
 
 def _statistics(band, least):

@@ -52,11 +52,11 @@ def split_by_objects(
 
 def _draw_share(labels, ids, share, generator):
     """Sorted indices: a share of every class, at least one of each class that has two."""
-    labels, drawn = np.asarray(labels), []
+    labels, draws = np.asarray(labels), []
     for label in np.unique(labels[ids]):
         members = generator.permutation(ids[labels[ids] == label])
-        drawn.append(members[: min(max(round(share * len(members)), 1), len(members) - 1)])
-    return np.sort(np.concatenate(drawn))
+        draws.append(members[: min(max(round(share * len(members)), 1), len(members) - 1)])
+    return np.sort(np.concatenate(draws))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +90,11 @@ def read_sequence_data(folder: Path, members: dict[str, list[str]], strategy: st
     images, normals, labels, ranks = [], [], [], []
     for label, objects in enumerate(members.values()):
         for rank, name in enumerate(objects):
-            found = read_sequences(folder / f"{name}.npz", strategy)[strategy]
-            images.append(found.images)
-            normals.append(found.normals)
-            labels += [label] * len(found.images)
-            ranks += [rank] * len(found.images)
+            sequences = read_sequences(folder / f"{name}.npz", strategy)[strategy]
+            images.append(sequences.images)
+            normals.append(sequences.normals)
+            labels += [label] * len(sequences.images)
+            ranks += [rank] * len(sequences.images)
     return SequenceData(
         np.concatenate(images), np.concatenate(normals), np.array(labels), np.array(ranks), list(members)
     )
@@ -186,7 +186,7 @@ def network_results(data: SequenceData, parts: Parts, settings: Params, seed: in
 
     Metrics: `train_accuracy`; of a network `passes` and `settled`, 1 where its training loss had stopped falling.
     """
-    found, learned, results = {}, {}, {}
+    predicted, learned, results = {}, {}, {}
     for name, kind, epochs in (
         ("cnn_images", ImageInputs, settings.image_epochs),
         ("cnn_normals", NormalInputs, settings.normal_epochs),
@@ -194,12 +194,12 @@ def network_results(data: SequenceData, parts: Parts, settings: Params, seed: in
         with Stopwatch() as watch:
             inputs = kind(getattr(data, name.removeprefix("cnn_")), parts.train)
             trained = train_network(inputs, data.labels, parts.train, len(data.classes), epochs, seed)
-            found[name] = class_probabilities(trained.network, inputs, parts.test)
+            predicted[name] = class_probabilities(trained.network, inputs, parts.test)
         learned[name] = class_probabilities(trained.network, inputs, parts.train)
         metrics = {"passes": trained.passes, "settled": int(trained.settled)}
-        results[name] = found[name].argmax(axis=1), watch.seconds, metrics
+        results[name] = predicted[name].argmax(axis=1), watch.seconds, metrics
     seconds = sum(seconds for _, seconds, _ in results.values())
-    results["cnn"] = np.sum(list(found.values()), axis=0).argmax(axis=1), seconds, {}
+    results["cnn"] = np.sum(list(predicted.values()), axis=0).argmax(axis=1), seconds, {}
     learned["cnn"] = np.sum(list(learned.values()), axis=0)
     for name, (_, _, metrics) in results.items():
         metrics["train_accuracy"] = float((learned[name].argmax(axis=1) == data.labels[parts.train]).mean())
@@ -273,13 +273,13 @@ def plan(classes: dict[str, list[str]], folder: Path, settings: Params) -> Plan:
     rounds = [(Split.RANDOM, number) for number in range(settings.repetitions)] + object_rounds
     full_size = _possible(f"{shape[0]}x{shape[1]}", shape, KINDS, notes)
     trials = [
-        Trial(strategy, *each, kind, size) for strategy in strategies for each in rounds for kind, size in full_size
+        Trial(strategy, *turn, kind, size) for strategy in strategies for turn in rounds for kind, size in full_size
     ]
     if settings.smaller_strategy in strategies:
         for kind, sizes in (("networks", settings.smaller_networks), ("conventional", settings.smaller)):
             reduced = [pair for size in sizes for pair in _possible(size, shape, [kind], notes)]
             trials += [
-                Trial(settings.smaller_strategy, *each, *pair) for pair in reduced for each in object_rounds or rounds
+                Trial(settings.smaller_strategy, *turn, *pair) for pair in reduced for turn in object_rounds or rounds
             ]
     return Plan(list(dict.fromkeys(trials)), members, notes)
 
@@ -288,8 +288,8 @@ def _members(classes, folder):
     """({class: its objects that have sequences}, notes)."""
     members, notes = {}, []
     for name, objects in classes.items():
-        available = [one for one in objects if (folder / f"{one}.npz").exists()]
-        missing = [one for one in objects if one not in available]
+        available = [item for item in objects if (folder / f"{item}.npz").exists()]
+        missing = [item for item in objects if item not in available]
         if missing:
             notes.append(f"class {name}: no sequences of {', '.join(missing)}")
         if available:
@@ -299,10 +299,10 @@ def _members(classes, folder):
 
 def _strategies(members, folder):
     """(strategies with enough sequences of every object, notes on the others)."""
-    counts = {one: count_sequences(folder / f"{one}.npz") for objects in members.values() for one in objects}
+    counts = {item: count_sequences(folder / f"{item}.npz") for objects in members.values() for item in objects}
     usable, notes = [], []
     for strategy in dict.fromkeys(name for by_strategy in counts.values() for name in by_strategy):
-        too_few = [one for one, by_strategy in counts.items() if by_strategy.get(strategy, 0) < MIN_SEQUENCES]
+        too_few = [item for item, by_strategy in counts.items() if by_strategy.get(strategy, 0) < MIN_SEQUENCES]
         if too_few:
             notes.append(f"{strategy} left out: fewer than {MIN_SEQUENCES} sequences of {', '.join(too_few)}")
         else:

@@ -40,11 +40,11 @@ def process(name: str, folder: Path, data: Path, counts: dict[str, int], cells: 
 
 def shares(members: dict[str, list[str]], count: int) -> dict[str, int]:
     """{object: how many imprints of its class it gives}; members: {class: its objects}."""
-    found = {}
+    counts = {}
     for objects in members.values():
         parts = np.diff(np.linspace(0, count, len(objects) + 1).astype(int))
-        found |= dict(zip(objects, parts.tolist(), strict=True))
-    return found
+        counts |= dict(zip(objects, parts.tolist(), strict=True))
+    return counts
 
 
 def run(workspace: Workspace) -> None:
@@ -89,8 +89,8 @@ def described(images: dict[str, np.ndarray]) -> trial.Touches:
 
 def summary(rows: Rows) -> dict[str, float]:
     """{training.simulation: the mean accuracy of kNN over all numbers of real touches and splits}."""
-    asked = (row for row in rows if row["classifier"] == "knn" and row["group"] == "all")
-    return named_means((".".join([row["training"], row.get("simulation", "none")]), row["value"]) for row in asked)
+    selected = (row for row in rows if row["classifier"] == "knn" and row["group"] == "all")
+    return named_means((".".join([row["training"], row.get("simulation", "none")]), row["value"]) for row in selected)
 
 
 if __name__ == "__main__":

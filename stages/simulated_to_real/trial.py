@@ -69,33 +69,33 @@ def _trainings(
         yield Training({"training": "real"}, Touches(real.samples[chosen], labels), real.samples)
     for kind, touches in simulated.items():
         for aligned in (False, True):
-            own, there = touches.samples, real.samples
+            samples, measured = touches.samples, real.samples
             if aligned:
-                own, there = _scaled(own, own), _scaled(there, there[pool])
+                samples, measured = _scaled(samples, samples), _scaled(measured, measured[pool])
             columns = {"training": "both" if len(chosen) else "simulated", "simulation": kind, "aligned": aligned}
-            both = Touches(np.concatenate([own, there[chosen]]), np.concatenate([touches.labels, labels]))
-            yield Training(columns, both, there)
+            joined = Touches(np.concatenate([samples, measured[chosen]]), np.concatenate([touches.labels, labels]))
+            yield Training(columns, joined, measured)
 
 
 def _test(training: Training, labels: np.ndarray, test: np.ndarray, count: int, number: int) -> Iterator[dict]:
-    train, wanted = training.touches, labels[test]
+    train, truth = training.touches, labels[test]
     for name in CLASSIFIERS:
         parts = min(COMPONENTS, len(train.samples))
         model = make_pipeline(StandardScaler(), PCA(parts, svd_solver="full"), CLASSIFIERS[name](number))
         with Stopwatch() as watch:
             answers = model.fit(train.samples, train.labels).predict(training.real[test])
         row = {**training.columns, "classifier": name, "metric": "accuracy", "seconds": watch.seconds}
-        yield {**row, "group": "all", "value": float((answers == wanted).mean())}
+        yield {**row, "group": "all", "value": float((answers == truth).mean())}
         if name == "knn" and count == 0:
-            for one in dict.fromkeys(labels.tolist()):
-                yield {**row, "group": one, "value": float((answers == one)[wanted == one].mean())}
+            for label in dict.fromkeys(labels.tolist()):
+                yield {**row, "group": label, "value": float((answers == label)[truth == label].mean())}
 
 
 def _draw(labels: np.ndarray, pool: np.ndarray, count: int, number: int) -> np.ndarray:
     random = np.random.default_rng([number, count])
     classes = dict.fromkeys(labels.tolist())
-    drawn = [random.choice(pool[labels[pool] == one], count, replace=False) for one in classes]
-    return np.concatenate(drawn).astype(np.int64)
+    draws = [random.choice(pool[labels[pool] == label], count, replace=False) for label in classes]
+    return np.concatenate(draws).astype(np.int64)
 
 
 def _scaled(samples: np.ndarray, reference: np.ndarray) -> np.ndarray:
@@ -142,9 +142,9 @@ def _resting(mesh, count, cells, millimetre, random, pitch=PITCH):
     cos, sin = np.cos(angles), np.sin(angles)
     axes = np.stack([cos * right + sin * up, cos * up - sin * right, normal], axis=1)
     aside = (random.uniform(-ASIDE, ASIDE, (count, 2)) * (cells[1], cells[0]) * pitch)[:, :, None]
-    found = distances_at(Surface(mesh), places + np.sum(aside * axes[:, :2], axis=1), axes, cells, pitch)
+    distances = distances_at(Surface(mesh), places + np.sum(aside * axes[:, :2], axis=1), axes, cells, pitch)
     depths = random.uniform(*DEPTHS, count) * millimetre
-    return np.concatenate([indent(found[k : k + 1], depth) for k, depth in enumerate(depths)])
+    return np.concatenate([indent(distances[k : k + 1], depth) for k, depth in enumerate(depths)])
 
 
 def _stable(mesh):

@@ -53,8 +53,8 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int) ->
     subject = Subject(mesh, methods, options, settings.count, settings.size, truth_of(data, name))
     rows, cases, middle = subject.unperturbed_rows(), [], middle_severities(settings)
     for draws in asked(settings):
-        found, case = measured(subject, draws)
-        rows += found
+        part, case = measured(subject, draws)
+        rows += part
         if case and draws[0].parts[0] in middle.items() and draws[0].severity is not None:
             cases.append((draws[0], case))
     write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
@@ -100,8 +100,8 @@ def truth_of(data: Path, name: str) -> GroundTruth | None:
     path = data / "weights" / "ground_truth" / f"{name}.npz"
     if not path.exists():
         return None
-    known = read_arrays(path)
-    return GroundTruth(known["amounts"], known["density"], known["areas"])
+    gaze = read_arrays(path)
+    return GroundTruth(gaze["amounts"], gaze["density"], gaze["areas"])
 
 
 def check(settings: Params) -> None:
@@ -131,22 +131,22 @@ def check(settings: Params) -> None:
 
 def chosen(settings: Params, names: Sequence[str]) -> Sequence[str]:
     """The objects to disturb: those of the settings that are there, or else the first of all."""
-    wanted = [name for name in settings.objects if name in names] or names
-    return wanted[: settings.most]
+    selected = [name for name in settings.objects if name in names] or names
+    return selected[: settings.most]
 
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     check(settings)
-    each = dataclasses.replace(settings, objects=[], most=0)  # what an object depends on
+    common = dataclasses.replace(settings, objects=[], most=0)  # what an object depends on
     with StageRun(workspace, "stability", COLUMNS, inputs=("meshes", "weights")) as stage:
         objects = chosen(settings, stage.objects)
-        work = functools.partial(process, data=workspace.data, settings=each, seed=stage.seed)
+        work = functools.partial(process, data=workspace.data, settings=common, seed=stage.seed)
         rows = stage.each(work, objects, reads=("meshes/{}.npz", "weights"))
         if settings.used:
-            given = {"objects": objects, "severities": middle_severities(settings), "seed": stage.seed}
-            stage.each(functools.partial(recognise, made=stage.folder, **given), [f"sets of {SET}"], ["stability"])
+            options = {"objects": objects, "severities": middle_severities(settings), "seed": stage.seed}
+            stage.each(functools.partial(recognise, made=stage.folder, **options), [f"sets of {SET}"], ["stability"])
         stage.metrics(summarise(rows) | {"simplified": summarise_simplification(rows)})
     broken = sum(value is not None for value in summarise(rows)["breaking_point"].values())
     outcomes = Counter(row["outcome"] for row in rows if row["metric"] == "faces")

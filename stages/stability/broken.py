@@ -107,16 +107,18 @@ def everything(mesh: Mesh, generator: np.random.Generator) -> Mesh:
     return mesh
 
 
-def _without(mesh, gone):
-    return Mesh(mesh.vertices, np.delete(mesh.faces, np.flatnonzero(gone) if gone.dtype == bool else gone, axis=0))
+def _without(mesh, removed):
+    return Mesh(
+        mesh.vertices, np.delete(mesh.faces, np.flatnonzero(removed) if removed.dtype == bool else removed, axis=0)
+    )
 
 
 def _some(mesh, generator, share):
     return generator.random(len(mesh.faces)) < share
 
 
-def _joined(one, other):
-    return Mesh(np.r_[one.vertices, other.vertices], np.r_[one.faces, other.faces + len(one.vertices)])
+def _joined(first, second):
+    return Mesh(np.r_[first.vertices, second.vertices], np.r_[first.faces, second.faces + len(first.vertices)])
 
 
 def _split(mesh, generator, share):

@@ -37,16 +37,16 @@ def repeatability(before: np.ndarray, after: np.ndarray, tolerance: float) -> fl
         return np.nan
     if len(before) == 0 or len(after) == 0:
         return 0.0
-    found = (KDTree(after).query(before)[0] <= tolerance).sum() + (KDTree(before).query(after)[0] <= tolerance).sum()
-    return float(found / (len(before) + len(after)))
+    matches = (KDTree(after).query(before)[0] <= tolerance).sum() + (KDTree(before).query(after)[0] <= tolerance).sum()
+    return float(matches / (len(before) + len(after)))
 
 
 def chance_repeatability(
     before: np.ndarray, perturbed: Perturbed, count: int, generator: np.random.Generator, tolerance: float
 ) -> float:
     """The repeatability of `count` random vertices, drawn by area, against `before`: the mean of DRAWS draws."""
-    drawn = [perturbed.original_positions[random_vertices(perturbed.mesh, count, generator)] for _ in range(DRAWS)]
-    return float(np.mean([repeatability(before, points, tolerance) for points in drawn]))
+    draws = [perturbed.original_positions[random_vertices(perturbed.mesh, count, generator)] for _ in range(DRAWS)]
+    return float(np.mean([repeatability(before, points, tolerance) for points in draws]))
 
 
 def at_original_vertices(mesh: Mesh, perturbed: Perturbed, saliency: np.ndarray) -> np.ndarray:
@@ -65,10 +65,10 @@ def drift(before: np.ndarray, after: np.ndarray, areas: np.ndarray) -> float:
     0 for maps that are equal up to scale, 1 for unrelated ones. Two constant maps have a drift of 0, a constant map and
     any other a drift of 1.
     """
-    one, other = standardise(before, areas), standardise(after, areas)
-    if not one.any() and not other.any():
+    first, second = standardise(before, areas), standardise(after, areas)
+    if not first.any() and not second.any():
         return 0.0
-    return float(max(1 - (areas * one * other).sum() / areas.sum(), 0.0))  # rounding may make it negative
+    return float(max(1 - (areas * first * second).sum() / areas.sum(), 0.0))  # rounding may make it negative
 
 
 LEAST_SIDE = 9  # rows and columns of the smallest image
@@ -87,16 +87,16 @@ def maps_under_conditions(
     size = tuple(max(round(conditions.rows * side), LEAST_SIDE) for side in size)
     share = max(size[0] // REDUCTION, 1), max(size[1] // REDUCTION, 1)
     normals = corner_normals(mesh) if conditions.light else np.zeros((0, 3, 3))
-    found, masks = [], []
+    by_view, masks = [], []
     for viewpoint in TWELVE:
         view = render(mesh, viewpoint, size, "raster")
         if conditions.light:
             view = relit(mesh, view, conditions.light, normals)
         if conditions.background:  # rendered black
             view.rgb[~view.mask] = round(255 * conditions.background)
-        found.append(conspicuity(mesh, view, channels, share, conditions.filled))
+        by_view.append(conspicuity(mesh, view, channels, share, conditions.filled))
         masks.append(mask_at_size(view.mask, share))
-    maps = {channel: np.stack([maps[channel] for maps in found]) for channel in channels}
+    maps = {channel: np.stack([maps[channel] for maps in by_view]) for channel in channels}
     return ViewMaps(mesh, TWELVE, maps, np.stack(masks))
 
 

@@ -56,30 +56,30 @@ class Result:
     smallest: int = 0
 
 
-def run_case(specimen: Specimen, case: Case, backend: str, asked: int | None = None) -> Result:
-    """The Answer of a backend to a case; asked: the face count where the case's budget is SMALLEST."""
-    asked = asked or face_count(case.budget, len(specimen.mesh.faces))
+def run_case(specimen: Specimen, case: Case, backend: str, target: int | None = None) -> Result:
+    """The result of a backend in a case; target: the face count where the case's budget is SMALLEST."""
+    target = target or face_count(case.budget, len(specimen.mesh.faces))
     kept, weights = specimen.kept(case), specimen.weights(case)
 
     def work():
-        return simplify(specimen.mesh, asked, kept, RINGS, backend=backend, weights=weights)
+        return simplify(specimen.mesh, target, kept, RINGS, backend=backend, weights=weights)
 
     with warnings.catch_warnings(), Stopwatch() as watch:
         warnings.simplefilter("error", RuntimeWarning)
         try:
-            found, problem = work(), None
+            simplified, problem = work(), None
         except Exception as error:  # any error is an outcome
-            found, problem = None, error
-    if found is None:
-        return _no_mesh(problem, asked, watch.seconds)
+            simplified, problem = None, error
+    if simplified is None:
+        return _no_mesh(problem, target, watch.seconds)
     frozen = specimen.kept_faces(kept)
-    limit, apart = specimen.limit(asked, len(frozen)), surface_error(specimen.mesh, found)
-    said = find_faults(specimen.surface, found, asked, kept, frozen)
+    limit, apart = specimen.limit(target, len(frozen)), surface_error(specimen.mesh, simplified)
+    faults = find_faults(specimen.surface, simplified, target, kept, frozen)
     if not apart <= limit:
-        said.append(f"mean error {apart:.2g} of the diagonal, more than the {limit:.2g} allowed")
-    if case.budget in REPEATED_BUDGETS and not _same(found, work()):
-        said.append("another mesh on the second run")
-    return Result("ruined" if said else "valid", "; ".join(said), asked, watch.seconds, found, apart, limit)
+        faults.append(f"mean error {apart:.2g} of the diagonal, more than the {limit:.2g} allowed")
+    if case.budget in REPEATED_BUDGETS and not _same(simplified, work()):
+        faults.append("another mesh on the second run")
+    return Result("ruined" if faults else "valid", "; ".join(faults), target, watch.seconds, simplified, apart, limit)
 
 
 def cases_for(damage: str) -> list[Case]:
@@ -133,16 +133,16 @@ def _rows(name, damage, backend, case, result):
     return rows if result.mesh is None else [*rows, row | {"metric": "error", "value": result.error}]
 
 
-def _no_mesh(error, asked, seconds):
+def _no_mesh(error, target, seconds):
     """The Result without a mesh: a ValueError of this project with a reason is a refusal, all else a crash."""
     place, note = traceback.extract_tb(error.__traceback__)[-1], " ".join(str(error).split())
     if isinstance(error, ValueError) and any(map(Path(place.filename).is_relative_to, OURS)) and note:
-        return Result("refused", note, asked, seconds, smallest=getattr(error, "smallest", 0))
-    return Result("crash", f"{type(error).__name__}: {note}", asked, seconds)
+        return Result("refused", note, target, seconds, smallest=getattr(error, "smallest", 0))
+    return Result("crash", f"{type(error).__name__}: {note}", target, seconds)
 
 
-def _same(one, other):
-    return one.vertices.tobytes() == other.vertices.tobytes() and one.faces.tobytes() == other.faces.tobytes()
+def _same(first, second):
+    return first.vertices.tobytes() == second.vertices.tobytes() and first.faces.tobytes() == second.faces.tobytes()
 
 
 KEYS = ["perturbation", "method", "severity"]
@@ -166,17 +166,17 @@ def breaking_points(rows: pd.DataFrame) -> dict[tuple[str, str], tuple[float, fl
     The interval is over the units of the objects, see `breaking_interval`; NaN is beyond the harshest severity. Also
     NaN where a severity before it has no value at all.
     """
-    found = {}
-    for key, own in rows[rows["metric"] == "repeatability"].groupby(["perturbation", "method"], sort=False):
+    points = {}
+    for key, part in rows[rows["metric"] == "repeatability"].groupby(["perturbation", "method"], sort=False):
         perturbation, method = cast(tuple[str, str], key)
-        wide = own.assign(unit=own["item"].map(unit)).pivot_table(
+        wide = part.assign(unit=part["item"].map(unit)).pivot_table(
             index="unit", columns="severity", values="value", sort=False
         )
-        severities = [one for one in dict.fromkeys(own["severity"]) if one in wide.columns]
+        severities = [severity for severity in dict.fromkeys(part["severity"]) if severity in wide.columns]
         if severities:
             curves = wide[severities].to_numpy()
-            found[perturbation, method] = breaking_interval(severities, curves, PERTURBATIONS[perturbation].unharmed)
-    return found
+            points[perturbation, method] = breaking_interval(severities, curves, PERTURBATIONS[perturbation].unharmed)
+    return points
 
 
 def summarise(rows: Sequence[dict]) -> dict[str, dict]:
@@ -197,15 +197,15 @@ def summarise_simplification(rows: Sequence[dict]) -> dict[str, dict]:
 
     Crashes are counted: none is allowed on any machine.
     """
-    rows, found = [row for row in rows if row["metric"] == "faces"], {}
+    rows, shares = [row for row in rows if row["metric"] == "faces"], {}
     for backend in dict.fromkeys(row["method"] for row in rows):
         cases = [row for row in rows if row["method"] == backend]
         outcomes = Counter(row["outcome"] for row in cases)
         met = [row["outcome"] == "valid" for row in cases if row["budget"] == SMALLEST]
-        found[backend] = {outcome: round(outcomes[outcome] / len(cases), 6) for outcome in OUTCOMES[:-1]}
-        found[backend]["smallest_had"] = round(sum(met) / len(met), 6) if met else None
-        found[backend]["crashes"] = outcomes[OUTCOMES[-1]]
-    return found
+        shares[backend] = {outcome: round(outcomes[outcome] / len(cases), 6) for outcome in OUTCOMES[:-1]}
+        shares[backend]["smallest_had"] = round(sum(met) / len(met), 6) if met else None
+        shares[backend]["crashes"] = outcomes[OUTCOMES[-1]]
+    return shares
 
 
 def _curves(rows):

@@ -56,10 +56,10 @@ class Subject:
 
         Raises ValueError where this mesh cannot be perturbed in this way, or cannot be rendered afterwards.
         """
-        changed, what = disturbance.apply(self.mesh, self.options.name, self.options.seed), str(disturbance)
+        changed, label = disturbance.apply(self.mesh, self.options.name, self.options.seed), str(disturbance)
         if changed.mesh.vertices is self.mesh.vertices and changed.mesh.faces is self.mesh.faces:
-            return self._findings(changed, what, self._found_on_the_surface)
-        return self._findings(replace(changed, mesh=normalise(orient(changed.mesh)[0])), what)
+            return self._findings(changed, label, self._found_on_the_surface)
+        return self._findings(replace(changed, mesh=normalise(orient(changed.mesh)[0])), label)
 
     @property
     def _found_on_the_surface(self):
@@ -67,44 +67,48 @@ class Subject:
 
         Random points are drawn anew each time: equal draws would look repeatable.
         """
-        found = self.unperturbed.found.items()
-        return {name: one for name, one in found if not method_named(name).channels and one.saliency is not None}
+        pairs = self.unperturbed.found.items()
+        return {
+            name: detection
+            for name, detection in pairs
+            if not method_named(name).channels and detection.saliency is not None
+        }
 
-    def _findings(self, perturbed, what, known=None):
+    def _findings(self, perturbed, label, known=None):
         """known: Detections that need not be found again; they keep the seconds that they took."""
         with Stopwatch() as watch:
             sight = maps_under_conditions(perturbed.mesh, self.channels, perturbed.conditions, self.size)
-        options = replace(self.options, name=f"{self.options.name} {what}")
-        found, seconds = find_all(perturbed.mesh, sight, self.methods, options, self.count, known)
+        options = replace(self.options, name=f"{self.options.name} {label}")
+        detections, seconds = find_all(perturbed.mesh, sight, self.methods, options, self.count, known)
         seconds |= {method: self.unperturbed.seconds[method] for method in known or ()}
-        image_based = [method for method in found if method_named(method).channels]
+        image_based = [method for method in detections if method_named(method).channels]
         for method in image_based:
             seconds[method] += watch.seconds / len(image_based)
-        return Findings(perturbed, found, seconds)
+        return Findings(perturbed, detections, seconds)
 
     def unperturbed_rows(self) -> list[dict]:
         """Rows of the unperturbed object: how many points each method has, its agreement with people, its seconds."""
         return [
             self._row(method, None, *item, self.unperturbed.seconds[method])
-            for method, found in self.unperturbed.found.items()
-            for item in ({"points": found.strong} | self._agreement(found.saliency)).items()
+            for method, detection in self.unperturbed.found.items()
+            for item in ({"points": detection.strong} | self._agreement(detection.saliency)).items()
         ]
 
     def rows(self, disturbance: Disturbance, case: Findings) -> list[dict]:
         """Rows of Findings: repeatability, chance (of as many random points), points; of a map drift and agreement."""
         rows = []
-        for method, found in case.found.items():
+        for method, detection in case.found.items():
             before = self.mesh.vertices[self.unperturbed.found[method].points]
             tolerance = TOLERANCE * self.mesh.diagonal
             draws = rng(self.options.seed, f"{self.options.name} {disturbance} {method} chance")
             values = {
-                "repeatability": repeatability(before, case.perturbed.original_positions[found.points], tolerance),
-                "chance": chance_repeatability(before, case.perturbed, len(found.points), draws, tolerance),
-                "points": found.strong,
+                "repeatability": repeatability(before, case.perturbed.original_positions[detection.points], tolerance),
+                "chance": chance_repeatability(before, case.perturbed, len(detection.points), draws, tolerance),
+                "points": detection.strong,
             }
             saliency = self.unperturbed.found[method].saliency
-            if saliency is not None and found.saliency is not None:
-                back = at_original_vertices(self.mesh, case.perturbed, found.saliency)
+            if saliency is not None and detection.saliency is not None:
+                back = at_original_vertices(self.mesh, case.perturbed, detection.saliency)
                 values |= {"drift": drift(saliency, back, self.mesh.vertex_areas)} | self._agreement(back)
             seconds = case.seconds[method]
             rows += [self._row(method, disturbance, *item, seconds) for item in values.items()]
@@ -141,13 +145,13 @@ def worst_arrays(subject: Subject, cases: Sequence[tuple[Disturbance, Findings]]
         scores = [_score(subject, method, case) for _, case in cases]
         worst = int(np.argmin(scores))
         disturbance, case = cases[worst]
-        found, mesh = case.found[method], case.perturbed.mesh
-        assert found.saliency is not None  # a method has one under every perturbation or under none
+        detection, mesh = case.found[method], case.perturbed.mesh
+        assert detection.saliency is not None  # a method has one under every perturbation or under none
         values = {
             "perturbation": np.array(disturbance.name), "severity": np.float64(disturbance.severity or 0.0),
             "repeatability": np.float64(scores[worst]), "before_points": plain.points,
-            "before_saliency": plain.saliency.astype(np.float32), "after_points": found.points,
-            "after_saliency": found.saliency.astype(np.float32), "vertices": mesh.vertices, "faces": mesh.faces,
+            "before_saliency": plain.saliency.astype(np.float32), "after_points": detection.points,
+            "after_saliency": detection.saliency.astype(np.float32), "vertices": mesh.vertices, "faces": mesh.faces,
         }  # fmt: skip
         arrays |= {f"{method}.{key}": value for key, value in values.items()}
     return arrays
@@ -165,10 +169,10 @@ def mean_of_draws(draws: Sequence[Rows]) -> Rows:
     draws: the rows of each, in the same order, or fewer where it failed; those of the longest are taken.
     """
     longest = max(draws, key=len)
-    found: dict[tuple[str, str], list[dict]] = {}
+    groups: dict[tuple[str, str], list[dict]] = {}
     for row in (row for rows in draws for row in rows if row["value"] is not None):
-        found.setdefault((row["method"], row["metric"]), []).append(row)
-    return [row | _means(found.get((row["method"], row["metric"]), [])) for row in longest]
+        groups.setdefault((row["method"], row["metric"]), []).append(row)
+    return [row | _means(groups.get((row["method"], row["metric"]), [])) for row in longest]
 
 
 def _means(rows):

@@ -104,8 +104,8 @@ class Surface:
         for end in edges.T:
             corner = [3 * face + (faces[face] == end[:, None]).argmax(axis=1) for face in pairs.T]
             tails, heads = [*tails, corner[0]], [*heads, corner[1]]
-        ones = np.ones(2 * len(pairs), dtype=bool)
-        joined = sparse.csr_matrix((ones, (np.concatenate(tails), np.concatenate(heads))), shape=(3 * n, 3 * n))
+        links = np.ones(2 * len(pairs), dtype=bool)
+        joined = sparse.csr_matrix((links, (np.concatenate(tails), np.concatenate(heads))), shape=(3 * n, 3 * n))
         return connected_components(joined, directed=False)[0] - len(np.unique(faces))
 
     @cached_property
@@ -149,56 +149,58 @@ COUNTS = {  # counts of a Surface that simplification must not increase -> their
 SAMPLES = 2000  # points on each surface: the mean error is then exact to 3 %
 
 
-def find_faults(old: Surface, found: Mesh, faces: int, kept_vertices: np.ndarray, kept_faces: np.ndarray) -> list[str]:
+def find_faults(
+    old: Surface, simplified: Mesh, faces: int, kept_vertices: np.ndarray, kept_faces: np.ndarray
+) -> list[str]:
     """The faults of a simplified mesh as phrases, [] when it is sound.
 
-    old: the surface before simplification; found: the result; faces: the number of faces asked for; kept_vertices (k,)
-    ids and kept_faces (j, 3): what must survive bit for bit. A simplifier may first remove duplicate faces and faces
+    old: the surface before simplification; simplified: the result; faces: the number asked for; kept_vertices (k,) ids
+    and kept_faces (j, 3): what must survive bit for bit. A simplifier may first remove duplicate faces and faces
     that name a vertex twice: boundary and connected components may be those of the mesh with or without them.
     """
-    if len(found.faces) == 0:
+    if len(simplified.faces) == 0:
         return ["no face left"]
-    before, new, said = old.mesh, Surface(found), []
-    if len(found.faces) > faces:
-        said.append(f"{len(found.faces)} faces, {faces} asked")
-    lost = _missing(before.vertices[kept_vertices], found.vertices[np.unique(found.faces)])
+    before, new, faults = old.mesh, Surface(simplified), []
+    if len(simplified.faces) > faces:
+        faults.append(f"{len(simplified.faces)} faces, {faces} asked")
+    lost = _missing(before.vertices[kept_vertices], simplified.vertices[np.unique(simplified.faces)])
     if lost:
-        said.append(f"{lost} kept vertices lost")
-    lost = _missing(_triples(before.vertices[kept_faces]), _triples(found.vertices[found.faces]))
+        faults.append(f"{lost} kept vertices lost")
+    lost = _missing(_triples(before.vertices[kept_faces]), _triples(simplified.vertices[simplified.faces]))
     if lost:
-        said.append(f"{lost} kept faces lost")
+        faults.append(f"{lost} kept faces lost")
     if new.boundary_edges not in (old.boundary_edges, old.deduplicated.boundary_edges):
-        said.append(f"boundary changed in {len(new.boundary_edges ^ old.boundary_edges)} edges")
+        faults.append(f"boundary changed in {len(new.boundary_edges ^ old.boundary_edges)} edges")
     if new.components not in (old.components, old.deduplicated.components):
-        said.append(f"{new.components} connected components instead of {old.components}")
+        faults.append(f"{new.components} connected components instead of {old.components}")
     for name, words in COUNTS.items():
         more = np.min(getattr(new, name) - getattr(old, name))  # folds are counted in two ways
         if more > 0:
-            said.append(f"{more} new {words}")
+            faults.append(f"{more} new {words}")
     if old.closed and not new.closed:
-        said.append("no longer closed")
+        faults.append("no longer closed")
     elif old.closed and old.volume * new.volume < 0:
-        said.append("inside out")
-    return said
+        faults.append("inside out")
+    return faults
 
 
-def surface_error(before: Mesh, found: Mesh) -> float:
+def surface_error(before: Mesh, after: Mesh) -> float:
     """The mean distance of two surfaces, the larger of both directions, over the diagonal of the first (T3.1.4).
 
     Measured at points drawn uniformly by area, or at the corners of the faces where a mesh has no area.
     """
     place, size = before.vertices[before.faces[0, 0]], before.diagonal or 1.0
-    one, other = (
-        trimesh.Trimesh((mesh.vertices - place) / size, mesh.faces, process=False) for mesh in (before, found)
+    first, second = (
+        trimesh.Trimesh((mesh.vertices - place) / size, mesh.faces, process=False) for mesh in (before, after)
     )
-    return max(_mean_distance(one, other), _mean_distance(other, one))
+    return max(_mean_distance(first, second), _mean_distance(second, first))
 
 
-def _mean_distance(one, other):
-    has_area = one.area > FLAT**2
-    points = trimesh.sample.sample_surface(one, SAMPLES, seed=0)[0] if has_area else one.triangles.reshape(-1, 3)
-    faces = np.ascontiguousarray(other.faces, dtype=np.int64)
-    apart = pcu.closest_points_on_mesh(np.ascontiguousarray(points), np.ascontiguousarray(other.vertices), faces)[0]
+def _mean_distance(source, target):
+    has_area = source.area > FLAT**2
+    points = trimesh.sample.sample_surface(source, SAMPLES, seed=0)[0] if has_area else source.triangles.reshape(-1, 3)
+    faces = np.ascontiguousarray(target.faces, dtype=np.int64)
+    apart = pcu.closest_points_on_mesh(np.ascontiguousarray(points), np.ascontiguousarray(target.vertices), faces)[0]
     return float(np.mean(apart))
 
 
@@ -247,8 +249,8 @@ def plain_qem(mesh: Mesh, faces: int) -> Mesh:
         optimalplacement=True, planarquadric=True, planarweight=1e-5, qualityweight=False, autoclean=False,
         selected=False,
     )  # fmt: skip
-    found = work.current_mesh()
-    return Mesh(found.vertex_matrix() * mesh.diagonal, found.face_matrix())
+    reduced = work.current_mesh()
+    return Mesh(reduced.vertex_matrix() * mesh.diagonal, reduced.face_matrix())
 
 
 RINGS = 3  # rings of faces kept around a kept vertex; T3.1.3
@@ -305,11 +307,11 @@ class Specimen:
             near[faces[near[faces].any(axis=1)]] = True
         return faces[near[faces].all(axis=1)]
 
-    def limit(self, asked: int, frozen: int) -> float:
-        """The largest mean error allowed for a result of `asked` faces, `frozen` of them kept.
+    def limit(self, target: int, frozen: int) -> float:
+        """The largest mean error allowed for a result of `target` faces, `frozen` of them kept.
 
         Each boundary edge needs one face and each further connected component four; the other faces are free. What the
         damage itself moved is added.
         """
-        free = asked - frozen - len(self.surface.boundary_edges) - 4 * (self.surface.deduplicated.components - 1)
+        free = target - frozen - len(self.surface.boundary_edges) - 4 * (self.surface.deduplicated.components - 1)
         return min(RUIN * self.curve.error(free) + DAMAGES[self.damage].moved, LARGEST_ERROR)

@@ -76,10 +76,10 @@ class Uses:
 
 def _errors(mesh: Mesh, points: np.ndarray, saliency: np.ndarray | None) -> dict[str, float]:
     """Metro's mean error of the mesh simplified around points, and that weighted by a saliency, where there is one."""
-    made = simplify(mesh, max(int(TARGET * len(mesh.faces)), 1), keep=points, shrink=True)
+    simplified = simplify(mesh, max(int(TARGET * len(mesh.faces)), 1), keep=points, shrink=True)
     judges = {} if saliency is None or not saliency.any() else {"salient": np.clip(saliency, 0, None)}
-    found = surface_errors(mesh, made, judges, SAMPLES)
-    return {name: found[name] for name in ("mean", *judges)}
+    errors = surface_errors(mesh, simplified, judges, SAMPLES)
+    return {name: errors[name] for name in ("mean", *judges)}
 
 
 SET = 10  # objects that are told apart
@@ -96,7 +96,7 @@ def recognise(
     each perturbation that has one. A nearest neighbour learned the touches METHOD.learned of all objects of a set.
     """
     touches = {name: read_arrays(made / FOLDER / f"{name}.npz") for name in objects}
-    found: dict[tuple[str, str], list[float]] = {}
+    recognised: dict[tuple[str, str], list[float]] = {}
     for group in partitions(objects, seed):
         for method in (key.removesuffix(f".{LEARNED}") for key in touches[group[0]] if key.endswith(f".{LEARNED}")):
             learned = [touches[name][f"{method}.{LEARNED}"] for name in group]
@@ -104,9 +104,9 @@ def recognise(
             for name in group:
                 for key, felt in touches[name].items():
                     if key.startswith(f"{method}.") and len(felt) and key != f"{method}.{LEARNED}":
-                        found.setdefault((name, key), []).append(float((model.predict(felt) == name).mean()))
+                        recognised.setdefault((name, key), []).append(float((model.predict(felt) == name).mean()))
     rows = []
-    for (name, key), shares in found.items():
+    for (name, key), shares in recognised.items():
         method, _, perturbation = key.partition(".")
         common = {"item": name, "group": f"sets of {min(SET, len(objects))}", "method": method, "metric": "recognised"}
         severity = severities.get(perturbation)

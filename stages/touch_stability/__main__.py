@@ -43,8 +43,8 @@ def summary(rows: Rows) -> dict[str, dict[str, Any]]:
         clean = float(np.mean(by_perturbation.pop(CLEAN)[0.0]))
         tree["accuracy"][model] = round(clean, 6)
         for perturbation, by_severity in by_perturbation.items():
-            left = lead_left([np.mean(found) for found in by_severity.values()], clean, chances[model])
-            at = breaking_point(list(by_severity), left.tolist(), TOUCH_PERTURBATIONS[perturbation].unharmed)
+            shares = lead_left([np.mean(numbers) for numbers in by_severity.values()], clean, chances[model])
+            at = breaking_point(list(by_severity), shares.tolist(), TOUCH_PERTURBATIONS[perturbation].unharmed)
             tree["breaking_point"][f"{model}.{perturbation}"] = round(at, 6) if np.isfinite(at) else None
     return tree
 
@@ -76,11 +76,11 @@ def left_out(settings: Params, objects: list[str], folder: Path) -> tuple[str | 
     missing = [name for name in objects if not (folder / f"{name}.npz").exists()]
     if missing:
         return f"set {settings.set} left out: no imprints of {', '.join(missing)}", 0, 0.0
-    every = [read_imprints(folder / f"{name}.npz") for name in objects]
-    found = [by_method[settings.method] for by_method in every if settings.method in by_method]
-    if len(found) < len(objects):
+    stored = [read_imprints(folder / f"{name}.npz") for name in objects]
+    imprints = [by_method[settings.method] for by_method in stored if settings.method in by_method]
+    if len(imprints) < len(objects):
         return f"set {settings.set} left out: no imprints by {settings.method}", 0, 0.0
-    return None, min(len(one.images) for one in found), max(one.width for one in found)
+    return None, min(len(entry.images) for entry in imprints), max(entry.width for entry in imprints)
 
 
 def run(workspace: Workspace) -> None:
@@ -103,11 +103,11 @@ def run(workspace: Workspace) -> None:
             recognise = functools.partial(trial, made=stage.folder, objects=objects, width=width, **common)
             repetitions = [f"repetition {number}" for number in range(settings.repetitions)]
             stage.each(recognise, repetitions, reads=["touch_stability"])
-        found = summary(stage.rows)
-        stage.metrics(found)
-    broken = sum(value is not None for value in found["breaking_point"].values())
+        metrics = summary(stage.rows)
+        stage.metrics(metrics)
+    broken = sum(value is not None for value in metrics["breaking_point"].values())
     measured = note or f"{len(objects)} objects, {len(settings.severities)} perturbations"
-    breaking = f"{broken} of {len(found['breaking_point'])} break within range"
+    breaking = f"{broken} of {len(metrics['breaking_point'])} break within range"
     print(f"touch_stability: {workspace.dataset}, {measured}; {breaking}")
 
 

@@ -67,16 +67,16 @@ def train(training: np.ndarray, seed: int) -> Denoiser:
 
 def disturbed(images: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """The images (b, rows, cols) with one disturbance of UNDONE, of a severity drawn at random."""
-    what = random.choice(list(UNDONE))
+    kind = random.choice(list(UNDONE))
     # Seeds far from those of the tested skins, whose dead cells it must not know.
-    return Skin(**{what: random.uniform(0, UNDONE[what])}, seed=int(random.integers(2**20, 2**31)))(images, "training")
+    return Skin(**{kind: random.uniform(0, UNDONE[kind])}, seed=int(random.integers(2**20, 2**31)))(images, "training")
 
 
 def turned(images: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """The images (b, n, n) in one of their eight symmetries drawn at random; half a turn at most where not square."""
     quarter = 1 if images.shape[1] == images.shape[2] else 2
-    found = np.rot90(images, quarter * int(random.integers(4)), axes=(1, 2))
-    return found[:, ::-1] if random.integers(2) else found
+    rotated = np.rot90(images, quarter * int(random.integers(4)), axes=(1, 2))
+    return rotated[:, ::-1] if random.integers(2) else rotated
 
 
 @torch.inference_mode()

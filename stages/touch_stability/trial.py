@@ -35,12 +35,12 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
     stored = [read_arrays(made / f"{name}.npz") for name in objects]
 
     def gathered(key):
-        return np.concatenate([one[key] for one in stored])
+        return np.concatenate([arrays[key] for arrays in stored])
 
     def perturbed_features(perturbation, severity, features, denoise):
         draw = repetition % DRAWS if TOUCH_PERTURBATIONS[perturbation].random_draws else 0
         key = f"{perturbation}.{severity:g}.{draw}"
-        if not all(key in one for one in stored):
+        if not all(key in arrays for arrays in stored):
             return None
         if features in denoise:
             return features_of(denoise[features](gathered(f"images.{key}")))
@@ -61,11 +61,11 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
                     f"imprint_{name}": DENOISERS[name](images[train], seed + repetition) for name in settings.denoisers
                 }
                 samples = clean | {name: features_of(apply(images)) for name, apply in denoise.items()}
-                found = recognition_rows(
+                scores = recognition_rows(
                     samples, partial(perturbed_features, denoise=denoise), truth, random.permutation(train), test,
                     settings.severities, settings.classifiers, repetition,
                 )  # fmt: skip
-                rows += [common | {"split": split} | row | {"note": None} for row in found]
+                rows += [common | {"split": split} | row | {"note": None} for row in scores]
             except ValueError as error:
                 note = f"set {settings.set}, {split}: {error}"
                 rows.append(common | {"split": split, "metric": "accuracy", "value": None, "note": note})
@@ -78,19 +78,19 @@ STORED_IMPRINTS = 4  # touches per perturbation whose imprints are stored for th
 
 def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
     """The first `count` Touches of an object, with the simplified meshes that exist. data: data/SET."""
-    found = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
+    imprints = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
     paths = [path for path in files_below(data / "lod" / name) if path.stem.rpartition("_")[0] in ("qem", SOFT)]
     levels = {path.stem: read_mesh(path) for path in paths}
     saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(GLANCE)
-    mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), found.images.shape[1:]
-    return Touches(name, mesh, found.vertices[:count], cells, float(found.pitch), saliency, levels, seed)
+    mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), imprints.images.shape[1:]
+    return Touches(name, mesh, imprints.vertices[:count], cells, float(imprints.pitch), saliency, levels, seed)
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, count: int, seed: int) -> Rows:
     """Writes all disturbed touches of one object; returns a row per severity that is not available."""
     touches, rows = touches_of(name, data, settings, count, seed), []
-    kept = {"clean": features(touches.images), "positions": touches.positions}
-    kept |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
+    stored = {"clean": features(touches.images), "positions": touches.positions}
+    stored |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
     for key, severity in perturbation_severities(settings.severities):
         perturbation = TOUCH_PERTURBATIONS[key]
         for draw in range(DRAWS if perturbation.random_draws else 1):
@@ -103,14 +103,14 @@ def process(name: str, folder: Path, data: Path, settings: Params, count: int, s
                 where = {"item": name, "perturbation": key, "severity": severity}
                 rows.append(where | {"metric": "accuracy", "value": None, "note": note})
                 break
-            kept[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
+            stored[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
             if settings.denoisers:
-                kept[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
+                stored[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
             if perturbed.positions is not None:
-                kept[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
+                stored[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
             if draw == 0:
-                kept[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
-    write_arrays(folder / f"{name}.npz", **kept)
+                stored[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
+    write_arrays(folder / f"{name}.npz", **stored)
     return rows
 
 

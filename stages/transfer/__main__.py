@@ -41,16 +41,16 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     members, data = planned.members, stage.workspace.data
     objects = [name for names in members["random"].values() for name in names]
     # What says only which trainings there are is left out: one training more repeats no other.
-    each = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits={}, passes=[])
-    press = functools.partial(touches.process, data=data, settings=each, seed=stage.seed)
+    common = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits={}, passes=[])
+    press = functools.partial(touches.process, data=data, settings=common, seed=stage.seed)
     stage.each(press, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
     hybrids = hybrid.trials(settings, members)
     if hybrids:
         imagenet_state("mobilenet_v2", settings.source)  # before the work starts, not in each worker
-        take = functools.partial(hybrid_data.process, data=data, settings=each, seed=stage.seed)
+        take = functools.partial(hybrid_data.process, data=data, settings=common, seed=stage.seed)
         stage.each(take, objects, reads=("meshes/{}.npz",))
-    work = functools.partial(train, made=stage.folder, members=members, settings=each, seed=stage.seed)
-    rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids], reads=MADE)
+    work = functools.partial(train, made=stage.folder, members=members, settings=common, seed=stage.seed)
+    rows = stage.each(work, [*(training.name for training in planned.trials), *hybrids], reads=MADE)
     trained = [trial_row(row, planned.pretrained, settings) for row in rows if "trial" in row]
     stitched = [row | seen(settings) for row in rows if "trial" not in row]
     stage.rows = KeptRows(trained, stitched)

@@ -53,7 +53,7 @@ def onnx_scores(path: Path, images: torch.Tensor) -> list[np.ndarray]:
     options.intra_op_num_threads = 1
     session = onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
     scores = session.run(list(SENSES), {INPUT: np.asarray(images, dtype=np.float32)})
-    return [np.asarray(one) for one in scores]
+    return [np.asarray(part) for part in scores]
 
 
 def weight_changes(before: torch.nn.Module, after: torch.nn.Module) -> dict[str, float]:

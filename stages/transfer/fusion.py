@@ -34,8 +34,8 @@ def best_temperature(scores: np.ndarray, labels: np.ndarray) -> float:
     def negative_log_likelihood(logarithm):
         return -log_softmax(scores / np.exp(logarithm), axis=1)[np.arange(len(labels)), labels].mean()
 
-    found: Any = minimize_scalar(negative_log_likelihood, bounds=(0, LOG_HOTTEST), method="bounded")
-    return float(np.exp(found.x))
+    optimum: Any = minimize_scalar(negative_log_likelihood, bounds=(0, LOG_HOTTEST), method="bounded")
+    return float(np.exp(optimum.x))
 
 
 def calibration_error(distribution: np.ndarray, labels: np.ndarray) -> float:
@@ -92,10 +92,10 @@ def fuse(vision: np.ndarray, touch: np.ndarray, rule: str) -> np.ndarray:
     vision, touch = np.asarray(vision, dtype=np.float64), np.asarray(touch, dtype=np.float64)
     if vision.shape != touch.shape or vision.ndim != 2:
         raise ValueError(f"both senses need probabilities of one shape (n, k), got {vision.shape} and {touch.shape}")
-    found = np.where(np.isnan(vision), touch, vision)
+    fused = np.where(np.isnan(vision), touch, vision)
     both = ~np.isnan(vision).any(axis=1) & ~np.isnan(touch).any(axis=1)
-    found[both] = FUSIONS[rule](vision[both], touch[both])
-    return found
+    fused[both] = FUSIONS[rule](vision[both], touch[both])
+    return fused
 
 
 def accuracy(distribution: np.ndarray, labels: np.ndarray) -> float:

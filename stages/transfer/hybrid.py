@@ -87,12 +87,12 @@ def process(
             train_sense(sense, kind, trial, len(classes), settings, random, folder / f"{kind}.pt")
             for kind, sense in zip(SENSES, senses, strict=True)
         ]
-        networks, seconds = [one[0] for one in trained], [one[1] for one in trained]
+        networks, seconds = [pair[0] for pair in trained], [pair[1] for pair in trained]
         hybrid = HybridNet(networks[0], networks[1], middle_of(trial.layers))
         alone = [sense_scores(hybrid, sense.images[sense.validation], kind) for kind, sense in enumerate(senses)]
         pairs = zip(alone, senses, strict=True)
-        found = [fit_temperature(scores, sense.labels[sense.validation]) for scores, sense in pairs]
-        hybrid.temperature.copy_(torch.tensor(found))
+        temperatures = [fit_temperature(scores, sense.labels[sense.validation]) for scores, sense in pairs]
+        hybrid.temperature.copy_(torch.tensor(temperatures))
         rows = [*comparison_rows(hybrid, networks, senses, seconds, name, folder, classes)]
         rows += confusion_rows(folder / "hybrid" / "predictions" / f"{name}.npz", classes)
         if first:
@@ -117,7 +117,9 @@ def process(
 def object_names(members: Mapping[str, Sequence[str]]) -> dict[int, str]:
     """{number as in Touches.objects: name} of the objects of {class: its objects}."""
     most = max(map(len, members.values()))
-    return {label * most + rank: name for label, own in enumerate(members.values()) for rank, name in enumerate(own)}
+    return {
+        label * most + rank: name for label, names in enumerate(members.values()) for rank, name in enumerate(names)
+    }
 
 
 def fit_temperature(scores: np.ndarray, labels: np.ndarray) -> float:
@@ -138,9 +140,9 @@ def split_sense(items: Touches, trial: HybridTrial, settings: Params, random: np
     else:
         split = by_touches(items.objects, settings.train_share, settings.validation_share, random)
     # Not the split's own validation part, one object per class: of three objects one would be left for training.
-    kept, rest = stratified_split(items.objects[split.train], settings.validation_share, random)
+    validation, rest = stratified_split(items.objects[split.train], settings.validation_share, random)
     images = as_images(items.images, settings.size)
-    ids = split.train[rest], split.train[kept], split.test
+    ids = split.train[rest], split.train[validation], split.test
     return SenseData(items.images, images, items.labels, items.objects, *ids)
 
 
@@ -178,9 +180,9 @@ def summary(rows: list[dict], settings: Params, seed: int) -> dict[str, dict]:
         if entry["method"] == "hybrid" and entry["mode"] == settings.hybrid_middles[0]:
             name = entry["metric"] if entry["metric"] in PAIR_METRICS else f"{entry['metric']}_{entry['sense']}"
             values[entry["split"], name].append(entry["value"])
-    for (split, name), found in values.items():
+    for (split, name), numbers in values.items():
         if name in (*PAIR_METRICS, *(f"accuracy_{sense}" for sense in SENSES)):
-            tree.setdefault(split, {})[name] = interval_metrics(found, seed)
+            tree.setdefault(split, {})[name] = interval_metrics(numbers, seed)
     return tree
 
 
@@ -215,15 +217,15 @@ def comparison_rows(
     paths = folder / "hybrid" / "networks"
     tested = {}
     for kind, (sense, network) in enumerate(zip(senses, networks, strict=True)):
-        own = in_batches(lambda part, n=network: n(normalise(part)), sense.images[sense.test], device_of(network))
+        separate = in_batches(lambda part, n=network: n(normalise(part)), sense.images[sense.test], device_of(network))
         tested[kind] = sense_scores(hybrid, sense.images[sense.test], kind)
         write_arrays(paths / f"{name}.{kind}.npz", **state_arrays(network))
-        yield row(SENSES[kind], "accuracy", fusion.accuracy(own, sense.labels[sense.test]), kind, seconds[kind])
-        yield row("hybrid", "max_difference", float(np.nanmax(np.abs(own - tested[kind]))), kind)
+        yield row(SENSES[kind], "accuracy", fusion.accuracy(separate, sense.labels[sense.test]), kind, seconds[kind])
+        yield row("hybrid", "max_difference", float(np.nanmax(np.abs(separate - tested[kind]))), kind)
         yield from calibration_rows(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
-    own = [paths / f"{name}.{kind}.npz" for kind in range(2)]
-    apart = sum(path.stat().st_size for path in own)
-    for kind, path in enumerate(own):
+    separate = [paths / f"{name}.{kind}.npz" for kind in range(2)]
+    apart = sum(path.stat().st_size for path in separate)
+    for kind, path in enumerate(separate):
         yield row(SENSES[kind], "size_bytes", path.stat().st_size, kind)
         yield row(SENSES[kind], "parameters", count_parameters(networks[kind]), kind)
         path.unlink()
@@ -262,12 +264,12 @@ def onnx_rows(hybrid: HybridNet, senses: Sequence[SenseData], settings: Params, 
     export_onnx(path, hybrid, settings.size)
     worst, agree = 0.0, []
     for kind, sense in enumerate(senses):
-        own = sense_scores(hybrid, sense.images[sense.test], kind)
-        found = onnx_scores(path, single_sense(sense.images[sense.test], kind))[kind]
-        absent = np.isnan(own)
-        equal = np.array_equal(np.isnan(found), absent)
-        worst = max(worst, float(np.abs(found - own)[~absent].max(initial=0)) if equal else np.inf)
-        agree += list(found.argmax(axis=1) == own.argmax(axis=1))
+        scores = sense_scores(hybrid, sense.images[sense.test], kind)
+        exported = onnx_scores(path, single_sense(sense.images[sense.test], kind))[kind]
+        absent = np.isnan(scores)
+        equal = np.array_equal(np.isnan(exported), absent)
+        worst = max(worst, float(np.abs(exported - scores)[~absent].max(initial=0)) if equal else np.inf)
+        agree += list(exported.argmax(axis=1) == scores.argmax(axis=1))
     yield row("hybrid_onnx", "max_difference", worst)
     yield row("hybrid_onnx", "agreement", float(np.mean(agree)))
     yield row("hybrid_onnx", "size_bytes", path.stat().st_size)

@@ -60,7 +60,7 @@ def read_pictures(folder: Path, members: Mapping[str, Sequence[str]]) -> Touches
     listed = [(label, rank, name) for label, group in enumerate(members.values()) for rank, name in enumerate(group)]
     images = [read_arrays(folder / "hybrid" / "pictures" / f"{name}.npz")["images"] for _, _, name in listed]
     counts = [len(part) for part in images]
-    labels, ranks = (np.repeat([one[i] for one in listed], counts) for i in range(2))
+    labels, ranks = (np.repeat([entry[i] for entry in listed], counts) for i in range(2))
     indices = np.concatenate([np.arange(count) for count in counts])
     return Touches(np.concatenate(images), labels, ranks, indices, list(members))
 
@@ -72,13 +72,13 @@ def pair_pictures(picture_objects: np.ndarray, touch_objects: np.ndarray, random
     repeatedly where it has more touches than pictures. Raises ValueError for an object with touches and no picture.
     """
     picture_objects, touch_objects = np.asarray(picture_objects), np.asarray(touch_objects)
-    found = np.empty(len(touch_objects), dtype=np.int64)
-    for one in np.unique(touch_objects):
-        own, touched = np.flatnonzero(picture_objects == one), touch_objects == one
-        if not len(own):
-            raise ValueError(f"object {one} has touches but no picture")
-        found[touched] = np.resize(random.permutation(own), touched.sum())
-    return found
+    pictures = np.empty(len(touch_objects), dtype=np.int64)
+    for number in np.unique(touch_objects):
+        ids, touched = np.flatnonzero(picture_objects == number), touch_objects == number
+        if not len(ids):
+            raise ValueError(f"object {number} has touches but no picture")
+        pictures[touched] = np.resize(random.permutation(ids), touched.sum())
+    return pictures
 
 
 UNDAMAGED = "none"  # the perturbation in rows without any
@@ -91,8 +91,8 @@ def fused_rows(
     vision, touch = senses
     paired = vision.test[pair_pictures(vision.objects[vision.test], touch.objects[touch.test], random)]
     raw, labels = (vision.raw[paired], touch.raw[touch.test]), touch.labels[touch.test]
-    undamaged = [as_images(one, settings.size) for one in raw]
-    clean = [sense_scores(hybrid, one, kind) for kind, one in enumerate(undamaged)]
+    undamaged = [as_images(stream, settings.size) for stream in raw]
+    clean = [sense_scores(hybrid, stream, kind) for kind, stream in enumerate(undamaged)]
     better = better_sense(hybrid, senses)
     for name, severity in conditions(settings.hybrid_severities):
         images, apart = list[torch.Tensor | None](undamaged), list(clean)
@@ -105,23 +105,23 @@ def fused_rows(
                 apart[kind] = sense_scores(hybrid, changed, kind)
         summed = in_batches(hybrid, join_senses(*images), device_of(hybrid))
         for method, probabilities in method_probabilities(apart, summed, hybrid.temperature.tolist(), better).items():
-            found = row(method, "accuracy", fusion.accuracy(probabilities, labels)) | {"sense": "both"}
-            yield found | {"perturbation": name, "severity": severity}
+            entry = row(method, "accuracy", fusion.accuracy(probabilities, labels)) | {"sense": "both"}
+            yield entry | {"perturbation": name, "severity": severity}
 
 
 def conditions(severities: Mapping[str, Sequence[float]]) -> list[tuple[str, float]]:
     """(name, severity) of all conditions: undamaged, each perturbation, and each sense missing."""
-    found = [(name, severity) for name, every in severities.items() for severity in every]
-    return [(UNDAMAGED, 0.0), *found, (PICTURE + MISSING, 1.0), (IMPRINT + MISSING, 1.0)]
+    pairs = [(name, severity) for name, levels in severities.items() for severity in levels]
+    return [(UNDAMAGED, 0.0), *pairs, (PICTURE + MISSING, 1.0), (IMPRINT + MISSING, 1.0)]
 
 
 def better_sense(hybrid: HybridNet, senses: Sequence[SenseData]) -> int:
     """The sense, 0 or 1, with the higher accuracy on the validation items."""
-    own = [
+    accuracies = [
         fusion.accuracy(sense_scores(hybrid, s.images[s.validation], kind), s.labels[s.validation])
         for kind, s in enumerate(senses)
     ]
-    return int(own[1] > own[0])
+    return int(accuracies[1] > accuracies[0])
 
 
 def method_probabilities(
@@ -134,13 +134,19 @@ def method_probabilities(
     temperatures, and for the sum its two heads and their mean.
     """
     alone, heads = (
-        [fusion.probabilities(scores, value) for scores, value in zip(both, temperatures, strict=True)]
-        for both in (apart, summed)
+        [fusion.probabilities(scores, value) for scores, value in zip(pair, temperatures, strict=True)]
+        for pair in (apart, summed)
     )
-    found = {"vision": alone[0], "touch": alone[1], "better_sense": alone[better]}
-    found |= {f"fusion_{rule}": fusion.fuse(alone[0], alone[1], rule) for rule in fusion.FUSIONS}
-    found["fusion_entropy_raw"] = fusion.fuse(fusion.probabilities(apart[0]), fusion.probabilities(apart[1]), "entropy")
-    return found | {"sum_vision": heads[0], "sum_touch": heads[1], "sum_mean": fusion.fuse(heads[0], heads[1], "mean")}
+    by_method = {"vision": alone[0], "touch": alone[1], "better_sense": alone[better]}
+    by_method |= {f"fusion_{rule}": fusion.fuse(alone[0], alone[1], rule) for rule in fusion.FUSIONS}
+    by_method["fusion_entropy_raw"] = fusion.fuse(
+        fusion.probabilities(apart[0]), fusion.probabilities(apart[1]), "entropy"
+    )
+    return by_method | {
+        "sum_vision": heads[0],
+        "sum_touch": heads[1],
+        "sum_mean": fusion.fuse(heads[0], heads[1], "mean"),
+    }
 
 
 BATCH = 64  # images
@@ -160,10 +166,10 @@ def sense_scores(hybrid: HybridNet, images: torch.Tensor, kind: int) -> np.ndarr
 def in_batches(function: Callable[[torch.Tensor], Any], images: torch.Tensor, device: torch.device) -> Any:
     """function(images), computed in batches on the device: an array for a tensor, a tuple of arrays for Scores."""
     with explain_out_of_memory():
-        found = [function(part.to(device)) for part in images.split(BATCH)]
-    if isinstance(found[0], Scores):
-        return tuple(torch.cat(part).cpu().numpy() for part in zip(*found, strict=True))
-    return torch.cat(found).cpu().numpy()
+        batches = [function(part.to(device)) for part in images.split(BATCH)]
+    if isinstance(batches[0], Scores):
+        return tuple(torch.cat(part).cpu().numpy() for part in zip(*batches, strict=True))
+    return torch.cat(batches).cpu().numpy()
 
 
 def row(method: str, metric: str, value: float, kind: int | None = None, seconds: float | None = None) -> dict:

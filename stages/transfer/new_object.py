@@ -48,19 +48,24 @@ def new_object_rows(
         "hybrid": lambda part: hybrid.features(single_sense(part, TOUCH), TOUCH),
         "imagenet": lambda part: imagenet.features(normalise(part)),
     }
-    known, draws = np.unique(objects), [random.permutation(len(objects)) for _ in range(DRAWS)]
+    numbers, draws = np.unique(objects), [random.permutation(len(objects)) for _ in range(DRAWS)]
     for source, function in sources.items():
         with Stopwatch() as watch:
             features = in_batches(function, images, device_of(hybrid))
         for learner, count in ((name, count) for name in LEARNERS for count in counts):
             with threadpool_limits(1):  # as torch is limited here: one core, and equal sums everywhere
-                found, seconds = scores(learner, features, objects, draws, count, max(counts))
-            spent = watch.seconds / len(objects) * count + seconds / len(known)
+                shares, seconds = scores(learner, features, objects, draws, count, max(counts))
+            spent = watch.seconds / len(objects) * count + seconds / len(numbers)
             about = {"method": f"{source}_{learner}", "sense": "touch", "perturbation": "new_object", "severity": count}
-            for one in known:
-                yield about | {"item": names[int(one)], "metric": METRIC, "value": found[int(one)], "seconds": spent}
+            for number in numbers:
+                yield about | {
+                    "item": names[int(number)],
+                    "metric": METRIC,
+                    "value": shares[int(number)],
+                    "seconds": spent,
+                }
     about = {"method": "chance", "sense": "touch", "perturbation": "new_object"}
-    yield about | {"metric": METRIC, "value": 1 / len(known)}
+    yield about | {"metric": METRIC, "value": 1 / len(numbers)}
 
 
 def scores(
@@ -73,13 +78,13 @@ def scores(
     """
     hits, spent = defaultdict(list), []
     for order in draws:
-        own = [order[objects[order] == one] for one in np.unique(objects)]
-        learned = np.concatenate([ids[:count] for ids in own])
+        by_object = [order[objects[order] == number] for number in np.unique(objects)]
+        learned = np.concatenate([ids[:count] for ids in by_object])
         model: Pipeline = make_pipeline(StandardScaler(), LEARNERS[learner]())
         with Stopwatch() as watch:
             model.fit(features[learned], objects[learned])
         spent.append(watch.seconds)
-        for ids in own:
-            asked = ids[most:]
-            hits[int(objects[ids[0]])].append(float((model.predict(features[asked]) == objects[asked]).mean()))
-    return {one: float(np.mean(found)) for one, found in hits.items()}, float(np.mean(spent))
+        for ids in by_object:
+            test = ids[most:]
+            hits[int(objects[ids[0]])].append(float((model.predict(features[test]) == objects[test]).mean()))
+    return {number: float(np.mean(shares)) for number, shares in hits.items()}, float(np.mean(spent))

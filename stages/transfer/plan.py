@@ -48,8 +48,8 @@ class Trial(NamedTuple):
 
     @property
     def name(self) -> str:
-        known = self[:-1] if self.passes == PRINTED else self
-        return ".".join(map(str, known)).replace(":", "-")
+        parts = self[:-1] if self.passes == PRINTED else self
+        return ".".join(map(str, parts)).replace(":", "-")
 
     @classmethod
     def parse(cls, name: str) -> Self:
@@ -74,11 +74,11 @@ class Plan(NamedTuple):
 def check(settings: Params) -> None:
     """Raises ValueError, which names the setting and its possible values, for settings that cannot be run."""
     lists = {"weights": WEIGHTS, "splits": SPLITS} | dict.fromkeys(("networks", "uncontrolled"), tuple(NETWORKS))
-    for key, known in lists.items():
-        unknown = sorted(set(getattr(settings, key)) - set(known))
+    for key, options in lists.items():
+        unknown = sorted(set(getattr(settings, key)) - set(options))
         if unknown or not (getattr(settings, key) or key == "uncontrolled"):
             raise ValueError(
-                f"transfer.{key}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(known)}"
+                f"transfer.{key}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(options)}"
             )
     for network, modes in settings.networks.items():
         _check_modes(network, modes)
@@ -105,8 +105,10 @@ def _check_modes(network: str, modes: Sequence[str]) -> None:
     ranges = [mode for mode in modes if is_range(mode) and network == "mobilenet_v2"]
     unknown = [mode for mode in modes if mode not in (*MODES, *ranges)]
     if unknown or not modes:
-        known = f"{', '.join(MODES)}, or for mobilenet_v2 ranges of layers such as 18:139"
-        raise ValueError(f"transfer.networks.{network}: {', '.join(unknown) or 'none'} not known, choose from {known}")
+        options = f"{', '.join(MODES)}, or for mobilenet_v2 ranges of layers such as 18:139"
+        raise ValueError(
+            f"transfer.networks.{network}: {', '.join(unknown) or 'none'} not known, choose from {options}"
+        )
     for mode in ranges:
         parse_range(mode)
 
@@ -126,7 +128,7 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
             f"two classes or more are needed, got {', '.join(members['random']) or 'none'}: add some to meshes.classes"
         )
         return Plan([], members, {}, [*notes, ({}, note)])
-    found, left_out = fetch_weights(settings)
+    pretrained, left_out = fetch_weights(settings)
     splits = {split: count for split, count in settings.splits.items() if len(members[split]) > 1}
     if settings.splits.get("objects") and "objects" not in splits:
         left_out.append(({"split": "objects"}, "fewer than two classes have a second object: none is left out"))
@@ -135,10 +137,10 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
         weights.remove("random_initial")
         note = "left out on a card, whose half precision is too coarse for its features: take transfer.device=cpu"
         left_out.append(({"weights": "random_initial"}, note))
-    kinds = itertools.product(_kinds(settings, found, weights), splits.items(), settings.passes)
+    kinds = itertools.product(_kinds(settings, pretrained, weights), splits.items(), settings.passes)
     trials = [Trial(*kind, split, number, passes) for kind, (split, count), passes in kinds for number in range(count)]
     trials = [trial for trial in trials if trial.passes != PRINTED_RATE or printed_rate(trial, settings)]
-    return Plan(trials, members, found, notes + left_out)
+    return Plan(trials, members, pretrained, notes + left_out)
 
 
 def main_data(settings: Params) -> str:
@@ -156,14 +158,14 @@ def fetch_weights(settings: Params) -> tuple[dict[str, str | None], list[tuple[d
     """({network: which of its ImageNet weights are available}, notes on the others); fetches what is missing."""
     if "imagenet" not in settings.weights:
         return dict.fromkeys(settings.networks), []
-    found, notes = {}, []
+    pretrained, notes = {}, []
     for network in settings.networks:
         try:
             imagenet_state(network, settings.source)  # before the work starts, not in each worker
-            found[network] = available_weights(network, settings.source)
+            pretrained[network] = available_weights(network, settings.source)
         except FetchError as error:
             notes.append(({"method": network}, f"{network} left out, no weights: {error}"))
-    return found, notes
+    return pretrained, notes
 
 
 def _kinds(settings, networks, starts):
@@ -180,25 +182,25 @@ def _kinds(settings, networks, starts):
 
 def _members(classes, vertices, touches):
     """({split: {class: its objects}}, notes); an object with fewer vertices than touches cannot take part."""
-    kept, notes = {}, []
+    members, notes = {}, []
     for name, objects in classes.items():
-        small = [one for one in objects if vertices.get(one, 0) < touches]
+        small = [item for item in objects if vertices.get(item, 0) < touches]
         notes += [
-            ({}, f"class {name}: {one} left out, {vertices.get(one, 0)} vertices can be touched, not {touches}")
-            for one in small
+            ({}, f"class {name}: {item} left out, {vertices.get(item, 0)} vertices can be touched, not {touches}")
+            for item in small
         ]
-        left = [one for one in objects if one not in small]
-        if left:
-            kept[name] = left
+        usable = [item for item in objects if item not in small]
+        if usable:
+            members[name] = usable
         else:
             notes.append(({}, f"class {name} left out: no object of it is left"))
-    spare = {name: objects for name, objects in kept.items() if len(objects) > 1}
+    spare = {name: objects for name, objects in members.items() if len(objects) > 1}
     notes += [
         ({"split": "objects"}, f"class {name} has one object alone: it cannot be left out")
-        for name in kept
+        for name in members
         if name not in spare
     ]
-    return {"random": kept, "objects": spare}, notes
+    return {"random": members, "objects": spare}, notes
 
 
 SPLITS = ("random", "objects")
@@ -266,8 +268,8 @@ def middle_of(layers: str) -> tuple[int, int]:
     stitched there.
     """
     network = build("mobilenet_v2", 2, "random", 0)
-    wanted = set(frozen_modules(layers, network))
-    parts = sorted({int(name.split(".")[1]) for name in wanted})
+    covered = set(frozen_modules(layers, network))
+    parts = sorted({int(name.split(".")[1]) for name in covered})
     start, stop = (parts[0], parts[-1] + 1) if parts else (0, 0)
     whole = {
         name
@@ -275,7 +277,7 @@ def middle_of(layers: str) -> tuple[int, int]:
         if name.startswith("convolutions.") and start <= int(name.split(".")[1]) < stop
         if any(True for _ in module.parameters(recurse=False))
     }
-    if wanted != whole or not 0 < start < stop < len(network.convolutions):
+    if covered != whole or not 0 < start < stop < len(network.convolutions):
         raise ValueError(
             f"layers {layers} are not whole blocks of mobilenet_v2 with layers on both sides, as 18:139 are"
         )
@@ -312,7 +314,7 @@ def summary(rows: list[dict], seed: int) -> dict[str, dict]:
             values[key].append(row["value"])
         if row["metric"] == "chance":
             tree.setdefault("chance", {})[row["split"]] = round(row["value"], 6)
-    for (data, split, network, kind), found in values.items():
+    for (data, split, network, kind), numbers in values.items():
         branch = tree.setdefault(data, {}).setdefault(split, {}).setdefault(network, {})
-        branch[kind] = interval_metrics(found, seed)
+        branch[kind] = interval_metrics(numbers, seed)
     return tree

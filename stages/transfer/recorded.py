@@ -113,20 +113,20 @@ def read_picture(file: Path, size: int) -> np.ndarray:
     return np.asarray(image.resize((size, size), Image.Resampling.BILINEAR))
 
 
-def existing_folder(path: str | Path, wanted: str) -> Path:
-    """The folder of an unpacked data set; raises ValueError with the layout `wanted` where it is not a folder."""
+def existing_folder(path: str | Path, layout: str) -> Path:
+    """The folder of an unpacked data set; raises ValueError where it is not one. layout: what it must hold."""
     path = Path(path)
     if not path.is_dir():
-        raise ValueError(f"{path} is not a folder: give the unpacked {wanted}")
+        raise ValueError(f"{path} is not a folder: give the unpacked {layout}")
     return path
 
 
-def pictures(path: Path, wanted: str, anywhere: bool = False) -> list[Path]:
+def pictures(path: Path, layout: str, anywhere: bool = False) -> list[Path]:
     """The pictures in a folder (or anywhere below it), sorted by name; raises ValueError where there are none."""
-    found = [file for file in (path.rglob("*") if anywhere else path.glob("*")) if file.suffix.lower() in PICTURES]
-    if not found:
-        raise ValueError(f"{path} holds no picture ({' '.join(PICTURES)}); expected is {wanted}")
-    return sorted(found, key=natural_key)
+    files = [file for file in (path.rglob("*") if anywhere else path.glob("*")) if file.suffix.lower() in PICTURES]
+    if not files:
+        raise ValueError(f"{path} holds no picture ({' '.join(PICTURES)}); expected is {layout}")
+    return sorted(files, key=natural_key)
 
 
 def natural_key(file: Path) -> tuple[str, list[int], str]:
@@ -165,7 +165,7 @@ def read_bigs(path: str | Path, instant: bool = False) -> Recorded:
     if not series:
         raise ValueError(f"{root} holds no grasp; expected is {BIGS_LAYOUT}")
     picture = strongest_instant if instant else colour_image
-    images = np.stack([picture(one) for one in as_grey(np.stack(series))])
+    images = np.stack([picture(grey) for grey in as_grey(np.stack(series))])
     return Recorded(images, np.array(labels), list(OBJECTS), np.array(groups))
 
 
@@ -211,7 +211,7 @@ def read_schunk(path: str | Path, cells: tuple[int, int] | None = None) -> Recor
     its cells averaged to so many. Raises ValueError that names the file and the remedy.
     """
     root, series, labels, groups = open_root(path, SCHUNK_LAYOUT), [], [], []
-    names = sorted(one.name for one in root.iterdir() if one.is_dir() and not one.name.startswith("_"))
+    names = sorted(entry.name for entry in root.iterdir() if entry.is_dir() and not entry.name.startswith("_"))
     for label, name in enumerate(names):
         for grasp in sorted((root / name).iterdir(), key=lambda file: file.name):
             series += fingers(grasp)
@@ -221,9 +221,9 @@ def read_schunk(path: str | Path, cells: tuple[int, int] | None = None) -> Recor
         raise ValueError(f"{path} holds no grasp; expected is {SCHUNK_LAYOUT}")
     grey = as_grey(np.stack(series))
     if cells is None:
-        pictures = [colour_image(one) for one in grey]
+        pictures = [colour_image(entry) for entry in grey]
     else:
-        pictures = [cv2.resize(strongest_instant(one), cells[::-1], interpolation=cv2.INTER_AREA) for one in grey]
+        pictures = [cv2.resize(strongest_instant(entry), cells[::-1], interpolation=cv2.INTER_AREA) for entry in grey]
     return Recorded(np.stack(pictures), np.array(labels), names, np.array(groups))
 
 
@@ -231,15 +231,15 @@ def fingers(file: Any) -> list[np.ndarray]:
     """(27, 6, 294) f4 of each finger, the distal array above the proximal: how its readings differ from the first."""
     try:
         (cells,) = read_mat(file.read_bytes(), ["TS"])
-        arrays = [np.asarray(one, np.float32) for one in cells.ravel()]
+        arrays = [np.asarray(array, np.float32) for array in cells.ravel()]
         pairs = [np.concatenate([distal, proximal]) for proximal, distal in zip(arrays[::2], arrays[1::2], strict=True)]
-        found = [(one - one[..., :1])[..., :SCHUNK_SAMPLES] for one in pairs]
+        changes = [(array - array[..., :1])[..., :SCHUNK_SAMPLES] for array in pairs]
     except (ValueError, TypeError, IndexError) as error:
         raise ValueError(f"{file} is not such a grasp ({error}); expected is {SCHUNK_LAYOUT}") from None
-    shapes = [one.shape for one in found]
-    if shapes != [(27, 6, SCHUNK_SAMPLES)] * SCHUNK_FINGERS or not np.isfinite(found).all():
+    shapes = [array.shape for array in changes]
+    if shapes != [(27, 6, SCHUNK_SAMPLES)] * SCHUNK_FINGERS or not np.isfinite(changes).all():
         raise ValueError(f"{file}: fingers of {shapes}, not three of {(27, 6, SCHUNK_SAMPLES)}, all finite; remove it")
-    return found
+    return changes
 
 
 CELLS = (12, 11)
@@ -303,13 +303,13 @@ def read_vitac(path: str | Path, size: int = SIZE) -> Recorded:
     Pictures are resized to size x size pixels. A group is the larger picture or the film that a picture was cut from,
     according to its name. Raises ValueError that names what is missing.
     """
-    found = {}
+    homes = {}
     for home in sorted(existing_folder(path, VITAC_LAYOUT).iterdir()):
         if match := TOUCHED.fullmatch(home.name):
-            found.setdefault(int(match[1] or match[2]), []).append(home)
-    if len(found) < 2:
-        raise ValueError(f"{path} holds {len(found)} folders of cloths by touch; expected is {VITAC_LAYOUT}")
-    return collect({str(number): _cloth(number, found[number]) for number in sorted(found)}, size)
+            homes.setdefault(int(match[1] or match[2]), []).append(home)
+    if len(homes) < 2:
+        raise ValueError(f"{path} holds {len(homes)} folders of cloths by touch; expected is {VITAC_LAYOUT}")
+    return collect({str(number): _cloth(number, homes[number]) for number in sorted(homes)}, size)
 
 
 def _cloth(number, homes):
@@ -338,18 +338,18 @@ def read_vt60(path: str | Path, size: int = SIZE) -> Recorded:
         name = home.name.partition("_")[2]
         files[name] = []
         for instance in range(1, VT60_OBJECTS + 1):
-            here = existing_folder(home / f"{instance:02d}", VT60_LAYOUT)
-            files[name] += [(file, f"{name}/{here.name}") for file in pictures(here, VT60_LAYOUT)]
+            folder = existing_folder(home / f"{instance:02d}", VT60_LAYOUT)
+            files[name] += [(file, f"{name}/{folder.name}") for file in pictures(folder, VT60_LAYOUT)]
     return collect(files, size)
 
 
 def _class_folder(root, number):
-    found = [home for home in sorted(root.iterdir()) if re.match(rf"{number:02d}_.", home.name)]
-    if len(found) != 1:
+    homes = [home for home in sorted(root.iterdir()) if re.match(rf"{number:02d}_.", home.name)]
+    if len(homes) != 1:
         raise ValueError(
-            f"{root} holds {len(found)} folders {number:02d}_CLASS, one is needed; expected is {VT60_LAYOUT}"
+            f"{root} holds {len(homes)} folders {number:02d}_CLASS, one is needed; expected is {VT60_LAYOUT}"
         )
-    return found[0]
+    return homes[0]
 
 
 SPREAD = 0.99  # share of the readings within the range of grey values; the others are clipped

@@ -49,12 +49,12 @@ def choose_vertices(mesh: Mesh, salient: np.ndarray, count: int, generator: np.r
     area = np.zeros(len(mesh.vertices))
     np.add.at(area, mesh.faces, mesh.face_areas[:, None] / 3)
     area[salient] = 0
-    left = count - len(salient)
-    if (area > 0).sum() < left:
+    missing = count - len(salient)
+    if (area > 0).sum() < missing:
         raise ValueError(
             f"{count} touches are needed, but only {len(salient) + (area > 0).sum()} vertices can be touched"
         )
-    random = generator.choice(len(area), size=left, replace=False, p=area / area.sum()) if left else salient[:0]
+    random = generator.choice(len(area), size=missing, replace=False, p=area / area.sum()) if missing else salient[:0]
     return np.concatenate([salient, random])
 
 
@@ -76,8 +76,8 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int) ->
     """
     mesh, salient = read_mesh(data / "meshes" / f"{name}.npz"), read_points(data / "salient_points" / f"{name}.npz")
     if settings.detector not in salient:
-        known = ", ".join(salient)
-        raise ValueError(f"transfer.detector={settings.detector}: not among salient_points.methods: {known}")
+        names = ", ".join(salient)
+        raise ValueError(f"transfer.detector={settings.detector}: not among salient_points.methods: {names}")
     vertices = choose_vertices(mesh, salient[settings.detector], settings.touches, rng(seed, f"touches {name}"))
     width = settings.cells * settings.pitch
     images = {

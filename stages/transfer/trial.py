@@ -65,7 +65,7 @@ def process(
             except Diverged as error:
                 searched.unlink(missing_ok=True)
                 return [{"trial": name, "metric": "accuracy", "value": None, "note": str(error)}]
-        found = predict_probabilities(model, task.inputs, split.test)
+        scores = predict_probabilities(model, task.inputs, split.test)
         rows = [*change_rows(network, model)] if task.model is network else []
         if is_disturbed(trial, settings):
             rows += disturbed_rows(trial, task, model, touches, split, settings, seed)
@@ -74,12 +74,12 @@ def process(
             validation_accuracy = _accuracy_on(task, model, touches, split.validation)
         train_accuracy = _accuracy_on(task, model, touches, learned)
     truth = touches.labels[split.test]
-    write_arrays(folder / "predictions" / f"{name}.npz", test=split.test, true=truth, scores=found.numpy())
+    write_arrays(folder / "predictions" / f"{name}.npz", test=split.test, true=truth, scores=scores.numpy())
     if trial.repetition == 0:
         state = {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in model.state_dict().items()}
         write_arrays(folder / "networks" / f"{name}.npz", **state)
     values = {
-        "accuracy": accuracy(found, truth),
+        "accuracy": accuracy(scores, truth),
         "train_accuracy": train_accuracy,
         "validation_accuracy": validation_accuracy,
         "chance": 1 / len(touches.classes),
@@ -95,21 +95,21 @@ def process(
         for key, value in values.items()
         if value is not None
     ]
-    rows += object_rows(found, touches, split.test, members[trial.split])
+    rows += object_rows(scores, touches, split.test, members[trial.split])
     rows += curve_rows(learning)
     searched.unlink(missing_ok=True)
     return [{"trial": name} | row for row in rows]
 
 
 def object_rows(
-    found: torch.Tensor, touches: Touches, test: np.ndarray, members: Mapping[str, Sequence[str]]
+    scores: torch.Tensor, touches: Touches, test: np.ndarray, members: Mapping[str, Sequence[str]]
 ) -> Iterator[dict]:
     """Rows of the accuracy on the test touches of each object."""
     for label, (group, objects) in enumerate(members.items()):
         for rank, item in enumerate(objects):
-            own = (touches.labels[test] == label) & (touches.ranks[test] == rank)
-            if own.any():
-                value = accuracy(found[torch.as_tensor(own)], touches.labels[test][own])
+            mask = (touches.labels[test] == label) & (touches.ranks[test] == rank)
+            if mask.any():
+                value = accuracy(scores[torch.as_tensor(mask)], touches.labels[test][mask])
                 yield {"item": item, "group": group, "metric": "object_accuracy", "value": value}
 
 
@@ -172,10 +172,10 @@ def disturbed_rows(
         for severity in severities if name in PERTURBATIONS else ():
             random = rng(seed, f"{name} {severity} {trial.repetition}")
             images = to_images(disturb(touches.images[split.test], name, severity, random), settings.size)
-            found = predict_probabilities(
+            scores = predict_probabilities(
                 model, lambda ids, images=images: task.encode(images[ids]), np.arange(len(truth))
             )
-            yield _row(name, severity, accuracy(found, truth))
+            yield _row(name, severity, accuracy(scores, truth))
 
 
 def fewer_touches_rows(

@@ -62,12 +62,12 @@ def run(workspace: Workspace) -> None:
         table = [(v.name, float(v.azimuth), float(v.elevation), float(v.roll)) for v in viewpoints]
         columns = ["viewpoint", "azimuth", "elevation", "roll"]
         write_table(stage.folder / "viewpoints.csv", pd.DataFrame(table, columns=columns))
-        shown = [row["value"] for row in rows if row["metric"] == "coverage"]
+        shares = [row["value"] for row in rows if row["metric"] == "coverage"]
         fewest = [row["value"] for row in rows if row["metric"] == "fewest_views"]
-        coverage = float(np.mean(shown)) if shown else 0.0
-        metrics = {"views": len(shown), "coverage": round(coverage, 6)}
+        coverage = float(np.mean(shares)) if shares else 0.0
+        metrics = {"views": len(shares), "coverage": round(coverage, 6)}
         stage.metrics(metrics | ({"fewest_views": round(float(np.mean(fewest)), 6)} if fewest else {}))
-    count = f"{len(stage.objects)} objects, {len(shown)} views"
+    count = f"{len(stage.objects)} objects, {len(shares)} views"
     print(f"views: {count} by {renderer}, {coverage:.1%} of the pixels on objects")
 
 

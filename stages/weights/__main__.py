@@ -47,11 +47,11 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
         amounts = ground_truth_amounts(name, source, mesh, files)
         if amounts is None or not amounts.any():
             return []
-        found = collect_training_data(name, mesh, path, amounts, seed)
-        row = {"item": name, "metric": "points", "value": len(found["points"]), "_convexity": convexity(mesh)}
+        arrays = collect_training_data(name, mesh, path, amounts, seed)
+        row = {"item": name, "metric": "points", "value": len(arrays["points"]), "_convexity": convexity(mesh)}
     except ValueError as error:  # marks of another mesh of this name, for example: the other objects are trained on
         return [{"item": name, "metric": "points", "value": None, "note": str(error)}]
-    write_arrays(folder / GROUND_TRUTH / f"{name}.npz", **found)
+    write_arrays(folder / GROUND_TRUTH / f"{name}.npz", **arrays)
     return [row]
 
 
@@ -62,12 +62,12 @@ def run(workspace: Workspace) -> None:
     marks = workspace.root / "data" / "annotations"
     with StageRun(workspace, "weights", COLUMNS, inputs=("meshes", "conspicuity")) as stage:
         # Objects without ground truth are no items: what is trained on the others does not depend on them.
-        each = ((name, read_mesh(workspace.data / "meshes" / f"{name}.npz")) for name in stage.objects)
-        files = ground_truth_files(each, meshes.source, meshes.folder, marks)
+        pairs = ((name, read_mesh(workspace.data / "meshes" / f"{name}.npz")) for name in stage.objects)
+        files = ground_truth_files(pairs, meshes.source, meshes.folder, marks)
         collect = functools.partial(process, data=workspace.data, source=meshes.source, seed=workspace.seed)
         reads = ("meshes/{}.npz", "conspicuity/{}.npz")
-        made_of = {name: digest(own) for name, own in files.items()}
-        rows = stage.each(collect, {name: (name, own) for name, own in files.items()}, reads=reads, made_of=made_of)
+        made_of = {name: digest(entry) for name, entry in files.items()}
+        rows = stage.each(collect, {name: (name, entry) for name, entry in files.items()}, reads=reads, made_of=made_of)
         for row in rows:
             if "note" in row:
                 print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)

@@ -140,14 +140,14 @@ def marked_files(meshes: Iterable[tuple[str, Mesh]], folder: str | Path) -> dict
     it, so that its reader can say why it is of no use.
     """
     files = {path.stem: path for path in sorted(Path(folder).glob("*.csv"))}
-    found, strange = {}, {}
+    stems, strange = {}, {}
     for name, mesh in meshes:
-        own = [name] if name in files else []
-        fitting = next((stem for stem in [*own, *files] if _fits(mesh, files[stem])), None)
-        found |= {name: fitting} if fitting else {}
-        strange |= {name: name for name in own if not fitting}
-    found |= {name: stem for name, stem in strange.items() if stem not in found.values()}
-    return {name: [(str(files[stem]), partial(bytes, files[stem].read_bytes()))] for name, stem in found.items()}
+        namesake = [name] if name in files else []
+        fitting = next((stem for stem in [*namesake, *files] if _fits(mesh, files[stem])), None)
+        stems |= {name: fitting} if fitting else {}
+        strange |= {name: name for name in namesake if not fitting}
+    stems |= {name: stem for name, stem in strange.items() if stem not in stems.values()}
+    return {name: [(str(files[stem]), partial(bytes, files[stem].read_bytes()))] for name, stem in stems.items()}
 
 
 def _fits(mesh, path):
@@ -170,11 +170,11 @@ def fixation_files(files: Mapping[str, Callable[[], bytes]]) -> dict[str, Files]
     matches = [(re.search(r"(FixationMaps|CentricityAndVisibilityMaps)/[^/]+\.txt$", path), path) for path in files]
     maps = {match[0]: (path, files[path]) for match, path in matches if match}
     names = sorted({path.split("/")[1].rsplit("_", 1)[0] for path in maps if path.endswith("norm.txt")})
-    wanted = {name: [form.format(name, view) for view in VIEWS for form in (DENSITY, VISIBLE)] for name in names}
-    missing = sorted(path for paths in wanted.values() for path in paths if path not in maps)
+    by_name = {name: [form.format(name, view) for view in VIEWS for form in (DENSITY, VISIBLE)] for name in names}
+    missing = sorted(path for paths in by_name.values() for path in paths if path not in maps)
     if missing:
         raise ValueError(f"no {', '.join(missing)}: unpack both archives")
-    return {name: [maps[path] for path in paths] for name, paths in wanted.items()}
+    return {name: [maps[path] for path in paths] for name, paths in by_name.items()}
 
 
 def fixations_on_vertices(files: Files, mesh: Mesh) -> np.ndarray:

@@ -218,8 +218,8 @@ def visible_points(
         raise ValueError(f"vertices must be (k,) ids in 0..{len(mesh.vertices) - 1}, got {vertices}")
     rows, columns, depth = project(mesh.vertices[vertices], viewpoint, size)
     hits = _scene(mesh).cast(*pixel_rays(rows, columns, viewpoint, size))
-    which = np.flatnonzero(hits.distance >= depth - SAME_DEPTH)
-    return rows[which], columns[which], which
+    indices = np.flatnonzero(hits.distance >= depth - SAME_DEPTH)
+    return rows[indices], columns[indices], indices
 
 
 @lru_cache(maxsize=1)

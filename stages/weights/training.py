@@ -52,7 +52,7 @@ def collect_training_data(
     maps = maps[:, [stored.index(channel) for channel in channels]]
     samples = samples_of_mesh(mesh)
     glance = standardised(samples)
-    found = [
+    views = [
         _view(
             f"{name} {viewpoint.name}",
             mesh,
@@ -64,7 +64,7 @@ def collect_training_data(
         )
         for k, viewpoint in enumerate(viewpoints)
     ]
-    tables, image, own = (list(part) for part in zip(*found, strict=True))
+    tables, image, on_object = (list(part) for part in zip(*views, strict=True))
     if not any(view["distances"] for view in tables):
         raise ValueError("no view shows a point of its ground truth")
     return {
@@ -79,7 +79,7 @@ def collect_training_data(
         "glance_names": np.array(list(glance)),
         "channels": np.array(channels),
         **{kind: _table([view[kind] for view in tables], channels) for kind in tables[0]},
-        **_rows("", own),
+        **_rows("", on_object),
         **_rows("image_", image),
     }
 
@@ -142,17 +142,17 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
     objects. made: the folder with the training data of all objects; trained_on: one of PIXELS, of the first two.
     """
     training_data = read_training_data(made)
-    own = training_data[name]
-    features, labels, views = (own[f"{PIXELS[trained_on]}{key}"] for key in ("pixels", "labels", "views"))
+    record = training_data[name]
+    features, labels, views = (record[f"{PIXELS[trained_on]}{key}"] for key in ("pixels", "labels", "views"))
     most = MAX_ROWS if trained_on == "object" else len(labels)
-    per_view = [_fit(features[views == k], labels[views == k], seed, most) for k in range(len(own["distances"]))]
+    per_view = [_fit(features[views == k], labels[views == k], seed, most) for k in range(len(record["distances"]))]
     others = [arrays for other, arrays in training_data.items() if other != name]
     without = [_fit(*_joined_rows(others), seed)] if others else []
     models = {"object": [_fit(features, labels, seed, most)], "view": per_view, "without": without}
     write_models(folder / "svm" / f"{name}.npz", models)
     rows = []
     for area, prefix in AREAS.items():
-        features, labels, views = (own[f"{prefix}{key}"] for key in ("pixels", "labels", "views"))
+        features, labels, views = (record[f"{prefix}{key}"] for key in ("pixels", "labels", "views"))
         rows.append(_row(name, area, "one_per_object", "pixels", cross_validated, features, labels, seed))
         rows.append(_row(name, area, "one_per_object", "views", grouped_validated, features, labels, views, seed))
         for k in range(len(per_view)):

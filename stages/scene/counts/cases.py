@@ -49,12 +49,12 @@ def between(curves: Sequence[Curve], seed: int) -> list[Case]:
 
     The lowest is left out, since a lookup without it has nothing below the right count.
     """
-    found = []
+    cases = []
     for curve, points in _with_points(curves):
         for place in range(1, len(curve)):
             given = curve.only(np.arange(len(curve)) != place)
-            found.append(_case(curve, given, curve.errors[place], points, seed))
-    return _above_floor(found)
+            cases.append(_case(curve, given, curve.errors[place], points, seed))
+    return _above_floor(cases)
 
 
 def beyond(curves: Sequence[Curve], seed: int, fine: bool) -> list[Case]:
@@ -62,13 +62,13 @@ def beyond(curves: Sequence[Curve], seed: int, fine: bool) -> list[Case]:
 
     Not fine: the other way round. Curves on one side alone have none.
     """
-    found = []
+    cases = []
     for curve, points in _with_points(curves):
-        asked = side(curve, fine)
-        given = curve.only(~asked)
+        outside = side(curve, fine)
+        given = curve.only(~outside)
         if given is not None:
-            found += [_case(curve, given, error, points, seed) for error in curve.errors[asked]]
-    return _above_floor(found)
+            cases += [_case(curve, given, error, points, seed) for error in curve.errors[outside]]
+    return _above_floor(cases)
 
 
 def flat(curves: Sequence[Curve], seed: int, error: float) -> list[Case]:
@@ -145,9 +145,9 @@ def _built(case, count, fold):
     mesh, keep = fold.meshes[name], fold.points[name][method]
     with Stopwatch() as watch:
         try:
-            found = simplify(mesh, count, keep, shrink=True)
+            reduced = simplify(mesh, count, keep, shrink=True)
         except ValueError:
             return None
-        error = metro(mesh, found, seed=fold.seed)["mean"] / case.error
-    ratio = len(found.faces) / case.needed
+        error = metro(mesh, reduced, seed=fold.seed)["mean"] / case.error
+    ratio = len(reduced.faces) / case.needed
     return {"object": name, "ratio": ratio, "error": error, "within": error <= 1, "seconds": watch.seconds}

@@ -57,11 +57,11 @@ def _left_out(fold, cases, counts):
     """As trained, then at an equal rate of cases within the tolerance, and a sample of both as meshes."""
     parts = _inner_parts(fold)
     for kind in ALL:
-        found = counts(kind, frozenset(_names(fold.training)))
-        yield labelled(score_counts(cases, found), kind, "left_out")
-        yield labelled(build_some(fold, cases, found), kind, "built")
+        predicted = counts(kind, frozenset(_names(fold.training)))
+        yield labelled(score_counts(cases, predicted), kind, "left_out")
+        yield labelled(build_some(fold, cases, predicted), kind, "built")
         full = [case.curve.initial_faces for case in cases]
-        safe = np.minimum(np.ceil(found * _safety(fold, kind, parts)), full).astype(np.int64)
+        safe = np.minimum(np.ceil(predicted * _safety(fold, kind, parts)), full).astype(np.int64)
         yield labelled(score_counts(cases, safe), kind, "equal_rate")
         yield labelled(build_some(fold, cases, safe), kind, "built_equal_rate")
 
@@ -72,7 +72,7 @@ def _safety(fold, kind, parts):
     Each case is predicted by a model trained on other training objects (cross-conformal prediction: Vovk 2015). Cases
     of one object are dependent, so the rate is approximate.
     """
-    counts = [predict_counts(kind, others, cases, fold.combinations, fold.seed) for others, cases in parts]
+    counts = [predict_counts(kind, training, cases, fold.combinations, fold.seed) for training, cases in parts]
     needed = np.array([case.needed for _, cases in parts for case in cases])
     return float(np.quantile(needed / np.concatenate(counts), RATE, method="higher"))
 
@@ -82,17 +82,17 @@ def _inner_parts(fold):
     objects, parts = _names(fold.training), []
     for _, last in KFold(INNER, shuffle=True, random_state=fold.seed).split(objects):
         aside = {objects[k] for k in last}
-        others, left = ([c for c in fold.training if (c.object in aside) == chosen] for chosen in (False, True))
-        parts.append((others, between(left, fold.seed)))
+        training, held_out = ([c for c in fold.training if (c.object in aside) == inside] for inside in (False, True))
+        parts.append((training, between(held_out, fold.seed)))
     return parts
 
 
 def _few_objects(fold, cases, counts):
     objects = _names(fold.training)
     for size in fold.sizes:
-        drawn = frozenset(rng(fold.seed, f"{size} of {','.join(objects)}").permutation(objects)[:size].tolist())
+        sample = frozenset(rng(fold.seed, f"{size} of {','.join(objects)}").permutation(objects)[:size].tolist())
         for kind in (*KINDS, "one_mesh"):
-            yield labelled(score_counts(cases, counts(kind, drawn)), kind, "trained_on", size)
+            yield labelled(score_counts(cases, counts(kind, sample)), kind, "trained_on", size)
 
 
 def _beyond(fold):
@@ -101,8 +101,8 @@ def _beyond(fold):
         parts = [curve.only(~side(curve, fine)) for curve in fold.training]
         training = [part for part in parts if part is not None and is_informative(part)]
         for kind in ALL if cases and training else ():
-            found = predict_counts(kind, training, cases, fold.combinations, fold.seed)
-            yield labelled(score_counts(cases, found), kind, condition)
+            predicted = predict_counts(kind, training, cases, fold.combinations, fold.seed)
+            yield labelled(score_counts(cases, predicted), kind, condition)
 
 
 def labelled(frame: pd.DataFrame, method: str, condition: str, setting: int | None = None) -> pd.DataFrame:
@@ -160,7 +160,7 @@ def _folds(curves, objects, meshes, points, combinations, seed) -> Iterator[Fold
     for train, test in splits:
         known, unknown = ({objects[k] for k in part} for part in (train, test))
         training, left_out = ([curve for curve in curves if curve.object in names] for names in (known, unknown))
-        own_meshes, own_points = ({name: each[name] for name in sorted(unknown)} for each in (meshes, points))
+        own_meshes, own_points = ({name: by_name[name] for name in sorted(unknown)} for by_name in (meshes, points))
         yield Fold(training, left_out, own_meshes, own_points, combinations, sizes, seed)
 
 
@@ -172,8 +172,8 @@ def _single_splits(used, curves, combinations, seed):
     typical = float(np.median([case.error for case in between(used, seed)]))
     for condition, training, cases in (("larger", small, larger), ("flat", used, flat(curves, seed, typical))):
         for kind in ALL if cases else ():
-            found = predict_counts(kind, training, cases, combinations, seed)
-            yield labelled(score_counts(cases, found), kind, condition)
+            predicted = predict_counts(kind, training, cases, combinations, seed)
+            yield labelled(score_counts(cases, predicted), kind, condition)
 
 
 def _rows(key, cases, seed):
@@ -192,9 +192,9 @@ def _costs(curves, frame, combinations, seed):
     for one_mesh one such point, for the others one training for all objects (without the curves, which must be measured
     too). Ask is one prediction.
     """
-    one = float(frame["seconds"].mean())
+    one_mesh = float(frame["seconds"].mean())
     case = between(curves, seed)[:1]
-    fits = {"one_mesh": one, "lookup": one * float(np.mean([len(curve) for curve in curves]))}
+    fits = {"one_mesh": one_mesh, "lookup": one_mesh * float(np.mean([len(curve) for curve in curves]))}
     exponent = power_law(curves)
     asks: dict[str, Callable[[], object]] = {
         "one_mesh": lambda: from_one_mesh(exponent, case),
@@ -204,22 +204,22 @@ def _costs(curves, frame, combinations, seed):
         with Stopwatch() as watch:
             model = fit_counts(curves, combinations, kind, seed)
         fits[kind], asks[kind] = watch.seconds, functools.partial(predict_with, model, case)
-    taken = {"fit": fits, "ask": {kind: _seconds(ask) for kind, ask in asks.items()}}
+    costs = {"fit": fits, "ask": {kind: _seconds(ask) for kind, ask in asks.items()}}
     return [
         _row(kind, "cost", None, metric, seconds[kind] / seconds["lookup"]) | {"seconds": seconds[kind]}
-        for metric, seconds in taken.items()
+        for metric, seconds in costs.items()
         for kind in ALL
     ]
 
 
 def _seconds(ask):
     """The seconds of one prediction, the fastest of REPEATS: other load on the machine only adds."""
-    taken = []
+    times = []
     for _ in range(REPEATS):
         with Stopwatch() as watch:
             ask()
-        taken.append(watch.seconds)
-    return min(taken)
+        times.append(watch.seconds)
+    return min(times)
 
 
 def _row(method, condition, setting, metric, value=None):
@@ -260,8 +260,8 @@ def from_one_mesh(exponent: float, cases: Sequence[Case]) -> np.ndarray:
         faces.append(case.given.faces[nearest])
         errors.append(case.given.errors[nearest])
     ratio = np.maximum(errors, FLOOR) / np.maximum([case.error for case in cases], FLOOR)
-    found = np.maximum(np.ceil(np.array(faces) * ratio**exponent - 1e-6), FEWEST)
-    return np.minimum(found, [case.curve.initial_faces for case in cases]).astype(np.int64)
+    counts = np.maximum(np.ceil(np.array(faces) * ratio**exponent - 1e-6), FEWEST)
+    return np.minimum(counts, [case.curve.initial_faces for case in cases]).astype(np.int64)
 
 
 RESAMPLES = 400  # of the objects, with all their cases: the interval's ends are then within a tenth of its width
@@ -296,12 +296,12 @@ def summarise(frame: pd.DataFrame, seed: int) -> dict[str, tuple[float, float, f
     for _ in range(RESAMPLES if len(groups) > 1 else 0):
         picks = draw.integers(len(groups), size=len(groups))
         resampled.append(_metrics({name: np.concatenate([parts[k] for k in picks]) for name, parts in columns.items()}))
-    found = {}
+    metrics = {}
     for name, value in values.items():
-        spread = [each[name] for each in resampled if np.isfinite(each[name])]
+        spread = [sample[name] for sample in resampled if np.isfinite(sample[name])]
         low, high = np.quantile(spread, [0.025, 0.975]) if spread else (np.nan, np.nan)
-        found[name] = (float(value), float(low), float(high))
-    return found
+        metrics[name] = (float(value), float(low), float(high))
+    return metrics
 
 
 def _metrics(cases: Mapping | pd.DataFrame) -> dict[str, float]:

@@ -140,8 +140,8 @@ class Counts:
         for name, regressor in self.regressors.items():
             inputs = np.broadcast_arrays(*np.atleast_1d(tolerance, distance, initial_faces, points[name]))
             predictions.append(np.exp(np.minimum(regressor.predict(_logs(*inputs)), 0)) * inputs[2])
-        found = np.maximum(np.ceil(np.mean(predictions, axis=0) - 1e-6), FEWEST)
-        return np.minimum(found, np.atleast_1d(initial_faces)).astype(np.int64)
+        counts = np.maximum(np.ceil(np.mean(predictions, axis=0) - 1e-6), FEWEST)
+        return np.minimum(counts, np.atleast_1d(initial_faces)).astype(np.int64)
 
 
 def fit_counts(
