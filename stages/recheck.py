@@ -4,9 +4,9 @@ Rows outside the default run are committed, and the code that made them goes on 
 are older than the code of their stage, but cannot tell a new method from a new form. This command can: it runs the
 stages that the rows depend on in build/recheck, the stage itself on its first items alone, and compares each row with
 the committed one. It prints a line for each method, and keeps the outcome in reports/measurements/rechecked.json: where
-all compared rows agree within 1 %, the report does not call the file older. Rows of a metric that the committed file
-does not have are counted alone. Exits with 1 where rows differ by more or were not measured again, and where a stage
-stopped before its end: the outcome is not kept then.
+98 % of the compared rows of each method agree within 1 %, the report does not call the file older. Rows of a metric
+that the committed file does not have are counted alone. Exits with 1 where rows differ by more or were not measured
+again, and where a stage stopped before its end: the outcome is not kept then.
 
 Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
 that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all
@@ -40,6 +40,7 @@ CODE = Path("build/code")
 SHARED = ("annotations", "reference")  # folders of data/ that belong to no set
 MEASURED = ("value", "seconds", "clock", "seed", "note", "asked", "faces", "points", "kept", "rings", "shrunk",
             "infeasible", "smallest_feasible", "map_dimensions")  # every other column tells a row apart  # fmt: skip
+TIMES = "milliseconds", "training_seconds"  # metrics
 EQUAL, CLOSE = 2e-5, 0.01  # relative differences: of two numbers that are written with six digits; of no account
 ZERO = 1e-9  # smaller numbers count as this, since rounding alone makes them
 
@@ -152,11 +153,12 @@ def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     """Committed rows beside the same rows measured again; of committed rows, those of the objects measured again.
 
     Where a row names no object, such as a row of a trial, it counts where another metric of it was measured again.
+    Times do not count.
 
     Columns: the keys, value, again, `off` (the relative difference), and `side`: both, left_only or right_only.
     """
     keys = [name for name in committed.columns if name in again.columns and name not in MEASURED]
-    sides = [_numbered(rows, keys) for rows in (committed, again)]
+    sides = [_numbered(rows[~rows["metric"].isin(TIMES)], keys) for rows in (committed, again)]
     sides[1] = sides[1].rename(columns={"value": "again"})
     merged = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
     units = set(_units(sides[1], keys))
@@ -200,10 +202,12 @@ def keep(name: str, rows: pd.DataFrame) -> None:
     write_json(path, dict(sorted(checks.items())))
 
 
-def outcome(rows: pd.DataFrame) -> dict[str, int]:
-    """{compared, close, only_committed}: numbers of rows."""
+def outcome(rows: pd.DataFrame) -> dict[str, float]:
+    """{compared, close, only_committed: numbers of rows; least: the smallest share of close rows of any method}."""
     counts = by_method(rows).rename(columns={"rows": "compared"})
-    return {name: int(counts[name].sum()) for name in ("compared", "close", "only_committed")}
+    least = (counts["close"] / counts["compared"]).min()
+    sums = {name: int(counts[name].sum()) for name in ("compared", "close", "only_committed")}
+    return sums | {"least": round(least, 4) if sums["compared"] else 0.0}
 
 
 def _file(name: str) -> Path:
