@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import cloudpickle
+from joblib.externals import cloudpickle
 
 from haptic_glance.base.files import sha256, whole_file
 from stages.engine.code import file_digest, files_behind
