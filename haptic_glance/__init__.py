@@ -92,9 +92,9 @@ def __getattr__(name: str) -> object:
             return "0+unknown"
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    found = getattr(import_module(_MODULES[name]), name)
+    member = getattr(import_module(_MODULES[name]), name)
     doors = import_module("haptic_glance.doors")
-    globals()[name] = doors.door(name, found) if name in doors.MESHES else found
+    globals()[name] = doors.door(name, member) if name in doors.MESHES else member
     return globals()[name]
 
 

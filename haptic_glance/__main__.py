@@ -49,30 +49,30 @@ def main() -> None:
     if not sys.argv[1:]:
         parser.print_help(sys.stderr)
         sys.exit(2)
-    chosen = parser.parse_args()
+    options = parser.parse_args()
     names = {**OWN, **SHELL}
-    if chosen.command in PIPELINE:
-        in_clone = f"run `python -m stages.{chosen.command}` in a clone of the repository"
-        parser.error(f"{chosen.command} belongs to the pipeline: {in_clone}")
-    if chosen.command not in names:
-        close = " or ".join(get_close_matches(chosen.command, names)) or "one of those that --help lists"
-        parser.error(f"there is no command {chosen.command!r}: try {close}")
-    sys.argv[1:] = chosen.rest
+    if options.command in PIPELINE:
+        in_clone = f"run `python -m stages.{options.command}` in a clone of the repository"
+        parser.error(f"{options.command} belongs to the pipeline: {in_clone}")
+    if options.command not in names:
+        close = " or ".join(get_close_matches(options.command, names)) or "one of those that --help lists"
+        parser.error(f"there is no command {options.command!r}: try {close}")
+    sys.argv[1:] = options.rest
 
     from haptic_glance.base.extras import MissingExtra, from_extra
     from haptic_glance.base.progress import report
 
-    warnings.showwarning = lambda message, *_: report(chosen.command, str(message))  # in one line
+    warnings.showwarning = lambda message, *_: report(options.command, str(message))  # in one line
     try:
         with from_extra():
-            status = run(chosen.command, chosen.rest)
+            status = run(options.command, options.rest)
             print(end="", flush=True)  # an error has its line and its status here, and neither when Python ends
             sys.exit(status)
     except MissingExtra as error:
-        if {"-h", "--help"} & set(chosen.rest):  # what it does can be read without what it needs
-            print(f"usage: haptic-glance {chosen.command} ...\n\n{docstring(names[chosen.command])}\n\n{error}")
+        if {"-h", "--help"} & set(options.rest):  # what it does can be read without what it needs
+            print(f"usage: haptic-glance {options.command} ...\n\n{docstring(names[options.command])}\n\n{error}")
             return
-        sys.exit(f"haptic-glance {chosen.command}: {error}")
+        sys.exit(f"haptic-glance {options.command}: {error}")
 
 
 def run(command: str, argv: Sequence[str]) -> int:

@@ -42,10 +42,10 @@ LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that
 
 def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     """The public function of a name, made of the one of the stages."""
-    made = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING)
+    wrapped = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING)
     if name in METRIC:
-        return with_metres(made, METRIC[name])
-    return with_lengths(made, LENGTHS[name]) if name in LENGTHS else made
+        return with_metres(wrapped, METRIC[name])
+    return with_lengths(wrapped, LENGTHS[name]) if name in LENGTHS else wrapped
 
 
 def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
@@ -53,17 +53,17 @@ def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: 
 
     looking: whether the function depends on the axis that points up, which is then warned of where the shape chose it.
     """
-    known = signature(function)
+    parameters = signature(function)
 
     @wraps(function)
     def work(*args: Any, **kwargs: Any) -> Any:
-        given = known.bind(*args, **kwargs)
+        bound = parameters.bind(*args, **kwargs)
         for name in names:
-            mesh = given.arguments[name]
+            mesh = bound.arguments[name]
             if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
-                silent = not looking or given.arguments.get("up") is not None
-                given.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, "up={!r}")
-        return function(*given.args, **given.kwargs)
+                silent = not looking or bound.arguments.get("up") is not None
+                bound.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, "up={!r}")
+        return function(*bound.args, **bound.kwargs)
 
     return work
 
@@ -74,25 +74,25 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable
     unit: what the coordinates of the mesh are in. The diameter is that of the bounding sphere about the middle of the
     bounding box, which is 1 for a normalised mesh.
     """
-    known = signature(function)
+    parameters = signature(function)
 
     @wraps(function)
     def work(*args: Any, unit: str | None = None, **kwargs: Any) -> Any:
-        given = known.bind(*args, **kwargs)
-        given.apply_defaults()
-        name, whole = next(iter(given.arguments.items()))
+        bound = parameters.bind(*args, **kwargs)
+        bound.apply_defaults()
+        name, whole = next(iter(bound.arguments.items()))
         if not isinstance(getattr(whole, "mesh", whole), Mesh):
-            given.arguments[name] = whole = as_mesh(whole)
-        if unit is not None and not any(isinstance(given.arguments[name], str) for name in names):
+            bound.arguments[name] = whole = as_mesh(whole)
+        if unit is not None and not any(isinstance(bound.arguments[name], str) for name in names):
             raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
         diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
         for name in names:
-            if given.arguments[name] is not None:
-                value = given.arguments[name]
-                given.arguments[name] = converted = in_units(name, value, diameter, unit)
-                if name == "pitch" and isinstance(value, str) and "cells" in given.arguments:
-                    _warn_of_misfit(value, given.arguments["cells"], converted, diameter)
-        return function(*given.args, **given.kwargs)
+            if bound.arguments[name] is not None:
+                value = bound.arguments[name]
+                bound.arguments[name] = converted = in_units(name, value, diameter, unit)
+                if name == "pitch" and isinstance(value, str) and "cells" in bound.arguments:
+                    _warn_of_misfit(value, bound.arguments["cells"], converted, diameter)
+        return function(*bound.args, **bound.kwargs)
 
     return work
 
@@ -102,13 +102,13 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
 
     A number stays what it is: of metres, of the argument named `metric`; of units of the mesh, of the pitch.
     """
-    known = signature(function)
+    parameters = signature(function)
 
     @wraps(function)
     def work(*args: Any, **kwargs: Any) -> Any:
-        given = known.bind(*args, **kwargs)
-        given.apply_defaults()
-        values = given.arguments
+        bound = parameters.bind(*args, **kwargs)
+        bound.apply_defaults()
+        values = bound.arguments
         if isinstance(unit := values["unit"], str):
             if unit not in METRES:
                 raise ValueError(f"unit={unit!r}: give a number of metres, or one of {', '.join(METRES)}")
@@ -116,12 +116,12 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
         for name in ("pitch", metric):
             if isinstance(text := values[name], str):
                 try:
-                    found = length(text)
+                    amount = length(text)
                 except ValueError:
                     raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
-                real = name == "pitch" and isinstance(found, Metres)
-                values[name] = float(found) / (values["unit"] if real else 1)
-        return function(*given.args, **given.kwargs)
+                real = name == "pitch" and isinstance(amount, Metres)
+                values[name] = float(amount) / (values["unit"] if real else 1)
+        return function(*bound.args, **bound.kwargs)
 
     return work
 
@@ -131,28 +131,28 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
     if not isinstance(value, str):
         return value if abs(diameter - 1) < 1e-9 else np.multiply(value, diameter)
     try:
-        found = length(value)
+        amount = length(value)
     except ValueError:
         raise ValueError(
             f'{name}={value!r}: give a share of the diameter such as 0.01, or a length such as "1mm"'
         ) from None
-    if not isinstance(found, Metres):
-        return found * diameter
+    if not isinstance(amount, Metres):
+        return amount * diameter
     if unit not in METRES:
         got = "" if unit is None else f", not {unit!r}"
         named = ", ".join(METRES)
         raise ValueError(f"{name}={value!r} needs unit, what the coordinates of the mesh are in: {named}{got}")
-    return float(found) / METRES[unit]
+    return float(amount) / METRES[unit]
 
 
-def _warn_of_misfit(asked: str, cells: Sequence[int], pitch: float, diameter: float) -> None:
+def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: float) -> None:
     """Warns where the array is far from the object's size: a normalised mesh, for one, is no longer in mm."""
     from haptic_glance.touch.distances import check_array  # `press` has imported both, which take a while
     from haptic_glance.touch.quasi_tangent import misfit
 
     cells, pitch, _ = check_array(cells, pitch)
     if wrong := misfit(cells, pitch / diameter):
-        warnings.warn(f"pitch={asked!r}: {wrong}", stacklevel=3)
+        warnings.warn(f"pitch={text!r}: {wrong}", stacklevel=3)
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:
@@ -169,12 +169,12 @@ def load(path: str | Path, up: Axis | None = None) -> Mesh:
     return _settled(mesh, "load(path, up={!r})", Path(path).name) if mesh.up == AUTO else mesh
 
 
-def _settled(given: MeshLike, remedy: str, name: str = "") -> Mesh:
+def _settled(source: MeshLike, remedy: str, name: str = "") -> Mesh:
     """The Mesh of what is given; where nothing says which axis points up, a warning says which one is assumed."""
-    mesh = as_stated(given)
+    mesh = as_stated(source)
     if mesh.up != AUTO:
         return mesh
-    name = name or (Path(given).name if isinstance(given, str | Path) else "the mesh")
+    name = name or (Path(source).name if isinstance(source, str | Path) else "the mesh")
     mesh, note = assumed(mesh, f"{name} does not say which axis points up", remedy)
     warnings.warn(note, stacklevel=3)
     return mesh
@@ -199,27 +199,26 @@ def simplify(
     InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
     work = import_module("haptic_glance.lod").simplify
-    asked = str(faces)
+    target = str(faces)
     if isinstance(faces, float | np.floating) and 0 < faces < 1:
-        asked = f"{100 * float(asked):.12g}%"
-    count = face_count(asked, len(mesh.faces), "faces")
-    given = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
+        target = f"{100 * float(target):.12g}%"
+    count = face_count(target, len(mesh.faces), "faces")
+    arguments = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
     borders = [False if free_borders is None else free_borders]
     if free_borders is None and not attributes and backend != "pymeshlab":
         borders.append(True)
     failures = []
-    named = (
-        isinstance(free_borders, np.ndarray) and free_borders.ndim > 0
-    )  # vertex by vertex, which repairs would renumber
-    for whole, own in [(mesh, given)] if named else _as_given_and_mended(mesh, given):
+    # vertex by vertex, which repairs would renumber
+    named = isinstance(free_borders, np.ndarray) and free_borders.ndim > 0
+    for whole, settings in [(mesh, arguments)] if named else _as_given_and_mended(mesh, arguments):
         for free in borders:
             try:
-                return _around_folds(work, whole, count, free_borders=free, **own)
+                return _around_folds(work, whole, count, free_borders=free, **settings)
             except (InfeasibleTarget, SimplifyError) as error:
                 failures.append(error)
     if len(borders) > 1 and keep is None:
         with suppress(InfeasibleTarget, SimplifyError):
-            return work(whole, count, free_borders=True, below=True, **own)
+            return work(whole, count, free_borders=True, below=True, **settings)
     infeasible = [error for error in failures if isinstance(error, InfeasibleTarget)]
     raise min(infeasible, key=lambda error: error.smallest) if infeasible else failures[0]
 
@@ -235,17 +234,17 @@ def _around_folds(work: Callable[..., Mesh], mesh: Mesh, count: int, **given: An
         raise
 
 
-def _as_given_and_mended(mesh: Mesh, given: dict[str, Any]) -> Iterator[tuple[Mesh, dict[str, Any]]]:
+def _as_given_and_mended(mesh: Mesh, arguments: dict[str, Any]) -> Iterator[tuple[Mesh, dict[str, Any]]]:
     """The mesh and its arguments, then those of the mesh repaired, where that differs and its vertices can be named."""
-    yield mesh, given
-    if not np.ndim(given["rings"]) and (mended := repair(mesh)) != mesh:
+    yield mesh, arguments
+    if not np.ndim(arguments["rings"]) and (mended := repair(mesh)) != mesh:
         nearest = KDTree(mesh.vertices).query(mended.vertices)[1]
-        weights, keep = given["weights"], given["keep"]
+        weights, keep = arguments["weights"], arguments["keep"]
         if weights is not None:
             weights = np.asarray(weights)[nearest]
         if keep is not None:
             keep = KDTree(mended.vertices).query(mesh.vertices[np.asarray(keep, dtype=np.int64)])[1]
-        yield mended, given | {"weights": weights, "keep": keep}
+        yield mended, arguments | {"weights": weights, "keep": keep}
 
 
 def repair(mesh: MeshLike) -> Mesh:
@@ -273,10 +272,10 @@ class Shown:
 def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
     """A mesh for a notebook, to be turned; values (n,) from 0 on: such as a saliency, which colour it from violet to
     yellow."""
-    given = as_mesh(mesh)
+    model = as_mesh(mesh)
     if values is not None:
         values = np.asarray(values, dtype=np.float64)
-        if values.shape != (len(given.vertices),) or not ((values >= 0) & (values < np.inf)).all():
-            raise ValueError(f"values must be one per vertex, ({len(given.vertices)},), finite and 0 or more")
-        given = coloured(given, values)
-    return Shown(given)
+        if values.shape != (len(model.vertices),) or not ((values >= 0) & (values < np.inf)).all():
+            raise ValueError(f"values must be one per vertex, ({len(model.vertices)},), finite and 0 or more")
+        model = coloured(model, values)
+    return Shown(model)

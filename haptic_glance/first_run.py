@@ -134,8 +134,8 @@ def compile_all(command: str) -> None:
         if free is not None:
             free.close()
             kernel = getattr(import_module(f"{__package__}.{file.replace('/', '.')}"), name)
-            known = vars(numba.types) | ({SURFACE: _surface()} if SURFACE in types else {})
-            kernel.compile(eval(f"({types})", known))
+            namespace = vars(numba.types) | ({SURFACE: _surface()} if SURFACE in types else {})
+            kernel.compile(eval(f"({types})", namespace))
 
 
 def _surface():

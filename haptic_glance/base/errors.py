@@ -32,8 +32,8 @@ def errors_in_one_line(name: str) -> None:
             return sys.__excepthook__(kind, error, trace)
         if issubclass(kind, BrokenPipeError) and _reader_has_gone():
             return _drop_output()
-        said = "stopped" if issubclass(kind, KeyboardInterrupt) else " ".join(str(error).split())
-        return print(f"{name}: {said}{REMEDIES.get(getattr(error, 'errno', 0) or 0, '')}", file=sys.stderr)
+        reason = "stopped" if issubclass(kind, KeyboardInterrupt) else " ".join(str(error).split())
+        return print(f"{name}: {reason}{REMEDIES.get(getattr(error, 'errno', 0) or 0, '')}", file=sys.stderr)
 
     sys.excepthook = show
     atexit.register(_flush)

@@ -46,6 +46,6 @@ def from_extra(need: str = "") -> Iterator[None]:
         module = (error.name or "").partition(".")[0]
         if isinstance(error, MissingExtra) or module not in EXTRAS:  # the inner one says why it is needed
             raise
-        here = Path(__file__).parents[2] / "pyproject.toml"  # beside the stages in a clone alone
-        remedy = f"pip install '{'.' if here.is_file() else 'haptic-glance'}[{EXTRAS[module]}]'"
+        pyproject = Path(__file__).parents[2] / "pyproject.toml"  # beside the stages in a clone alone
+        remedy = f"pip install '{'.' if pyproject.is_file() else 'haptic-glance'}[{EXTRAS[module]}]'"
         raise MissingExtra(f"{need or f'{module} '}is not installed: {remedy}", name=error.name) from None

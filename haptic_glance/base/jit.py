@@ -132,13 +132,13 @@ class Shared(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The kernel for such types, or None, and then this process is the one to compile it."""
-        found = super().load_overload(sig, target_context)
-        if found is None and self._claimed is None:
+        kernel = super().load_overload(sig, target_context)
+        if kernel is None and self._claimed is None:
             self._claimed = claim(self._marker)
-            found = super().load_overload(sig, target_context)
-        if found is not None:
+            kernel = super().load_overload(sig, target_context)
+        if kernel is not None:
             self._release()
-        return found
+        return kernel
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keeps a compiled kernel."""
@@ -170,8 +170,8 @@ class UntilWorthCompiling:
     def for_work(self, work: float) -> Callable[..., Any]:
         """The kernel, or its interpreted twin, for so much work."""
         if self._left > 0:
-            kept = any(self._folder.rglob(f"*.{self._kernel.__name__}-*.nbc"))
-            self._left = 0 if kept else self._left - work
+            cached = any(self._folder.rglob(f"*.{self._kernel.__name__}-*.nbc"))
+            self._left = 0 if cached else self._left - work
         return self._kernel if self._left <= 0 else interpreted(self._kernel)
 
 

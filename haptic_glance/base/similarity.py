@@ -18,8 +18,8 @@ def ssim_map(
     moments: local_moments(a), where a serves many comparisons. The same values as scikit-image's structural_similarity
     with its Gaussian window, at a quarter of its time.
     """
-    one, two = ((share * white) ** 2 for share in STABILISERS)
-    return similarity(*(moments or local_moments(a)), *local_moments(b), _blurred(a * b), one, two)
+    c1, c2 = ((share * white) ** 2 for share in STABILISERS)
+    return similarity(*(moments or local_moments(a)), *local_moments(b), _blurred(a * b), c1, c2)
 
 
 def local_moments(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -38,14 +38,14 @@ kernel = kernel_of(__file__)
 @kernel
 def similarity(
     mean_a: np.ndarray, square_a: np.ndarray, mean_b: np.ndarray, square_b: np.ndarray, product: np.ndarray,
-    one: float, two: float,
+    c1: float, c2: float,
 ) -> np.ndarray:  # fmt: skip
     """(rows, columns) SSIM from the local means of a and b, of their squares and of their product; two stabilisers."""
-    found = np.empty_like(product)
+    ssim = np.empty_like(product)
     for i in range(len(product)):
         for j in range(product.shape[1]):
-            both = mean_a[i, j] * mean_b[i, j]
+            means = mean_a[i, j] * mean_b[i, j]
             sizes = mean_a[i, j] * mean_a[i, j] + mean_b[i, j] * mean_b[i, j]
-            alike = (2 * both + one) * (2 * (product[i, j] - both) + two)
-            found[i, j] = alike / ((sizes + one) * (square_a[i, j] + square_b[i, j] - sizes + two))
-    return found
+            alike = (2 * means + c1) * (2 * (product[i, j] - means) + c2)
+            ssim[i, j] = alike / ((sizes + c1) * (square_a[i, j] + square_b[i, j] - sizes + c2))
+    return ssim

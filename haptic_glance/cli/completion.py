@@ -39,15 +39,15 @@ def run(argv: Sequence[str]) -> None:
     shell = parser.parse_args(argv).shell
     from haptic_glance.__main__ import OWN, SHELL
 
-    known = json.loads(OPTIONS.read_text())
-    options = {command: known.get(command, []) for command in {**OWN, **SHELL}}
+    stored = json.loads(OPTIONS.read_text())
+    options = {command: stored.get(command, []) for command in {**OWN, **SHELL}}
     print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
 
 
 def options_of(command: str) -> list[str]:
     """The long options that the --help of a command lists; none where it needs an extra that is not installed."""
-    ran = subprocess.run([sys.executable, "-m", "haptic_glance", command, "--help"], capture_output=True, text=True)
-    return sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", ran.stdout, flags=re.MULTILINE)))
+    process = subprocess.run([sys.executable, "-m", "haptic_glance", command, "--help"], capture_output=True, text=True)
+    return sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", process.stdout, flags=re.MULTILINE)))
 
 
 def write_options() -> None:
@@ -55,19 +55,19 @@ def write_options() -> None:
     from haptic_glance.__main__ import OWN, SHELL
 
     with ThreadPoolExecutor() as pool:
-        found = dict(zip({**OWN, **SHELL}, pool.map(options_of, {**OWN, **SHELL}), strict=True))
-    OPTIONS.write_text(json.dumps(found, indent=1) + "\n")
+        options = dict(zip({**OWN, **SHELL}, pool.map(options_of, {**OWN, **SHELL}), strict=True))
+    OPTIONS.write_text(json.dumps(options, indent=1) + "\n")
 
 
 def bash(options: dict[str, list[str]]) -> str:
     """The script of bash, which zsh reads as well. options: {command: its options}."""
-    cases = "\n".join(CASE.format(command=name, options=" ".join(found)) for name, found in options.items())
+    cases = "\n".join(CASE.format(command=name, options=" ".join(flags)) for name, flags in options.items())
     return BASH.format(commands=" ".join(options), cases=cases)
 
 
 def fish(options: dict[str, list[str]]) -> str:
     """The script of fish. options: {command: its options}."""
     lines = [FISH_COMMAND.format(command=name) for name in options]
-    pairs = ((name, option) for name, found in options.items() for option in found)
+    pairs = ((name, option) for name, flags in options.items() for option in flags)
     lines += [FISH_OPTION.format(command=name, option=option.removeprefix("--")) for name, option in pairs]
     return "\n".join([*lines, ""])

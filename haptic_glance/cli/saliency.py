@@ -84,61 +84,63 @@ def run(argv: Sequence[str]) -> None:
     look_at(parser().parse_args(argv))
 
 
-def look_at(chosen: argparse.Namespace) -> None:
+def look_at(options: argparse.Namespace) -> None:
     """Prints the points of a mesh and writes what else was asked for."""
-    check(chosen)
-    report(chosen, f"reading {chosen.mesh.name}")
-    before = existing(chosen.out, chosen.points, chosen.picture, chosen.weights)
-    with about(chosen.mesh):
-        mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
-        report(chosen, "looking at it")
+    check(options)
+    report(options, f"reading {options.mesh.name}")
+    before = existing(options.out, options.points, options.picture, options.weights)
+    with about(options.mesh):
+        mesh, note = upright_by(load_unnamed(options.mesh), options.mesh, options.up)
+        report(options, "looking at it")
         with WallClock() as watch:
-            found = detect(bake_texture(mesh), chosen.method, chosen.count)
-    assert found.saliency is not None  # `check` lets no method pass that has none
-    report(chosen, f"{len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}")
-    rows = points_of(mesh, found)
-    if len(rows) < (chosen.count or 0):
-        report(chosen, f"{len(rows)} of {chosen.count} places: the mesh has no more")
-    if chosen.weights:
-        turned, note = upright_for(chosen.weights, mesh)
-        write_weights(chosen.weights, turned, found.saliency)
-        lost = dropped_from(chosen.mesh) if chosen.weights.suffix.lower() == ".glb" else ""
+            detection = detect(bake_texture(mesh), options.method, options.count)
+    assert detection.saliency is not None  # `check` lets no method pass that has none
+    report(options, f"{len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}")
+    rows = points_of(mesh, detection)
+    if len(rows) < (options.count or 0):
+        report(options, f"{len(rows)} of {options.count} places: the mesh has no more")
+    if options.weights:
+        turned, note = upright_for(options.weights, mesh)
+        write_weights(options.weights, turned, detection.saliency)
+        lost = dropped_from(options.mesh) if options.weights.suffix.lower() == ".glb" else ""
         for text in filter(None, (note, lost)):
-            report(chosen, text)
-    if chosen.out or chosen.picture:
-        write(chosen, *finely(bake_texture(mesh), found.saliency, chosen.method), rows)
-    elif chosen.points:
-        write(chosen, mesh, found.saliency, rows)
-    if written := [path for path in (chosen.out, chosen.points, chosen.picture, chosen.weights) if path]:
-        report(chosen, said_of(written, before))  # before the lines, whose reader may close the pipe
-    print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
+            report(options, text)
+    if options.out or options.picture:
+        write(options, *finely(bake_texture(mesh), detection.saliency, options.method), rows)
+    elif options.points:
+        write(options, mesh, detection.saliency, rows)
+    if written := [path for path in (options.out, options.points, options.picture, options.weights) if path]:
+        report(options, said_of(written, before))  # before the lines, whose reader may close the pipe
+    print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if options.json else as_csv(rows))
 
 
-def report(chosen: argparse.Namespace, text: str) -> None:
+def report(options: argparse.Namespace, text: str) -> None:
     """Prints progress to stderr, apart from the results."""
-    progress.report(chosen.name, text)
+    progress.report(options.name, text)
 
 
-def check(chosen: argparse.Namespace) -> None:
+def check(options: argparse.Namespace) -> None:
     """Raises ValueError for files that cannot be written, and for methods and counts that cannot be."""
-    if chosen.out and chosen.out.suffix.lower() not in (".glb", ".obj", ".ply"):
-        raise ValueError(f"--out {chosen.out}: a coloured mesh is written as .glb, .obj or .ply")
-    if chosen.weights:
-        check_suffix(chosen.weights)
-    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture, chosen.weights)
-    if chosen.picture:
-        check_look(chosen.picture)
-    if chosen.method is not None:
-        check_name(chosen.method)
-    chosen.method = method_for(chosen.purpose, chosen.method)
-    if chosen.count is not None and chosen.count < 1:
-        raise ValueError(f"--count {chosen.count}: give 1 or more")
+    if options.out and options.out.suffix.lower() not in (".glb", ".obj", ".ply"):
+        raise ValueError(f"--out {options.out}: a coloured mesh is written as .glb, .obj or .ply")
+    if options.weights:
+        check_suffix(options.weights)
+    check_outputs(options.mesh, options.out, options.points, options.picture, options.weights)
+    if options.picture:
+        check_look(options.picture)
+    if options.method is not None:
+        check_name(options.method)
+    options.method = method_for(options.purpose, options.method)
+    if options.count is not None and options.count < 1:
+        raise ValueError(f"--count {options.count}: give 1 or more")
 
 
-def points_of(mesh: Mesh, found: Detection) -> list[tuple]:
+def points_of(mesh: Mesh, detection: Detection) -> list[tuple]:
     """Rows of COLUMNS in the order of the Detection, with its scores; positions in the file's coordinates."""
-    assert found.scores is not None  # of methods that have a saliency
-    rows = zip(found.points.tolist(), mesh.vertices[found.points].tolist(), found.scores.tolist(), strict=True)
+    assert detection.scores is not None  # of methods that have a saliency
+    rows = zip(
+        detection.points.tolist(), mesh.vertices[detection.points].tolist(), detection.scores.tolist(), strict=True
+    )
     return [(rank, vertex, *place, score) for rank, (vertex, place, score) in enumerate(rows, 1)]
 
 
@@ -169,16 +171,18 @@ def as_csv(rows: list[tuple]) -> str:
     return "\n".join([",".join(COLUMNS), *lines])
 
 
-def write(chosen: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: list[tuple]) -> None:
+def write(options: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: list[tuple]) -> None:
     """Writes the files that were asked for, but the weights."""
-    if chosen.out:
-        turned, note = upright_for(chosen.out, coloured(mesh, saliency))
-        write_any(chosen.out, turned)
+    if options.out:
+        turned, note = upright_for(options.out, coloured(mesh, saliency))
+        write_any(options.out, turned)
         if note:
-            report(chosen, note)
-    if chosen.picture:
-        behind = write_look(chosen.picture, mesh, saliency, nearest_vertices(mesh, rows))
+            report(options, note)
+    if options.picture:
+        behind = write_look(options.picture, mesh, saliency, nearest_vertices(mesh, rows))
         if behind:
-            report(chosen, f"{behind} of {len(rows)} points are behind, where {chosen.picture.name} does not show them")
-    if chosen.points:
-        write_text(chosen.points, as_csv(rows) + "\n")
+            report(
+                options, f"{behind} of {len(rows)} points are behind, where {options.picture.name} does not show them"
+            )
+    if options.points:
+        write_text(options.points, as_csv(rows) + "\n")

@@ -127,47 +127,47 @@ def attribute_weights(text: str) -> dict[str, float]:
         raise argparse.ArgumentTypeError(f"{text!r}: write names and weights such as colors=1,uv=0.5") from None
 
 
-def check_paths(chosen: argparse.Namespace) -> None:
+def check_paths(options: argparse.Namespace) -> None:
     """Raises ValueError where the result or the picture cannot be written, or would overwrite the mesh."""
-    if not one_file(chosen):
-        check_folder_of_several(chosen)
-    elif chosen.out.suffix.lower() not in FORMATS:
-        raise ValueError(f"--out {chosen.out}: meshes are written as {', '.join(FORMATS)}")
-    elif chosen.format:
+    if not one_file(options):
+        check_folder_of_several(options)
+    elif options.out.suffix.lower() not in FORMATS:
+        raise ValueError(f"--out {options.out}: meshes are written as {', '.join(FORMATS)}")
+    elif options.format:
         raise ValueError("--format is for the files in a folder: --out says that of one file")
-    check_outputs(chosen.mesh, chosen.out if one_file(chosen) else None, chosen.picture)
-    if chosen.picture:
+    check_outputs(options.mesh, options.out if one_file(options) else None, options.picture)
+    if options.picture:
         from haptic_glance.lod.pictures import check_picture
 
-        check_picture(chosen.picture)
+        check_picture(options.picture)
 
 
-def one_file(chosen: argparse.Namespace) -> bool:
+def one_file(options: argparse.Namespace) -> bool:
     """Whether --out is a file, and not the folder of several."""
-    return not chosen.levels and not chosen.mesh.is_dir()
+    return not options.levels and not options.mesh.is_dir()
 
 
-def targets(chosen: argparse.Namespace) -> list[str]:
+def targets(options: argparse.Namespace) -> list[str]:
     """The face counts asked for; of a tolerance one text that names it."""
-    return chosen.levels or [chosen.faces or f"within_{100 * chosen.tolerance:g}%"]
+    return options.levels or [options.faces or f"within_{100 * options.tolerance:g}%"]
 
 
-def check_folder_of_several(chosen: argparse.Namespace) -> None:
+def check_folder_of_several(options: argparse.Namespace) -> None:
     """Raises ValueError where --out is no folder, or not another one than that of the meshes."""
-    check_folder(chosen.out, f"--out {chosen.out}")
-    if chosen.out.suffix.lower() in FORMATS:
-        raise ValueError(f"--out {chosen.out}: name a folder, since there are several results")
-    if chosen.out.resolve() == (chosen.mesh if chosen.mesh.is_dir() else chosen.mesh.parent).resolve():
-        raise ValueError(f"--out {chosen.out} is the folder of the meshes: name another one")
-    if chosen.picture:
+    check_folder(options.out, f"--out {options.out}")
+    if options.out.suffix.lower() in FORMATS:
+        raise ValueError(f"--out {options.out}: name a folder, since there are several results")
+    if options.out.resolve() == (options.mesh if options.mesh.is_dir() else options.mesh.parent).resolve():
+        raise ValueError(f"--out {options.out} is the folder of the meshes: name another one")
+    if options.picture:
         raise ValueError("--picture is for one result")
 
 
 def check_outputs(mesh: Path, *paths: Path | None) -> None:
     """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh or another one."""
-    given = [path for path in paths if path]
-    for path in given:
-        if sum(other.resolve() == path.resolve() for other in given) > 1:
+    outputs = [path for path in paths if path]
+    for path in outputs:
+        if sum(output.resolve() == path.resolve() for output in outputs) > 1:
             raise ValueError(f"{path} is named for two results: write them to two files")
         if path.is_dir():
             raise ValueError(f"{path} is a folder: name a file")
@@ -176,31 +176,31 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
             raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
 
 
-def check_options(chosen: argparse.Namespace) -> None:
+def check_options(options: argparse.Namespace) -> None:
     """Raises ValueError for options without effect, unknown methods, and invalid counts."""
-    if chosen.faces:
-        face_count(chosen.faces, 1, "--faces")
-    if chosen.seed < 0:
-        raise ValueError(f"--seed {chosen.seed}: give 0 or more")
-    check_name(chosen.method, [PLAIN])
-    freezing = {"--keep": chosen.keep, "--rings": chosen.rings, "--shrink": chosen.shrink or None}
-    given = next((name for name, value in freezing.items() if value is not None), None)
-    if chosen.method == PLAIN and (given or chosen.neighbourhood != SOFT):
-        raise ValueError(f"{given or '--neighbourhood'} has no effect with --method {PLAIN}, which freezes nothing")
-    if given and chosen.neighbourhood == SOFT:
+    if options.faces:
+        face_count(options.faces, 1, "--faces")
+    if options.seed < 0:
+        raise ValueError(f"--seed {options.seed}: give 0 or more")
+    check_name(options.method, [PLAIN])
+    freezing = {"--keep": options.keep, "--rings": options.rings, "--shrink": options.shrink or None}
+    option = next((name for name, value in freezing.items() if value is not None), None)
+    if options.method == PLAIN and (option or options.neighbourhood != SOFT):
+        raise ValueError(f"{option or '--neighbourhood'} has no effect with --method {PLAIN}, which freezes nothing")
+    if option and options.neighbourhood == SOFT:
         remedy = f"add --neighbourhood {' or '.join(NEIGHBOURHOODS)}, or leave it out"
-        raise ValueError(f"{given} has no effect where no faces are frozen: {remedy}")
-    if chosen.attributes and chosen.backend == "pymeshlab":
+        raise ValueError(f"{option} has no effect where no faces are frozen: {remedy}")
+    if options.attributes and options.backend == "pymeshlab":
         raise ValueError("--attributes has no effect with --backend pymeshlab: choose fast or qslim")
-    if chosen.free_borders and (chosen.attributes or chosen.backend == "pymeshlab"):
-        given = "--attributes" if chosen.attributes else "--backend pymeshlab"
-        raise ValueError(f"--free-borders has no effect with {given}: leave one of them out")
-    if chosen.rings is not None and chosen.neighbourhood != "fixed":
-        raise ValueError(f"--rings has no effect with --neighbourhood {chosen.neighbourhood}: it is for fixed")
-    if chosen.keep is not None and chosen.keep < 1:
-        raise ValueError(f"--keep {chosen.keep}: give 1 or more points; --method {PLAIN} keeps none")
-    if chosen.rings is not None and chosen.rings < 0:
-        raise ValueError(f"--rings {chosen.rings}: give 0 (the faces that touch a point) or more")
+    if options.free_borders and (options.attributes or options.backend == "pymeshlab"):
+        option = "--attributes" if options.attributes else "--backend pymeshlab"
+        raise ValueError(f"--free-borders has no effect with {option}: leave one of them out")
+    if options.rings is not None and options.neighbourhood != "fixed":
+        raise ValueError(f"--rings has no effect with --neighbourhood {options.neighbourhood}: it is for fixed")
+    if options.keep is not None and options.keep < 1:
+        raise ValueError(f"--keep {options.keep}: give 1 or more points; --method {PLAIN} keeps none")
+    if options.rings is not None and options.rings < 0:
+        raise ValueError(f"--rings {options.rings}: give 0 (the faces that touch a point) or more")
 
 
 MIN_EXTENT = 1e-60  # units: areas, and products of two, underflow near 1e-80
@@ -208,96 +208,98 @@ MIN_EXTENT = 1e-60  # units: areas, and products of two, underflow near 1e-80
 
 def run(argv: Sequence[str]) -> int:
     """Runs the command line `argv`, without the program's name; 1 where a level, or a mesh of a folder, failed."""
-    chosen = parser(__doc__ or "").parse_args(argv)
-    check_paths(chosen)
-    check_options(chosen)
-    files, figures = mesh_files(chosen.mesh), []
+    options = parser(__doc__ or "").parse_args(argv)
+    check_paths(options)
+    check_options(options)
+    files, figures = mesh_files(options.mesh), []
     for path, name in zip(files, names_of(files), strict=True):
         try:
             with about(path):
-                figures.append(simplify_file(path, name, chosen))
+                figures.append(simplify_file(path, name, options))
         except (ValueError, MissingExtra) as error:
-            if not chosen.mesh.is_dir():
+            if not options.mesh.is_dir():
                 raise
             report(str(error))
-    if chosen.json:
+    if options.json:
         print(json.dumps(figures))
-    whole = len(figures) == len(files) and all(len(each["levels"]) == len(targets(chosen)) for each in figures)
+    whole = len(figures) == len(files) and all(len(row["levels"]) == len(targets(options)) for row in figures)
     return 0 if whole else 1
 
 
-def simplify_file(path: Path, name: str, chosen: Namespace) -> dict[str, Any]:
+def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
     """Writes what is asked for of one file; prints its table, unless as JSON, and returns its figures."""
-    given, mesh = read(path, chosen.up)
-    task, parts = prepare(mesh, chosen, path.stem), parts_of(path)
-    found = {target: level for target in targets(chosen) if (level := reduce(task, chosen, target)) is not None}
-    if not found:
+    original, mesh = read(path, options.up)
+    task, parts = prepare(mesh, options, path.stem), parts_of(path)
+    by_target = {target: level for target in targets(options) if (level := reduce(task, options, target)) is not None}
+    if not by_target:
         raise ValueError("no level is feasible")
-    meshes = list(found.values())
-    written = [level_path(chosen.out, name, path, target, chosen.format) for target in found]
-    if one_file(chosen):
-        written = [chosen.out]
-    before = existing(*written, chosen.picture)
+    meshes = list(by_target.values())
+    written = [level_path(options.out, name, path, target, options.format) for target in by_target]
+    if one_file(options):
+        written = [options.out]
+    before = existing(*written, options.picture)
     for out, level in zip(written, meshes, strict=True):
-        write_level(out, task, level, given, parts)
-    alone = not chosen.levels and chosen.method != PLAIN
+        write_level(out, task, level, original, parts)
+    alone = not options.levels and options.method != PLAIN
     rival = plain(task, len(meshes[0].faces)) if alone else None
-    hint_at_pictures(chosen, mesh)
+    hint_at_pictures(options, mesh)
     report("measuring the errors")
-    errors = measure_meshes(task, [*meshes, *([] if rival is None else [rival])], chosen.seed, report)
-    if not chosen.json:
-        print(summary(task, list(found) if chosen.levels else [method_label(chosen)], meshes, rival, errors))
-    if chosen.picture:
-        draw(task, meshes[0], chosen.picture)
-    report(said_of([path for path in (*written, chosen.picture) if path], before))
+    errors = measure_meshes(task, [*meshes, *([] if rival is None else [rival])], options.seed, report)
+    if not options.json:
+        print(summary(task, list(by_target) if options.levels else [method_label(options)], meshes, rival, errors))
+    if options.picture:
+        draw(task, meshes[0], options.picture)
+    report(said_of([path for path in (*written, options.picture) if path], before))
     rows = zip(written, meshes, errors, strict=False)  # the rival's errors come last
     levels = [{"file": str(out), "faces": len(level.faces), **row} for out, level, row in rows]
     return {"mesh": str(path), "faces": len(task.mesh.faces), "levels": levels}
 
 
-def hint_at_pictures(chosen: Namespace, mesh: Mesh) -> None:
+def hint_at_pictures(options: Namespace, mesh: Mesh) -> None:
     """Says once how the error can count a picture that it does not count."""
-    counted = chosen.attributes or chosen.free_borders or chosen.backend == "pymeshlab" or "hinted" in chosen
+    counted = options.attributes or options.free_borders or options.backend == "pymeshlab" or "hinted" in options
     if not counted and mesh.texture and max(image.size for image in mesh.texture.images) > 4:
-        chosen.hinted = True
+        options.hinted = True
         report("the error counts the shape alone; with --attributes uv=1 the picture on it moves less")
 
 
-def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, parts: Parts) -> None:
+def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh, parts: Parts) -> None:
     """Writes one result in the file's coordinates, with the nodes of its scene, upright as its format has it."""
     restored = task.restored(level)
     turned, note = upright_for(out, restored)
-    write_any(out, turned, moved_parts(parts, given, restored))
+    write_any(out, turned, moved_parts(parts, original, restored))
     if note:
         report(note)
     suffix, texture = out.suffix.lower(), task.given.texture
     if suffix in COLORLESS and (texture or task.given.colors is not None):
         report(f"{out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
-    elif suffix != ".glb" and texture and (said := {name for each in texture.materials for name in each or ()}):
-        kept = "colours of vertices" if suffix == ".ply" else "the colours of materials"
-        report(f"{out.suffix} files have {kept} alone, dropped: {', '.join(sorted(said - COLOURS_OF))}")
+    elif (
+        suffix != ".glb" and texture and (names := {name for material in texture.materials for name in material or ()})
+    ):
+        colours = "colours of vertices" if suffix == ".ply" else "the colours of materials"
+        report(f"{out.suffix} files have {colours} alone, dropped: {', '.join(sorted(names - COLOURS_OF))}")
 
 
-def draw(task: SimplificationTask, found: Mesh, path: Path) -> None:
+def draw(task: SimplificationTask, level: Mesh, path: Path) -> None:
     """Writes the picture of the mesh before and after."""
     from haptic_glance.lod.pictures import write_picture
 
-    points = task.points[task.points_kept(found)]
-    write_picture(path, task.upright(task.mesh), task.upright(found), task.saliency, points, task.given.up)
+    points = task.points[task.points_kept(level)]
+    write_picture(path, task.upright(task.mesh), task.upright(level), task.saliency, points, task.given.up)
 
 
 def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     """(the mesh of a file, the same repaired), whose axis `up` points up; ValueError where it cannot be used."""
     report(f"reading {path.name}")
-    given, note = upright_by(load_unnamed(path), path, up)
-    extent = np.ptp(given.vertices, axis=0).max()
+    original, note = upright_by(load_unnamed(path), path, up)
+    extent = np.ptp(original.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
     if lost := dropped_from(path):
         report(lost)
-    mesh, notes = repaired(given)
+    mesh, notes = repaired(original)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
-    return given, mesh
+    return original, mesh
 
 
 def dropped_from(path: Path) -> str:
@@ -306,56 +308,56 @@ def dropped_from(path: Path) -> str:
     return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}" if lost else ""
 
 
-def prepare(mesh: Mesh, chosen: Namespace, name: str) -> SimplificationTask:
+def prepare(mesh: Mesh, options: Namespace, name: str) -> SimplificationTask:
     """The SimplificationTask: saliency, and the points to keep."""
-    asked, target = chosen.faces, len(mesh.faces)
-    check_attributes(mesh, chosen.attributes)
-    if asked and face_count(asked, target, "--faces") >= target:
-        raise ValueError(f"--faces {asked}: the mesh has only {number(target, 'face')}, there is nothing to simplify")
+    faces, target = options.faces, len(mesh.faces)
+    check_attributes(mesh, options.attributes)
+    if faces and face_count(faces, target, "--faces") >= target:
+        raise ValueError(f"--faces {faces}: the mesh has only {number(target, 'face')}, there is nothing to simplify")
     rendered = bake_texture(mesh)
     report("looking at it")
-    method = "glance" if chosen.method == PLAIN else chosen.method
+    method = "glance" if options.method == PLAIN else options.method
     with WallClock() as watch:
         values = saliency(rendered, method)
     report(f"saliency by {method} in {watch.seconds:.1f} s")
     points = np.zeros(0, dtype=np.int64)
-    if chosen.neighbourhood != SOFT:
-        points = find_points(rendered, method, chosen.keep, seed=chosen.seed, name=name)
+    if options.neighbourhood != SOFT:
+        points = find_points(rendered, method, options.keep, seed=options.seed, name=name)
         report(f"the faces around {number(len(points), 'point')} are frozen")
-    rule = "fixed" if chosen.neighbourhood == SOFT else chosen.neighbourhood
-    rings = neighbourhoods(mesh, points, rule, values, RINGS if chosen.rings is None else chosen.rings)
-    soft = chosen.neighbourhood == SOFT and chosen.method != PLAIN
+    rule = "fixed" if options.neighbourhood == SOFT else options.neighbourhood
+    rings = neighbourhoods(mesh, points, rule, values, RINGS if options.rings is None else options.rings)
+    soft = options.neighbourhood == SOFT and options.method != PLAIN
     weights = values if soft else None
-    ways = chosen.backend, chosen.shrink, chosen.attributes, chosen.free_borders
+    ways = options.backend, options.shrink, options.attributes, options.free_borders
     return SimplificationTask(mesh, values, points, rings, weights, *ways)
 
 
-def reduce(task: SimplificationTask, chosen: Namespace, target: str) -> Mesh | None:
+def reduce(task: SimplificationTask, options: Namespace, target: str) -> Mesh | None:
     """The Mesh with the face count `target`, or within the tolerance; None, with the reason reported, for a level."""
     report(
-        "simplifying" + (f" to {100 * chosen.tolerance:g} % of the diagonal" if chosen.tolerance else f" to {target}")
+        "simplifying" + (f" to {100 * options.tolerance:g} % of the diagonal" if options.tolerance else f" to {target}")
     )
     try:
-        if chosen.tolerance is None:
+        if options.tolerance is None:
             return task.simplified(face_count(target, len(task.mesh.faces), "--faces"))
-        found = fewest_faces(task.mesh, task.simplified, task.lowest_target, chosen.tolerance, chosen.seed, report)
+        mesh = fewest_faces(task.mesh, task.simplified, task.lowest_target, options.tolerance, options.seed, report)
     except (InfeasibleTarget, SimplifyError) as error:
         if isinstance(error, InfeasibleTarget):
-            reason = infeasible(task, error, chosen.neighbourhood)
+            reason = infeasible(task, error, options.neighbourhood)
         else:
             reason = f"{error}, or {FREE_BORDERS}" if may_free_borders(task) else str(error)
-        if not chosen.levels:
+        if not options.levels:
             raise ValueError(reason) from None
         report(f"no level {target}: {reason}")
         return None
-    if found is task.mesh:
+    if mesh is task.mesh:
         report("no simplified mesh is within the tolerance: all faces are kept")
-    return found
+    return mesh
 
 
-def method_label(chosen: Namespace) -> str:
+def method_label(options: Namespace) -> str:
     """The name of the variant, as the stage `lod` has it."""
-    return PLAIN if chosen.method == PLAIN else f"{chosen.method}-{chosen.neighbourhood}"
+    return PLAIN if options.method == PLAIN else f"{options.method}-{options.neighbourhood}"
 
 
 def plain(task: SimplificationTask, faces: int) -> Mesh | None:
@@ -376,14 +378,14 @@ def summary(
     task: SimplificationTask, heads: Sequence[str], meshes: Sequence[Mesh], rival: Mesh | None, errors: Sequence[dict]
 ) -> str:
     """The table that the command prints: the mesh, the meshes under their heads, and plain QEM where there is one."""
-    shown = [*meshes, *([] if rival is None else [rival])]
-    rest = [None] * (len(shown) - len(meshes))
-    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in shown))]
+    compared = [*meshes, *([] if rival is None else [rival])]
+    blanks = [None] * (len(compared) - len(meshes))
+    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in compared))]
     if len(task.points):
-        rows += [("points kept", len(task.points), *(int(task.points_kept(mesh).sum()) for mesh in meshes), *rest)]
+        rows += [("points kept", len(task.points), *(int(task.points_kept(mesh).sum()) for mesh in meshes), *blanks)]
     if len(task.border) and not task.free_borders:
-        rows += [("border edges kept", len(task.border), *(task.border_edges_kept(mesh) for mesh in meshes), *rest)]
+        rows += [("border edges kept", len(task.border), *(task.border_edges_kept(mesh) for mesh in meshes), *blanks)]
     if len(task.points) or len(task.border):
-        rows += [("fewest faces that keep them", None, *([task.smallest_with_borders] * len(meshes)), *rest)]
-    rows += [(NAMES[name], None, *(each[name] for each in errors)) for name in NAMES if name in errors[0]]
-    return format_table(["before", *heads, *["plain QEM"] * len(rest)], rows)
+        rows += [("fewest faces that keep them", None, *([task.smallest_with_borders] * len(meshes)), *blanks)]
+    rows += [(NAMES[name], None, *(values[name] for values in errors)) for name in NAMES if name in errors[0]]
+    return format_table(["before", *heads, *["plain QEM"] * len(blanks)], rows)

@@ -282,8 +282,8 @@ def press_load(user_mesh: UserMesh, positions: np.ndarray, axes: np.ndarray, opt
         return press_forces(user_mesh.surface, positions, axes, options.layer, cells, options.pitch, options.load,
                             unit=unit)  # fmt: skip
     except ValueError as error:
-        said = re.sub(r"^touch (\d+)", lambda match: f"place {int(match[1]) + 1}", str(error))  # as the table counts
-        raise ValueError(f"--load {options.load:g}: {said}") from None
+        reason = re.sub(r"^touch (\d+)", lambda match: f"place {int(match[1]) + 1}", str(error))  # as the table counts
+        raise ValueError(f"--load {options.load:g}: {reason}") from None
 
 
 def draw_picture(

@@ -61,31 +61,31 @@ def restore(module: torch.nn.Module, state: Mapping[str, Any], name: str) -> Non
     libraries do not store it. Raises ValueError for weights of another architecture, naming the first
     entry that does not fit, and for values that are not finite.
     """
-    own = module.state_dict()
+    entries = module.state_dict()
     try:
-        found = {key: _tensor(value) for key, value in dict(state).items()}
+        tensors = {key: _tensor(value) for key, value in dict(state).items()}
     except (TypeError, ValueError) as error:
         raise ValueError(f"these are not weights of {name}: {error}") from None
-    _compare({key: tuple(value.shape) for key, value in own.items()}, found, name)
-    for key, value in found.items():
+    _compare({key: tuple(value.shape) for key, value in entries.items()}, tensors, name)
+    for key, value in tensors.items():
         if not bool(value.isfinite().all()):
             raise ValueError(f"the weights of {name} are damaged: {key} holds values that are not finite")
-    module.load_state_dict(found, strict=False)
+    module.load_state_dict(tensors, strict=False)
 
 
-def _compare(shapes, found, name):
-    missing = [key for key in shapes if key not in found and not key.endswith("num_batches_tracked")]
-    unexpected = [key for key in found if key not in shapes]
-    other = [key for key in found if key in shapes and tuple(found[key].shape) != shapes[key]]
-    if not (missing or unexpected or other):
+def _compare(shapes, tensors, name):
+    missing = [key for key in shapes if key not in tensors and not key.endswith("num_batches_tracked")]
+    unexpected = [key for key in tensors if key not in shapes]
+    misfits = [key for key in tensors if key in shapes and tuple(tensors[key].shape) != shapes[key]]
+    if not (missing or unexpected or misfits):
         return
-    said = [f"{key} is {tuple(found[key].shape)} instead of {shapes[key]}" for key in other[:1]]
-    said += [
+    reasons = [f"{key} is {tuple(tensors[key].shape)} instead of {shapes[key]}" for key in misfits[:1]]
+    reasons += [
         f"{len(keys)} {kind}, first {keys[0]}"
         for kind, keys in (("missing", missing), ("unexpected", unexpected))
         if keys
     ]
-    raise ValueError(f"these are not weights of {name}: {'; '.join(said)}")
+    raise ValueError(f"these are not weights of {name}: {'; '.join(reasons)}")
 
 
 def _tensor(value):

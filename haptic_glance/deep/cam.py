@@ -24,12 +24,12 @@ def grad_cam(
         raise ValueError(f"maps must have shape (b, C, i, j), got {tuple(maps.shape)}")
     with torch.enable_grad():
         leaf = maps.clone().requires_grad_(True)
-        found = scores(leaf)
-        chosen = found.argmax(dim=1) if classes is None else torch.as_tensor(classes, device=found.device)
-        if chosen.shape != maps.shape[:1]:
-            raise ValueError(f"maps {tuple(maps.shape)} and classes {tuple(chosen.shape)} do not fit")
-        [gradient] = torch.autograd.grad(found.gather(1, chosen[:, None]).sum(), leaf)
+        logits = scores(leaf)
+        targets = logits.argmax(dim=1) if classes is None else torch.as_tensor(classes, device=logits.device)
+        if targets.shape != maps.shape[:1]:
+            raise ValueError(f"maps {tuple(maps.shape)} and classes {tuple(targets.shape)} do not fit")
+        [gradient] = torch.autograd.grad(logits.gather(1, targets[:, None]).sum(), leaf)
     importance = gradient.double().mean(dim=(2, 3)).float()  # double: the mean of equal numbers is that number
     b, channels, i, j = maps.shape
     summed = importance.cpu().numpy()[:, None] @ maps.cpu().numpy().reshape(b, channels, i * j)
-    return np.maximum(summed, 0).reshape(b, i, j), chosen.cpu().numpy()
+    return np.maximum(summed, 0).reshape(b, i, j), targets.cpu().numpy()

@@ -104,16 +104,16 @@ def _arrays(members):
     try:
         manifest = json.loads(members[MODEL])["weightsManifest"]
         values = np.frombuffer(b"".join(members[name] for name in SHARDS), dtype="<f4")
-        found, start = {}, 0
+        tensors, start = {}, 0
         for entry in (entry for group in manifest for entry in group["weights"]):
             end = start + math.prod(entry["shape"])
-            found[entry["name"]] = torch.tensor(values[start:end].reshape(entry["shape"]))
+            tensors[entry["name"]] = torch.tensor(values[start:end].reshape(entry["shape"]))
             start = end
     except (ValueError, KeyError, TypeError) as error:
         raise FetchError(f"the file of resnet50 is damaged: {error!r}") from None
     if start != len(values):
         raise FetchError(f"the file of resnet50 is damaged: {len(values)} values instead of {start}")
-    return found
+    return tensors
 
 
 def _names(name):

@@ -84,14 +84,14 @@ def cost(network: torch.nn.Module, size: int) -> dict[str, float]:
     """
     if size < 1:
         raise ValueError(f"the side of the image must be 1 pixel or more, got {size}")
-    own = copy.deepcopy(network).cpu().eval()
+    clone = copy.deepcopy(network).cpu().eval()
     image = torch.zeros(1, 3, size, size).contiguous(memory_format=torch.channels_last)
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
         with FlopCounterMode(display=False) as counter:
-            own(image)
-        milliseconds = _milliseconds(lambda: own(image))
+            clone(image)
+        milliseconds = _milliseconds(lambda: clone(image))
     except RuntimeError as error:
         raise ValueError(f"the network cannot take an image of 3 x {size} x {size}: {error}") from None
     finally:
@@ -101,9 +101,9 @@ def cost(network: torch.nn.Module, size: int) -> dict[str, float]:
 
 
 def _milliseconds(run):
-    taken = []
+    times = []
     for _ in range(WARM_UPS + RUNS):
         start = time.thread_time()
         run()
-        taken.append(1000 * (time.thread_time() - start))
-    return statistics.median(taken[WARM_UPS:])
+        times.append(1000 * (time.thread_time() - start))
+    return statistics.median(times[WARM_UPS:])

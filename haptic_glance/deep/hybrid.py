@@ -140,9 +140,9 @@ class HybridNet(torch.nn.Module):
         return images[:, 3 * sense : 3 * sense + 3]
 
     def _stream(self, images, sense):
-        own, channels = self._own(images, sense), slice(3 * sense, 3 * sense + 3)
-        normal = ((own - self.mean[channels]) / self.std[channels]).contiguous(memory_format=torch.channels_last)
-        return self.switch(own, self.early[sense](normal))
+        pixels, channels = self._own(images, sense), slice(3 * sense, 3 * sense + 3)
+        normal = ((pixels - self.mean[channels]) / self.std[channels]).contiguous(memory_format=torch.channels_last)
+        return self.switch(pixels, self.early[sense](normal))
 
     def _head(self, images, shared, sense):
         available = present(self._own(images, sense))
@@ -174,14 +174,14 @@ def _check(vision, touch, middle):
     if not 0 < start < stop < LAYERS:
         raise ValueError(f"the middle must be (start, stop) with 0 < start < stop < {LAYERS}, got {middle}")
     for sense, network in zip(SENSES, (vision, touch), strict=True):
-        found = len(getattr(network, "convolutions", ()))
-        if found != LAYERS:
-            raise ValueError(f"{sense} is not a mobilenet_v2: its convolutions have {found} parts instead of {LAYERS}")
-    other = touch.convolutions[start:stop].state_dict()
+        count = len(getattr(network, "convolutions", ()))
+        if count != LAYERS:
+            raise ValueError(f"{sense} is not a mobilenet_v2: its convolutions have {count} parts instead of {LAYERS}")
+    state = touch.convolutions[start:stop].state_dict()
     for key, value in vision.convolutions[start:stop].state_dict().items():
         if "num_batches_tracked" in key:  # a counter that nothing in evaluation mode reads
             continue
-        if key not in other or value.shape != other[key].shape or not torch.equal(value, other[key]):
+        if key not in state or value.shape != state[key].shape or not torch.equal(value, state[key]):
             layer, _, rest = key.partition(".")
             raise ValueError(
                 f"the two networks do not share features[{start}:{stop}]: features.{layer}.{rest} differs. Train both "
@@ -240,13 +240,13 @@ def _read(path):
     try:
         arrays = read_arrays(path)
         header = json.loads(str(arrays.pop(HEADER)))
-        found = header["architecture"]
+        name = header["architecture"]
     except FileNotFoundError:
         raise
     except (zipfile.BadZipFile, KeyError, TypeError, ValueError, OSError, EOFError) as error:
         raise ValueError(f"{path} holds no hybrid network, or is damaged: {error}") from None
-    if found != ARCHITECTURE:
-        raise ValueError(f"{path} holds a network of architecture {found!r}; {ARCHITECTURE!r} is needed")
+    if name != ARCHITECTURE:
+        raise ValueError(f"{path} holds a network of architecture {name!r}; {ARCHITECTURE!r} is needed")
     return header, arrays
 
 
@@ -263,12 +263,12 @@ class Precision(NamedTuple):
 
 def to_half(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The arrays as float16; raises ValueError where a value is too large for it."""
-    found = {}
+    halves = {}
     for key, values in arrays.items():
         if np.abs(values).max(initial=0) > np.finfo(np.float16).max:
             raise ValueError(f"{key} does not fit in half precision: {np.abs(values).max():.3g}")
-        found[key] = values.astype(np.float16)
-    return found
+        halves[key] = values.astype(np.float16)
+    return halves
 
 
 def to_single(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -282,15 +282,15 @@ def quantise(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     Symmetric, per output channel, rounded to nearest (Krishnamoorthi 2018, Quantizing deep convolutional networks,
     section 3.1). Biases, normalisation and temperatures stay float32: they are few, and each affects a whole channel.
     """
-    found = {}
+    quantised = {}
     for key, values in arrays.items():
-        found[key] = values
+        quantised[key] = values
         if values.ndim in (2, 4):
             scale = np.abs(values).max(axis=tuple(range(1, values.ndim)), keepdims=True).astype(np.float32) / LEVELS
             steps = np.divide(values, scale, out=np.zeros_like(values), where=scale > 0)
-            found[key] = np.rint(steps).astype(np.int8)
-            found[key + SCALE] = scale
-    return found
+            quantised[key] = np.rint(steps).astype(np.int8)
+            quantised[key + SCALE] = scale
+    return quantised
 
 
 def dequantise(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -28,16 +28,16 @@ def to_images(imprints: np.ndarray | list[np.ndarray], size: int) -> torch.Tenso
     return images
 
 
-def as_floats(images: np.ndarray | Sequence[np.ndarray], what: str) -> torch.Tensor:
+def as_floats(images: np.ndarray | Sequence[np.ndarray], name: str) -> torch.Tensor:
     """The images, u1 or floats in 0..1, as one f4 tensor; raises ValueError for several sizes and for other values."""
     sizes = [] if hasattr(images, "shape") else sorted({np.shape(image) for image in images})
     if len(sizes) > 1:
         raise ValueError(f"images of several sizes, {', '.join(map(str, sizes))}: resize them to one first")
-    found = torch.as_tensor(images)
-    found = found.float() / 255 if found.dtype == torch.uint8 else found.float()
-    if not bool(((found >= 0) & (found <= 1)).all()):
-        raise ValueError(f"{what} must hold values in 0..1, and neither NaN nor infinity")
-    return found
+    tensor = torch.as_tensor(images)
+    tensor = tensor.float() / 255 if tensor.dtype == torch.uint8 else tensor.float()
+    if not bool(((tensor >= 0) & (tensor <= 1)).all()):
+        raise ValueError(f"{name} must hold values in 0..1, and neither NaN nor infinity")
+    return tensor
 
 
 def resized(images: torch.Tensor, size: int) -> torch.Tensor:

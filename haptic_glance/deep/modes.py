@@ -58,8 +58,8 @@ def frozen(network: Network, imprints: np.ndarray | list[np.ndarray], size: int,
     def drawn(ids):
         return cached[torch.randint(len(cached), (len(ids),)), ids]
 
-    def encode(others):
-        return features(network, others.to(plain.device))
+    def encode(batch):
+        return features(network, batch.to(plain.device))
 
     def begin(model, ids):
         model.fit(plain[ids])
@@ -99,8 +99,8 @@ def finetuned_except(network: Network, images: torch.Tensor, augment: Transform,
     def inputs(ids):
         return normalise(images[ids])
 
-    def encode(others):
-        return normalise(others.to(images.device))
+    def encode(batch):
+        return normalise(batch.to(images.device))
 
     def finish(model, ids):
         recalibrate(model, inputs, ids, fixed=fixed)
@@ -123,13 +123,13 @@ def mode_named(name: str) -> Mode:
 @torch.no_grad()
 def features(network: Network, images: torch.Tensor, augment: Transform | None = None, batch: int = 32) -> torch.Tensor:
     """(k, width) f4: the network's features of images (k, 3, h, w) in 0..1, each batch first passed to `augment`."""
-    found = []
+    batches = []
     for part in images.split(batch):
         with explain_out_of_memory():
             inputs = normalise(part if augment is None else augment(part))  # in full precision, as in training
             with mixed_precision(images.device):
-                found.append(network.features(inputs).float())
-    return torch.cat(found)
+                batches.append(network.features(inputs).float())
+    return torch.cat(batches)
 
 
 LAYERS = 154
@@ -155,13 +155,13 @@ class Layer(NamedTuple):
 
 def layers() -> list[Layer]:
     """The 154 layers of MobileNetV2, in Matlab's order."""
-    found = [("input_1", None), *_plain("Conv1", 0), *_block("expanded_conv", 1, FIRST)]
+    entries = [("input_1", None), *_plain("Conv1", 0), *_block("expanded_conv", 1, FIRST)]
     for i in range(1, BLOCKS + 1):
-        found += _block(f"block_{i}", i + 1, EXPANDED)
-        found += [] if i in WITHOUT_SUM else [(f"block_{i}_add", None)]
-    found += [*_plain("Conv_1", BLOCKS + 2), ("global_average_pooling2d_1", "pool"), ("Logits", "head.1")]
-    found += [("Logits_softmax", None), ("ClassificationLayer_Logits", None)]
-    return [Layer(number, *layer) for number, layer in enumerate(found, start=1)]
+        entries += _block(f"block_{i}", i + 1, EXPANDED)
+        entries += [] if i in WITHOUT_SUM else [(f"block_{i}_add", None)]
+    entries += [*_plain("Conv_1", BLOCKS + 2), ("global_average_pooling2d_1", "pool"), ("Logits", "head.1")]
+    entries += [("Logits_softmax", None), ("ClassificationLayer_Logits", None)]
+    return [Layer(number, *layer) for number, layer in enumerate(entries, start=1)]
 
 
 def frozen_modules(layer_range: str, network: torch.nn.Module) -> list[str]:
@@ -173,11 +173,11 @@ def frozen_modules(layer_range: str, network: torch.nn.Module) -> list[str]:
     first, last = parse_range(layer_range)
     if not is_mobilenet_v2(network):
         raise ValueError(f"mode {layer_range}: ranges of layers need mobilenet_v2, this is another network")
-    wanted = [layer.module for layer in layers() if first <= layer.number <= last and layer.module]
-    found = [name for name in wanted if _has_parameters(network.get_submodule(name))]
-    if "head.1" in found:
+    candidates = [layer.module for layer in layers() if first <= layer.number <= last and layer.module]
+    modules = [name for name in candidates if _has_parameters(network.get_submodule(name))]
+    if "head.1" in modules:
         raise ValueError(f"mode {layer_range}: layer 152 is the new classifier, which must be trained")
-    return found
+    return modules
 
 
 def is_range(mode: str) -> bool:
@@ -197,9 +197,11 @@ def parse_range(layer_range: str) -> tuple[int, int]:
 
 def is_mobilenet_v2(network: torch.nn.Module) -> bool:
     """Whether the modules with parameters are exactly those that the 154 layers name."""
-    known = {layer.module for layer in layers() if layer.module}
-    own = dict(network.named_modules())
-    return known <= set(own) and all(name in known for name, module in own.items() if _has_parameters(module))
+    expected = {layer.module for layer in layers() if layer.module}
+    modules = dict(network.named_modules())
+    return expected <= set(modules) and all(
+        name in expected for name, module in modules.items() if _has_parameters(module)
+    )
 
 
 def _has_parameters(module):

@@ -38,8 +38,8 @@ def take_pictures(mesh: Mesh, views: Sequence[Viewpoint], size: int, colour: boo
     """
     rendered = mesh if colour else Mesh(mesh.vertices, mesh.faces)
     fine = (size * SAMPLES, size * SAMPLES)
-    taken = [render(rendered, view, fine, renderer="raster", background="white").rgb for view in views]
-    blocks = np.stack(taken).reshape(-1, size, SAMPLES, size, SAMPLES, 3)
+    renders = [render(rendered, view, fine, renderer="raster", background="white").rgb for view in views]
+    blocks = np.stack(renders).reshape(-1, size, SAMPLES, size, SAMPLES, 3)
     return np.rint(blocks.mean(axis=(2, 4))).astype(np.uint8)
 
 

@@ -87,11 +87,11 @@ class Learning:
         self.curve, self.best, self.best_pass = list(state["curve"]), state["best"], state["best_pass"]
 
 
-def check_passes(passes: Sequence[str], setting: str, known: Sequence[str] = PASSES) -> None:
+def check_passes(passes: Sequence[str], setting: str, choices: Sequence[str] = PASSES) -> None:
     """Raises ValueError, which names the setting, for passes that are not known."""
-    unknown = sorted(set(passes) - {*known})
+    unknown = sorted(set(passes) - {*choices})
     if unknown or not passes:
-        raise ValueError(f"{setting}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(known)}")
+        raise ValueError(f"{setting}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(choices)}")
 
 
 def _rank(values: dict[str, float]) -> tuple[float, float]:
@@ -139,13 +139,13 @@ def train_model(
     settings["learning"] = [name for name, value in model.named_parameters() if value.requires_grad]
     settings |= learning.settings() if learning else {}
     parts: dict[str, Any] = {"model": model, "optimiser": optimiser, "scaler": scaler}
-    parts, done = parts | ({"learning": learning} if learning else {}), 0
+    parts, start = parts | ({"learning": learning} if learning else {}), 0
     if checkpoint is not None:
         settings["images"] = list(task.inputs(ids[:1]).shape)
-        done = resume(Path(checkpoint), settings, **parts)
+        start = resume(Path(checkpoint), settings, **parts)
     try:
         with explain_out_of_memory():
-            for epoch in range(done, epochs):
+            for epoch in range(start, epochs):
                 if learning and learning.finished:
                     break
                 course = _one_epoch(model, task, labels, ids, batch, optimiser, scaler)
@@ -196,9 +196,9 @@ def _validated(model, task, labels, validation):
     if validation is None:
         return {}
     model.eval()
-    found, truth = predict_probabilities(model, task.inputs, validation), labels[torch.as_tensor(validation)]
-    loss = torch.nn.functional.nll_loss(found.clamp_min(SMALLEST).log(), truth)
-    return {"validation_accuracy": accuracy(found, truth), "validation_loss": float(loss)}
+    predicted, truth = predict_probabilities(model, task.inputs, validation), labels[torch.as_tensor(validation)]
+    loss = torch.nn.functional.nll_loss(predicted.clamp_min(SMALLEST).log(), truth)
+    return {"validation_accuracy": accuracy(predicted, truth), "validation_loss": float(loss)}
 
 
 @torch.no_grad()
@@ -206,13 +206,13 @@ def predict_probabilities(
     model: torch.nn.Module, inputs: Transform, ids: np.ndarray | torch.Tensor, batch: int = 64
 ) -> torch.Tensor:
     """(n, classes) f4 on the CPU: the softmax of the model for inputs(ids), computed in batches."""
-    found = []
+    batches = []
     for part in torch.as_tensor(ids).split(batch):
         with explain_out_of_memory():
             images = inputs(part)
             with mixed_precision(device_of(model)):
-                found.append(model(images).float().softmax(dim=1).cpu())
-    return torch.cat(found)
+                batches.append(model(images).float().softmax(dim=1).cpu())
+    return torch.cat(batches)
 
 
 def accuracy(probabilities: torch.Tensor, labels: np.ndarray | torch.Tensor) -> float:
@@ -233,11 +233,11 @@ def search_rate(
 
     part, validation: ids of touches to train on and to validate on. training: the other arguments of train_model.
     """
-    tried = []
+    trials = []
     for rate in rates:
         model = train_model(task, labels, part, rate, **training)
-        tried.append((accuracy(predict_probabilities(model, task.inputs, validation), labels[validation]), rate))
-    best = max(tried, key=lambda pair: pair[0])
+        trials.append((accuracy(predict_probabilities(model, task.inputs, validation), labels[validation]), rate))
+    best = max(trials, key=lambda pair: pair[0])
     return best[1], best[0]
 
 
@@ -297,10 +297,10 @@ def _restore(state, parts):
 
 def _mismatch(state, settings, model):
     """Why a state does not belong to this training; "" where it does."""
-    stored, own = _shapes(state["parts"]["model"]), _shapes(model.state_dict())
-    if stored != own:
-        first = min(key for key in stored.keys() | own.keys() if stored.get(key) != own.get(key))
-        return f"it is of another architecture: {first} has shape {stored.get(first)}, here {own.get(first)}"
+    stored, current = _shapes(state["parts"]["model"]), _shapes(model.state_dict())
+    if stored != current:
+        first = min(key for key in stored.keys() | current.keys() if stored.get(key) != current.get(key))
+        return f"it is of another architecture: {first} has shape {stored.get(first)}, here {current.get(first)}"
     different = [key for key in settings if state["settings"].get(key) != settings[key]]
     return f"it is of a training with other {', '.join(different)}" if different else ""
 

@@ -140,10 +140,10 @@ def _packaged(package):
 
 def read_weights(content: bytes, digest: str, name: str) -> dict[str, torch.Tensor]:
     """The tensors of a weight file given as bytes; raises FetchError where its SHA-256 does not begin with digest."""
-    found = hashlib.sha256(content).hexdigest()
-    if not found.startswith(digest):
+    checksum = hashlib.sha256(content).hexdigest()
+    if not checksum.startswith(digest):
         raise FetchError(
-            f"{name} is not the expected weight file: SHA-256 {found} instead of {digest}. "
+            f"{name} is not the expected weight file: SHA-256 {checksum} instead of {digest}. "
             "Remove it and run again, or get the right file by hand"
         )
     try:

@@ -13,8 +13,8 @@ from .perturbed import in_range
 FEW_TOUCHES = "few_touches"  # not a perturbation of the test touches: fewer touches are used for training
 
 
-def _skin(images, severity, random, what):
-    return Skin(**{what: severity}, seed=int(random.integers(2**31)))(images)
+def _skin(images, severity, random, effect):
+    return Skin(**{effect: severity}, seed=int(random.integers(2**31)))(images)
 
 
 def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
@@ -26,35 +26,35 @@ def with_square(images: np.ndarray, severity: float, random: np.random.Generator
     """Images (k, r, c, ...) with a square of a value at a random position, `severity` of the area; a rectangle of their
     proportions where they are none."""
     sides = np.array(images.shape[1:3])
-    own = np.rint(sides * np.sqrt(in_range(severity, 0, 1, "the share of the area"))).astype(np.int64)
-    found = images.copy()
-    for image, (row, column) in zip(found, random.integers(0, sides - own + 1, (len(images), 2)), strict=True):
-        image[row : row + own[0], column : column + own[1]] = value
-    return found
+    extent = np.rint(sides * np.sqrt(in_range(severity, 0, 1, "the share of the area"))).astype(np.int64)
+    damaged = images.copy()
+    for image, (row, column) in zip(damaged, random.integers(0, sides - extent + 1, (len(images), 2)), strict=True):
+        image[row : row + extent[0], column : column + extent[1]] = value
+    return damaged
 
 
 def rotation(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """Each imprint rotated about its centre by `severity` degrees to either side; its border pixels are repeated."""
     in_range(severity, 0, 180, "the turn in degrees")
     rows, columns = images.shape[1:]
-    centre, found = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
+    centre, rotated = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
     for i, side in enumerate(random.choice([-1, 1], len(images))):
         turn = cv2.getRotationMatrix2D(centre, float(side * severity), 1.0)
-        found[i] = cv2.warpAffine(images[i], turn, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
-    return found
+        rotated[i] = cv2.warpAffine(images[i], turn, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
+    return rotated
 
 
 def resolution(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """The imprint of an array as wide with `severity` sensels a side, each the mean of those it replaces."""
     cells = int(in_range(severity, 1, min(images.shape[1:]), "the sensels a side"))
-    found = [cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images]
-    return np.reshape(found, (-1, cells, cells))
+    coarse = [cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images]
+    return np.reshape(coarse, (-1, cells, cells))
 
 
 PERTURBATIONS = {
-    "noise": partial(_skin, what="noise"),  # sigma, share of full scale
-    "blur": partial(_skin, what="blur"),  # sigma in cells
-    "dead_cells": partial(_skin, what="dead"),  # share of the cells
+    "noise": partial(_skin, effect="noise"),  # sigma, share of full scale
+    "blur": partial(_skin, effect="blur"),  # sigma in cells
+    "dead_cells": partial(_skin, effect="dead"),  # share of the cells
     "occlusion": occlusion,  # share of the area
     "rotation": rotation,  # degrees
     "resolution": resolution,  # cells a side
@@ -63,10 +63,10 @@ PERTURBATIONS = {
 
 def as_shares(images: np.ndarray) -> np.ndarray:
     """Images, u1 or floats in 0..1, as f4 in 0..1; ValueError for other values."""
-    found = images.astype(np.float32) / (255 if images.dtype == np.uint8 else 1)
-    if not ((found >= 0) & (found <= 1)).all():  # NaN fails as well
+    shares = images.astype(np.float32) / (255 if images.dtype == np.uint8 else 1)
+    if not ((shares >= 0) & (shares <= 1)).all():  # NaN fails as well
         raise ValueError("images must be bytes, or numbers in 0..1")
-    return found
+    return shares
 
 
 def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
@@ -82,8 +82,8 @@ def check(severities: Mapping[str, Sequence[float]]) -> None:
     check_known(severities, (*PERTURBATIONS, FEW_TOUCHES), "transfer.severities")
 
 
-def check_known(severities: Mapping[str, Sequence[float]], known: Sequence[str], setting: str) -> None:
+def check_known(severities: Mapping[str, Sequence[float]], choices: Sequence[str], setting: str) -> None:
     """Raises ValueError, which names the setting, for a perturbation that is not known."""
-    unknown = sorted(set(severities) - set(known))
+    unknown = sorted(set(severities) - set(choices))
     if unknown:
-        raise ValueError(f"{setting}: {', '.join(unknown)} not known, choose from {', '.join(known)}")
+        raise ValueError(f"{setting}: {', '.join(unknown)} not known, choose from {', '.join(choices)}")

@@ -58,8 +58,8 @@ def _faded(mesh, severity, target):
 
 
 def _directions(generator):
-    drawn = generator.standard_normal((WAVES, 3))
-    return drawn / np.linalg.norm(drawn, axis=1, keepdims=True)
+    vectors = generator.standard_normal((WAVES, 3))
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def _colour(hue, saturation):
@@ -134,12 +134,12 @@ def scan(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturb
     in_range(severity, 10, 360, "the degrees between cameras")
     mesh = bake_texture(mesh)
     azimuths = generator.uniform(0, 360) + np.arange(0, 360, severity)
-    seen = [_points_seen(mesh, Viewpoint(float(azimuth), ELEVATION), generator) for azimuth in azimuths]
-    points, normals = (np.concatenate(parts) for parts in zip(*seen, strict=True))
-    made = surface_of(Cloud(points, normals))
-    made = simplify(made, FACES) if len(made.faces) > FACES else made
-    colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(made.vertices)[1]]
-    return Perturbed(Mesh(made.vertices, made.faces, colors), made.vertices)
+    views = [_points_seen(mesh, Viewpoint(float(azimuth), ELEVATION), generator) for azimuth in azimuths]
+    points, normals = (np.concatenate(parts) for parts in zip(*views, strict=True))
+    surface = surface_of(Cloud(points, normals))
+    surface = simplify(surface, FACES) if len(surface.faces) > FACES else surface
+    colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(surface.vertices)[1]]
+    return Perturbed(Mesh(surface.vertices, surface.faces, colors), surface.vertices)
 
 
 def _points_seen(mesh, viewpoint, generator):

@@ -48,10 +48,10 @@ class Perturbation:
     random_draws: bool = False
 
 
-def in_range(severity: float, low: float, high: float, what: str) -> float:
-    """The severity; raises ValueError, naming it as `what`, where it lies outside low..high."""
+def in_range(severity: float, low: float, high: float, name: str) -> float:
+    """The severity; raises ValueError, naming it as `name`, where it lies outside low..high."""
     if not low <= severity <= high:
-        raise ValueError(f"{what} must lie in {low:g}..{high:g}, got {severity:g}")
+        raise ValueError(f"{name} must lie in {low:g}..{high:g}, got {severity:g}")
     return severity
 
 

@@ -20,10 +20,10 @@ def noise(images: np.ndarray, severity: float, random: np.random.Generator) -> n
 
 def blur(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
     """A Gaussian blur with a sigma of `severity` of the image's side: out of focus."""
-    sigma, found = in_range(severity, 0, 1, "sigma over the side") * images.shape[1], images.copy()
-    for image in found if sigma > 0 else ():
+    sigma, blurred = in_range(severity, 0, 1, "sigma over the side") * images.shape[1], images.copy()
+    for image in blurred if sigma > 0 else ():
         image[:] = cv2.GaussianBlur(image, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE)
-    return found
+    return blurred
 
 
 def darkness(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
@@ -44,8 +44,8 @@ def damage_pictures(pictures: np.ndarray, name: str, severity: float, random: np
 
     Raises ValueError for other values, and for a severity out of range.
     """
-    found = PICTURES[name](as_shares(pictures), severity, random)
-    return np.clip(found, 0, 1).astype(np.float32)
+    damaged = PICTURES[name](as_shares(pictures), severity, random)
+    return np.clip(damaged, 0, 1).astype(np.float32)
 
 
 def damage(raw: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray | None:
@@ -53,13 +53,13 @@ def damage(raw: np.ndarray, name: str, severity: float, random: np.random.Genera
 
     name: `picture_NAME` of PICTURES, `imprint_NAME` of haptic_glance.disturb.imprint, or either with `missing`.
     """
-    what = name.partition("_")[2]
-    if what == MISSING:
+    effect = name.partition("_")[2]
+    if effect == MISSING:
         return None
-    return (damage_pictures if name.startswith(PICTURE) else disturb)(raw, what, severity, random)
+    return (damage_pictures if name.startswith(PICTURE) else disturb)(raw, effect, severity, random)
 
 
 def check(severities: Mapping[str, Sequence[float]]) -> None:
     """Raises ValueError for an unknown perturbation."""
-    known = [*(PICTURE + name for name in PICTURES), *(IMPRINT + name for name in PERTURBATIONS)]
-    check_known(severities, known, "transfer.hybrid_severities")
+    choices = [*(PICTURE + name for name in PICTURES), *(IMPRINT + name for name in PERTURBATIONS)]
+    check_known(severities, choices, "transfer.hybrid_severities")

@@ -68,9 +68,9 @@ class Touches:
             self.pitch if pitch is None else pitch,
         )
 
-    def random(self, what: str, draw: int) -> np.random.Generator:
+    def random(self, effect: str, draw: int) -> np.random.Generator:
         """A random generator for one perturbation of this object; draw: the number of the repetition."""
-        return rng(self._seed, f"{self.name} {what} {draw}")
+        return rng(self._seed, f"{self.name} {effect} {draw}")
 
 
 def rotations_about(axis: np.ndarray, degrees: ArrayLike) -> np.ndarray:
@@ -128,9 +128,9 @@ def snap_with_blended_normals(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarra
     """(positions (k, 3), normals (k, 3)): positions nearest to points (k, 3), normals interpolated between corners."""
     _, face, weights = closest(mesh, points)
     corners, weights = mesh.faces[face], weights[:, :, None]
-    wanted, back = np.unique(corners, return_inverse=True)
-    normals, can = np.zeros((len(wanted), 3)), touchable(mesh, wanted)
-    normals[can] = sensor_normals(mesh, wanted[can])
+    ids, back = np.unique(corners, return_inverse=True)
+    normals, can = np.zeros((len(ids), 3)), touchable(mesh, ids)
+    normals[can] = sensor_normals(mesh, ids[can])
     blended = (weights * normals[back.reshape(corners.shape)]).sum(axis=1)
     return (weights * mesh.vertices[corners]).sum(axis=1), unit(blended)
 
@@ -175,8 +175,8 @@ def touch_simplified(touches: Touches, severity: float, draw: int, way: str) -> 
     faces = int(severity)
     if len(touches.mesh.faces) <= faces:
         return PerturbedTouches(touches.images)
-    found = touches.levels.get(f"{way}_{faces}")
-    mesh = simplify(touches.mesh, faces, weights=touches.saliency if way == SOFT else None) if found is None else found
+    level = touches.levels.get(f"{way}_{faces}")
+    mesh = simplify(touches.mesh, faces, weights=touches.saliency if way == SOFT else None) if level is None else level
     surface = Surface(mesh)
     positions, normals = snap_to_surface(surface, touches.positions, tolerance=np.inf)
     return PerturbedTouches(touches.press(positions, sensor_axes(normals), surface))
@@ -204,16 +204,16 @@ def sensor_leaning(touches: Touches, severity: float, draw: int) -> PerturbedTou
     return PerturbedTouches(touches.press(axes=touches.axes @ rotations_about(axis, degrees).transpose(0, 2, 1)))
 
 
-def _felt(touches, severity, draw, what):
-    return PerturbedTouches(Skin(**{what: severity}, seed=draw)(touches.images, touches.name))
+def _felt(touches, severity, draw, effect):
+    return PerturbedTouches(Skin(**{effect: severity}, seed=draw)(touches.images, touches.name))
 
 
-noise = partial(_felt, what="noise")
-dead_cells = partial(_felt, what="dead")
-gain = partial(_felt, what="gain")
-saturation = partial(_felt, what="saturation")
-blur = partial(_felt, what="blur")
-hysteresis = partial(_felt, what="hysteresis")
+noise = partial(_felt, effect="noise")
+dead_cells = partial(_felt, effect="dead")
+gain = partial(_felt, effect="gain")
+saturation = partial(_felt, effect="saturation")
+blur = partial(_felt, effect="blur")
+hysteresis = partial(_felt, effect="hysteresis")
 
 
 TOUCH_PERTURBATIONS = {

@@ -39,15 +39,15 @@ def run(argv: Sequence[str]) -> int:
     command.add_argument("meshes", metavar="FOLDER", type=Path, help="the folder of the meshes, or one file")
     command.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: FOLDER_gallery)")
     add_up(command)
-    each = "face counts or shares (default: 50%%,25%%,10%%)"
-    command.add_argument("--levels", metavar="N,N,...", type=levels, default=levels(LEVELS), help=each)
+    help_levels = "face counts or shares (default: 50%%,25%%,10%%)"
+    command.add_argument("--levels", metavar="N,N,...", type=levels, default=levels(LEVELS), help=help_levels)
     command.add_argument("--count", metavar="N", type=int, default=COUNT, help="places a mesh (default: %(default)s)")
-    chosen = command.parse_args(argv)
-    if chosen.count < 1:
-        raise ValueError(f"--count {chosen.count}: give 1 or more")
-    place = chosen.meshes.resolve()
+    options = command.parse_args(argv)
+    if options.count < 1:
+        raise ValueError(f"--count {options.count}: give 1 or more")
+    place = options.meshes.resolve()
     name = place.name if place.is_dir() else place.stem
-    return show("gallery", f"Gallery of {name}", chosen, chosen.out or Path(f"{name}_gallery"))
+    return show("gallery", f"Gallery of {name}", options, options.out or Path(f"{name}_gallery"))
 
 
 def parser(name: str, about: str) -> argparse.ArgumentParser:
@@ -59,24 +59,24 @@ def parser(name: str, about: str) -> argparse.ArgumentParser:
     return command
 
 
-def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
+def show(name: str, title: str, options: argparse.Namespace, out: Path) -> int:
     """Makes the page and the files of meshes, prints what was made, returns the exit status.
 
-    chosen: meshes (a file or a folder), up, count, levels, json. Where a person stops it (Ctrl-C), the page shows what
+    options: meshes (a file or a folder), up, count, levels, json. Where a person stops it (Ctrl-C), the page shows what
     is done.
     """
     check_folder(out, f"--out {out}")
-    files = mesh_files(chosen.meshes)
-    made: list[Exhibit] = []
+    files = mesh_files(options.meshes)
+    exhibits: list[Exhibit] = []
     failures: dict[str, str] = {}
     try:
-        for number, (file, each) in enumerate(zip(files, names_of(files), strict=True), 1):
+        for number, (file, label) in enumerate(zip(files, names_of(files), strict=True), 1):
             report(name, f"{number} of {len(files)}: {file.name}")
             try:
                 with WallClock() as watch:
-                    made.append(exhibit(file, each, out / each, chosen.up, chosen.count, chosen.levels))
+                    exhibits.append(exhibit(file, label, out / label, options.up, options.count, options.levels))
                 report(name, f"{file.name}: {watch.seconds:.1f} s")
-                for target, why in made[-1].missing.items():
+                for target, why in exhibits[-1].missing.items():
                     report(name, f"{file.name} has no level {target}: {why}")
             except Exception as error:  # one mesh must not cost the others theirs
                 if os.environ.get(DEBUG):
@@ -84,41 +84,41 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
                 failures[file.name] = " ".join(str(error).split()) or type(error).__name__
                 report(name, f"{file.name} is left out: {failures[file.name]}")
     finally:
-        if made:
-            write_text(out / PAGE, build_page(title, made, failures, commands(chosen), out))
-    if made or chosen.json:
-        print(json.dumps(figures(made, failures)) if chosen.json else listing(made, out))
+        if exhibits:
+            write_text(out / PAGE, build_page(title, exhibits, failures, commands(options), out))
+    if exhibits or options.json:
+        print(json.dumps(figures(exhibits, failures)) if options.json else listing(exhibits, out))
     return 1 if failures else 0
 
 
-def commands(chosen: argparse.Namespace) -> list[str]:
+def commands(options: argparse.Namespace) -> list[str]:
     """The three commands that do the same with one mesh."""
-    mesh = f"YOUR_MESH.stl{f' --up {chosen.up}' if chosen.up else ''}"
+    mesh = f"YOUR_MESH.stl{f' --up {options.up}' if options.up else ''}"
     return [
-        f"haptic-glance saliency {mesh} --count {chosen.count} --out saliency.ply --points points.csv",
-        f"haptic-glance simplify {mesh} --levels {','.join(chosen.levels)} --out levels",
-        f"haptic-glance touch {mesh} --count {chosen.count} --out touched",
+        f"haptic-glance saliency {mesh} --count {options.count} --out saliency.ply --points points.csv",
+        f"haptic-glance simplify {mesh} --levels {','.join(options.levels)} --out levels",
+        f"haptic-glance touch {mesh} --count {options.count} --out touched",
     ]
 
 
-def figures(made: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[str, object]]:
+def figures(exhibits: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[str, object]]:
     """The results, a dict per mesh; of a failure its file and the reason."""
-    found: list[dict[str, object]] = [
+    rows: list[dict[str, object]] = [
         {
-            "mesh": str(one.file), "folder": str(one.folder), "faces": len(one.touched.mesh.faces),
-            "points": len(one.points), "levels": [len(level.mesh.faces) for level in one.levels],
-            "touches": len(one.touches), "missing": one.missing,
+            "mesh": str(item.file), "folder": str(item.folder), "faces": len(item.touched.mesh.faces),
+            "points": len(item.points), "levels": [len(level.mesh.faces) for level in item.levels],
+            "touches": len(item.touches), "missing": item.missing,
         }
-        for one in made
+        for item in exhibits
     ]  # fmt: skip
-    return found + [{"mesh": name, "error": why} for name, why in failures.items()]
+    return rows + [{"mesh": name, "error": why} for name, why in failures.items()]
 
 
-def listing(made: Sequence[Exhibit], out: Path) -> str:
+def listing(exhibits: Sequence[Exhibit], out: Path) -> str:
     """The results, for people."""
     lines = [
-        f"{one.folder}: {number(len(one.points), 'place')}, {number(len(one.levels), 'level')}, "
-        f"{number(len(one.touches), 'imprint')}"
-        for one in made
+        f"{item.folder}: {number(len(item.points), 'place')}, {number(len(item.levels), 'level')}, "
+        f"{number(len(item.touches), 'imprint')}"
+        for item in exhibits
     ]
     return "\n".join([*lines, f"open {out / PAGE}"])

@@ -24,10 +24,10 @@ def run(argv: Sequence[str]) -> int:
     text = "output folder (default: %(default)s)"
     command.add_argument("--out", metavar="FOLDER", type=Path, default=Path("haptic_glance_demo"), help=text)
     command.set_defaults(meshes=sample(), up=None, count=COUNT, levels=levels(LEVELS))
-    chosen = command.parse_args(argv)
-    status = show("demo", "Haptic Glance: a demo", chosen, chosen.out)
-    if not chosen.json:
-        print("\n".join(["the same with a mesh of your own:", *(f"  {line}" for line in commands(chosen))]))
+    options = command.parse_args(argv)
+    status = show("demo", "Haptic Glance: a demo", options, options.out)
+    if not options.json:
+        print("\n".join(["the same with a mesh of your own:", *(f"  {line}" for line in commands(options))]))
     return status
 
 

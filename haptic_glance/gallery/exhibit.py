@@ -74,33 +74,33 @@ def exhibit(
     file: Path, name: str, folder: Path, up: str | None, count: int, levels: Sequence[str]
 ) -> Exhibit:  # fmt: skip
     """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh."""
-    given, note = upright_by(load_unnamed(file), file, up)
-    found = detect(bake_texture(given), count=count)
-    assert found.saliency is not None  # glance has one
-    points = points_of(given, found)
-    shown, drawn = finely(given, found.saliency)
-    picture = look(shown, drawn, nearest_vertices(shown, points))
+    original, note = upright_by(load_unnamed(file), file, up)
+    detection = detect(bake_texture(original), count=count)
+    assert detection.saliency is not None  # glance has one
+    points = points_of(original, detection)
+    finer, shades = finely(original, detection.saliency)
+    picture = look(finer, shades, nearest_vertices(finer, points))
     folder.mkdir(parents=True, exist_ok=True)
-    write_any(folder / "saliency.ply", coloured(shown, drawn))
+    write_any(folder / "saliency.ply", coloured(finer, shades))
     write_text(folder / "points.csv", as_csv(points))
 
-    mesh, notes = repaired(given)
-    same = len(mesh.vertices) == len(given.vertices)
-    values = found.saliency if same else saliency_of(bake_texture(mesh))
-    made, missing = simplified(mesh, values, levels, folder, file, name, given)
+    mesh, notes = repaired(original)
+    same = len(mesh.vertices) == len(original.vertices)
+    values = detection.saliency if same else saliency_of(bake_texture(mesh))
+    ladder, missing = simplified(mesh, values, levels, folder, file, name, original)
     user_mesh = UserMesh(mesh, name)
     touches, images = touch(user_mesh, points, folder)
     text = "; ".join([note, *notes])
-    return Exhibit(name, file, folder, user_mesh, text, values, points, made, missing, touches, images, picture)
+    return Exhibit(name, file, folder, user_mesh, text, values, points, ladder, missing, touches, images, picture)
 
 
 def simplified(
-    mesh: Mesh, values: np.ndarray, levels: Sequence[str], folder: Path, file: Path, name: str, given: Mesh
+    mesh: Mesh, values: np.ndarray, levels: Sequence[str], folder: Path, file: Path, name: str, original: Mesh
 ) -> tuple[list[Level], dict[str, str]]:
     """(the Levels, written into the folder, {level: why there is none}) of a mesh by its saliency (n,)."""
     nothing = np.zeros(0, dtype=np.int64)
     task, parts = SimplificationTask(mesh, values, nothing, nothing, values, BACKEND, False), parts_of(file)
-    found, missing = [], {}
+    ladder, missing = [], {}
     for target in levels:
         try:
             level = _reduced(task, face_count(target, len(mesh.faces), "--levels"))
@@ -111,9 +111,9 @@ def simplified(
             missing[target] = str(error)
             continue
         path, restored = level_path(folder, name, file, target), task.restored(level)
-        write_any(path, upright_for(path, restored)[0], moved_parts(parts, given, restored))
-        found.append(Level(level, 100 * vertex_errors(level, task.mesh) / task.mesh.diagonal, path))
-    return found, missing
+        write_any(path, upright_for(path, restored)[0], moved_parts(parts, original, restored))
+        ladder.append(Level(level, 100 * vertex_errors(level, task.mesh) / task.mesh.diagonal, path))
+    return ladder, missing
 
 
 def _reduced(task, faces):

@@ -38,92 +38,92 @@ def build_page(
     """
     faces = int(np.clip(ALL // max(len(exhibits), 1), LEAST, MOST))
     colours = viridis(np.linspace(0, 1, SHADES))
-    own = resources.files(__package__ or "")
-    shared = own / "viewer"  # the report shows its meshes with the same files
+    package = resources.files(__package__ or "")
+    shared = package / "viewer"  # the report shows its meshes with the same files
     viewer = (shared / "viewer.html").read_text("utf-8").replace('data-first="error"', 'data-first="glance"')
     words = {
         "title": escape(title),
-        "style": (shared / "page.css").read_text("utf-8") + (own / "page.css").read_text("utf-8"),
+        "style": (shared / "page.css").read_text("utf-8") + (package / "page.css").read_text("utf-8"),
         "script": (shared / "viewer.js").read_text("utf-8"),
         "failures": failures_html(failures),
         "contents": contents_html(exhibits),
         "viewer": viewer,
-        "meshes": "".join(exhibit_html(k, one, out) for k, one in enumerate(exhibits)) + more,
+        "meshes": "".join(exhibit_html(k, item, out) for k, item in enumerate(exhibits)) + more,
         "commands": escape("\n".join(commands)),
-        "data": as_script(viewer_data([turnable(one, faces) for one in exhibits], colours)),
+        "data": as_script(viewer_data([turnable(item, faces) for item in exhibits], colours)),
     }
-    return Template((own / "page.html").read_text("utf-8")).substitute(words)
+    return Template((package / "page.html").read_text("utf-8")).substitute(words)
 
 
 def contents_html(exhibits: Sequence[Exhibit]) -> str:
     """Links to the meshes, where there are several."""
-    links = " ".join(f'<a href="#mesh-{k}">{escape(one.name)}</a>' for k, one in enumerate(exhibits))
+    links = " ".join(f'<a href="#mesh-{k}">{escape(item.name)}</a>' for k, item in enumerate(exhibits))
     return f'<nav aria-label="Meshes">{links}</nav>' if len(exhibits) > 1 else ""
 
 
-def turnable(one: Exhibit, faces: int) -> dict[str, Any]:
+def turnable(item: Exhibit, faces: int) -> dict[str, Any]:
     """The data that the script turns: a mesh as it is or with so many faces, its saliency, points and levels."""
-    full, nearest = shown_mesh(one.touched.mesh, faces)
-    positions = one.touched.from_file(np.array([row[2:5] for row in one.points]))
+    full, nearest = shown_mesh(item.touched.mesh, faces)
+    positions = item.touched.from_file(np.array([row[2:5] for row in item.points]))
     points = np.asarray(KDTree(full.vertices).query(positions)[1])
     ladder = [
         Drawn(shown_mesh(rotate_to_z_up(level.mesh), faces)[0], level.error[nearest], len(level.mesh.faces))
-        for level in one.levels
+        for level in item.levels
     ]
-    saliency, ladders = ("glance", vivid(one.saliency)[nearest]), ("saliency as weight", ladder)
-    shown = {"glance": saliency}, {"glance": ("the most salient", points)}, {"glance": ladders}
-    return pack(one.name, len(one.touched.mesh.faces), full, *shown)
+    saliency, ladders = ("glance", vivid(item.saliency)[nearest]), ("saliency as weight", ladder)
+    layers = {"glance": saliency}, {"glance": ("the most salient", points)}, {"glance": ladders}
+    return pack(item.name, len(item.touched.mesh.faces), full, *layers)
 
 
-def exhibit_html(index: int, one: Exhibit, out: Path) -> str:
+def exhibit_html(index: int, item: Exhibit, out: Path) -> str:
     """The section of a mesh: its picture, its points with their imprints, its levels, its files. out: of the page."""
-    files = quote(one.folder.relative_to(out).as_posix())
-    size = " x ".join(f"{side:.4g}" for side in np.ptp(one.touched.source.vertices, axis=0))
-    facts = f"{number(len(one.touched.mesh.faces), 'face')}, {size} in {one.units}; {one.note}."
-    alt = f"{one.name} coloured by saliency, its {len(one.points)} most salient points numbered"
-    picture = f'<img src="{data_uri(one.picture, WIDE)}" width="{WIDE}" height="{WIDE}" alt="{escape(alt)}">'
+    files = quote(item.folder.relative_to(out).as_posix())
+    size = " x ".join(f"{side:.4g}" for side in np.ptp(item.touched.source.vertices, axis=0))
+    facts = f"{number(len(item.touched.mesh.faces), 'face')}, {size} in {item.units}; {item.note}."
+    alt = f"{item.name} coloured by saliency, its {len(item.points)} most salient points numbered"
+    picture = f'<img src="{data_uri(item.picture, WIDE)}" width="{WIDE}" height="{WIDE}" alt="{escape(alt)}">'
     caption = "Yellow: where people look most. Numbers: the places, most salient first; those behind are not shown."
-    touches = "".join(touch_html(one, row, image) for row, image in zip(one.touches, one.images, strict=True))
-    return f"""<section id="mesh-{index}"><h2>{escape(one.name)}</h2><p class="help">{escape(facts)}</p>
+    touches = "".join(touch_html(item, row, image) for row, image in zip(item.touches, item.images, strict=True))
+    return f"""<section id="mesh-{index}"><h2>{escape(item.name)}</h2><p class="help">{escape(facts)}</p>
 <div class="mesh"><figure>{picture}<figcaption>{caption}</figcaption></figure>
 <div><h3>Touched there</h3><ol class="touches">{touches}</ol>
 <p class="help">16 x 16 cells, 1 % of the object's diameter apart. Black is pressed first, white is far or nothing.</p>
-{levels_html(one, files)}</div></div>
-<details><summary>Places, and all files</summary>{places_html(one)}<p>{files_html(one, files)}</p></details></section>
+{levels_html(item, files)}</div></div>
+<details><summary>Places, and all files</summary>{places_html(item)}<p>{files_html(item, files)}</p></details></section>
 """
 
 
-def touch_html(one: Exhibit, row: Mapping[str, Any], image: np.ndarray) -> str:
+def touch_html(item: Exhibit, row: Mapping[str, Any], image: np.ndarray) -> str:
     """One touch: its imprint, its number, how salient its place is."""
-    rank, said = row["index"], f"what the array feels at place {row['index']} of {one.name}"
+    rank, alt = row["index"], f"what the array feels at place {row['index']} of {item.name}"
     pixels = np.rint(255 * image).astype(np.uint8)
-    value = one.points[rank - 1][-1]
+    value = item.points[rank - 1][-1]
     return (
-        f'<li><img src="{data_uri(pixels)}" width="16" height="16" alt="{escape(said)}">'
+        f'<li><img src="{data_uri(pixels)}" width="16" height="16" alt="{escape(alt)}">'
         f"<span><b>{rank}</b> score {value:.2f}</span></li>"
     )
 
 
-def levels_html(one: Exhibit, folder: str) -> str:
+def levels_html(item: Exhibit, folder: str) -> str:
     """The table of levels, with their files in a folder beside the page; what is infeasible is named."""
-    rows, total = [], len(one.touched.mesh.faces)
-    for level in one.levels:
+    rows, total = [], len(item.touched.mesh.faces)
+    for level in item.levels:
         faces = len(level.mesh.faces)
         link = f'<a href="{folder}/{quote(level.file.name)}" download>{escape(level.file.name)}</a>'
         rows.append(
             [link, f"{faces:,}", f"{100 * faces / total:.3g}", f"{level.error.mean():.2g}", f"{level.error.max():.2g}"]
         )
     heads = ["file", "faces", "% of all", "mean distance, %", "largest, %"]
-    lost = "".join(f"<li>{escape(f'{target}: {why}')}</li>" for target, why in one.missing.items())
+    lost = "".join(f"<li>{escape(f'{target}: {why}')}</li>" for target, why in item.missing.items())
     note = '<p class="help">Distances of the mesh\'s vertices to the level, in % of its diagonal.</p>'
-    found = f"{table(heads, rows)}{note}" if rows else ""
-    return f"<h3>With fewer faces</h3>{found}" + (f"<ul>{lost}</ul>" if lost else "")
+    body = f"{table(heads, rows)}{note}" if rows else ""
+    return f"<h3>With fewer faces</h3>{body}" + (f"<ul>{lost}</ul>" if lost else "")
 
 
-def places_html(one: Exhibit) -> str:
+def places_html(item: Exhibit) -> str:
     """The table of the points in the file's coordinates."""
     rows = [[f"{rank}", f"{vertex:,}", *(f"{v:.6g}" for v in place), f"{value:.3f}"]
-            for rank, vertex, *place, value in one.points]  # fmt: skip
+            for rank, vertex, *place, value in item.points]  # fmt: skip
     return table(["place", "vertex", "x", "y", "z", "score"], rows)
 
 
@@ -137,9 +137,9 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return f"{box}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
 
 
-def files_html(one: Exhibit, folder: str) -> str:
+def files_html(item: Exhibit, folder: str) -> str:
     """Links to the files of a mesh, in a folder beside the page."""
-    names = sorted(path.name for path in one.folder.iterdir() if not path.name.startswith("."))
+    names = sorted(path.name for path in item.folder.iterdir() if not path.name.startswith("."))
     return " ".join(f'<a href="{folder}/{quote(name)}">{escape(name)}</a>' for name in names)
 
 

@@ -46,8 +46,8 @@ def calibrate(sequences: ArrayLike, truth: ArrayLike, redundancy: bool = True) -
         return -log_belief[np.arange(len(truth)), :, truth].mean()
 
     bounds = [(-4.0, 3.0), (0.0, 1.0 if redundancy else 0.0)]
-    found = minimize(loss, [0.0, 0.5 if redundancy else 0.0], bounds=bounds, method="L-BFGS-B").x
-    return Calibration(float(np.exp(found[0])), float(found[1]))
+    optimum = minimize(loss, [0.0, 0.5 if redundancy else 0.0], bounds=bounds, method="L-BFGS-B").x
+    return Calibration(float(np.exp(optimum[0])), float(optimum[1]))
 
 
 def _checked(sequences, truth):

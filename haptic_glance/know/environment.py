@@ -95,11 +95,11 @@ class TouchUntilSure(gymnasium.Env):
             raise ResetNeeded("there is no episode, or it has ended: call reset() before the next touch")
         self.exploration.touch(self.exploration.candidate(int(action)))
         self.touched[action] = 1
-        known = self.exploration.belief.known
-        reward = (REWARD if known == self.name else -REWARD if known else 0.0) - 1.0
-        cut_off = not known and len(self.exploration.images) >= self.most
-        self.ended = bool(known) or cut_off
-        return self._observation(), reward, bool(known), cut_off, self._info()
+        answer = self.exploration.belief.known
+        reward = (REWARD if answer == self.name else -REWARD if answer else 0.0) - 1.0
+        cut_off = not answer and len(self.exploration.images) >= self.most
+        self.ended = bool(answer) or cut_off
+        return self._observation(), reward, bool(answer), cut_off, self._info()
 
     def planned(self) -> int:
         """The action of the planner, a baseline: the place at which the belief is expected to gain most."""

@@ -70,5 +70,5 @@ class Exploration:
 
     def candidate(self, number: int) -> Places:
         """One of the candidates."""
-        every = self.candidates
-        return Places(every.vertices[[number]], every.positions[[number]], every.normals[[number]])
+        places = self.candidates
+        return Places(places.vertices[[number]], places.positions[[number]], places.normals[[number]])

@@ -90,7 +90,7 @@ def _centre(images):
     mass = images.sum(axis=(1, 2))
     _, rows, columns = images.shape
     along = ((2, rows), (1, columns))
-    moments = [images.sum(axis=other) @ np.linspace(0, 1, count) for other, count in along]
+    moments = [images.sum(axis=axis) @ np.linspace(0, 1, count) for axis, count in along]
     return [np.divide(m, mass, out=np.full(len(images), 0.5), where=mass > 0) for m in moments]
 
 
@@ -129,8 +129,8 @@ def confusable(similarities: np.ndarray, labels: ArrayLike, among: ArrayLike | N
 def as_many(labels: ArrayLike, kept: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """(k,) boolean: of each object as many random imprints as the mask `kept` (k,) has, a control of selection."""
     labels, chosen = np.asarray(labels), np.zeros(len(kept), dtype=bool)
-    for one in np.unique(labels):
-        chosen[random.permutation(np.flatnonzero(labels == one))[: kept[labels == one].sum()]] = True
+    for label in np.unique(labels):
+        chosen[random.permutation(np.flatnonzero(labels == label))[: kept[labels == label].sum()]] = True
     return chosen
 
 

@@ -43,8 +43,8 @@ class Belief:
 
     def after(self, image: np.ndarray, position: np.ndarray) -> "Belief":
         """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,)."""
-        found = self.library.log_likelihoods(np.asarray(image)[None], np.asarray(position)[None])[0]
-        return Belief(self.library, self.log_likelihoods + found, self.touches + 1)
+        evidence = self.library.log_likelihoods(np.asarray(image)[None], np.asarray(position)[None])[0]
+        return Belief(self.library, self.log_likelihoods + evidence, self.touches + 1)
 
     @cached_property
     def values(self) -> np.ndarray:
@@ -208,14 +208,14 @@ class Library:
         ids = outcomes.ravel()  # of farther touches the place kernel is next to nothing
         kernel = feature_kernel(self._components[ids], self._components[ids])
         np.fill_diagonal(kernel, 0)
-        found = self._log_likelihood(kernel, position[None], ids)
-        return found.reshape(*outcomes.shape, len(self.names))
+        evidence = self._log_likelihood(kernel, position[None], ids)
+        return evidence.reshape(*outcomes.shape, len(self.names))
 
     def _calibrate(self, random):
-        own = self._own.reshape(len(self.names), self._each, -1)
+        touches = self._own.reshape(len(self.names), self._each, -1)
         order = [random.permutation(self._each)[:LONGEST] for _ in range(ORDERS * len(self.names))]
         truth = np.repeat(np.arange(len(self.names)), ORDERS)
-        return calibrate(own[truth[:, None], order], truth)
+        return calibrate(touches[truth[:, None], order], truth)
 
 
 class _Named:
@@ -236,7 +236,7 @@ class _Named:
 @lru_cache(maxsize=4)
 def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
     samples, positions = zip(*map(_learned, objects), strict=True)
-    names = tuple(one.name for one in objects)
+    names = tuple(item.name for item in objects)
     return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed)
 
 
@@ -250,18 +250,18 @@ def check_scale(mesh: Mesh) -> None:
 
 
 @lru_cache(maxsize=256)
-def _learned(one: _Named) -> tuple[np.ndarray, np.ndarray]:
+def _learned(item: _Named) -> tuple[np.ndarray, np.ndarray]:
     """(features (TOUCHES, 41), positions (TOUCHES, 3)) of an object."""
     try:
-        surface = Surface(one.mesh)
-        places = sample_places(surface, TOUCHES, rng(one.seed, one.name))
-        check_scale(one.mesh)
+        surface = Surface(item.mesh)
+        places = sample_places(surface, TOUCHES, rng(item.seed, item.name))
+        check_scale(item.mesh)
         axes = sensor_axes(places.normals)
-        if one.turned:
-            axes = turned(axes, 360 * rng(one.seed, f"{one.name} turned").random(TOUCHES))
+        if item.turned:
+            axes = turned(axes, 360 * rng(item.seed, f"{item.name} turned").random(TOUCHES))
         images = press_at(surface, places.positions, axes, CELLS, PITCH)
     except ValueError as error:
-        raise ValueError(f"{one.name}: {error}") from None
+        raise ValueError(f"{item.name}: {error}") from None
     return features(images), places.positions
 
 
@@ -294,13 +294,13 @@ def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], 
     files = sorted(path for path in Path(folder).glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
     stems = {path.stem for path in files}
     files = [path for path in files if not _is_another_size(path.stem, stems)]
-    found, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
+    meshes, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
     for path, name in zip(files[:most], names_of(files), strict=False):
         try:
-            found[name] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
+            meshes[name] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
         except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
             notes.append(f"{path.name}: {error}")
-    return found, notes
+    return meshes, notes
 
 
 def _is_another_size(stem, stems):

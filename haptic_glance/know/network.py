@@ -30,8 +30,6 @@ class FeedForward(ClassifierMixin, BaseEstimator):
 
     def fit(self, samples: np.ndarray, labels: np.ndarray) -> "FeedForward":
         """Trains on samples (k, d), finite and standardised, and labels (k,)."""
-        # numba takes half a second to load
-
         samples = np.ascontiguousarray(samples, dtype=PRECISION)
         if samples.ndim != 2 or len(samples) != len(labels) or not np.isfinite(samples).all():
             raise ValueError(f"samples must be finite, of shape (k, d), one per label: {samples.shape}, {len(labels)}")
@@ -40,16 +38,16 @@ class FeedForward(ClassifierMixin, BaseEstimator):
         sizes = (samples.shape[1], *self.hidden, len(self.classes_))
         widths = [-(-(size + 1) // LANES) * LANES for size in sizes]
         units = tuple(np.zeros(shape, PRECISION) for shape in zip(sizes[1:], widths[:-1], strict=True))
-        self._layers = [(own[:, :size].T, own[:, size]) for own, size in zip(units, sizes[:-1], strict=True)]
+        self._layers = [(layer[:, :size].T, layer[:, size]) for layer, size in zip(units, sizes[:-1], strict=True)]
         for weights, _ in self._layers:
             bound = np.sqrt(6 / sum(weights.shape))  # Glorot and Bengio 2010
             weights[...] = random.uniform(-bound, bound, weights.shape)
         passes = [random.permutation(len(samples)) for _ in range(self.epochs)]
         order = np.concatenate([np.empty(0, dtype=np.int64), *passes])
         values, errors = (tuple(np.zeros(width, PRECISION) for width in widths) for _ in range(2))
-        for own, size in zip(values[:-1], sizes[:-1], strict=True):
-            own[size] = 1  # the input of the biases
-        squares, steps = (tuple(np.zeros_like(own) for own in units) for _ in range(2))
+        for layer, size in zip(values[:-1], sizes[:-1], strict=True):
+            layer[size] = 1  # the input of the biases
+        squares, steps = (tuple(np.zeros_like(layer) for layer in units) for _ in range(2))
         train(units, squares, steps, values, errors, samples, targets, order, PRECISION(RHO), PRECISION(EPSILON))
         return self
 

@@ -118,7 +118,9 @@ def prepare(
     prepared = []
     for repetition in range(repetitions):
         splits = draw_splits(truth, repetition_seed(seed, repetition), places, min_distance).items()
-        prepared.append({split: [Prepared.from_split(samples, truth, one) for one in parts] for split, parts in splits})
+        prepared.append(
+            {split: [Prepared.from_split(samples, truth, pair) for pair in parts] for split, parts in splits}
+        )
     return prepared
 
 
@@ -141,12 +143,12 @@ def evaluate_prepared(
             if not parts:
                 continue
             held_out = split == Split.RANDOM
-            found = [part.predict(name, random_state, held_out) for part in parts]
-            right = [(one.predicted == part.test_truth).mean() for one, part in zip(found, parts, strict=True)]
-            rows[-1] |= {"value": float(np.mean(right)), "seconds": sum(one.seconds for one in found)}
+            outcomes = [part.predict(name, random_state, held_out) for part in parts]
+            right = [(entry.predicted == part.test_truth).mean() for entry, part in zip(outcomes, parts, strict=True)]
+            rows[-1] |= {"value": float(np.mean(right)), "seconds": sum(entry.seconds for entry in outcomes)}
             if held_out:
-                rows += [{**row, **one} for one in found[0].validity]
-                np.add.at(confusion, (parts[0].test_truth, found[0].predicted), 1)
+                rows += [{**row, **entry} for entry in outcomes[0].validity]
+                np.add.at(confusion, (parts[0].test_truth, outcomes[0].predicted), 1)
     return rows, confusion
 
 
@@ -228,9 +230,9 @@ def region_holdout(
     return np.concatenate(train), np.concatenate(test)
 
 
-def _equal_size_holdout(truth, other, random_state):
-    """(train, test) with a random quarter held out, and as many of each class to train on as `other` has."""
-    counts = np.bincount(truth[other[0]])
+def _equal_size_holdout(truth, split, random_state):
+    """(train, test) with a random quarter held out, and as many of each class to train on as `split` has."""
+    counts = np.bincount(truth[split[0]])
     train, test = random_holdout(truth, random_state)
     random = np.random.default_rng(random_state)
     kept = [random.permutation(train[truth[train] == label])[:count] for label, count in enumerate(counts)]

@@ -29,13 +29,13 @@ def draw_combinations(truth: np.ndarray, count: int, random: np.random.Generator
     """
     truth = np.asarray(truth)
     combinations = np.empty((len(truth), count), dtype=np.int64)
-    for one in np.unique(truth):
-        own = np.flatnonzero(truth == one)
-        if len(own) < count:
-            raise ValueError(f"an object has {len(own)} imprints, a combination needs {count}")
-        keys = random.random((len(own), len(own)))
+    for label in np.unique(truth):
+        members = np.flatnonzero(truth == label)
+        if len(members) < count:
+            raise ValueError(f"an object has {len(members)} imprints, a combination needs {count}")
+        keys = random.random((len(members), len(members)))
         np.fill_diagonal(keys, -1)  # the imprint itself comes first
-        combinations[own] = own[keys.argsort(axis=1)[:, :count]]
+        combinations[members] = members[keys.argsort(axis=1)[:, :count]]
     return combinations
 
 

@@ -108,8 +108,8 @@ def split_touches(
             held_out, kept = np.split(random.permutation(members), [count])
         else:
             distances = np.linalg.norm(places[members][:, None] - places[members][None], axis=2)
-            region, others = np.split(np.argsort(distances[random.integers(len(members))], kind="stable"), [count])
-            held_out, kept = members[region], members[others[(distances[others][:, region] > min_distance).all(axis=1)]]
+            region, rest = np.split(np.argsort(distances[random.integers(len(members))], kind="stable"), [count])
+            held_out, kept = members[region], members[rest[(distances[rest][:, region] > min_distance).all(axis=1)]]
         if len(held_out) == 0 or len(kept) == 0:
             raise ValueError(f"object {label} has too few touches ({len(members)}) to hold some out: {split}")
         test.append(np.sort(held_out))

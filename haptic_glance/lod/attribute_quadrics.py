@@ -20,15 +20,15 @@ SLIVER = 1e-6  # height over length of a face, below which its gradient is round
 
 def check_attributes(mesh: Mesh, weights: Mapping[str, float] | None) -> Attributes:
     """(name, weight) of the attributes that count, by name; raises ValueError for what is no weight of this mesh's."""
-    chosen, absent = dict(weights or {}), {"colors": mesh.colors is None, "uv": mesh.texture is None}
-    for name, weight in chosen.items():
+    attributes, absent = dict(weights or {}), {"colors": mesh.colors is None, "uv": mesh.texture is None}
+    for name, weight in attributes.items():
         if name not in NAMES:
             raise ValueError(f"unknown attribute {name!r}: choose from {', '.join(NAMES)}")
         if not 0 <= weight < np.inf:
             raise ValueError(f"the weight of {name} must be 0 or more, got {weight}")
         if weight and absent.get(name):
             raise ValueError(f"the mesh has no {name}: leave out their weight")
-    return tuple(sorted((name, float(weight)) for name, weight in chosen.items() if weight))
+    return tuple(sorted((name, float(weight)) for name, weight in attributes.items() if weight))
 
 
 def attribute_quadrics(
@@ -72,25 +72,25 @@ def _seams(mesh, opposite):
 
 def _values(mesh, weights):
     """(m, 3, k): the attributes at the corners of the faces, times their weights."""
-    found = []
+    columns = []
     if "colors" in weights:
-        found += [weights["colors"] / 255 * mesh.colors[mesh.faces].astype(np.float64)]
+        columns += [weights["colors"] / 255 * mesh.colors[mesh.faces].astype(np.float64)]
     if "normals" in weights:
-        found += [weights["normals"] * mesh.vertex_normals[mesh.faces]]
+        columns += [weights["normals"] * mesh.vertex_normals[mesh.faces]]
     if "uv" in weights:
-        found += [weights["uv"] * mesh.texture.uv]
-    return np.concatenate(found, axis=2)
+        columns += [weights["uv"] * mesh.texture.uv]
+    return np.concatenate(columns, axis=2)
 
 
 def _predictions(points, values):
     """(gradient and constant (m, k, 4) of each attribute, area (m,)) of the faces; no gradient on slivers."""
-    one, two = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
-    normal = np.cross(one, two)
+    first, second = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
+    normal = np.cross(first, second)
     square = (normal**2).sum(axis=1)
-    length = np.maximum((one**2).sum(axis=1), (two**2).sum(axis=1))
+    length = np.maximum((first**2).sum(axis=1), (second**2).sum(axis=1))
     good = square > (SLIVER * length) ** 2
     with np.errstate(all="ignore"):
-        axes = np.stack([np.cross(two, normal), np.cross(normal, one)], axis=1) / square[:, None, None]
+        axes = np.stack([np.cross(second, normal), np.cross(normal, first)], axis=1) / square[:, None, None]
     axes[~good] = 0
     gradient = np.einsum("fak,fac->fkc", values[:, 1:] - values[:, :1], axes)
     constant = values[:, 0] - np.einsum("fkc,fc->fk", gradient, points[:, 0])
@@ -105,13 +105,13 @@ def _summed(owner, count, area, rows):
 
 def _seam_quadrics(points, corner, seam, weight, factor):
     """(n, 10): the squared distances to the planes through the edges of the seams, upright on their faces."""
-    own = np.flatnonzero(seam)
-    tail, head = points.reshape(-1, 3)[own], np.roll(points, -1, axis=1).reshape(-1, 3)[own]
-    a, b, c = points[own // 3].transpose(1, 0, 2)
+    edges = np.flatnonzero(seam)
+    tail, head = points.reshape(-1, 3)[edges], np.roll(points, -1, axis=1).reshape(-1, 3)[edges]
+    a, b, c = points[edges // 3].transpose(1, 0, 2)
     across = unit(np.cross(head - tail, np.cross(b - a, c - a)))
     plane = np.column_stack([across, -np.einsum("ij,ij->i", across, tail)])
     rows = weight**2 / 2 * plane[:, ROWS] * plane[:, COLUMNS]
-    ends = np.concatenate([corner[own], np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[own]])
+    ends = np.concatenate([corner[edges], np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[edges]])
     rows = np.concatenate([rows, rows]) * factor[ends, None]
     return np.stack([np.bincount(ends, column, len(factor)) for column in rows.T], axis=1)
 
@@ -163,6 +163,6 @@ def _live(surface, wedges):
     while (root[root] != root).any():
         root = root[root]
     owner = np.full(len(root), -1, dtype=np.int64)
-    left = surface.corner >= 0
-    owner[root[wedges.wedge[left]]] = surface.corner[left]
+    live = surface.corner >= 0
+    owner[root[wedges.wedge[live]]] = surface.corner[live]
     return owner[owner >= 0], wedges.sums[owner >= 0]

@@ -53,8 +53,8 @@ def carry_colors(reference: Mesh, points: np.ndarray) -> np.ndarray:
     ids = np.unique(np.concatenate([reference.vertices[used], points]), axis=0, return_inverse=True)[1].ravel()
     owner = np.full(ids.max() + 1, -1)
     owner[ids[: len(used)]] = used
-    own = owner[ids[len(used) :]]
-    colors[own >= 0] = reference.colors[own[own >= 0]]
+    vertex = owner[ids[len(used) :]]
+    colors[vertex >= 0] = reference.colors[vertex[vertex >= 0]]
     return np.rint(colors).astype(np.uint8)
 
 
@@ -76,10 +76,10 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     inside = corners + INWARDS * (centres[:, None] - corners)
     uv = np.empty(mesh.faces.shape + (2,))
     for number in np.unique(chart[under]):
-        here, own = np.flatnonzero(chart[under] == number), np.flatnonzero(chart == number)
-        found, weights = closest(Mesh(reference.vertices, reference.faces[own]), inside[here].reshape(-1, 3))
-        at = corners[here].reshape(-1, 3)
-        uv[here] = _extrapolated(reference, own[found], weights, at, BEYOND).reshape(-1, 3, 2)
+        faces, sources = np.flatnonzero(chart[under] == number), np.flatnonzero(chart == number)
+        nearest, weights = closest(Mesh(reference.vertices, reference.faces[sources]), inside[faces].reshape(-1, 3))
+        at = corners[faces].reshape(-1, 3)
+        uv[faces] = _extrapolated(reference, sources[nearest], weights, at, BEYOND).reshape(-1, 3, 2)
     # A corner across a seam between two ends of one chart (the back of a cylinder) got the coordinates of the other
     # end.
     sides = np.repeat(under, 3), np.repeat(at_centre, 3, axis=0), corners.reshape(-1, 3)
@@ -97,16 +97,16 @@ def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     """
     assert mesh.texture is not None
     uv, image = mesh.texture.uv, mesh.texture.image
-    one, other, length = _shared_edges(mesh)
-    continuous = (length <= SAME) & (image[one] == image[other])
+    first, second, length = _shared_edges(mesh)
+    continuous = (length <= SAME) & (image[first] == image[second])
     graph = sparse.coo_matrix(
-        (np.ones(continuous.sum()), (one[continuous], other[continuous])), shape=(len(uv), len(uv))
+        (np.ones(continuous.sum()), (first[continuous], second[continuous])), shape=(len(uv), len(uv))
     )
     count, chart = connected_components(graph, directed=False)
     jump = np.full(count, np.inf)
-    seam = ~continuous & (chart[one] == chart[other])
-    for number in np.unique(chart[one[seam]]):
-        jump[number] = np.median(length[seam & (chart[one] == number)])
+    seam = ~continuous & (chart[first] == chart[second])
+    for number in np.unique(chart[first[seam]]):
+        jump[number] = np.median(length[seam & (chart[first] == number)])
     return chart, jump
 
 
@@ -120,9 +120,9 @@ def _shared_edges(mesh):
     order = np.argsort(key, kind="stable")
     starts = np.flatnonzero(np.r_[True, np.diff(key[order]) > 0])
     pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
-    one, other = order[pairs], order[pairs + 1]
-    jumps = [np.linalg.norm(ends[one] - ends[other], axis=1) for ends in (low, high)]
-    return one // 3, other // 3, np.maximum(*jumps)
+    first, second = order[pairs], order[pairs + 1]
+    jumps = [np.linalg.norm(ends[first] - ends[second], axis=1) for ends in (low, high)]
+    return first // 3, second // 3, np.maximum(*jumps)
 
 
 def _extrapolated(mesh, faces, weights, points, beyond):

@@ -47,10 +47,10 @@ def thinned(
     Frozen faces and the boundary stay bit for bit. The number of cores changes nothing.
     """
     with ThreadPoolExecutor(cpu_count()) as pool:  # the kernels run side by side
-        parts = list(pool.map(lambda own: _thin(mesh, own, share, frozen[own], weights), split(mesh)))
-    found = _joined(mesh, parts, weights)
-    after = faults(found[0])
-    return (mesh, frozen, weights) if after != NONE and after.added(faults(mesh)) else found
+        parts = list(pool.map(lambda members: _thin(mesh, members, share, frozen[members], weights), split(mesh)))
+    joined = _joined(mesh, parts, weights)
+    after = faults(joined[0])
+    return (mesh, frozen, weights) if after != NONE and after.added(faults(mesh)) else joined
 
 
 def split(mesh: Mesh) -> list[np.ndarray]:
@@ -63,17 +63,17 @@ def split(mesh: Mesh) -> list[np.ndarray]:
     return np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
-def _thin(mesh, own, share, frozen, weights) -> Part:
+def _thin(mesh, members, share, frozen, weights) -> Part:
     """One block: vertices, faces, the vertex of `mesh` merged into each, whether it stands there, frozen faces."""
-    ids, corners = _numbered(mesh.faces[own].ravel(), len(mesh.vertices))
+    ids, corners = _numbered(mesh.faces[members].ravel(), len(mesh.vertices))
     block = Mesh(mesh.vertices[ids], corners.reshape(-1, 3))
     surface, source, (middle, size) = half_edge_mesh(block, frozen, None if weights is None else weights[ids])
     least = RIM * int(surface.locked.sum())
-    decimate(surface, None, max(int(share * len(own)), least), *ATTEMPTS[0], FOLD)
-    kept, used = compact(surface.corner, surface.locked, source, len(ids))
+    decimate(surface, None, max(int(share * len(members)), least), *ATTEMPTS[0], FOLD)
+    triangles, used = compact(surface.corner, surface.locked, source, len(ids))
     origin, locked = ids[source[used]], surface.locked[used]
     vertices = np.where(locked[:, None], mesh.vertices[origin], surface.position[used] * size + middle)
-    return vertices, kept.reshape(-1, 3), origin, locked, frozen[surface.corner[::3] >= 0]
+    return vertices, triangles.reshape(-1, 3), origin, locked, frozen[surface.corner[::3] >= 0]
 
 
 def _numbered(ids, count):
@@ -81,9 +81,9 @@ def _numbered(ids, count):
     place = np.empty(count, dtype=np.int64)  # memory that no id touches is never fetched
     order = np.arange(len(ids))
     place[ids] = order
-    own = ids[place[ids] == order]
-    place[own] = np.arange(len(own))
-    return own, place[ids]
+    distinct = ids[place[ids] == order]
+    place[distinct] = np.arange(len(distinct))
+    return distinct, place[ids]
 
 
 def _joined(mesh, parts, weights):
@@ -94,5 +94,5 @@ def _joined(mesh, parts, weights):
     owner = np.zeros(len(mesh.vertices), dtype=np.int64)
     owner[origin[locked]] = np.flatnonzero(locked)
     used, corners = np.unique(np.where(locked, owner[origin], np.arange(len(origin)))[faces], return_inverse=True)
-    found = Mesh(vertices[used], corners.reshape(-1, 3))
-    return found, frozen, None if weights is None else weights[origin[used]]
+    joined = Mesh(vertices[used], corners.reshape(-1, 3))
+    return joined, frozen, None if weights is None else weights[origin[used]]

@@ -37,15 +37,15 @@ def closed(surface: HalfEdgeMesh, free: np.ndarray, factor: np.ndarray) -> HalfE
     loops, loop = np.unique(label[tail], return_inverse=True)
     apex = len(surface.start) + loop
     faces = np.stack([head, tail, apex], axis=1)
-    own = len(surface.corner) + 3 * np.arange(len(edges))  # the first half-edge of each: along the border, backwards
+    rim = len(surface.corner) + 3 * np.arange(len(edges))  # the first half-edge of each: along the border, backwards
     arriving = np.zeros(len(surface.start), dtype=np.int64)
     arriving[head] = np.arange(len(edges))
-    across = np.stack([edges, own[arriving[tail]] + 2, np.zeros_like(own)], axis=1)
-    across[arriving[tail], 2] = own + 1
+    across = np.stack([edges, rim[arriving[tail]] + 2, np.zeros_like(rim)], axis=1)
+    across[arriving[tail], 2] = rim + 1
     opposite = surface.opposite.copy()
-    opposite[edges] = own
+    opposite[edges] = rim
     first = np.zeros(len(loops), dtype=np.int64)
-    first[loop] = own + 2
+    first[loop] = rim + 2
 
     def longer(array, added):
         return np.concatenate([array, np.asarray(added, dtype=array.dtype)])
@@ -109,8 +109,8 @@ def cut_borders(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
         return mesh, np.arange(len(mesh.vertices))
     n = len(mesh.vertices)
     pairs = np.repeat(mesh.texture.image, 3) * n + mesh.faces.ravel()
-    found, first, inverse = np.unique(pairs, return_index=True, return_inverse=True)
-    source, owner = found % n, found // n
+    distinct, first, inverse = np.unique(pairs, return_index=True, return_inverse=True)
+    source, owner = distinct % n, distinct // n
     home = np.full(n, -1)
     home[source[::-1]] = owner[::-1]  # a vertex keeps its id in the first of its materials
     extra = owner != home[source]
@@ -127,12 +127,12 @@ def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
     place = place.ravel()
     at_border = np.zeros(len(rows), dtype=bool)
     at_border[place[: doubled.sum()]] = True
-    own = place[doubled.sum() :]
-    name = np.where(at_border[own], own, len(rows) + np.arange(len(own)))
+    row = place[doubled.sum() :]
+    name = np.where(at_border[row], row, len(rows) + np.arange(len(row)))
     _, first, inverse = np.unique(name[mesh.faces], return_index=True, return_inverse=True)
     order = np.argsort(first)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
-    kept = mesh.faces.ravel()[first[order]]
-    colors = None if mesh.colors is None else mesh.colors[kept]
-    return Mesh(mesh.vertices[kept], rank[inverse.ravel()].reshape(-1, 3), colors, mesh.texture, mesh.up)
+    sources = mesh.faces.ravel()[first[order]]
+    colors = None if mesh.colors is None else mesh.colors[sources]
+    return Mesh(mesh.vertices[sources], rank[inverse.ravel()].reshape(-1, 3), colors, mesh.texture, mesh.up)

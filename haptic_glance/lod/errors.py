@@ -36,8 +36,8 @@ def surface_errors(
         raise ValueError(f"samples must be 1 or more, got {samples}")
     saliencies = {name: _checked(values, reference) for name, values in (saliencies or {}).items()}
     ours, theirs = surface_index(reference), surface_index(mesh)
-    there, back = ours.sample(samples, rng(seed, "reference")), theirs.sample(samples, rng(seed, "mesh"))
-    to_mesh, _ = theirs.nearest(there[0])
+    forth, back = ours.sample(samples, rng(seed, "reference")), theirs.sample(samples, rng(seed, "mesh"))
+    to_mesh, _ = theirs.nearest(forth[0])
     to_reference, faces = ours.nearest(back[0])
     largest = theirs.farthest(ours, to_mesh.max())
     largest = ours.farthest(theirs, max(largest, to_reference.max()))
@@ -46,7 +46,7 @@ def surface_errors(
         "rms": np.sqrt(max((to_mesh**2).mean(), (to_reference**2).mean())),
         "max": largest,
     }
-    places = [(there[1], there[2]), (faces, ours.weights(back[0], faces))] if saliencies else []
+    places = [(forth[1], forth[2]), (faces, ours.weights(back[0], faces))] if saliencies else []
     for name, values in saliencies.items():
         weights = [np.einsum("ij,ij->i", corners, values[reference.faces[face]]) for face, corners in places]
         errors[name] = _weighted(weights, (to_mesh, to_reference))
@@ -77,7 +77,9 @@ def _weighted(weights, distances):
     """The larger of both directions' weighted means; a direction without weight is left out."""
     if weights[0].sum() == 0:
         raise ValueError("no sample of the reference fell where its saliency is above zero: take more samples")
-    means = [(own @ apart) / own.sum() for own, apart in zip(weights, distances, strict=True) if own.sum() > 0]
+    means = [
+        (weight @ apart) / weight.sum() for weight, apart in zip(weights, distances, strict=True) if weight.sum() > 0
+    ]
     return max(means)
 
 
@@ -106,10 +108,10 @@ def colour_error(reference: Mesh, mesh: Mesh, samples: int = 10_000, seed: int =
     if samples < 1:
         raise ValueError(f"samples must be 1 or more, got {samples}")
     errors = []
-    for one, other, name in ((reference, mesh, "reference"), (mesh, reference, "mesh")):
-        points, *own = surface_index(one).sample(samples, rng(seed, name))
-        _, *nearest = closest(other, points)
-        errors.append(((shown(one, *own) - shown(other, *nearest)) ** 2).mean())
+    for source, target, name in ((reference, mesh, "reference"), (mesh, reference, "mesh")):
+        points, *place = surface_index(source).sample(samples, rng(seed, name))
+        _, *nearest = closest(target, points)
+        errors.append(((shown(source, *place) - shown(target, *nearest)) ** 2).mean())
     return float(np.sqrt(max(errors)))
 
 

@@ -133,11 +133,13 @@ def _converted(mesh, name, parts, carried=None) -> trimesh.Trimesh | trimesh.Sce
     for part, ids in (parts or {}).items():
         for place, number in enumerate(np.unique(images[ids])):
             scene[f"{part}_{place}" if place else part] = number, ids[images[ids] == number]
-    said = {
+    materials = {
         number: _material(mesh.texture, number, carried is not None)
         for number in {number for number, _ in scene.values()}
     }
-    return trimesh.Scene({part: _part(mesh, said[number], ids, part, carried) for part, (number, ids) in scene.items()})
+    return trimesh.Scene(
+        {part: _part(mesh, materials[number], ids, part, carried) for part, (number, ids) in scene.items()}
+    )
 
 
 def _plain_part(mesh, ids, carried):
@@ -150,33 +152,33 @@ def _made(mesh, vertices, faces, carried, **looks):
     """A Trimesh of some vertices of the mesh, in arrays of its own, with what they carry."""
     carried = {key: values[vertices] for key, values in (carried or {}).items()}
     normals = carried.pop(NORMAL, None)
-    made = trimesh.Trimesh(mesh.vertices[vertices], faces, vertex_normals=normals, process=False, **looks)
-    made.vertex_attributes.update(carried)
-    return made
+    model = trimesh.Trimesh(mesh.vertices[vertices], faces, vertex_normals=normals, process=False, **looks)
+    model.vertex_attributes.update(carried)
+    return model
 
 
 def _part(mesh, material, ids, name, carried):
     """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
     faces = mesh.faces[ids]
     rows = np.column_stack([faces.ravel(), mesh.texture.uv[ids].reshape(-1, 2)])
-    found, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    own = PBRMaterial(**{"name": name} | material)
-    visual = TextureVisuals(uv=found[:, 1:], material=own)
+    vertices, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    pbr = PBRMaterial(**{"name": name} | material)
+    visual = TextureVisuals(uv=vertices[:, 1:], material=pbr)
     return _made(mesh, faces.ravel()[first], inverse.reshape(-1, 3), carried, visual=visual)
 
 
 def _material(texture, number, glb):
     """The arguments of a PBRMaterial: the image, or its colour where it is one pixel, and what a file said besides."""
-    pixels, said = texture.images[number], texture.materials[number]
+    pixels, arguments = texture.images[number], texture.materials[number]
     clear, plain = (pixels[..., 3] < 255).any(), pixels.shape[:2] == (1, 1)
-    if said is None:
-        said = {"doubleSided": True, "metallicFactor": 0.0, "roughnessFactor": 1.0}
-        said |= {"alphaMode": "MASK"} if clear else {}
-        said |= {"baseColorFactor": pixels[0, 0]} if plain else {"baseColorTexture": True}
-    said = {"metallicFactor": 1.0, "roughnessFactor": 1.0, **said}  # what glTF takes for none
-    if "baseColorTexture" in said:
-        said["baseColorTexture"] = Image.fromarray(pixels if clear else pixels[..., :3])
-    return {name: _picture(value, glb) if name.endswith("Texture") else value for name, value in said.items()}
+    if arguments is None:
+        arguments = {"doubleSided": True, "metallicFactor": 0.0, "roughnessFactor": 1.0}
+        arguments |= {"alphaMode": "MASK"} if clear else {}
+        arguments |= {"baseColorFactor": pixels[0, 0]} if plain else {"baseColorTexture": True}
+    arguments = {"metallicFactor": 1.0, "roughnessFactor": 1.0, **arguments}  # what glTF takes for none
+    if "baseColorTexture" in arguments:
+        arguments["baseColorTexture"] = Image.fromarray(pixels if clear else pixels[..., :3])
+    return {name: _picture(value, glb) if name.endswith("Texture") else value for name, value in arguments.items()}
 
 
 class _File:
@@ -190,13 +192,13 @@ class _File:
         file.write(self.content)
 
 
-def _picture(given, glb):
+def _picture(picture, glb):
     """The picture of a file's bytes or a PIL image, as a PIL image that has a format, or as a _File."""
-    if not isinstance(given, bytes):
+    if not isinstance(picture, bytes):
         packed = io.BytesIO()
-        given.save(packed, "PNG")
-        given = packed.getvalue()
-    return _File(given) if glb else Image.open(io.BytesIO(given))
+        picture.save(packed, "PNG")
+        picture = packed.getvalue()
+    return _File(picture) if glb else Image.open(io.BytesIO(picture))
 
 
 def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:
@@ -224,18 +226,18 @@ def file_name(method: str, target: str) -> str:
 def levels(text: str) -> list[str]:
     """["50%", "25%"] of the text `50%,25%`; argparse.ArgumentTypeError for what is no face count."""
     try:
-        found = [part.strip() for part in text.split(",")]
-        for part in found:
+        targets = [part.strip() for part in text.split(",")]
+        for part in targets:
             face_count(part, 1, "--levels")
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(targets))
 
 
 def level_path(folder: Path, name: str, source: Path, target: str, kind: str | None = None) -> Path:
     """folder/NAME_50pct.glb; kind: such as glb; None for that of the source where it can be written, or else glb."""
-    own = source.suffix.lower()
-    suffix = f".{kind}" if kind else own if own in FORMATS else ".glb"
+    extension = source.suffix.lower()
+    suffix = f".{kind}" if kind else extension if extension in FORMATS else ".glb"
     return folder / f"{name}_{target.replace('%', 'pct')}{suffix}"
 
 

@@ -43,20 +43,20 @@ def collapse(
     before, reason, least = None, "", len(mesh.faces)
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
-        found, left = _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, *waiting.pop(0))
-        after = faults(found)
-        if left <= faces and after == NONE:
-            return found
+        candidate, count = _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, *waiting.pop(0))
+        after = faults(candidate)
+        if count <= faces and after == NONE:
+            return candidate
         if before is None:  # computed only where it is needed
             before = faults(mesh)
             if before.folded:
                 waiting = [(*limits, NO_FOLD) for limits in ATTEMPTS] + [(*ATTEMPTS[0], FOLD), *waiting]
                 continue
         added = after.added(before)
-        if left <= faces and not added:
-            return found
+        if count <= faces and not added:
+            return candidate
         reason = reason or added
-        least = least if added else min(least, left)  # only counts of sound meshes are offered
+        least = least if added else min(least, count)  # only counts of sound meshes are offered
     if least < len(mesh.faces) or not reason:
         raise InfeasibleTarget(faces, least, int(frozen.sum()))
     raise SimplifyError(f"{faces} faces leave {reason}: ask for more faces")
@@ -65,23 +65,22 @@ def collapse(
 def _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, turn, shape, fold):
     surface, source, (middle, size) = half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
-    weight = (
-        surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
-    )  # area around each vertex, times its weight
+    # area around each vertex, times its weight
+    weight = surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
     wedges = _count_attributes(mesh, attributes, weights, surface, source) if attributes else None
     if free is not None:
         free = free.copy()
         free[mesh.faces[frozen]] = False
         surface = closed(surface, free[source], np.ones(len(source)) if weights is None else weights[source])
-    left = _collapsed(surface, wedges, faces, turn, shape, fold)
-    if left > faces:
-        left = _collapsed(surface, wedges, faces, *LAST, fold)
-    if left < fit_below * len(mesh.faces):
+    count = _collapsed(surface, wedges, faces, turn, shape, fold)
+    if count > faces:
+        count = _collapsed(surface, wedges, faces, *LAST, fold)
+    if count < fit_below * len(mesh.faces):
         fitted = (
             held(surface) if wedges is None else surface._replace(locked=surface.locked | at_jumps(surface, wedges))
         )
-        refit(fitted, points, corner, weight, SAMPLES * left // 2, fold)
-    kept, used = compact(without_hidden(surface), surface.locked, source, len(mesh.vertices))
+        refit(fitted, points, corner, weight, SAMPLES * count // 2, fold)
+    triangles, used = compact(without_hidden(surface), surface.locked, source, len(mesh.vertices))
     vertices = surface.position[used] * size + middle
     locked = surface.locked[used]
     vertices[locked] = mesh.vertices[source[used[locked]]]
@@ -89,17 +88,17 @@ def _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, turn, sh
     if wedges is not None and "colors" in dict(attributes):
         colors = merged_colors(surface, wedges, dict(attributes)["colors"])[used]
         colors[locked] = mesh.colors[source[used[locked]]]
-    return Mesh(vertices, kept.reshape(-1, 3), colors), left
+    return Mesh(vertices, triangles.reshape(-1, 3), colors), count
 
 
 def _collapsed(surface, wedges, faces, *limits):
     """`decimate` until `faces` are left beside the hidden ones, which grow fewer, too; returns how many that are."""
-    left = decimate(surface, wedges, faces + hidden(surface).sum(), *limits)
-    while (behind := hidden(surface).sum()) and left > faces + behind:
-        before, left = left, decimate(surface, wedges, faces + behind, *limits)
-        if left == before:
+    count = decimate(surface, wedges, faces + hidden(surface).sum(), *limits)
+    while (behind := hidden(surface).sum()) and count > faces + behind:
+        before, count = count, decimate(surface, wedges, faces + behind, *limits)
+        if count == before:
             break
-    return left - behind
+    return count - behind
 
 
 def _count_attributes(mesh, attributes, weights, surface, source):

@@ -69,8 +69,8 @@ def frozen_faces(mesh: Mesh, keep: Keep = None, rings: Rings = 3) -> np.ndarray:
     if len(keep) == 0:
         return np.zeros(len(mesh.faces), dtype=bool)
     near = np.zeros(len(mesh.vertices), dtype=bool)
-    for left in range(rings.max(), 0, -1):  # the widest neighbourhoods start first, so that all end together
-        near[keep[rings == left]] = True
+    for width in range(rings.max(), 0, -1):  # the widest neighbourhoods start first, so that all end together
+        near[keep[rings == width]] = True
         near |= mesh.adjacency @ near
     touched = mesh.rings(keep, 0)
     a, b, c = mesh.faces.T
@@ -89,16 +89,16 @@ def check_keep(mesh: Mesh, keep: Keep) -> np.ndarray:
 
 def check_rings(keep: np.ndarray, rings: Rings) -> np.ndarray:
     """(k,) i8 rings per kept vertex; raises ValueError for anything else."""
-    found = np.asarray(rings)
-    if not np.issubdtype(found.dtype, np.integer) and found.size:
-        raise ValueError(f"rings must be whole numbers, got {found.dtype}")
-    if found.ndim == 0 and found < 0:
+    counts = np.asarray(rings)
+    if not np.issubdtype(counts.dtype, np.integer) and counts.size:
+        raise ValueError(f"rings must be whole numbers, got {counts.dtype}")
+    if counts.ndim == 0 and counts < 0:
         raise ValueError(f"rings must be 0 or more, got {rings}")
-    if found.ndim and found.shape != keep.shape:
-        raise ValueError(f"rings must be one number or one per kept vertex, {keep.shape}, got {found.shape}")
-    if found.size and found.min() < -1:
-        raise ValueError(f"rings must be -1 (not kept), 0 or more, got {found.min()}")
-    return np.broadcast_to(found, keep.shape).astype(np.int64)
+    if counts.ndim and counts.shape != keep.shape:
+        raise ValueError(f"rings must be one number or one per kept vertex, {keep.shape}, got {counts.shape}")
+    if counts.size and counts.min() < -1:
+        raise ValueError(f"rings must be -1 (not kept), 0 or more, got {counts.min()}")
+    return np.broadcast_to(counts, keep.shape).astype(np.int64)
 
 
 def smallest_feasible(mesh: Mesh, keep: Keep = None, rings: Rings = 3, free_borders: bool = False) -> int:
@@ -114,7 +114,7 @@ def smallest_feasible(mesh: Mesh, keep: Keep = None, rings: Rings = 3, free_bord
 
 @lru_cache(maxsize=64)  # shrinking to several targets asks for the same neighbourhoods
 def _smallest(mesh, keep, rings, free_borders):
-    frozen = frozen_faces(mesh, *(np.frombuffer(each, dtype=np.int64) for each in (keep, rings)))
+    frozen = frozen_faces(mesh, *(np.frombuffer(buffer, dtype=np.int64) for buffer in (keep, rings)))
     return smallest_with(mesh, frozen, free_borders)
 
 
@@ -123,13 +123,13 @@ def smallest_with(mesh: Mesh, frozen: np.ndarray, free_borders: bool = False) ->
     free = mesh.faces[~frozen]
     if len(free) == 0:
         return len(mesh.faces)
-    found = topology(free)
-    open_components = found.components - found.closed_components
-    edges = found.boundary_edges
+    shape = topology(free)
+    open_components = shape.components - shape.closed_components
+    edges = shape.boundary_edges
     if free_borders:  # each of their loops may shrink to a triangle
-        own = int((half_edges(mesh.faces)[1].reshape(-1, 3)[~frozen] < 0).sum())
-        edges -= max(own - LEAST_LOOP * found.boundary_loops, 0)
-    tiles = max(edges + 2 * found.boundary_loops - 4 * open_components, 0)
-    needed = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * found.closed_components + FACES_PER_GENUS * found.genus
+        open_edges = int((half_edges(mesh.faces)[1].reshape(-1, 3)[~frozen] < 0).sum())
+        edges -= max(open_edges - LEAST_LOOP * shape.boundary_loops, 0)
+    tiles = max(edges + 2 * shape.boundary_loops - 4 * open_components, 0)
+    needed = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * shape.closed_components + FACES_PER_GENUS * shape.genus
     least = int(frozen.sum() + np.ceil(needed))
     return min(least + (len(mesh.faces) - least) % 2, len(mesh.faces))  # each collapse removes two faces

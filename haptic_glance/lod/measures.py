@@ -35,7 +35,7 @@ def measure_meshes(
     this is reported, since the errors are then smaller too. Errors of pictures that fail are None, with the reason
     reported; they are all None without OpenCV.
     """
-    (before, *shown), scale = within_frame([task.upright(mesh) for mesh in (task.mesh, *meshes)])
+    (before, *framed), scale = within_frame([task.upright(mesh) for mesh in (task.mesh, *meshes)])
     if scale < 1:
         report(f"the pictures show all meshes at {100 * scale:.3g} % of their size, so that the coarsest fits in")
     pictures, rows = None, []
@@ -43,7 +43,7 @@ def measure_meshes(
         pictures = take_pictures(before, TWELVE, SIZE)
     except MissingExtra as error:
         report(f"no errors of the pictures: {error}")
-    for mesh, picture in zip(meshes, shown, strict=True):
+    for mesh, picture in zip(meshes, framed, strict=True):
         errors = surface_errors(task.mesh, mesh, {"salient": task.saliency}, seed=seed)
         row: dict[str, float | None] = {name: 100 * value for name, value in errors.items()}
         if task.mesh.texture is not None or "colors" in task.attributes:
@@ -98,10 +98,10 @@ def fewest_faces(
     best, low, high = reference, max(int(lowest), 1), len(reference.faces)
     count = low
     while count < high:
-        found, value = _measured(reference, simplified, count, seed)
-        report(f"{count:,} faces: " + ("no sound mesh" if found is None else f"{100 * value:.4f} %"))
-        if found is not None and value <= tolerance:
-            best, high = found, count
+        mesh, value = _measured(reference, simplified, count, seed)
+        report(f"{count:,} faces: " + ("no sound mesh" if mesh is None else f"{100 * value:.4f} %"))
+        if mesh is not None and value <= tolerance:
+            best, high = mesh, count
         else:
             low = count
         if high <= low or high <= CLOSE * low:
@@ -114,7 +114,7 @@ def fewest_faces(
 
 def _measured(reference, simplified, faces, seed):
     try:
-        found = simplified(faces)
+        mesh = simplified(faces)
     except (SimplifyError, InfeasibleTarget):
         return None, np.inf
-    return found, metro(reference, found, seed=seed)["mean"]
+    return mesh, metro(reference, mesh, seed=seed)["mean"]

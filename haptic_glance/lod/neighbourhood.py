@@ -65,10 +65,10 @@ def area_rings(mesh: Mesh, keep: np.ndarray, saliency: np.ndarray | None) -> np.
     fitting = share > 0
     while fitting.any():
         rings += fitting
-        seen = near.sum(axis=0)
+        sizes = near.sum(axis=0)
         near |= mesh.adjacency @ near
         area = mesh.face_areas @ near[mesh.faces].all(axis=1)
-        fitting &= (area <= share) & (near.sum(axis=0) > seen)
+        fitting &= (area <= share) & (near.sum(axis=0) > sizes)
     return np.maximum(rings - 1, 1)
 
 
@@ -76,10 +76,10 @@ def _shares(mesh, keep, salient):
     """(k,) area of the salient region around each vertex over the number of points in it; 0 outside all regions."""
     region = np.full(len(mesh.vertices), -1)
     region[salient] = connected_components(mesh.adjacency[salient][:, salient], directed=False)[1]
-    own, inside = region[keep], region[keep] >= 0
+    regions, inside = region[keep], region[keep] >= 0
     area = np.bincount(region[salient], weights=mesh.vertex_areas[salient], minlength=1)
-    points = np.bincount(own[inside], minlength=len(area))
-    return np.where(inside, area[own] / np.maximum(points[own], 1), 0.0)
+    points = np.bincount(regions[inside], minlength=len(area))
+    return np.where(inside, area[regions] / np.maximum(points[regions], 1), 0.0)
 
 
 def edge_lengths(mesh: Mesh, vertices: np.ndarray) -> np.ndarray:
@@ -148,11 +148,11 @@ def shrinking_rings(
     rings, target = check_rings(check_keep(mesh, keep), rings), faces
     while True:
         try:
-            found = shrunk_rings(mesh, target, keep, rings, free_borders)
+            shrunk = shrunk_rings(mesh, target, keep, rings, free_borders)
         except InfeasibleTarget:
-            found = np.full_like(rings, -1)
-        yield found
-        if (found < 0).all():
+            shrunk = np.full_like(rings, -1)
+        yield shrunk
+        if (shrunk < 0).all():
             return
         target = int(LOWER * target)
 
@@ -160,7 +160,7 @@ def shrinking_rings(
 def _order(rings):
     """(s,) the kept vertex that loses a ring at each step: in rounds, then the vertices themselves."""
     vertex = np.repeat(np.arange(len(rings)), rings + 1)
-    taken = np.arange(len(vertex)) - np.repeat(np.cumsum(rings + 1) - (rings + 1), rings + 1)
+    step = np.arange(len(vertex)) - np.repeat(np.cumsum(rings + 1) - (rings + 1), rings + 1)
     final = rings.max(initial=0)
-    rounds = np.where(taken == rings[vertex], final, taken)
+    rounds = np.where(step == rings[vertex], final, step)
     return vertex[np.lexsort((-vertex, rounds))]

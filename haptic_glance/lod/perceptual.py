@@ -59,7 +59,7 @@ def perceptual(
     """
     if not (len(reference.faces) and len(mesh.faces)):
         raise ValueError("a mesh without faces has no picture to compare")
-    before, after = (take_pictures(each, viewpoints, size, renderer) for each in (reference, mesh))
+    before, after = (take_pictures(surface, viewpoints, size, renderer) for surface in (reference, mesh))
     return picture_errors(before, after)
 
 
@@ -92,14 +92,14 @@ def picture_errors(
     if reference.shape != pictures.shape:
         raise ValueError(f"pictures of {pictures.shape} cannot be compared with the reference's {reference.shape}")
     triples = zip(reference, pictures, analyses or analyse(reference), strict=True)
-    errors = np.mean([_errors(*each) for each in triples], axis=0)
+    errors = np.mean([_errors(*triple) for triple in triples], axis=0)
     return dict(zip(("ssim", "dlap", "dnor"), errors.tolist(), strict=True))
 
 
-def _errors(reference, picture, known):
+def _errors(reference, picture, analysis):
     bands, normalised = _pyramids(picture)
-    ssim = ssim_error(reference, picture, known.moments)
-    return ssim, band_distance(known.bands, bands), band_distance(known.normalised, normalised)
+    ssim = ssim_error(reference, picture, analysis.moments)
+    return ssim, band_distance(analysis.bands, bands), band_distance(analysis.normalised, normalised)
 
 
 def _pyramids(picture):
@@ -172,8 +172,8 @@ def ssim_error(
     """
     top, bottom, left, right = _content_box(reference, picture)
     inside = slice(top, bottom), slice(left, right)
-    known = None if moments is None else (moments[0][inside].copy(), moments[1][inside].copy())  # compiled for rows
-    return float((1 - ssim_map(reference[inside], picture[inside], known)).sum() / reference.size)
+    cropped = None if moments is None else (moments[0][inside].copy(), moments[1][inside].copy())  # compiled for rows
+    return float((1 - ssim_map(reference[inside], picture[inside], cropped)).sum() / reference.size)
 
 
 def _content_box(reference, picture):

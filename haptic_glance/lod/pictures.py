@@ -151,8 +151,8 @@ def write_picture(
     axes[0].imshow(with_axis(draw(coloured(before, saliency)), up))
     rows, columns = visible_points(before, points)
     axes[0].plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
-    kept = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""
-    axes[0].set_title(f"saliency{kept}")
+    note = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""
+    axes[0].set_title(f"saliency{note}")
     for panel, mesh, word in ((axes[1], before, "before"), (axes[2], after, "after")):
         panel.imshow(draw(Mesh(mesh.vertices, mesh.faces), wires=True))
         panel.set_title(f"{word}: {len(mesh.faces):,} faces")

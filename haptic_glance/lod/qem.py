@@ -47,20 +47,20 @@ def collapse(mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | N
     before = functools.cache(lambda: faults(mesh))  # seldom needed
     first, reason = None, ""
     for attempt in ATTEMPTS:
-        found = decimated(split, faces, frozen, quality, *attempt)
-        if len(found.faces) > faces:
-            raise InfeasibleTarget(faces, len(found.faces), int(frozen.sum()))
-        after = faults(found)
+        reduced = decimated(split, faces, frozen, quality, *attempt)
+        if len(reduced.faces) > faces:
+            raise InfeasibleTarget(faces, len(reduced.faces), int(frozen.sum()))
+        after = faults(reduced)
         added = after.added(before()) if after != NONE else ""
         if first is None:
-            first, reason = found, added
-        if not added and (found is first or _error(mesh, found) <= MAX_RATIO * _error(mesh, first)):
-            return found
+            first, reason = reduced, added
+        if not added and (reduced is first or _error(mesh, reduced) <= MAX_RATIO * _error(mesh, first)):
+            return reduced
     raise SimplifyError(f"{faces} faces leave {reason}, or a surface far from the original: ask for more faces")
 
 
-def _error(mesh, found):
-    return metro(mesh, found, SAMPLES)["mean"]
+def _error(mesh, reduced):
+    return metro(mesh, reduced, SAMPLES)["mean"]
 
 
 def _split_vertices(mesh):
@@ -106,5 +106,7 @@ def decimated(
         qualitythr=shape_weight,
         **SETTINGS,
     )
-    found = work.current_mesh()
-    return Mesh(np.ldexp(found.vertex_matrix()[: found.vertex_number() - anchors], -scale), found.face_matrix())
+    filtered = work.current_mesh()
+    return Mesh(
+        np.ldexp(filtered.vertex_matrix()[: filtered.vertex_number() - anchors], -scale), filtered.face_matrix()
+    )

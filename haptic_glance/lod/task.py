@@ -105,8 +105,8 @@ class SimplificationTask:
     def plain(self, faces: int) -> Mesh:
         """As `simplified`, by plain quadric edge collapse: no points, no weights."""
         nothing = np.zeros(0, dtype=np.int64)
-        other = replace(self, points=nothing, rings=nothing, weights=None, shrink=False, attributes={})
-        return other.simplified(faces)
+        task = replace(self, points=nothing, rings=nothing, weights=None, shrink=False, attributes={})
+        return task.simplified(faces)
 
     def points_kept(self, mesh: Mesh) -> np.ndarray:
         """(k,) boolean: the points that are vertices of a simplified mesh, bit for bit."""
@@ -126,8 +126,8 @@ class SimplificationTask:
         place = place.ravel()
         owner = np.full(place.max() + 1, -1)
         owner[place[:n]] = np.arange(n)
-        own = owner[place[n:]]
-        vertices[own >= 0] = self.given.vertices[own[own >= 0]]
+        vertex = owner[place[n:]]
+        vertices[vertex >= 0] = self.given.vertices[vertex[vertex >= 0]]
         return replace(mesh, vertices=vertices)
 
     def _simplify(self, mesh, ids, faces):
@@ -136,8 +136,8 @@ class SimplificationTask:
         counts["free_borders"] = self._free(ids) if self.free_borders else False
         # Those that the error does not count are transferred once, at the end.
         bare = mesh if self.attributes else replace(mesh, colors=None, texture=None)
-        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
-        return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
+        reduced = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
+        return self.mesh if reduced is bare else carry(self.mesh, close_borders(reduced, mesh, ids))
 
     def _free(self, ids):
         """(n',) boolean: of the cut mesh's vertices those of the boundary alone."""
@@ -152,8 +152,8 @@ class SimplificationTask:
         return order[first[copies] + offset], self.rings[copies]
 
 
-def _unpaired_edges(faces, other):
-    alone = other < 0
+def _unpaired_edges(faces, opposite):
+    alone = opposite < 0
     ends = np.stack([faces.ravel()[alone], np.roll(faces, -1, axis=1).ravel()[alone]], axis=1)
     return np.unique(np.sort(ends, axis=1), axis=0)
 
@@ -165,15 +165,15 @@ def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
     Files that store corners (a triangle soup, one patch per texture) have a boundary around each of them, and
     boundaries are preserved, so nothing could be collapsed. Raises MeshError as `clean` does.
     """
-    found, notes = clean(mesh)
-    if (half_edges(found.faces)[1] >= 0).all():
-        return found, notes
+    cleaned, notes = clean(mesh)
+    if (half_edges(cleaned.faces)[1] >= 0).all():
+        return cleaned, notes
     first, ids = merge_equal_rows(mesh.vertices)
     colors = None if mesh.colors is None else mesh.colors[first]
-    joined, others = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
-    if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(found.faces)[1] < 0).sum():
-        return found, notes
-    return joined, [f"{len(ids) - len(first):,} coincident vertices merged", *others]
+    joined, remarks = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
+    if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(cleaned.faces)[1] < 0).sum():
+        return cleaned, notes
+    return joined, [f"{len(ids) - len(first):,} coincident vertices merged", *remarks]
 
 
 PLAIN, QSLIM = "qem", "qslim"  # quadric edge collapse by the backend of the settings, and without its fit
@@ -202,10 +202,10 @@ def variant(name: str) -> Variant:
     if name in (PLAIN, QSLIM):
         return Variant(name, None, None, QSLIM if name == QSLIM else None)
     method, dash, rule = name.partition("-")
-    suffixes = [each for each in (*NEIGHBOURHOODS, SOFT) if each != "fixed"]
-    known = (PLAIN, QSLIM, *METHODS)
+    suffixes = [suffix for suffix in (*NEIGHBOURHOODS, SOFT) if suffix != "fixed"]
+    methods = (PLAIN, QSLIM, *METHODS)
     if method not in METHODS:
-        near = meant(method.lower(), known) or f"; methods are {', '.join(known)}"
+        near = meant(method.lower(), methods) or f"; methods are {', '.join(methods)}"
         raise ValueError(f"{name!r}: unknown method {method!r}{near}")
     if dash and rule not in suffixes:
         raise ValueError(f"{name!r} ends in {rule!r}; endings are -{', -'.join(suffixes)}, or none")
@@ -251,10 +251,10 @@ def _thaw(task, neighbourhood):
 
 
 def _mend(mesh):
-    found = topology(mesh.faces)
-    holes = found.boundary_loops - (found.components - found.closed_components)  # one loop of each may be its outline
+    shape = topology(mesh.faces)
+    holes = shape.boundary_loops - (shape.components - shape.closed_components)  # one loop of each may be its outline
     ways = [f"close its {number(holes, 'hole')} first"] if holes > 0 else []
-    return [*ways, *(["join its connected components first"] if found.components > 1 and found.boundary_edges else [])]
+    return [*ways, *(["join its connected components first"] if shape.components > 1 and shape.boundary_edges else [])]
 
 
 def number(count: int, noun: str) -> str:

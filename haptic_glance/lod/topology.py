@@ -59,9 +59,9 @@ def faults(mesh: Mesh) -> Faults:
     """The Faults of a mesh."""
     if len(mesh.faces) == 0:
         return NONE
-    ids, other, non_manifold = half_edges(mesh.faces)
-    degenerate, folded = count_faults(mesh.vertices, ids, other, THIN * mesh.diagonal, FOLD)
-    inverted = int((signed_volumes(mesh.vertices, ids, other) < -THIN * mesh.diagonal**3).sum())
+    ids, opposite, non_manifold = half_edges(mesh.faces)
+    degenerate, folded = count_faults(mesh.vertices, ids, opposite, THIN * mesh.diagonal, FOLD)
+    inverted = int((signed_volumes(mesh.vertices, ids, opposite) < -THIN * mesh.diagonal**3).sum())
     return Faults(degenerate, folded, non_manifold, inverted)
 
 
@@ -70,10 +70,10 @@ def topology(faces: np.ndarray) -> Topology:
 
     Components that touch only in a vertex or in a non-manifold edge count as separate.
     """
-    ids, other, _ = half_edges(faces)
-    fan, n = split_fans(ids, other)
-    component, count = face_components(other)
-    boundary = np.flatnonzero(other < 0)
+    ids, opposite, _ = half_edges(faces)
+    fan, n = split_fans(ids, opposite)
+    component, count = face_components(opposite)
+    boundary = np.flatnonzero(opposite < 0)
     open_components = len(np.unique(component[boundary // 3]))
     heads = np.where(boundary % 3 == 2, boundary - 2, boundary + 1)
     loops = face_components(_joined_ends(fan[np.stack([boundary, heads], axis=1)]))[1]
@@ -100,8 +100,8 @@ def half_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
     Half-edge 3 f + k runs from corner k of face f to the next. Its opposite is -1 unless exactly two faces share it.
     """
     ids = faces.astype(np.int32).ravel()
-    other, non_manifold = opposites(ids, int(faces.max(initial=-1)) + 1, False)
-    return ids, other, non_manifold
+    opposite, non_manifold = opposites(ids, int(faces.max(initial=-1)) + 1, False)
+    return ids, opposite, non_manifold
 
 
 def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
@@ -109,8 +109,8 @@ def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
 
     Non-manifold edges become boundary edges.
     """
-    ids, other, _ = half_edges(faces)
-    return split_fans(ids, other)[0].reshape(-1, 3).astype(np.int64)
+    ids, opposite, _ = half_edges(faces)
+    return split_fans(ids, opposite)[0].reshape(-1, 3).astype(np.int64)
 
 
 CREASE = 0.5 + 1e-6  # cosine between two faces that meet at 60 degrees or more, but for rounding: an edge to be seen
@@ -123,12 +123,12 @@ def shading(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     vertices are the mesh's own, then come the copies; vertices: the id of each in the mesh. The normals, of length 1,
     are means of those of the faces by area, or (0, 0, 1) where faces have none. A degenerate face makes no crease.
     """
-    ids, other, _ = half_edges(mesh.faces)
-    inner = np.flatnonzero(other >= 0)
-    normals = _facing(mesh, other)
-    sharp = np.einsum("ij,ij->i", normals[inner // 3], normals[other[inner] // 3]) < CREASE
-    other[inner[sharp]] = -1
-    fans, count = split_fans(ids, other)
+    ids, opposite, _ = half_edges(mesh.faces)
+    inner = np.flatnonzero(opposite >= 0)
+    normals = _facing(mesh, opposite)
+    sharp = np.einsum("ij,ij->i", normals[inner // 3], normals[opposite[inner] // 3]) < CREASE
+    opposite[inner[sharp]] = -1
+    fans, count = split_fans(ids, opposite)
     vertex = np.zeros(count, dtype=np.int64)
     vertex[fans] = ids
     new, first = np.full(count, -1), np.unique(vertex, return_index=True)[1]
@@ -136,17 +136,19 @@ def shading(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     copies = np.flatnonzero(new < 0)
     new[copies] = len(mesh.vertices) + np.arange(len(copies))
     corners, vertices = new[fans], np.r_[np.arange(len(mesh.vertices)), vertex[copies]]
-    total = np.stack([np.bincount(corners, np.repeat(one, 3), len(vertices)) for one in mesh.face_crosses.T], axis=1)
+    total = np.stack(
+        [np.bincount(corners, np.repeat(column, 3), len(vertices)) for column in mesh.face_crosses.T], axis=1
+    )
     total[~total.any(axis=1)] = [0.0, 0.0, 1.0]
     return corners.reshape(-1, 3), vertices, unit(total)
 
 
-def _facing(mesh, other):
+def _facing(mesh, opposite):
     """(m, 3) unit normals; a degenerate face has that of its neighbour across the longest edge, or zero at a border."""
     corners, normals = mesh.vertices[mesh.faces], mesh.face_normals.copy()
     lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
     flat = np.flatnonzero(2 * mesh.face_areas <= THIN * mesh.diagonal * lengths.max(axis=1))
-    beside = other[3 * flat + lengths[flat].argmax(axis=1)] // 3
+    beside = opposite[3 * flat + lengths[flat].argmax(axis=1)] // 3
     normals[flat] = np.where(beside[:, None] < 0, 0, normals[beside])
     return normals
 
@@ -185,5 +187,5 @@ def moved_parts(parts: Parts, mesh: Mesh, simplified: Mesh) -> Parts:
     for number, name in enumerate(names):
         owner[parts[name]] = number
     face, _ = closest(mesh, simplified.vertices[simplified.faces].mean(axis=1))
-    found = {name: np.flatnonzero(owner[face] == number) for number, name in enumerate(names)}
-    return {name: ids for name, ids in found.items() if len(ids)}
+    moved = {name: np.flatnonzero(owner[face] == number) for number, name in enumerate(names)}
+    return {name: ids for name, ids in moved.items() if len(ids)}

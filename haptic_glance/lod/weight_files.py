@@ -61,8 +61,8 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
 def check_suffix(path: Path) -> None:
     """Raises ValueError for a file in which no weights can be written."""
     if path.suffix.lower() not in WRITERS:
-        *others, last = sorted(WRITERS)
-        raise ValueError(f"{path.name}: weights are written as {', '.join(others)} or {last}")
+        *suffixes, last = sorted(WRITERS)
+        raise ValueError(f"{path.name}: weights are written as {', '.join(suffixes)} or {last}")
 
 
 def _ply(mesh: Mesh, weights: np.ndarray) -> bytes:

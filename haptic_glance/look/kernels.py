@@ -19,33 +19,33 @@ def fpfh(positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray, sta
     zero normal, has zeros. Source: Rusu, Blodow, Beetz, Fast point feature histograms (FPFH) for 3D registration, ICRA
     2009, with the weights 1 / distance^2 of the Point Cloud Library, which do not depend on the unit of length.
     """
-    own, result = np.zeros((len(positions), 3 * BINS)), np.zeros((len(positions), 3 * BINS))
+    spfh, result = np.zeros((len(positions), 3 * BINS)), np.zeros((len(positions), 3 * BINS))
     for i in range(len(positions)):
         for j in neighbours[starts[i] : starts[i + 1]]:
-            _count(own[i], positions[j] - positions[i], normals[i], normals[j])
-        _normalise(own[i])
+            _count(spfh[i], positions[j] - positions[i], normals[i], normals[j])
+        _normalise(spfh[i])
     for i in range(len(positions)):
         for j in neighbours[starts[i] : starts[i + 1]]:
             line = positions[j] - positions[i]
             square = _dot(line, line)
             if square > 0:
-                result[i] += own[j] / square
+                result[i] += spfh[j] / square
         _normalise(result[i])
-        result[i] += own[i]
+        result[i] += spfh[i]
         _normalise(result[i])
     return result
 
 
 @kernel
-def _count(histogram, line, one, other):
+def _count(histogram, line, first, second):
     """Adds the three angles of a pair of normals to a histogram; the pair's frame is of the one nearer to the line."""
     length = math.sqrt(_dot(line, line))
     if length == 0:
         return
     line = line / length
-    source, target, along = one, other, _dot(one, line)
-    if abs(_dot(other, line)) > abs(along):
-        source, target, line, along = other, one, -line, -_dot(other, line)
+    source, target, along = first, second, _dot(first, line)
+    if abs(_dot(second, line)) > abs(along):
+        source, target, line, along = second, first, -line, -_dot(second, line)
     v = _cross(line, source)
     size = math.sqrt(_dot(v, v))
     if size < 1e-9 or not _dot(target, target) > 0:
@@ -83,9 +83,9 @@ def gaussian_sums(places: np.ndarray, points: np.ndarray, values: np.ndarray, si
 
     points (s, 3) f8, where the values are.
     """
-    found, reach = np.zeros((len(places), values.shape[1])), 2 * sigma
+    sums, reach = np.zeros((len(places), values.shape[1])), 2 * sigma
     if len(points) == 0:
-        return found
+        return sums
     low, high = np.empty(3), np.empty(3)
     for axis in range(3):
         low[axis], high[axis] = points[:, axis].min(), points[:, axis].max()
@@ -108,8 +108,8 @@ def gaussian_sums(places: np.ndarray, points: np.ndarray, values: np.ndarray, si
                     if square <= reach * reach:
                         weight = np.exp(square / (-2 * sigma * sigma))
                         for column in range(values.shape[1]):
-                            found[i, column] += weight * values[k, column]
-    return found
+                            sums[i, column] += weight * values[k, column]
+    return sums
 
 
 @kernel
@@ -137,15 +137,15 @@ def scale_peaks(values: np.ndarray, floor: float) -> np.ndarray:
     The first and the last scale have none. At the border of the grid there are fewer neighbours.
     """
     scales, a, b, c = values.shape
-    found = []
+    peaks = []
     for s in range(1, scales - 1):
         for i in range(a):
             for j in range(b):
                 for k in range(c):
                     value = values[s, i, j, k]
                     if value > floor and not _exceeded(values, value, s, i, j, k):
-                        found.append(((s * a + i) * b + j) * c + k)
-    return np.array(found, dtype=np.int64)
+                        peaks.append(((s * a + i) * b + j) * c + k)
+    return np.array(peaks, dtype=np.int64)
 
 
 @kernel
@@ -174,7 +174,7 @@ def pressed(
     meets from outside, the nearest one counts; a cell that meets none within the width reports the width.
     """
     step, half = width / cells, width / 2
-    found = np.full((len(at), cells, cells), width)
+    depths = np.full((len(at), cells, cells), width)
     for i in range(len(at)):
         right, up, out = axes[i, 0], axes[i, 1], axes[i, 2]
         for j in range(len(points)):
@@ -205,9 +205,9 @@ def pressed(
                     dv = half - (row + 0.5) * step - v
                     rise = -(slope_u * du + slope_v * dv)
                     below = -(height + rise)
-                    if du * du + dv * dv + rise * rise <= reach * reach and abs(below) < abs(found[i, row, column]):
-                        found[i, row, column] = below
-    return found
+                    if du * du + dv * dv + rise * rise <= reach * reach and abs(below) < abs(depths[i, row, column]):
+                        depths[i, row, column] = below
+    return depths
 
 
 @kernel
@@ -227,8 +227,8 @@ def spaced(positions: np.ndarray, radius: float, first: int, limit: int) -> np.n
 
 
 @kernel
-def _apart(positions, i, others, radius):
-    for k in others:
+def _apart(positions, i, earlier, radius):
+    for k in earlier:
         square = 0.0
         for axis in range(3):
             square += (positions[k, axis] - positions[i, axis]) ** 2
@@ -302,21 +302,21 @@ def suppress(image: np.ndarray, radius: float, limit: int, floor: float) -> np.n
     image (h, w) f8 is set to zero within `radius` pixels of each. Of equal pixels the first one is taken.
     """
     height, width = image.shape
-    extent, found = int(radius), []
+    extent, maxima = int(radius), []
     tops, firsts = np.empty(height), np.empty(height, np.int64)  # largest value of each row, and its column
     for r in range(height):
         firsts[r] = image[r].argmax()
         tops[r] = image[r, firsts[r]]
-    while len(found) < limit:
+    while len(maxima) < limit:
         row = tops.argmax()
         if tops[row] <= floor:
             break
         column = firsts[row]
-        found.append(row * width + column)
+        maxima.append(row * width + column)
         for r in range(max(row - extent, 0), min(row + extent + 1, height)):
             for c in range(max(column - extent, 0), min(column + extent + 1, width)):
                 if (r - row) ** 2 + (c - column) ** 2 <= radius**2:
                     image[r, c] = 0.0
             firsts[r] = image[r].argmax()
             tops[r] = image[r, firsts[r]]
-    return np.array(found, dtype=np.int64)
+    return np.array(maxima, dtype=np.int64)

@@ -65,12 +65,12 @@ def read_marks(path: str | Path, content: bytes | None = None) -> "pd.DataFrame"
 
 
 def write_marks(
-    path: str | Path, annotator: str, marks: "pd.DataFrame | Sequence[Mapping]", seen: Iterable[tuple] | None = None
+    path: str | Path, annotator: str, marks: "pd.DataFrame | Sequence[Mapping]", expected: Iterable[tuple] | None = None
 ) -> None:
     """Replaces the rows of an annotator in a CSV by `marks`; rows of others stay unchanged, byte for byte.
 
     marks: frame or list of dicts with time (ISO 8601 with an offset, or an aware datetime), vertex, x, y, z; an empty
-    one removes the rows. seen: pairs (time, vertex) that must equal the rows of the annotator on disk, else
+    one removes the rows. expected: pairs (time, vertex) that must equal the rows of the annotator on disk, else
     MarksChanged is raised; None skips the check. Concurrent writers are serialised, and the file is replaced as a
     whole. A damaged file raises MarksError and stays unchanged.
     """
@@ -78,11 +78,13 @@ def write_marks(
     new = [_line([annotator, *row]) for row in _values(marks)]
     with FileLock(LOCK):
         rows = list(_rows(path)) if path.exists() else []
-        own = [k for k, (_, _, row) in enumerate(rows) if row[0] == annotator]
-        if seen is not None and [tuple(rows[k][2][1:3]) for k in own] != [(utc(t), int(v)) for t, v in seen]:
+        indices = [k for k, (_, _, row) in enumerate(rows) if row[0] == annotator]
+        if expected is not None and [tuple(rows[k][2][1:3]) for k in indices] != [
+            (utc(t), int(v)) for t, v in expected
+        ]:
             raise MarksChanged(f"{path}: the points of {annotator} have changed since they were read")
-        lines = [line for k, (_, line, _) in enumerate(rows) if k not in set(own)]
-        at = own[0] if own else len(lines)
+        lines = [line for k, (_, line, _) in enumerate(rows) if k not in set(indices)]
+        at = indices[0] if indices else len(lines)
         write_text(path, "\n".join([",".join(COLUMNS), *lines[:at], *new, *lines[at:]]))
 
 
@@ -159,7 +161,7 @@ def _row(line):
 def _values(marks):
     """The cells of the columns after the annotator, checked by parsing them."""
     listed = marks if isinstance(marks, Sequence) else marks.to_dict("records")
-    rows = [[utc(each["time"]), each["vertex"], *(_decimal(float(each[axis])) for axis in "xyz")] for each in listed]
+    rows = [[utc(mark["time"]), mark["vertex"], *(_decimal(float(mark[axis])) for axis in "xyz")] for mark in listed]
     for row in rows:
         _row(_line(["checked", *row]))
     return rows

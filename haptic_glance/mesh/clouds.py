@@ -41,7 +41,7 @@ class Cloud:
 
     def part(self, chosen: np.ndarray) -> "Cloud":
         """The Cloud of some points: their ids, or (n,) boolean."""
-        normals, colors = (None if one is None else one[chosen] for one in (self.normals, self.colors))
+        normals, colors = (None if values is None else values[chosen] for values in (self.normals, self.colors))
         return Cloud(self.points[chosen], normals, colors, self.sensor)
 
 
@@ -51,8 +51,8 @@ def usable(cloud: Cloud) -> Cloud:
     Cameras mark pixels without a reading by NaN or by zeros, and many points at one place are that. Of more than MOST
     points as many are drawn evenly from the file's order. Raises MeshError with the reason where no shape is left.
     """
-    given = len(cloud.points)
-    finite = [np.isfinite(one).all(axis=1) for one in (cloud.points, cloud.normals) if one is not None]
+    total = len(cloud.points)
+    finite = [np.isfinite(values).all(axis=1) for values in (cloud.points, cloud.normals) if values is not None]
     cloud = cloud.part(np.logical_and.reduce(finite))
     _, first = np.unique(cloud.points, axis=0, return_index=True)
     cloud = cloud.part(np.sort(first))
@@ -62,7 +62,7 @@ def usable(cloud: Cloud) -> Cloud:
         away = KDTree(cloud.points).query(cloud.points, NEIGHBOURS + 1)[0][:, -1]
         cloud = cloud.part(away <= STRAY * np.median(away))
     if len(cloud.points) < LEAST:
-        raise MeshError(f"a point cloud of {given} points, {len(cloud.points)} of them usable: a surface needs {LEAST}")
+        raise MeshError(f"a point cloud of {total} points, {len(cloud.points)} of them usable: a surface needs {LEAST}")
     extents = np.linalg.svd(cloud.points - cloud.points.mean(axis=0), compute_uv=False)
     if extents[2] < FLAT * extents[0]:
         shape = "line" if extents[1] < FLAT * extents[0] else "plane"
@@ -146,17 +146,17 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
     if depth.ndim != 2:
         raise MeshError(f"a depth image has one channel, this one has shape {depth.shape}")
     rows, columns = depth.shape
-    if not (all(0 < one < np.inf for one in (fx, fy, scale)) and 0 <= cx <= columns and 0 <= cy <= rows):
+    if not (all(0 < value < np.inf for value in (fx, fy, scale)) and 0 <= cx <= columns and 0 <= cy <= rows):
         raise MeshError(f"fx={fx}, fy={fy}, cx={cx}, cy={cy}, scale={scale} cannot be of {columns} x {rows} pixels: "
                         "focal lengths and scale are above 0, finite, and the centre lies in the image")  # fmt: skip
     read = np.isfinite(depth) & (depth > 0)
     if not read.any():
         raise MeshError("the depth image holds no reading: all is 0 or not finite")
-    known = np.where(read, depth, np.inf)
+    filled = np.where(read, depth, np.inf)
     solid = read.copy()
     for axis in (0, 1):
         with np.errstate(invalid="ignore"):
-            jump = ~(np.abs(np.diff(known, axis=axis)) <= JUMP * np.minimum.reduce(_pairs(known, axis)))
+            jump = ~(np.abs(np.diff(filled, axis=axis)) <= JUMP * np.minimum.reduce(_pairs(filled, axis)))
         for part in _pairs(solid, axis):
             part &= ~jump
     v, u = np.nonzero(solid)
@@ -167,18 +167,18 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
 def read_depth(content: bytes, read: Callable[[str], bytes] | None) -> Cloud:
     """The Cloud of a .depth file, a JSON text as in EXAMPLE; read(name) gives the bytes of the image beside it."""
     try:
-        said = json.loads(content)
-        name, numbers = str(said["image"]), [float(said[key]) for key in KEYS[1:]]
+        header = json.loads(content)
+        name, numbers = str(header["image"]), [float(header[key]) for key in KEYS[1:]]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise MeshError(f"{type(error).__name__}: {error}; a .depth file is like {EXAMPLE}") from None
     try:
-        found = b"" if read is None else read(name)
+        picture = b"" if read is None else read(name)
     except (OSError, ValueError, KeyError):
-        found = b""
-    if not found:
+        picture = b""
+    if not picture:
         raise MeshError(f"the depth image {name} is not there: put it next to the .depth file")
     try:
-        image = cv2.imdecode(np.frombuffer(found, np.uint8), cv2.IMREAD_UNCHANGED)
+        image = cv2.imdecode(np.frombuffer(picture, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         image = None
     if image is None:
@@ -221,11 +221,11 @@ def surface_of(cloud: Cloud) -> Mesh:
     work = pymeshlab.MeshSet()
     work.add_mesh(pymeshlab.Mesh(vertex_matrix=points, v_normals_matrix=normals))
     work.generate_surface_reconstruction_screened_poisson(depth=_depth(away), preclean=True, threads=1)
-    made = work.current_mesh()
-    vertices, faces = made.vertex_matrix(), made.face_matrix().astype(np.int64)
+    solid = work.current_mesh()
+    vertices, faces = solid.vertex_matrix(), solid.face_matrix().astype(np.int64)
     distance, nearest = tree.query(vertices)
-    seen = np.asarray(distance <= GAP * away[nearest])
-    faces = faces[seen[faces].all(axis=1)]
+    near = np.asarray(distance <= GAP * away[nearest])
+    faces = faces[near[faces].all(axis=1)]
     used, ids = np.unique(faces, return_inverse=True)
     colors = None if cloud.colors is None else cloud.colors[np.asarray(nearest)[used]]
     return Mesh(vertices[used] * extent + centre, ids.reshape(-1, 3), colors)
@@ -258,8 +258,8 @@ def read_cloud(content: bytes, suffix: str) -> Cloud:
 
 def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
     """The Cloud of a PLY without faces, as trimesh reads it."""
-    found = loaded.metadata.get("_ply_raw", {}).get("vertex", {}).get("data")
-    normals = _columns(found, ("nx", "ny", "nz")) if found is not None else None
+    table = loaded.metadata.get("_ply_raw", {}).get("vertex", {}).get("data")
+    normals = _columns(table, ("nx", "ny", "nz")) if table is not None else None
     colors = np.asarray(loaded.colors)
     named = colors[:, :3].astype(np.uint8) if colors.shape == (len(loaded.vertices), 4) else None
     return Cloud(np.asarray(loaded.vertices, np.float64), _units(normals), named)
@@ -304,10 +304,10 @@ def _las(content):
         import laspy
 
     read = laspy.read(io.BytesIO(content))
-    points = np.stack([np.asarray(one, np.float64) for one in (read.x, read.y, read.z)], axis=1)
+    points = np.stack([np.asarray(column, np.float64) for column in (read.x, read.y, read.z)], axis=1)
     if "red" not in set(read.point_format.dimension_names):
         return Cloud(points)
-    colors = np.stack([np.asarray(one) for one in (read.red, read.green, read.blue)], axis=1)
+    colors = np.stack([np.asarray(column) for column in (read.red, read.green, read.blue)], axis=1)
     wide = colors.max(initial=0) > 255  # sixteen bits as the format says, which many writers fill with eight
     return Cloud(points, colors=(colors >> 8 if wide else colors).astype(np.uint8))
 

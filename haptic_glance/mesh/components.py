@@ -22,15 +22,15 @@ def _join(tails, heads, parent, label):
             parent[b] = a
         else:
             parent[a] = b
-    found = 0
+    count = 0
     for v in range(len(label)):
         root = _root(parent, v)
         if root == v:
-            label[v] = found
-            found += 1
+            label[v] = count
+            count += 1
         else:
             label[v] = label[root]
-    return found
+    return count
 
 
 @helper

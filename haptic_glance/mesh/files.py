@@ -65,7 +65,7 @@ def load_unnamed(path: Path) -> Mesh:
     return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
 
 
-def as_mesh(given: MeshLike) -> Mesh:
+def as_mesh(source: MeshLike) -> Mesh:
     """The Mesh of a path, an object of trimesh, (vertices (n, 3), faces (m, 3)) or a Cloud, or the Mesh that is given.
 
     Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
@@ -74,28 +74,28 @@ def as_mesh(given: MeshLike) -> Mesh:
     with another `up`. Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything
     else.
     """
-    return settled(as_stated(given))
+    return settled(as_stated(source))
 
 
-def as_stated(given: MeshLike) -> Mesh:
+def as_stated(source: MeshLike) -> Mesh:
     """As `as_mesh`; `up` is `auto` where nothing says which axis points up."""
-    if isinstance(given, Mesh):
-        return given
-    if isinstance(given, str | Path):
-        return load_as_stated(given)
-    return replace(_converted(given), up=AUTO)
+    if isinstance(source, Mesh):
+        return source
+    if isinstance(source, str | Path):
+        return load_as_stated(source)
+    return replace(_converted(source), up=AUTO)
 
 
-def _converted(given):
-    if isinstance(given, trimesh.Scene):
-        return join_parts(given, every_colour=True) or _to_mesh(None, False, False)
-    if isinstance(given, clouds.Cloud):
-        return clouds.surface_of(given)
-    if isinstance(given, trimesh.Trimesh | trimesh.PointCloud):
-        return _to_mesh(given, False, every_colour=True)
-    if isinstance(given, tuple) and len(given) == 2:
-        return Mesh(np.asarray(given[0], dtype=np.float64), np.asarray(given[1]))
-    raise TypeError(f"no mesh: a {type(given).__name__}; give a path, a trimesh, (vertices, faces), a Cloud or a Mesh")
+def _converted(source):
+    if isinstance(source, trimesh.Scene):
+        return join_parts(source, every_colour=True) or _to_mesh(None, False, False)
+    if isinstance(source, clouds.Cloud):
+        return clouds.surface_of(source)
+    if isinstance(source, trimesh.Trimesh | trimesh.PointCloud):
+        return _to_mesh(source, False, every_colour=True)
+    if isinstance(source, tuple) and len(source) == 2:
+        return Mesh(np.asarray(source[0], dtype=np.float64), np.asarray(source[1]))
+    raise TypeError(f"no mesh: a {type(source).__name__}; give a path, a trimesh, (vertices, faces), a Cloud or a Mesh")
 
 
 def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:
@@ -205,9 +205,9 @@ def _strips(loaded):
     faces = []
     for strip in np.split(ids.astype(np.int64), np.flatnonzero(ids == -1)):
         strip = strip[strip >= 0]
-        found = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1) if len(strip) > 2 else np.zeros((0, 3), int)
-        found[1::2] = found[1::2][:, ::-1]
-        faces.append(found)
+        triangles = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1) if len(strip) > 2 else np.zeros((0, 3), int)
+        triangles[1::2] = triangles[1::2][:, ::-1]
+        faces.append(triangles)
     faces = np.concatenate(faces)
     a, b, c = faces.T
     return faces[(a != b) & (b != c) & (c != a)]
@@ -227,10 +227,10 @@ def mesh_files(place: Path) -> list[Path]:
         raise MeshError(f"{place}: no such file or folder")
     if not place.is_dir():
         return [place]
-    found = sorted(path for path in place.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
-    if not found:
+    files = sorted(path for path in place.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
+    if not files:
         raise MeshError(f"{place}: no mesh in this folder; the formats are {', '.join(FORMATS)}")
-    return found
+    return files
 
 
 def names_of(files: list[Path]) -> list[str]:

@@ -90,7 +90,7 @@ def names_in(content: bytes) -> list[str]:
     """The names of the files that a .gltf file refers to; none of what is no glTF."""
     try:
         tree = json.loads(content)
-        uris = [one["uri"] for key in ("buffers", "images") for one in tree.get(key, []) if "uri" in one]
+        uris = [entry["uri"] for key in ("buffers", "images") for entry in tree.get(key, []) if "uri" in entry]
         return [unquote(uri) for uri in uris if uri[: len(DATA)].lower() != DATA]
     except (ValueError, TypeError, AttributeError):
         return []

@@ -53,13 +53,13 @@ def _glb(content):
 
 def _colour_pictures(tree):
     """The indices of the pictures that colour a material of a GLB; what is malformed is left to the parser."""
-    found = set()
+    indices = set()
     for material in tree.get("materials", []):
         try:
-            found.add(int(tree["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]))
+            indices.add(int(tree["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]))
         except (LookupError, TypeError, ValueError):
             continue
-    return found
+    return indices
 
 
 def _check_picture(tree, picture, binary):
@@ -106,9 +106,9 @@ def _ply(content):
 
 def _obj(content):
     # More digits than the length of the file has: no such vertex can exist, and the parser makes a table up to it.
-    for found in re.finditer(rb"[ \t/]-?(\d{%d,})(?=[\s/]|$)" % (len(str(len(content))) + 1), content):
-        if content[content.rfind(b"\n", 0, found.start()) + 1 :].lstrip()[:1] == b"f":
-            raise MeshError(f"faces name vertices that do not exist ({found[1][:20].decode()})")
+    for match in re.finditer(rb"[ \t/]-?(\d{%d,})(?=[\s/]|$)" % (len(str(len(content))) + 1), content):
+        if content[content.rfind(b"\n", 0, match.start()) + 1 :].lstrip()[:1] == b"f":
+            raise MeshError(f"faces name vertices that do not exist ({match[1][:20].decode()})")
 
 
 def _pcd(content):

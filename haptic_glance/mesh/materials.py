@@ -39,9 +39,11 @@ def beside_colour(material: Any) -> dict[str, Any] | None:
     """
     if not isinstance(material, PBRMaterial):
         return None
-    said = {name: getattr(material, name) for name in FACTORS} | {name: _file(getattr(material, name)) for name in MAPS}
-    said["baseColorTexture"] = material.baseColorTexture is not None or None
-    return {name: value for name, value in said.items() if value is not None}
+    properties = {name: getattr(material, name) for name in FACTORS} | {
+        name: _file(getattr(material, name)) for name in MAPS
+    }
+    properties["baseColorTexture"] = material.baseColorTexture is not None or None
+    return {name: value for name, value in properties.items() if value is not None}
 
 
 def _file(image):
@@ -64,8 +66,10 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
         if use.get("texCoord")
     }
     for part in parts:
-        said = beside_colour(materials[id(part)])
-        part.metadata[BESIDE] = said and {k: v for k, v in said.items() if (str(said.get("name")), k) not in elsewhere}
+        properties = beside_colour(materials[id(part)])
+        part.metadata[BESIDE] = properties and {
+            k: v for k, v in properties.items() if (str(properties.get("name")), k) not in elsewhere
+        }
     for material in materials.values():
         if isinstance(material, PBRMaterial):
             for name in MAPS:
@@ -82,25 +86,25 @@ DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of verti
 def not_read(content: bytes) -> list[str]:
     """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
     tree = _header(content)
-    found = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
-    found += [f"picture {one[ABSENT]}, not beside it" for one in _stated_in(tree, "images") if ABSENT in one]
+    names = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
+    names += [f"picture {entry[ABSENT]}, not beside it" for entry in _stated_in(tree, "images") if ABSENT in entry]
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
     with suppress(*MALFORMED):
         primitives = [primitive for mesh in _stated_in(tree, "meshes") for primitive in mesh["primitives"]]
-        coloured = all("COLOR_0" in one["attributes"] and "material" not in one for one in primitives)
-        kept = (*DERIVED, "COLOR_0") if coloured else DERIVED
-        found += [name for primitive in primitives for name in primitive["attributes"] if name not in kept]
-        found += [NO_SURFACE[one["mode"]] for one in primitives if one.get("mode") in NO_SURFACE]
-        found += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
+        coloured = all("COLOR_0" in entry["attributes"] and "material" not in entry for entry in primitives)
+        expected = (*DERIVED, "COLOR_0") if coloured else DERIVED
+        names += [name for primitive in primitives for name in primitive["attributes"] if name not in expected]
+        names += [NO_SURFACE[entry["mode"]] for entry in primitives if entry.get("mode") in NO_SURFACE]
+        names += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
         for material in _stated_in(tree, "materials"):
-            found += material.get("extensions", {})
+            names += material.get("extensions", {})
             for name, use in _uses(material):
                 texture = textures[use["index"]]
                 sampler = samplers[texture["sampler"]] if "sampler" in texture else {}
-                found += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
-                found += [f"{name}.{key}" for key, usual in USUAL_SAMPLER.items() if sampler.get(key, usual) != usual]
-                found += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
-    return [name for name in dict.fromkeys(found) if not name.endswith(READ)]
+                names += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
+                names += [f"{name}.{key}" for key, usual in USUAL_SAMPLER.items() if sampler.get(key, usual) != usual]
+                names += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
+    return [name for name in dict.fromkeys(names) if not name.endswith(READ)]
 
 
 MALFORMED = AttributeError, LookupError, TypeError, ValueError
@@ -116,14 +120,14 @@ def _header(content):
 
 def _stated_in(tree, name):
     """The dicts in the list of a name."""
-    found = tree.get(name) if isinstance(tree, dict) else None
-    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+    entries = tree.get(name) if isinstance(tree, dict) else None
+    return [entry for entry in entries if isinstance(entry, dict)] if isinstance(entries, list) else []
 
 
 def _uses(material):
     """[(name of a picture, how a glTF material uses it)]."""
-    every = material | material.get("pbrMetallicRoughness", {})
-    return [(name, use) for name, use in every.items() if isinstance(use, dict) and "index" in use]
+    entries = material | material.get("pbrMetallicRoughness", {})
+    return [(name, use) for name, use in entries.items() if isinstance(use, dict) and "index" in use]
 
 
 def join_parts(
@@ -191,19 +195,23 @@ def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
     """The Texture of all parts, one behind the other, or None when no material states more than its name and sides."""
-    said = [_beside(part) for part in parts]
+    properties = [_beside(part) for part in parts]
     if not any(
-        _stated(part) or set(own or ()) - {"name", "doubleSided"} for part, own in zip(parts, said, strict=True)
+        _stated(part) or set(material or ()) - {"name", "doubleSided"}
+        for part, material in zip(parts, properties, strict=True)
     ):
         return None
     images = [_image(part) for part in parts]
     uv = [_corners(part) for part in parts]
     sizes = [len(part.faces) for part in parts]
     names = {}
-    keys = [(one.shape, one.tobytes(), *content_of(own)) for one, own in zip(images, said, strict=True)]
+    keys = [
+        (image.shape, image.tobytes(), *content_of(material))
+        for image, material in zip(images, properties, strict=True)
+    ]
     numbers = [names.setdefault(key, len(names)) for key in keys]
     first = [numbers.index(number) for number in range(len(names))]
-    distinct, materials = zip(*((images[place], said[place]) for place in first), strict=True)
+    distinct, materials = zip(*((images[place], properties[place]) for place in first), strict=True)
     return Texture(np.concatenate(uv), np.repeat(numbers, sizes), distinct, materials)
 
 
@@ -284,7 +292,7 @@ def bake_texture(mesh: Mesh) -> Mesh:
     """
     if mesh.texture is None:
         return mesh
-    if not any(said is None or COLOURS_OF & set(said) for said in mesh.texture.materials):
+    if not any(material is None or COLOURS_OF & set(material) for material in mesh.texture.materials):
         return replace(mesh, texture=None)
     texture, ids = mesh.texture, mesh.faces.ravel()
     rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))

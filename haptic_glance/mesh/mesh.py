@@ -33,9 +33,9 @@ class Texture:
 
     def __post_init__(self) -> None:
         uv, image = _own(self.uv, np.float64), _whole("image", self.image, np.int64)
-        images = tuple(_whole("images", one, np.uint8) for one in self.images)
-        for one in images:
-            one.flags.writeable = False  # so that no further Texture of them copies them again
+        images = tuple(_whole("images", picture, np.uint8) for picture in self.images)
+        for picture in images:
+            picture.flags.writeable = False  # so that no further Texture of them copies them again
         if uv.ndim != 3 or uv.shape[1:] != (3, 2):
             raise ValueError(f"uv must be of shape (m, 3, 2), got {uv.shape}")
         if not (np.abs(uv) <= MOST_UV).all():  # NaN fails as well
@@ -44,8 +44,8 @@ class Texture:
             raise ValueError(f"image must have shape {uv.shape[:1]}, got {image.shape}")
         if len(image) and not 0 <= image.min() <= image.max() < len(images):
             raise ValueError(f"image names pictures outside 0..{len(images) - 1}")
-        if any(one.ndim != 3 or one.shape[2] != 4 or one.size == 0 for one in images):
-            raise ValueError(f"images must have shape (h, w, 4), got {[one.shape for one in images]}")
+        if any(picture.ndim != 3 or picture.shape[2] != 4 or picture.size == 0 for picture in images):
+            raise ValueError(f"images must have shape (h, w, 4), got {[picture.shape for picture in images]}")
         materials = tuple(self.materials) or (None,) * len(images)
         if len(materials) != len(images):
             raise ValueError(f"materials must be one for each of {len(images)} images, got {len(materials)}")
@@ -64,13 +64,13 @@ class Texture:
 
     def sample(self, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
         """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel."""
-        found = np.empty((len(faces), 3), dtype=np.uint8)
-        shown = self.image[faces]
-        for number in np.unique(shown):
-            here, (h, w) = shown == number, self.images[number].shape[:2]
-            across, up = (np.floor(uv[here] * (w, h)) % (w, h)).astype(np.int64).T  # of any size, before the cast
-            found[here] = self.images[number][h - 1 - up, across, :3]
-        return found
+        rgb = np.empty((len(faces), 3), dtype=np.uint8)
+        numbers = self.image[faces]
+        for number in np.unique(numbers):
+            mask, (h, w) = numbers == number, self.images[number].shape[:2]
+            across, up = (np.floor(uv[mask] * (w, h)) % (w, h)).astype(np.int64).T  # of any size, before the cast
+            rgb[mask] = self.images[number][h - 1 - up, across, :3]
+        return rgb
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,9 +109,9 @@ class Mesh:
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
         if self.colors is not None:
-            given = np.asarray(self.colors)
-            if given.dtype != np.uint8 and given.size and not 0 <= given.min() <= given.max() <= 255:
-                raise ValueError(f"colors must lie in 0..255, got {given.min()} to {given.max()}")
+            raw = np.asarray(self.colors)
+            if raw.dtype != np.uint8 and raw.size and not 0 <= raw.min() <= raw.max() <= 255:
+                raise ValueError(f"colors must lie in 0..255, got {raw.min()} to {raw.max()}")
             colors = _own(self.colors, np.uint8)
             if colors.shape != vertices.shape:
                 raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
@@ -142,9 +142,11 @@ class Mesh:
         """The content of all arrays, each with its shape."""
         texture = () if self.texture is None else (self.texture.image, self.texture.uv, *self.texture.images)
         arrays = (self.vertices, self.faces, *(() if self.colors is None else (self.colors,)), *texture)
-        found = [repr((array.shape, array.dtype.str)).encode() + array.tobytes() for array in map(np.asarray, arrays)]
-        said = () if self.texture is None else self.texture.materials
-        return found + [content for material in said for content in content_of(material)]
+        contents = [
+            repr((array.shape, array.dtype.str)).encode() + array.tobytes() for array in map(np.asarray, arrays)
+        ]
+        materials = () if self.texture is None else self.texture.materials
+        return contents + [content for material in materials for content in content_of(material)]
 
     @cached_property
     def face_crosses(self) -> np.ndarray:
@@ -178,8 +180,8 @@ class Mesh:
         tail = self.faces.ravel()
         head = np.roll(self.faces, -1, axis=1).ravel()
         n = len(self.vertices)
-        ones = np.ones(2 * len(tail), dtype=bool)
-        return sparse.csr_matrix((ones, (np.r_[tail, head], np.r_[head, tail])), shape=(n, n))
+        entries = np.ones(2 * len(tail), dtype=bool)
+        return sparse.csr_matrix((entries, (np.r_[tail, head], np.r_[head, tail])), shape=(n, n))
 
     @cached_property
     def edge_counts(self) -> tuple[np.ndarray, np.ndarray]:
@@ -224,8 +226,8 @@ def _own(values: Any, kind: type) -> np.ndarray:
     """A contiguous array of a type that nobody else can write to."""
     if not isinstance(values, np.ndarray):
         return np.array(values, dtype=kind, order="C")  # a copy: a memoryview or a tensor lends its own memory
-    found = np.ascontiguousarray(values, dtype=kind)
-    return found.copy() if np.may_share_memory(found, values) and not _frozen(values) else found
+    array = np.ascontiguousarray(values, dtype=kind)
+    return array.copy() if np.may_share_memory(array, values) and not _frozen(values) else array
 
 
 def _frozen(values: Any) -> bool:
@@ -237,10 +239,10 @@ def _frozen(values: Any) -> bool:
 
 def _whole(name: str, values: Any, kind: type) -> np.ndarray:
     """As `_own`, of whole numbers; ValueError for those that the type does not hold."""
-    given, limits = np.asarray(values), np.iinfo(kind)
-    held = given.dtype == kind or not given.size or limits.min <= given.min() <= given.max() <= limits.max
-    if not held or (given.dtype != kind and (given % 1 != 0).any()):
-        raise ValueError(f"{name} must be whole numbers of {limits.dtype}, got {given.dtype} of others")
+    array, limits = np.asarray(values), np.iinfo(kind)
+    held = array.dtype == kind or not array.size or limits.min <= array.min() <= array.max() <= limits.max
+    if not held or (array.dtype != kind and (array % 1 != 0).any()):
+        raise ValueError(f"{name} must be whole numbers of {limits.dtype}, got {array.dtype} of others")
     return _own(values, kind)
 
 

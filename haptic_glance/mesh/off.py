@@ -83,7 +83,7 @@ def _binary(content, dimensional, width, colored):
 def _triangles(polygons):
     """(m, 3) i8 faces: a fan about the first vertex of each polygon."""
     if any(len(polygon) != 3 for polygon in polygons):
-        polygons = [(one[0], *pair) for one in polygons for pair in zip(one[1:], one[2:], strict=False)]
+        polygons = [(ring[0], *pair) for ring in polygons for pair in zip(ring[1:], ring[2:], strict=False)]
     return np.array(polygons, dtype=np.int64).reshape(-1, 3)
 
 

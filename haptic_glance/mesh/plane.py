@@ -140,9 +140,9 @@ def _median(values, weights):
 
 def _large_parts(mesh, faces):
     """(m,) boolean: of the faces (m,) boolean, in parts with at least MIN_PART of the largest part's area."""
-    chosen = Mesh(mesh.vertices, mesh.faces[faces])
-    part = connected_components(chosen.adjacency, directed=False)[1][chosen.faces[:, 0]]
-    area = np.bincount(part, weights=chosen.face_areas, minlength=1)
+    patch = Mesh(mesh.vertices, mesh.faces[faces])
+    part = connected_components(patch.adjacency, directed=False)[1][patch.faces[:, 0]]
+    area = np.bincount(part, weights=patch.face_areas, minlength=1)
     large = np.zeros(len(mesh.faces), dtype=bool)
     large[faces] = (area >= MIN_PART * area.max())[part]
     return large

@@ -71,14 +71,14 @@ def _without_repeats(faces, ids, notes):
 def _is_first(rows):
     """((n,) boolean: whether a row is the first of its kind, the number of rows of each kind)."""
     _, first, count = np.unique(rows, axis=0, return_index=True, return_counts=True)
-    found = np.zeros(len(rows), dtype=bool)
-    found[first] = True
-    return found, count
+    is_first = np.zeros(len(rows), dtype=bool)
+    is_first[first] = True
+    return is_first, count
 
 
-def _keep(ids, good, notes, what):
+def _keep(ids, good, notes, kind):
     removed = int((~good).sum())
-    return ids[good], notes + ([f"{removed} {what} faces removed"] if removed else [])
+    return ids[good], notes + ([f"{removed} {kind} faces removed"] if removed else [])
 
 
 EVEN = 1 / 3  # share of flipped faces above which the majority says nothing of the side
@@ -115,10 +115,10 @@ def _neighbours(mesh):
     order = np.argsort(edge, kind="stable")
     starts = np.flatnonzero(np.r_[True, np.diff(edge[order]) > 0])
     pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
-    one, other = order[pairs], order[pairs + 1]
+    first, second = order[pairs], order[pairs + 1]
     closed = np.zeros(len(tails), dtype=bool)
-    closed[one] = closed[other] = True
-    return one // 3, other // 3, forward[one] != forward[other], closed.reshape(-1, 3).all(axis=1)
+    closed[first] = closed[second] = True
+    return first // 3, second // 3, forward[first] != forward[second], closed.reshape(-1, 3).all(axis=1)
 
 
 def _minority_faces(count, first, second, alike):
@@ -133,9 +133,9 @@ def _minority_faces(count, first, second, alike):
     columns = np.r_[second + crossed, (second + count + crossed) % (2 * count)]
     graph = sparse.coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
     label = connected_components(graph, directed=False)[1]
-    kept = np.bincount(label[:count], minlength=label.max() + 1)  # unflipped faces in each component
+    unflipped = np.bincount(label[:count], minlength=label.max() + 1)  # unflipped faces in each component
     as_is, turned = label[:count], label[count:]
-    return (kept[as_is] < kept[turned]) | ((kept[as_is] == kept[turned]) & (as_is > turned))
+    return (unflipped[as_is] < unflipped[turned]) | ((unflipped[as_is] == unflipped[turned]) & (as_is > turned))
 
 
 def _inverted(mesh, first, second, closed_edges, flips):
@@ -147,8 +147,8 @@ def _inverted(mesh, first, second, closed_edges, flips):
     closed = np.bincount(part, weights=closed_edges, minlength=parts) == sizes
     turn = _undecided(mesh, part, ~closed & (np.bincount(part, weights=flips, minlength=parts) > EVEN * sizes))
     corners, first_face = mesh.vertices[mesh.faces], np.unique(part, return_index=True)[1]
-    own = corners - corners[first_face, :1][part]  # from afar, small volumes would be lost to rounding
-    volume = np.bincount(part, weights=np.einsum("ij,ij->i", own[:, 0], np.cross(own[:, 1], own[:, 2])))
+    local = corners - corners[first_face, :1][part]  # from afar, small volumes would be lost to rounding
+    volume = np.bincount(part, weights=np.einsum("ij,ij->i", local[:, 0], np.cross(local[:, 1], local[:, 2])))
     inside_out = np.flatnonzero(closed & (volume < 0))
     if not len(inside_out):  # nearly always: boxes take a third of the time
         return turn[part]
@@ -164,15 +164,15 @@ def _inverted(mesh, first, second, closed_edges, flips):
     return turn[part]
 
 
-def _undecided(mesh, part, asked):
-    """(parts,) boolean: those of the parts asked about whose faces look towards the part's middle."""
-    if not asked.any():
-        return np.zeros(len(asked), dtype=bool)
+def _undecided(mesh, part, candidates):
+    """(parts,) boolean: the candidates whose faces look towards the part's middle."""
+    if not candidates.any():
+        return np.zeros(len(candidates), dtype=bool)
     middles, areas = mesh.vertices[mesh.faces].mean(axis=1), mesh.face_areas
-    total = np.maximum(np.bincount(part, weights=areas, minlength=len(asked)), 1e-300)
-    centres = [np.bincount(part, weights=areas * one, minlength=len(asked)) / total for one in middles.T]
+    total = np.maximum(np.bincount(part, weights=areas, minlength=len(candidates)), 1e-300)
+    centres = [np.bincount(part, weights=areas * column, minlength=len(candidates)) / total for column in middles.T]
     outwards = np.einsum("ij,ij->i", middles - np.stack(centres, axis=1)[part], mesh.face_crosses)
-    return asked & (np.bincount(part, weights=outwards, minlength=len(asked)) < 0)
+    return candidates & (np.bincount(part, weights=outwards, minlength=len(candidates)) < 0)
 
 
 def _flipped(mesh, flips):

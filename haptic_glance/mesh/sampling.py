@@ -58,6 +58,6 @@ def _points(vertices, faces, owners, draws):
         weights[i, 0], weights[i, 1], weights[i, 2] = 1 - root, root * (1 - draws[1, i]), root * draws[1, i]
         a, b, c = faces[owners[i], 0], faces[owners[i], 1], faces[owners[i], 2]
         for axis in range(3):
-            one, two, three = vertices[a, axis], vertices[b, axis], vertices[c, axis]
-            points[i, axis] = weights[i, 0] * one + weights[i, 1] * two + weights[i, 2] * three
+            at_a, at_b, at_c = vertices[a, axis], vertices[b, axis], vertices[c, axis]
+            points[i, axis] = weights[i, 0] * at_a + weights[i, 1] * at_b + weights[i, 2] * at_c
     return points, weights

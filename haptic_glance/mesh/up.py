@@ -63,20 +63,20 @@ def upright_by(mesh: Mesh, path: Path, up: str | None) -> tuple[Mesh, str]:
 def assumed(mesh: Mesh, why: str, remedy: str) -> tuple[Mesh, str]:
     """(the Mesh with the axis that its shape suggests, a sentence on it); remedy: a format of how to say another."""
     axis, probability = probable_up(mesh)
-    other = remedy.format(next(name for name in CANDIDATES if name != axis))
-    known = f"probability {probability:.2f}; {why}"
+    advice = remedy.format(next(name for name in CANDIDATES if name != axis))
+    evidence = f"probability {probability:.2f}; {why}"
     if probability < SURE:
-        note = f"assuming {axis} is up, but the shape hardly tells ({known}; say {remedy.format(axis)} or {other})"
+        note = f"assuming {axis} is up, but the shape hardly tells ({evidence}; say {remedy.format(axis)} or {advice})"
     else:
-        note = f"assuming {axis} is up ({known}; {other} for the other)"
+        note = f"assuming {axis} is up ({evidence}; {advice} for the other)"
     return replace(mesh, up=axis), note
 
 
 def stated_up(content: bytes) -> str | None:
     """The axis that a comment of ours at the head of a file names, None without one."""
-    found = STATED.search(content[:HEAD])
+    match = STATED.search(content[:HEAD])
     try:
-        return axis_named(found[1].decode()) if found else None
+        return axis_named(match[1].decode()) if match else None
     except ValueError:
         return None
 
@@ -86,17 +86,17 @@ def with_stated_up(content: bytes, suffix: str, up: str) -> bytes:
 
     An ASCII comment of ply, obj and off; the header of a binary stl.
     """
-    said = b"haptic-glance: %s points up" % up.encode()
+    comment = b"haptic-glance: %s points up" % up.encode()
     if suffix in UP_OF_FORMAT:
         return content
     if suffix == ".ply":
-        return re.sub(rb"^(ply\r?\nformat [^\n]*\n)", rb"\1comment " + said + b"\n", content, count=1)
+        return re.sub(rb"^(ply\r?\nformat [^\n]*\n)", rb"\1comment " + comment + b"\n", content, count=1)
     if suffix == ".off":
         head, _, rest = content.partition(b"\n")
-        return b"\n".join([head, b"# " + said, rest])
+        return b"\n".join([head, b"# " + comment, rest])
     if suffix == ".stl":
-        return (b"# " + said).ljust(80, b" ") + content[80:]
-    return b"# " + said + b"\n" + content
+        return (b"# " + comment).ljust(80, b" ") + content[80:]
+    return b"# " + comment + b"\n" + content
 
 
 def upright_for(path: Path, mesh: Mesh) -> tuple[Mesh, str]:

@@ -47,10 +47,10 @@ def probable_up(mesh: Mesh) -> tuple[str, float]:
 
     The same holds for a sphere or a cube, whose axes do not differ.
     """
-    found = features(mesh)
-    if not found:
+    by_axis = features(mesh)
+    if not by_axis:
         return CANDIDATES[0], 0.5
-    first, second = (found[axis] for axis in CANDIDATES)
+    first, second = (by_axis[axis] for axis in CANDIDATES)
     odds = sum(weight * (first[name] - second[name]) for name, weight in WEIGHTS.items())
     even = abs(odds) < EVEN
     return CANDIDATES[int(odds < 0 and not even)], 0.5 if even else float(1 / (1 + np.exp(-abs(odds))))
@@ -73,13 +73,13 @@ def features(mesh: Mesh, axes: tuple[str, ...] = CANDIDATES) -> dict[str, dict[s
     hull = _hull(corners)
     corners, faces = (corners, np.zeros((0, 4))) if hull is None else (corners[hull.vertices], hull.equations)
     cells = _cells(points, areas)
-    found = {}
+    by_axis = {}
     for axis in axes:
         turn = to_z_up(axis).astype(np.float64)
         turned, steep = np.column_stack([faces[:, :3] @ turn.T, faces[:, 3]]), np.abs(normals @ turn[2]) < STEEP
         means = cells[0] @ turn.T, cells[1]
-        found[axis] = _of_axis(points @ turn.T, areas, steep, means, corners @ turn.T, turned)
-    return found
+        by_axis[axis] = _of_axis(points @ turn.T, areas, steep, means, corners @ turn.T, turned)
+    return by_axis
 
 
 def _pieces(corners):
@@ -90,16 +90,16 @@ def _pieces(corners):
     edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
     least = np.sqrt(area / MOST), edges.max(axis=1).sum() / MOST  # of a tangle, whose pieces would fill the memory
-    longest, done = max(PIECE * np.linalg.norm(np.ptp(corners, axis=(0, 1))), *least), []
+    longest, pieces = max(PIECE * np.linalg.norm(np.ptp(corners, axis=(0, 1))), *least), []
     while len(corners):
         edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
         edge = edges.argmax(axis=1)
         rows = np.arange(len(corners))
         long = edges[rows, edge] > longest
-        done.append(corners[~long])
+        pieces.append(corners[~long])
         a, b, c = (corners[rows[long], (edge[long] + k) % 3] for k in range(3))
         corners = np.concatenate([np.stack([a, (a + b) / 2, c], axis=1), np.stack([(a + b) / 2, b, c], axis=1)])
-    corners = np.concatenate([*done, np.zeros((0, 3, 3))])
+    corners = np.concatenate([*pieces, np.zeros((0, 3, 3))])
     crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(crosses, axis=1)
     solid = areas > 0
@@ -185,9 +185,9 @@ def _apart(tree, moved, shares):
     return shares @ np.minimum(tree.query(moved)[0], 0.15)
 
 
-def _spread(points, areas, there):
-    """The radius of gyration about the vertical of the points there, at least 0.02."""
-    if not there.any():
+def _spread(points, areas, mask):
+    """The radius of gyration about the vertical of the points in the mask, at least 0.02."""
+    if not mask.any():
         return 0.02
-    middle = np.average(points[there, :2], axis=0, weights=areas[there])
-    return 0.02 + np.sqrt(np.average(((points[there, :2] - middle) ** 2).sum(axis=1), weights=areas[there]))
+    middle = np.average(points[mask, :2], axis=0, weights=areas[mask])
+    return 0.02 + np.sqrt(np.average(((points[mask, :2] - middle) ** 2).sum(axis=1), weights=areas[mask]))

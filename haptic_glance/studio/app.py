@@ -43,19 +43,19 @@ class Studio:
     def session_of(self, client: viser.ClientHandle) -> tuple[str, Session]:
         """(name, Session) that a window of this browser has left last, or a new one."""
         try:
-            known = (client.local_storage.get_item(ITEM, SECONDS) or "").split()
+            names = (client.local_storage.get_item(ITEM, SECONDS) or "").split()
         except (RuntimeError, TimeoutError):  # a browser that stores nothing
-            known = []
+            names = []
         for _ in range(GOING):  # a page may be back before the server knows that it was gone
-            name = next((name for name in reversed(self.left) if name in known), None)
+            name = next((name for name in reversed(self.left) if name in names), None)
             if name is not None:
                 return name, self.left.pop(name)
-            if not {name for name, _ in list(self.windows.values())} & {*known}:
+            if not {name for name, _ in list(self.windows.values())} & {*names}:
                 break
             time.sleep(0.1)
         name = uuid.uuid4().hex
-        client.local_storage.set_item(ITEM, " ".join([*known, name][-4 * LEFT :]))
-        return name, Session(tour=None if known or self.settings.panel == "Mark" else 0)
+        client.local_storage.set_item(ITEM, " ".join([*names, name][-4 * LEFT :]))
+        return name, Session(tour=None if names or self.settings.panel == "Mark" else 0)
 
     def gone(self, client: viser.ClientHandle) -> None:
         """A window was closed or reloaded, or has lost the connection: its session waits for it."""

@@ -44,17 +44,17 @@ def parser() -> argparse.ArgumentParser:
 
 def run(argv: Sequence[str]) -> None:
     """Runs the command line `argv`, without the program's name, until Ctrl-C."""
-    chosen = parser().parse_args(argv)
-    files = [file for place in chosen.meshes for file in files_at(place)]
+    options = parser().parse_args(argv)
+    files = [file for place in options.meshes for file in files_at(place)]
     with from_extra():
         from .app import Studio
         from .session import Settings
-    marking = {"marks": chosen.mark, "panel": "Mark"} if chosen.mark else {}
-    studio = Studio(Settings(files, chosen.up, annotator=chosen.annotator, **marking), chosen.port)
+    marking = {"marks": options.mark, "panel": "Mark"} if options.mark else {}
+    studio = Studio(Settings(files, options.up, annotator=options.annotator, **marking), options.port)
     print(f"studio: open {studio.address} ; Ctrl-C here ends it", flush=True)
     # Without a screen the standard library would open a text browser in this terminal.
     screen = sys.platform in ("darwin", "win32") or {"DISPLAY", "WAYLAND_DISPLAY", "BROWSER"} & set(os.environ)
-    if screen and not chosen.no_browser:
+    if screen and not options.no_browser:
         webbrowser.open(studio.address)
     try:
         while True:

@@ -96,8 +96,8 @@ def feel(surface: Surface, place: Places, sensor: Sensor, unit: float = 1.0) -> 
         )
     else:
         contact = "rigid" if sensor.kind == RIGID else "tangent"
-        found = distances_at(surface, centre, axes, sensor.array, sensor.pitch, contact=contact)
-        images, span, name = normalise(found, sensor.pitch), (unit * float(np.ptp(found)), 0.0), UNIT
+        distances = distances_at(surface, centre, axes, sensor.array, sensor.pitch, contact=contact)
+        images, span, name = normalise(distances, sensor.pitch), (unit * float(np.ptp(distances)), 0.0), UNIT
     pressed = 1 - Skin(blur=sensor.blur, noise=sensor.noise)(images)[0]
     return Felt(pressed, span, name, centre[0], axes[0], sensor.pitch, _depths(surface, centre, axes, sensor))
 
@@ -107,18 +107,18 @@ def _depths(surface, centre, axes, sensor):
     reach = sensor.cells * sensor.pitch
     if sensor.kind in (RIGID, NEWTONS):  # they come from above, and meet what overhangs the place
         return gaps_at(surface, centre, axes, reach, sensor.array, sensor.pitch)[0]
-    found = distances_at(surface, centre, axes, sensor.array, sensor.pitch)[0]
-    return np.where(found < reach, found, np.inf)
+    distances = distances_at(surface, centre, axes, sensor.array, sensor.pitch)[0]
+    return np.where(distances < reach, distances, np.inf)
 
 
 def feel_by_rays(
     surface: Surface, centre: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitch: float, unit: float = 1.0
 ) -> Felt:
     """Presses an ideal array at a centre (3,) with axes (3, 3); unit: of the mesh, in those of its file."""
-    found = distances_at(surface, centre[None], axes[None], cells, pitch)
-    span = unit * float(np.ptp(found)), 0.0
-    depths = np.where(found[0] < max(cells) * pitch, found[0], np.inf)
-    return Felt(1 - normalise(found, pitch)[0], span, UNIT, centre, axes, pitch, depths)
+    distances = distances_at(surface, centre[None], axes[None], cells, pitch)
+    span = unit * float(np.ptp(distances)), 0.0
+    depths = np.where(distances[0] < max(cells) * pitch, distances[0], np.inf)
+    return Felt(1 - normalise(distances, pitch)[0], span, UNIT, centre, axes, pitch, depths)
 
 
 def _pose(surface, place, sensor):

@@ -47,12 +47,12 @@ def glb(mesh: Mesh, colors: np.ndarray, flat: bool = False) -> bytes:
 def _accessor(number, array):
     kinds = {"f": FLOAT, "u": UNSIGNED if array.itemsize == 4 else SHORT}
     width = array.shape[1] if array.ndim == 2 else 1
-    found = {
+    accessor = {
         "bufferView": number, "componentType": kinds[array.dtype.kind], "count": len(array),
         "type": {1: "SCALAR", 3: "VEC3", 4: "VEC4"}[width],
     }  # fmt: skip
     if array.itemsize == 2:
-        found["normalized"] = True
+        accessor["normalized"] = True
     if number == 0:  # glTF asks for the bounds of the positions
-        found |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
-    return found
+        accessor |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+    return accessor

@@ -33,22 +33,22 @@ def grid_html(pressed: np.ndarray, span: tuple[float, float], unit: str, words: 
 
 def pair_html(picture: np.ndarray, imprint: np.ndarray) -> str:
     """A picture (h, w, 3) in 0..1 beside an imprint (r, c) in 0..1 of which 0 is pressed hardest."""
-    seen = np.rint(255 * picture).astype(np.uint8)
+    pixels = np.rint(255 * picture).astype(np.uint8)
     return "".join(
         f'<div style="display:inline-block;width:46%;margin:0 2%;font-size:0.8em"><img class="{kind}" alt="{kind}" '
         f'src="{source}" style="image-rendering:pixelated;width:100%"><br>{kind}</div>'
-        for kind, source in (("vision", _png(seen)), ("touch", _source(1 - imprint)))
+        for kind, source in (("vision", _png(pixels)), ("touch", _source(1 - imprint)))
     )
 
 
 def bars_html(probabilities: Mapping[str, float], sure: str) -> str:
     """A bar for each of the likeliest objects, those first; sure: the one that is known, or empty."""
-    shown = list(probabilities.items())[:BARS]
-    rest = len(probabilities) - len(shown)
-    lines = [_bar(name, value, SURE if name == sure else MAYBE) for name, value in shown]
+    likeliest = list(probabilities.items())[:BARS]
+    rest = len(probabilities) - len(likeliest)
+    lines = [_bar(name, value, SURE if name == sure else MAYBE) for name, value in likeliest]
     if rest > 0:
-        left = max(1 - sum(value for _, value in shown), 0.0)
-        lines.append(f'<div style="font-size:0.8em">and {rest} more, {left:.0%} together</div>')
+        share = max(1 - sum(value for _, value in likeliest), 0.0)
+        lines.append(f'<div style="font-size:0.8em">and {rest} more, {share:.0%} together</div>')
     return '<div class="bars" style="padding:0 0.6em 0.6em">' + "".join(lines) + "</div>"
 
 

@@ -86,8 +86,8 @@ def answer(
     else:
         if "Accept-Encoding" in request.headers:
             del request.headers["Accept-Encoding"]  # so that the page can be added to
-        path, _, asked = request.path.partition("?")
-        request.path = path if asked.startswith("token=") else request.path
+        path, _, query = request.path.partition("?")
+        request.path = path if query.startswith("token=") else request.path
         response = then(connection, request)
         if path == "/" and isinstance(response, Response):
             response.headers["Set-Cookie"] = f"{COOKIE}{port}={token}; HttpOnly; SameSite=Strict; Path=/"
@@ -103,11 +103,11 @@ def answer(
 
 def knows(request: Request, token: str, port: int) -> bool:
     """Whether a request has the token, in its address or as the cookie that the page was given."""
-    given = parse_qs(request.path.partition("?")[2]).get("token", [])
+    tokens = parse_qs(request.path.partition("?")[2]).get("token", [])
     cookies = http.cookies.SimpleCookie("; ".join(request.headers.get_all("Cookie")))
-    if kept := cookies.get(f"{COOKIE}{port}"):
-        given.append(kept.value)
-    return any(secrets.compare_digest(one.encode(), token.encode()) for one in given)
+    if cookie := cookies.get(f"{COOKIE}{port}"):
+        tokens.append(cookie.value)
+    return any(secrets.compare_digest(candidate.encode(), token.encode()) for candidate in tokens)
 
 
 def is_own(hosts: list[str], origins: list[str], port: int) -> bool:
@@ -116,8 +116,8 @@ def is_own(hosts: list[str], origins: list[str], port: int) -> bool:
     A page of another host name that resolves to this machine must not read or write (DNS rebinding), nor may one of
     another origin (cross-site request forgery).
     """
-    known = {f"{HOST}:{port}", f"localhost:{port}"}
-    return len(hosts) == 1 and hosts[0] in known and origins in ([], [f"http://{hosts[0]}"])
+    addresses = {f"{HOST}:{port}", f"localhost:{port}"}
+    return len(hosts) == 1 and hosts[0] in addresses and origins in ([], [f"http://{hosts[0]}"])
 
 
 def bound_uploads(gui: viser.GuiApi, refuse: Callable[[str, int], None], limit: int = MAX_UPLOAD) -> None:
@@ -127,10 +127,10 @@ def bound_uploads(gui: viser.GuiApi, refuse: Callable[[str, int], None], limit: 
 
     def started(client: Any, message: messages.FileTransferStartUpload) -> None:
         if message.size_bytes > limit:
-            done = messages.FileTransferPartAck(
+            receipt = messages.FileTransferPartAck(
                 message.source_component_uuid, message.transfer_uuid, message.size_bytes, message.size_bytes
             )
-            interface.queue_message(done)  # or the page shows its progress forever
+            interface.queue_message(receipt)  # or the page shows its progress forever
             refuse(message.filename, message.size_bytes)
             return
         room[message.transfer_uuid] = message.size_bytes

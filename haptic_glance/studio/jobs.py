@@ -18,11 +18,11 @@ class Job:
     """
 
     def __init__(
-        self, title: str, work: Callable[[Report], Any], done: Callable[[Any], None],
+        self, title: str, work: Callable[[Report], Any], receiver: Callable[[Any], None],
         failed: Callable[[Exception], None], ended: Callable[["Job"], None], shown: Callable[["Job"], None],
     ) -> None:  # fmt: skip
         self.title, self.share, self.text = title, 0.0, ""
-        self._parts = work, done, failed, ended, shown
+        self._parts = work, receiver, failed, ended, shown
         self._stopped = Event()
         self.thread = Thread(target=self._run, name=title, daemon=True)
 
@@ -48,11 +48,11 @@ class Job:
         self._parts[-1](self)
 
     def _run(self):
-        work, done, failed, ended, _ = self._parts
+        work, receiver, failed, ended, _ = self._parts
         try:
-            found = work(self.report)
+            outcome = work(self.report)
             if not self.stopped:
-                done(found)
+                receiver(outcome)
         except Stopped:
             pass
         except Exception as error:

@@ -50,16 +50,16 @@ class Levels:
     @cached_property
     def tasks(self) -> dict[str, SimplificationTask]:
         """{SOFT, HARD: the SimplificationTask}."""
-        given, _ = repaired(self.specimen.given)
-        same = len(given.vertices) == len(self.specimen.given.vertices)
-        values = self.looked.saliency if same else saliency(bake_texture(given), self.looked.method)
+        mesh, _ = repaired(self.specimen.given)
+        same = len(mesh.vertices) == len(self.specimen.given.vertices)
+        values = self.looked.saliency if same else saliency(bake_texture(mesh), self.looked.method)
         places = np.array([row[2:5] for row in self.looked.points]).reshape(-1, 3)
-        points = np.unique(KDTree(given.vertices).query(places)[1]).astype(np.int64)
+        points = np.unique(KDTree(mesh.vertices).query(places)[1]).astype(np.int64)
         none = np.zeros(0, dtype=np.int64)
-        rings = neighbourhoods(given, points, "adaptive")
+        rings = neighbourhoods(mesh, points, "adaptive")
         return {
-            SOFT: SimplificationTask(given, values, none, none, values, BACKEND, False),
-            HARD: SimplificationTask(given, values, points, rings, None, BACKEND, True),
+            SOFT: SimplificationTask(mesh, values, none, none, values, BACKEND, False),
+            HARD: SimplificationTask(mesh, values, points, rings, None, BACKEND, True),
         }
 
     @property

@@ -60,10 +60,12 @@ class Marking:
 
     def _merge(self, stored):
         """Merges the stored marks with those that this window added and removed."""
-        gone = set(self.seen) - set(self.marks)
+        removed = set(self.seen) - set(self.marks)
         new = [mark for mark in self.marks if mark not in self.seen]
-        known = {vertex for _, vertex in stored}
-        self.marks = [mark for mark in stored if mark not in gone] + [mark for mark in new if mark[1] not in known]
+        vertices = {vertex for _, vertex in stored}
+        self.marks = [mark for mark in stored if mark not in removed] + [
+            mark for mark in new if mark[1] not in vertices
+        ]
         self.seen, self._before = stored, []
 
     def _become(self, marks):

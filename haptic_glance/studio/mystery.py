@@ -52,24 +52,24 @@ def gather(
     Basic shapes, the household objects, the files that were opened with the studio, and the mesh on the table; of equal
     names the later ones.
     """
-    found, notes = primitives() if basic else {}, []
+    meshes, notes = primitives() if basic else {}, []
     if household is not None:
         theirs, notes = known_objects(household, MOST)
-        found |= theirs
+        meshes |= theirs
     for path in files[:MOST]:
         try:
-            found[path.stem] = open_file(path, up).mesh
+            meshes[path.stem] = open_file(path, up).mesh
         except (ValueError, OSError, MissingExtra) as error:
             notes.append(f"{path.name}: {error}")
     if table is not None:
-        found[table.name] = table.mesh
-    for name, mesh in list(found.items()):
+        meshes[table.name] = table.mesh
+    for name, mesh in list(meshes.items()):
         try:
             touched(name, mesh)
         except ValueError as error:
             notes.append(str(error))
-            del found[name]
-    return found, notes
+            del meshes[name]
+    return meshes, notes
 
 
 def study(meshes: Mapping[str, Mesh], placed: bool) -> tuple[Library, float]:
@@ -96,23 +96,23 @@ def guess(library: Library, meshes: Mapping[str, Mesh], table: Specimen | None, 
     return Guess(specimen, exploration, name, hidden=table is None)
 
 
-def by_planner(one: Guess) -> tuple[int, str]:
+def by_planner(game: Guess) -> tuple[int, str]:
     """(touches, the object that it knows then, or empty) of the planner that explores the same object alone."""
-    other = Exploration(one.exploration.library, one.exploration.surface, rng(1, one.name))
-    known = other.finish()
-    return len(other.images), known
+    planner = Exploration(game.exploration.library, game.exploration.surface, rng(1, game.name))
+    name = planner.finish()
+    return len(planner.images), name
 
 
-def verdict(one: Guess, planner: tuple[int, str], escaped: Callable[[str], str] = str) -> str:
+def verdict(game: Guess, planner: tuple[int, str], escaped: Callable[[str], str] = str) -> str:
     """Who knew it, in Markdown, once it is shown. escaped: of names, so that nothing of them is Markdown."""
     theirs = f"the planner alone knew it after {planner[0]}"
-    if planner[1] != one.name:
+    if planner[1] != game.name:
         theirs = f"took it for {escaped(planner[1])}" if planner[1] else "gave up"
         theirs = f"the planner alone {theirs} after {planner[0]}"
-    answer = one.said or one.exploration.belief.known
-    own = "You knew it" if answer == one.name else f"You took it for {escaped(answer)}" if answer else "You gave up"
-    helped = f", {one.helped} of them the planner's" if one.helped else ""
-    return f"**It is {escaped(one.name)}.** {own} after {count(one.touches)}{helped}; {theirs}."
+    answer = game.said or game.exploration.belief.known
+    yours = "You knew it" if answer == game.name else f"You took it for {escaped(answer)}" if answer else "You gave up"
+    helped = f", {game.helped} of them the planner's" if game.helped else ""
+    return f"**It is {escaped(game.name)}.** {yours} after {count(game.touches)}{helped}; {theirs}."
 
 
 def count(touches: int) -> str:

@@ -39,12 +39,12 @@ def around(surface: Surface, first: Hit, second: Hit, frames: int, cells: tuple[
     Raises ValueError where the three lie on a line.
     """
     plane = np.stack([np.zeros(3), first.position, second.position])
-    found, curve = follow(surface, plane, frames, cells, pitch), contour(surface, plane)
+    sequence, curve = follow(surface, plane, frames, cells, pitch), contour(surface, plane)
     line = np.concatenate([curve.points, curve.points[: int(curve.closed)]])
-    ahead = np.roll(found.positions, -1, axis=0) - found.positions
-    share = "" if found.loops == 1 else f", the longest of {found.loops} curves of this plane"
-    note = f"once around, {found.length:.2f} times the object's size{share}"
-    return Path(found.positions, _axes(found.normals, ahead), found.pitches, line, note)
+    ahead = np.roll(sequence.positions, -1, axis=0) - sequence.positions
+    share = "" if sequence.loops == 1 else f", the longest of {sequence.loops} curves of this plane"
+    note = f"once around, {sequence.length:.2f} times the object's size{share}"
+    return Path(sequence.positions, _axes(sequence.normals, ahead), sequence.pitches, line, note)
 
 
 def through(rays: RayScene, places: Sequence[Hit], frames: int, pitch: float) -> Path:
@@ -60,9 +60,9 @@ def through(rays: RayScene, places: Sequence[Hit], frames: int, pitch: float) ->
         raise ValueError("the places are one and the same: click another one")
     outward = np.stack([hit.normal for hit in places])
     line, faces, normals = _on_surface(rays, corners, outward, knots, np.linspace(0, knots[-1], FINE))
-    chosen = np.rint(np.linspace(0, FINE - 1, frames)).astype(int)
-    normals = _normals(rays.mesh, line[chosen], faces[chosen], normals[chosen])
-    axes, positions = _axes(normals, np.gradient(line[chosen], axis=0)), line[chosen]
+    stops = np.rint(np.linspace(0, FINE - 1, frames)).astype(int)
+    normals = _normals(rays.mesh, line[stops], faces[stops], normals[stops])
+    axes, positions = _axes(normals, np.gradient(line[stops], axis=0)), line[stops]
     note = f"{len(places)} places, {knots[-1]:.2f} times the object's size"
     return Path(positions, axes, np.full(frames, pitch), line, note)
 

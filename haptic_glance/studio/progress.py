@@ -49,9 +49,9 @@ class Progress:
     def stop(self) -> None:
         """The person has had enough of the job that is shown."""
         with self.lock:
-            shown = self.jobs[-1:]
+            latest = self.jobs[-1:]
             self._visible(False)
-        for job in shown:
+        for job in latest:
             job.stop()
 
     def _visible(self, visible):

@@ -129,12 +129,12 @@ class Specimen:
         """The Look; another count of the same method needs neither another look nor another mesh to draw."""
         if self._looked is None or self._looked[0] != method:
             self._looked = method, Looked(self.baked, method)
-        found = self._looked[1].detect(count)
-        if found.saliency is None:
+        detection = self._looked[1].detect(count)
+        if detection.saliency is None:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
-        known = next((look.drawn for (name, _), look in self._looks.items() if name == method), None)
-        drawn = known or finely(self.mesh, found.saliency, method)
-        return Look(method, found.saliency, points_of(self.given, found), drawn)
+        earlier = next((look.drawn for (name, _), look in self._looks.items() if name == method), None)
+        drawn = earlier or finely(self.mesh, detection.saliency, method)
+        return Look(method, detection.saliency, points_of(self.given, detection), drawn)
 
 
 def files_at(place: Path) -> list[Path]:
@@ -152,15 +152,15 @@ def open_file(path: Path, up: str | None = None) -> Specimen:
     """The Specimen of a mesh, a cloud, a scan, or a mesh of the pipeline (.npz). MeshError, ValueError, OSError."""
     if path.suffix.lower() == STORED:
         return Specimen(read_mesh(path), path.stem, "z up, as the pipeline stores it", path)
-    given, note = upright_by(load_unnamed(path), path, up)
-    return Specimen(given, path.stem, note, path)
+    mesh, note = upright_by(load_unnamed(path), path, up)
+    return Specimen(mesh, path.stem, note, path)
 
 
 def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
     """The Specimen of an uploaded file; no other file is read, so an OBJ comes without its materials."""
     path = Path(name)
-    given, note = upright_by(parse(content, path.suffix.lower()), path, up)
-    return Specimen(given, path.stem, note)
+    mesh, note = upright_by(parse(content, path.suffix.lower()), path, up)
+    return Specimen(mesh, path.stem, note)
 
 
 def turned(specimen: Specimen, up: str) -> Specimen:

@@ -78,9 +78,9 @@ class Window:
                 self.fail(title, error)
 
     def work(
-        self, title: str, work: Callable[[Report], Any], done: Callable[[Any], Any], slot: str | None = None
+        self, title: str, work: Callable[[Report], Any], receiver: Callable[[Any], Any], slot: str | None = None
     ) -> None:
-        """work(report) on a thread of its own, then done(result), alone; the page shows its progress and stops it.
+        """work(report) on a thread of its own, then receiver(result), alone; the page shows its progress and stops it.
 
         Work in the same slot (None: of the same title) that still runs is stopped, and so is all when another mesh
         comes. Errors become messages.
@@ -90,10 +90,10 @@ class Window:
             if slot in self.jobs:
                 self.jobs[slot].stop()
 
-            def finish(found: Any) -> None:
+            def finish(outcome: Any) -> None:
                 with self.lock:
                     if not job.stopped:
-                        self.run(title, lambda: done(found))
+                        self.run(title, lambda: receiver(outcome))
 
             job = Job(title, work, finish, lambda error: self.fail(title, error), self._ended, self.progress.show)
             self.jobs[slot] = job
@@ -133,8 +133,8 @@ class Window:
     def show(self) -> None:
         """The mesh on the table in its own colours, or grey."""
         mesh = self.session.on_table.mesh
-        own = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8) if mesh.colors is None else mesh.colors
-        self.scene.mesh(MESH, mesh, own)
+        colors = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8) if mesh.colors is None else mesh.colors
+        self.scene.mesh(MESH, mesh, colors)
 
     def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
         """A click on the picture."""
@@ -169,15 +169,15 @@ class Window:
         for job in list(self.jobs.values()):
             job.stop()
         for part in (self.opening, *self.panels):
-            self.session.controls[type(part).__name__] = {name: input.value for name, input in inputs(part).items()}
+            self.session.controls[type(part).__name__] = {name: box.value for name, box in inputs(part).items()}
         self.session.view = self.client.camera.position, self.client.camera.look_at
 
     def restore(self) -> None:
         """Sets the controls as the session has kept them, but a choice that is no longer offered."""
         for part in (self.opening, *self.panels):
-            kept = self.session.controls.get(type(part).__name__, {})
+            values = self.session.controls.get(type(part).__name__, {})
             for name, control in inputs(part).items():
-                value = kept.get(name, control.value)
+                value = values.get(name, control.value)
                 if not isinstance(control, viser.GuiDropdownHandle) or value in control.options:
                     control.value = value
         self.opening.colour()

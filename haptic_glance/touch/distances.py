@@ -183,10 +183,10 @@ def contact_distances(
     return np.minimum(distances, limit, out=distances)
 
 
-def check_contact(contact: str, known: Sequence[str] = CONTACTS) -> None:
-    """Raises ValueError unless `contact` is one of `known`."""
-    if contact not in known:
-        raise ValueError(f"contact must be one of {', '.join(known)}, got {contact!r}")
+def check_contact(contact: str, choices: Sequence[str] = CONTACTS) -> None:
+    """Raises ValueError unless `contact` is one of `choices`."""
+    if contact not in choices:
+        raise ValueError(f"contact must be one of {', '.join(choices)}, got {contact!r}")
 
 
 MIN_PITCH = 0.2  # of the pitch, as T4.3.2's fine sensor (0.002) to its coarse one (0.01)
@@ -241,7 +241,7 @@ def _fitting_widths(widths, clearance):
     """(k,) half widths at which the clearance (k, rings) becomes 0, interpolated between two rings."""
     first = np.argmax(clearance < 0, axis=1)
     rows, inner = np.arange(len(clearance)), np.maximum(first - 1, 0)
-    left = np.where(first > 0, clearance[rows, inner], 0.0)
-    share = left / (left - clearance[rows, first])
+    margin = np.where(first > 0, clearance[rows, inner], 0.0)
+    share = margin / (margin - clearance[rows, first])
     start = np.where(first > 0, widths[inner], 0.0)
     return np.minimum(start + share * (widths[first] - start), MAX_FACTOR)

@@ -42,7 +42,7 @@ def walk(cutter: MeshCutter, plane_points: np.ndarray, frames: int, width: float
     Raises ValueError for three points that define no plane, and for a plane that misses the surface.
     """
     curve, curves, normal = followed_curve(cutter, plane_points)
-    total = sum(one.length for one in curves)
+    total = sum(piece.length for piece in curves)
     knots = np.append(0.0, np.cumsum(curve.steps))
     arc_lengths = (_nearest(curve, plane_points[1])[0] + knots[-1] / frames * np.arange(frames)) % knots[-1]
     # The last segment that begins at or before the place; one without length is never chosen. Each contour begins at a
@@ -67,7 +67,7 @@ def followed_curve(cutter: MeshCutter, plane_points: np.ndarray) -> tuple[Sectio
     if not curves or curves[0].length <= 0:
         raise ValueError(f"the plane through {_text(centre)}, {_text(first)} and {_text(second)} misses the mesh")
     longest = [curve for curve in curves if curve.length >= (1 - LENGTH_TIE) * curves[0].length]
-    curve = min(longest, key=lambda one: _nearest(one, first)[1])
+    curve = min(longest, key=lambda candidate: _nearest(candidate, first)[1])
     return curve if _area(curve.points, normal) >= 0 else curve.backwards(), curves, normal
 
 
@@ -210,11 +210,11 @@ def follow_many(
         raise ValueError(f"frames must be a whole number from 1, got {frames}")
     cells, pitch, _ = check_array(cells, pitch)
     cutter = _cutter(surface.mesh)
-    found = [_path_or_reason(cutter, points, int(frames), pitch) for points in planes]
-    paths, batch = [path for path in found if not isinstance(path, str)], max(1, BATCH // int(frames))
+    outcomes = [_path_or_reason(cutter, points, int(frames), pitch) for points in planes]
+    paths, batch = [path for path in outcomes if not isinstance(path, str)], max(1, BATCH // int(frames))
     batches = [paths[i : i + batch] for i in range(0, len(paths), batch)]
-    sequences = iter([one for part in batches for one in _press_paths(surface, part, cells, pitch)])
-    return [path if isinstance(path, str) else next(sequences) for path in found]
+    sequences = iter([sequence for part in batches for sequence in _press_paths(surface, part, cells, pitch)])
+    return [path if isinstance(path, str) else next(sequences) for path in outcomes]
 
 
 def contour(mesh_or_surface: Mesh | Surface, plane_points: ArrayLike) -> SectionCurve:
@@ -246,9 +246,9 @@ def _press_paths(surface, paths, cells, pitch):
     axes = np.concatenate([path.axes for path in paths])
     pitches, measured = adaptive_distances(surface, positions, axes, cells, pitch)
     images = normalise(measured, pitches)
-    found, start = [], 0
+    sequences, start = [], 0
     for path in paths:
-        own = slice(start, start := start + len(path.positions))
-        parts = images[own], axes[own, 2], positions[own], pitches[own]
-        found.append(Sequence(*parts, path.loops, path.length, path.share))
-    return found
+        span = slice(start, start := start + len(path.positions))
+        parts = images[span], axes[span, 2], positions[span], pitches[span]
+        sequences.append(Sequence(*parts, path.loops, path.length, path.share))
+    return sequences

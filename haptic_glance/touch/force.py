@@ -71,10 +71,10 @@ def gaps_at(
     centres, axes = check_places(centres, axes)
     cells, pitches, reaches = check_arrays(cells, pitch, None, len(centres))
     starts = centres + reaches[:, None] * axes[:, 2]
-    found = as_surface(surface).first_below(starts, axes, cells, pitches, within / unit)
-    found -= reaches[:, None, None]
-    found *= unit
-    return found
+    gaps = as_surface(surface).first_below(starts, axes, cells, pitches, within / unit)
+    gaps -= reaches[:, None, None]
+    gaps *= unit
+    return gaps
 
 
 def forces(

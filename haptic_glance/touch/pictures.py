@@ -76,8 +76,8 @@ def draw(
         note = f"not visible: {', '.join(map(str, hidden))}"
         left.text(0.02, 0.015, note, fontsize=8.5, color=GREY, va="bottom")
     reliefs = np.asarray(reliefs)[:count]
-    shown = as_shown(images, reliefs, pitch) if scale == RELIEF else images
-    _draw_imprints(right, shown, reliefs, scale, total)
+    tiles = as_shown(images, reliefs, pitch) if scale == RELIEF else images
+    _draw_imprints(right, tiles, reliefs, scale, total)
 
 
 def best_views(mesh: Mesh, positions: np.ndarray, normals: np.ndarray) -> list[Viewpoint]:

@@ -110,9 +110,9 @@ class UserMesh:
             source = np.zeros((1, 0))
         if source.shape != (1, 3) or not np.isfinite(source).all():
             raise ValueError(f"--at {word.strip()}: a position is three numbers x,y,z without spaces")
-        wanted = self.from_file(source)
-        positions, normals = snap_to_surface(self.surface, wanted, tolerance=np.inf)
-        distance, limit = np.linalg.norm(positions - wanted), MAX_OFFSET * self.mesh.diagonal
+        target = self.from_file(source)
+        positions, normals = snap_to_surface(self.surface, target, tolerance=np.inf)
+        distance, limit = np.linalg.norm(positions - target), MAX_OFFSET * self.mesh.diagonal
         if distance > limit:
             nearest = ",".join(f"{value:.{self.digits}g}" for value in self.to_file(positions)[0])
             raise ValueError(

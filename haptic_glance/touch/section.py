@@ -145,7 +145,7 @@ def _trace_curves(partner):
     """
     partner = partner.tolist()
     visited, curves = bytearray(len(partner) // 2), []
-    ends = [side for side, other in enumerate(partner) if other < 0]
+    ends = [side for side, mate in enumerate(partner) if mate < 0]
     for start in [*ends, *range(0, len(partner), 2)]:
         side, trace = start, []
         while side >= 0 and not visited[side >> 1]:
@@ -212,10 +212,10 @@ def _mean_normals(mesh, face, at_corner):
         corners = np.sort(mesh.faces, axis=1)[:, [[0, 1], [0, 2], [1, 2]]]
         keys = (corners[..., 0] * len(mesh.vertices) + corners[..., 1]).ravel()
         ends = np.sort(mesh.faces[face[on_edge]][at_corner[on_edge]].reshape(-1, 2), axis=1)
-        wanted, back = np.unique(ends[:, 0] * len(mesh.vertices) + ends[:, 1], return_inverse=True)
-        slot = np.searchsorted(wanted, keys).clip(max=len(wanted) - 1)
-        along = np.flatnonzero(wanted[slot] == keys)
-        total = np.zeros((len(wanted), 3))
+        edges, back = np.unique(ends[:, 0] * len(mesh.vertices) + ends[:, 1], return_inverse=True)
+        slot = np.searchsorted(edges, keys).clip(max=len(edges) - 1)
+        along = np.flatnonzero(edges[slot] == keys)
+        total = np.zeros((len(edges), 3))
         np.add.at(total, slot[along], mesh.face_normals[along // 3])
         average[on_edge] = total[back]
     return average

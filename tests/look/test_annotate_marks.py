@@ -66,12 +66,12 @@ def test_no_row_is_lost_when_many_write_at_once(tmp_path):
 
 def test_rows_that_changed_since_they_were_seen_are_not_replaced(tmp_path):
     path = tmp_path / "cup.csv"
-    write_marks(path, "ann", [mark(3)], seen=[])
+    write_marks(path, "ann", [mark(3)], expected=[])
     before = path.read_bytes()
     with pytest.raises(MarksChanged, match="ann"):
-        write_marks(path, "ann", [mark(4)], seen=[])
+        write_marks(path, "ann", [mark(4)], expected=[])
     assert path.read_bytes() == before
-    write_marks(path, "ann", [mark(4)], seen=[("2026-05-06T07:08:09.123+00:00", 3)])
+    write_marks(path, "ann", [mark(4)], expected=[("2026-05-06T07:08:09.123+00:00", 3)])
     assert list(read_marks(path).vertex) == [4]
 
 

@@ -46,11 +46,11 @@ def may_collapse(
         return False
     last[0] += 1
     shared = 0
-    for v, other in ((i, j), (j, i)):
+    for v, partner in ((i, j), (j, i)):
         if locked[v]:
             shared = _mark_neighbours(corner, opposite, start, mark, last[0], v)
         else:
-            shared = check_move(corner, opposite, start, p, mark, last[0], v, other, x, y, z, turn, shape, fold, cut)
+            shared = check_move(corner, opposite, start, p, mark, last[0], v, partner, x, y, z, turn, shape, fold, cut)
         if shared < 0:
             return False
     holds = shared == 2
@@ -62,34 +62,34 @@ def may_collapse(
 @helper
 def _mark_neighbours(corner, opposite, start, mark, tag, v):
     """Marks all neighbours of v with `tag`; returns how many had that mark already."""
-    found = 0
+    shared = 0
     h = first = start[v]
     while True:
         a = corner[after(h)]
-        found += mark[a] == tag
+        shared += mark[a] == tag
         mark[a] = tag
         back = before(h)
         h = opposite[back]
         if h < 0:
-            found += mark[corner[back]] == tag
+            shared += mark[corner[back]] == tag
             mark[corner[back]] = tag
-            return found
+            return shared
         if h == first:
-            return found
+            return shared
 
 
 @helper
 def _seam_holds(corner, opposite, p, i, j, h, x, y, z, fold):
     """Whether the faces that become neighbours without that of h do not fold, or one was folded before."""
-    one, two = np.int64(opposite[after(h)]), np.int64(opposite[before(h)])
-    if one < 0 or two < 0:
+    first, second = np.int64(opposite[after(h)]), np.int64(opposite[before(h)])
+    if first < 0 or second < 0:
         return True
-    ax, ay, az = _normal(corner, p, one, i, j, x, y, z)
-    bx, by, bz = _normal(corner, p, two, i, j, x, y, z)
+    ax, ay, az = _normal(corner, p, first, i, j, x, y, z)
+    bx, by, bz = _normal(corner, p, second, i, j, x, y, z)
     if not _folds(ax, ay, az, bx, by, bz, fold):
         return True
-    ax, ay, az = _normal(corner, p, one, NOBODY, NOBODY, x, y, z)
-    bx, by, bz = _normal(corner, p, two, NOBODY, NOBODY, x, y, z)
+    ax, ay, az = _normal(corner, p, first, NOBODY, NOBODY, x, y, z)
+    bx, by, bz = _normal(corner, p, second, NOBODY, NOBODY, x, y, z)
     cx, cy, cz = _normal(corner, p, h, NOBODY, NOBODY, x, y, z)
     return _folds(ax, ay, az, cx, cy, cz, fold) or _folds(bx, by, bz, cx, cy, cz, fold)
 
@@ -119,7 +119,7 @@ def check_move(
     mark: np.ndarray,
     tag: Id,
     v: Id,
-    other: Id,
+    partner: Id,
     x: float,
     y: float,
     z: float,
@@ -128,7 +128,7 @@ def check_move(
     fold: float,
     cut: float,
 ) -> int:
-    """-1 where moving v to x, y, z spoils a face around v; faces that also touch `other` are left out.
+    """-1 where moving v to x, y, z spoils a face around v; faces that also touch `partner` are left out.
 
     Spoiled is a face that turns too far, becomes a sliver, or folds onto a neighbour where it did not before, and a tip
     that is cut off. Otherwise the neighbours of v are marked and counted as by `_mark_neighbours`. v: not on the
@@ -142,18 +142,18 @@ def check_move(
     lx = ly = lz = mx = my = mz = fx = fy = fz = gx = gy = gz = 0.0
     dx, dy, dz = vx - x, vy - y, vz - z
     tip = dot(dx, dy, dz, dx, dy, dz) > cut * cut
-    found = 0
+    shared = 0
     h = first = start[v]
     a = corner[after(h)]
     ax, ay, az = point(p, a)
     while True:
-        found += mark[a] == tag
+        shared += mark[a] == tag
         mark[a] = tag
         tip = tip and dot(ax - x, ay - y, az - z, dx, dy, dz) <= 0.0
         back = before(h)
         b = corner[back]
         bx, by, bz = point(p, b)
-        if a == other or b == other:
+        if a == partner or b == partner:
             lx = ly = lz = 0.0
         else:
             ex, ey, ez = bx - ax, by - ay, bz - az
@@ -184,7 +184,7 @@ def check_move(
         h = opposite[back]
         if h == first:
             bad = _folds(fx, fy, fz, lx, ly, lz, fold) and not _folds(gx, gy, gz, mx, my, mz, fold)
-            return -1 if bad or tip else found
+            return -1 if bad or tip else shared
 
 
 @helper
@@ -206,8 +206,8 @@ def _sides(ax, ay, az, ex, ey, ez):
 @helper
 def _closes_tetrahedron(corner, opposite, h, apex):
     """Whether the corner across h has only three faces, the outer one of which ends at the other corner `apex`."""
-    one, two = opposite[after(h)], opposite[before(h)]
-    return one >= 0 and two >= 0 and corner[before(one)] == apex and corner[before(two)] == apex
+    first, second = opposite[after(h)], opposite[before(h)]
+    return first >= 0 and second >= 0 and corner[before(first)] == apex and corner[before(second)] == apex
 
 
 BITS = 1  # of the mantissa: two buckets for each doubling of the cost
@@ -286,22 +286,22 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
 def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn, shape, fold):
     """`decimate` with an empty queue; mark, last: as of `may_collapse`."""
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
-    left = 0
+    count = 0
     for h in range(len(corner)):
-        left += corner[h] >= 0
+        count += corner[h] >= 0
         if opposite[h] > h and corner[h] >= 0:
             _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, h)
-    left //= 3
-    ones, twos, threes = 0.0, 0.0, 0.0
+    count //= 3
+    xx, yy, zz = 0.0, 0.0, 0.0
     for v in range(len(quadric)):
-        ones, twos, threes = ones + quadric[v, 0], twos + quadric[v, 3], threes + quadric[v, 5]
-    area = ones + twos + threes
+        xx, yy, zz = xx + quadric[v, 0], yy + quadric[v, 3], zz + quadric[v, 5]
+    area = xx + yy + zz
     if wedges is not None:  # whose attributes are in the quadrics too
         area = 0.0
         for w in range(len(wedges.sums)):
             area += wedges.sums[w, 0]
     level = 0.0
-    while left > faces:
+    while count > faces:
         h, bucket = pop(head, following, lowest)
         if h < 0:
             break
@@ -314,19 +314,21 @@ def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn,
             continue
         refused = (bucket - now) / LATER
         level = max(level, cost * GROWN**refused)
-        cut, least = np.sqrt(level * left / area), shape * 0.1**refused
+        cut, least = np.sqrt(level * count / area), shape * 0.1**refused
         limits = turn, least, fold, cut
         if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):
             if wedges is not None:
                 merge_wedges(opposite, wedges, h)
-            one, two = collapse_edge(corner, opposite, start, boundary, locked, position, quadric, parent, h, x, y, z)
-            for g in (one, two):
+            first, second = collapse_edge(
+                corner, opposite, start, boundary, locked, position, quadric, parent, h, x, y, z
+            )
+            for g in (first, second):
                 if g >= 0 and not (is_queued(following, g) or (opposite[g] >= 0 and is_queued(following, opposite[g]))):
                     _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, g)
-            left -= 2
+            count -= 2
         elif bucket + LATER < BUCKETS:
             push(head, following, lowest, h, bucket + LATER)
-    return left
+    return count
 
 
 @helper

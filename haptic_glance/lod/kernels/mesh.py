@@ -31,19 +31,19 @@ def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray
     faces (3 m,) vertex ids below `count`. The opposite is -1 on the boundary: where one, three or more faces share the
     edge and, if `oriented`, where its two faces have opposite windings.
     """
-    other = np.full(len(faces), -1, dtype=np.int32)
+    opposite = np.full(len(faces), -1, dtype=np.int32)
     ends = np.empty((2, len(faces) // 2), dtype=np.int32)
-    if _closed(faces, other, np.zeros(count + 1, dtype=np.int32), *ends):
-        return other, 0
+    if _closed(faces, opposite, np.zeros(count + 1, dtype=np.int32), *ends):
+        return opposite, 0
     return _of_any(faces, count, oriented)
 
 
 @allocating_kernel
 def _of_any(faces, count, oriented):
     """`opposites` of faces that need not be closed."""
-    other = np.full(len(faces), -1, dtype=np.int32)
+    opposite = np.full(len(faces), -1, dtype=np.int32)
     first, order = _by_lower_end(faces, count)
-    seen = np.full(count, -1, dtype=np.int32)
+    mark = np.full(count, -1, dtype=np.int32)
     slot = np.zeros(count, dtype=np.int32)
     shared = np.zeros(count, dtype=np.int32)
     non_manifold = 0
@@ -52,25 +52,25 @@ def _of_any(faces, count, oriented):
             h = order[at]
             tail, head = faces[h], faces[after(h)]
             high = max(tail, head)
-            if seen[high] != low:
-                seen[high], slot[high], shared[high] = low, h, 0
+            if mark[high] != low:
+                mark[high], slot[high], shared[high] = low, h, 0
             first_half = slot[high]  # of the edge, which keeps the count
             shared[high] += 1
             if shared[high] == 2 and not (oriented and faces[first_half] == tail):
-                other[h], other[first_half] = first_half, h
+                opposite[h], opposite[first_half] = first_half, h
             elif shared[high] > 3:
                 non_manifold += 1
             elif shared[high] == 3:
                 non_manifold += 3
-                if other[first_half] >= 0:
-                    other[other[first_half]] = -1
-                    other[first_half] = -1
-    return other, non_manifold
+                if opposite[first_half] >= 0:
+                    opposite[opposite[first_half]] = -1
+                    opposite[first_half] = -1
+    return opposite, non_manifold
 
 
 @light_kernel
-def _closed(faces, other, first, up, high):
-    """Fills `other` for a closed manifold with consistent winding, else returns False.
+def _closed(faces, opposite, first, up, high):
+    """Fills `opposite` for a closed manifold with consistent winding, else returns False.
 
     There each edge has one half-edge up, to the higher id, and one down. Most meshes are such: a third of the time.
     first (count + 1,): zeros; up, high: scratch, half as long as faces.
@@ -99,18 +99,18 @@ def _closed(faces, other, first, up, high):
         for k in range(3):
             tail, head = faces[f + k], faces[f + (k + 1) % 3]
             if tail >= head:
-                good &= _match(first, up, high, other, tail, head, f + k)
+                good &= _match(first, up, high, opposite, tail, head, f + k)
     return good
 
 
 @helper
-def _match(first, up, high, other, tail, head, h):
+def _match(first, up, high, opposite, tail, head, h):
     """Pairs half-edge h with the first one from its head up to its tail; False where that already has a pair."""
     for at in range(first[head], first[head + 1]):
         if high[at] == tail:
             g = up[at]
-            free = other[g] < 0
-            other[h], other[g] = g, h
+            free = opposite[g] < 0
+            opposite[h], opposite[g] = g, h
             return free
     return False
 
@@ -214,13 +214,13 @@ def collapse_edge(
     left, right = opposite[after(h)], opposite[after(t)]
     left, right = (left if left >= 0 else up), (right if right >= 0 else down)
     for g in (h, t):
-        one, two, across = opposite[after(g)], opposite[before(g)], corner[before(g)]
+        ahead, behind, across = opposite[after(g)], opposite[before(g)], corner[before(g)]
         if start[across] == before(g):
-            start[across] = one
-        if one >= 0:
-            opposite[one] = two
-        if two >= 0:
-            opposite[two] = one
+            start[across] = ahead
+        if ahead >= 0:
+            opposite[ahead] = behind
+        if behind >= 0:
+            opposite[behind] = ahead
         f = g - g % 3
         corner[f] = corner[f + 1] = corner[f + 2] = -1
     position[stays, 0], position[stays, 1], position[stays, 2] = x, y, z
@@ -259,17 +259,17 @@ def _name_corners(corner, locked, source, count, name, faces, used):
     return size, ids
 
 
-def split_fans(faces: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, int]:
+def split_fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, int]:
     """(3 m,) i4: the fan at each corner, and the number of fans; the windings of neighbours may differ.
 
-    faces (3 m,); other (3 m,): their `opposites`.
+    faces (3 m,); opposite (3 m,): their `opposites`.
     """
     fan = np.full(len(faces), -1, dtype=np.int32)
-    return fan, _fill_split_fans(faces, other, fan)
+    return fan, _fill_split_fans(faces, opposite, fan)
 
 
 @light_kernel
-def _fill_split_fans(faces, other, fan):
+def _fill_split_fans(faces, opposite, fan):
     """Fills the fans of `split_fans`, all -1 before; returns their number."""
     count = 0
     for seed in range(len(faces)):
@@ -278,62 +278,61 @@ def _fill_split_fans(faces, other, fan):
         fan[seed] = count
         for side in range(2):  # to one end of the fan, then to the other; around once where it is closed
             edge, tail = (seed, True) if side == 0 else (before(seed), False)  # tail: the corner is that of the edge
-            while other[edge] >= 0:
-                across = other[edge]
+            while opposite[edge] >= 0:
+                across = opposite[edge]
                 tail = tail == (faces[across] == faces[edge])
-                here = across if tail else after(across)
-                if fan[here] >= 0:
+                corner = across if tail else after(across)
+                if fan[corner] >= 0:
                     break
-                fan[here] = count
-                edge, tail = (before(across), False) if tail else (here, True)
+                fan[corner] = count
+                edge, tail = (before(across), False) if tail else (corner, True)
         count += 1
     return count
 
 
-def face_components(other: np.ndarray) -> tuple[np.ndarray, int]:
-    """(m,) i4: the component, joined by edges, of each face, and their number. other (3 m,): see `opposites`."""
-    component = np.full(len(other) // 3, -1, dtype=np.int32)
-    return component, _fill_components(other, component, np.empty_like(component))
+def face_components(opposite: np.ndarray) -> tuple[np.ndarray, int]:
+    """(m,) i4: the component, joined by edges, of each face, and their number. opposite (3 m,): see `opposites`."""
+    component = np.full(len(opposite) // 3, -1, dtype=np.int32)
+    return component, _fill_components(opposite, component, np.empty_like(component))
 
 
 @light_kernel
-def _fill_components(other, component, waiting):
+def _fill_components(opposite, component, waiting):
     """Fills the components, all -1 before, and returns their number. waiting (m,): scratch."""
     count = 0
     for seed in range(len(component)):
         if component[seed] >= 0:
             continue
-        component[seed], waiting[0], left = count, seed, 1
-        while left:
-            left -= 1
-            f = waiting[left]
+        component[seed], waiting[0], pending = count, seed, 1
+        while pending:
+            pending -= 1
+            f = waiting[pending]
             for h in range(3 * f, 3 * f + 3):
-                g = other[h] // 3  # -1 on the boundary
+                g = opposite[h] // 3  # -1 on the boundary
                 if g >= 0 and component[g] < 0:
-                    component[g], waiting[left] = count, g
-                    left += 1
+                    component[g], waiting[pending] = count, g
+                    pending += 1
         count += 1
     return count
 
 
-def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -> np.ndarray:
+def signed_volumes(vertices: np.ndarray, faces: np.ndarray, opposite: np.ndarray) -> np.ndarray:
     """(k,) volume inside each component, negative where it is inside out; 0 for one with a boundary."""
-    component, count = face_components(other)
+    component, count = face_components(opposite)
     volume, boundary = np.zeros(count), np.zeros(count, dtype=np.bool_)
-    _add_volumes(vertices, faces, other, component, np.full(count, -1, dtype=np.int32), volume, boundary)
+    _add_volumes(vertices, faces, opposite, component, np.full(count, -1, dtype=np.int32), volume, boundary)
     volume[boundary] = 0.0
     return volume
 
 
 @light_kernel
-def _add_volumes(vertices, faces, other, component, origin, volume, boundary):
+def _add_volumes(vertices, faces, opposite, component, origin, volume, boundary):
     """Adds the volume under each face to that of its component. origin: -1, then a vertex of each component."""
     for f in range(len(component)):
         at = component[f]
         if origin[at] < 0:
-            origin[at] = faces[
-                3 * f
-            ]  # a point of the component itself: from afar, small volumes would be lost to rounding
+            # a point of the component itself: from afar, small volumes would be lost to rounding
+            origin[at] = faces[3 * f]
         o, i, j, k = origin[at], faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
         ax, ay, az = between(vertices, o, i)
         bx, by, bz = between(vertices, o, j)
@@ -341,21 +340,21 @@ def _add_volumes(vertices, faces, other, component, origin, volume, boundary):
         nx, ny, nz = cross(bx, by, bz, cx, cy, cz)
         volume[at] += dot(ax, ay, az, nx, ny, nz) / 6
         for h in range(3 * f, 3 * f + 3):
-            boundary[at] |= other[h] < 0
+            boundary[at] |= opposite[h] < 0
 
 
 def count_faults(
-    vertices: np.ndarray, faces: np.ndarray, other: np.ndarray, thin: float, fold: float
+    vertices: np.ndarray, faces: np.ndarray, opposite: np.ndarray, thin: float, fold: float
 ) -> tuple[int, int]:
     """(degenerate faces, pairs of neighbours folded onto each other).
 
-    faces (3 m,); other (3 m,): their `opposites`. thin: height of a degenerate face; fold: cosine of the normals.
+    faces (3 m,); opposite (3 m,): their `opposites`. thin: height of a degenerate face; fold: cosine of the normals.
     """
-    return _count(vertices, faces, other, thin, fold, np.zeros((len(faces) // 3, 3)))
+    return _count(vertices, faces, opposite, thin, fold, np.zeros((len(faces) // 3, 3)))
 
 
 @light_kernel
-def _count(vertices, faces, other, thin, fold, normal):
+def _count(vertices, faces, opposite, thin, fold, normal):
     """`count_faults`; normal (m, 3): zeros."""
     degenerate = folded = 0
     for f in range(len(normal)):
@@ -370,9 +369,9 @@ def _count(vertices, faces, other, thin, fold, normal):
         if double > 0.0:
             normal[f, 0], normal[f, 1], normal[f, 2] = x / double, y / double, z / double
     for h in range(len(faces)):
-        if other[h] > h:
+        if opposite[h] > h:
             ux, uy, uz = point(normal, h // 3)
-            vx, vy, vz = point(normal, other[h] // 3)
+            vx, vy, vz = point(normal, opposite[h] // 3)
             along = dot(ux, uy, uz, vx, vy, vz)
-            folded += (-along if faces[h] == faces[other[h]] else along) < fold  # whatever the winding
+            folded += (-along if faces[h] == faces[opposite[h]] else along) < fold  # whatever the winding
     return degenerate, folded

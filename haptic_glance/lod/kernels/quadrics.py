@@ -21,13 +21,13 @@ MAX_SHIFT = 2.0  # of the optimum from the edge's midpoint, in lengths of the ed
 
 def vertex_quadrics(position: np.ndarray, corner: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(n, 10) quadrics: x.A.x + 2 b.x + c as A (xx, xy, xz, yy, yz, zz), b, c; weight (n,) multiplies them."""
-    found = np.zeros((len(position), 10))
-    _add_planes(position, corner, weight, found)
-    return found
+    quadrics = np.zeros((len(position), 10))
+    _add_planes(position, corner, weight, quadrics)
+    return quadrics
 
 
 @kernel
-def _add_planes(position, corner, weight, found):
+def _add_planes(position, corner, weight, quadrics):
     """Adds the quadrics of the planes of all faces to those of their vertices."""
     for f in range(len(corner) // 3):
         i, j, k = corner[3 * f], corner[3 * f + 1], corner[3 * f + 2]
@@ -42,7 +42,7 @@ def _add_planes(position, corner, weight, found):
         d = -dot(nx, ny, nz, ax, ay, az)
         for v in (i, j, k):
             px, py, pz = point(position, v)
-            _add(found, v, double / 6 * weight[v], nx, ny, nz, d, px, py, pz)
+            _add(quadrics, v, double / 6 * weight[v], nx, ny, nz, d, px, py, pz)
 
 
 @helper

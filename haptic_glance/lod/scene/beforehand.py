@@ -56,12 +56,12 @@ def profile(chain: Sequence[Level], directions: int = DIRECTIONS, rows: int = RO
         along.append(np.broadcast_to(-view, starts[-1].shape))
     origins, rays = np.concatenate(starts), np.concatenate(along)
     area = (2 * radius / rows) ** 2
-    seen = [_hits(level, origins, rays) for level in chain]
+    hits = [_hits(level, origins, rays) for level in chain]
     sums = np.zeros((directions, len(chain)))
     for k, level in enumerate(chain[1:], start=1):
-        for (which, points), other in ((seen[0], level), (seen[k], chain[0])):
-            distances = other.surface.nearest(points)[0]
-            sums[:, k] += area * np.bincount(which // rows**2, distances, directions)
+        for (ray, points), target in ((hits[0], level), (hits[k], chain[0])):
+            distances = target.surface.nearest(points)[0]
+            sums[:, k] += area * np.bincount(ray // rows**2, distances, directions)
     return Profile(views, sums, chain[0].surface.sample(POINTS, rng(0, "profile"))[0])
 
 
@@ -71,12 +71,12 @@ def by_profiles(frames: Frames, chains: Sequence[Sequence[Level]], profiles: Seq
     chains, profiles: of each object. price: faces that one pixel displaced by one pixel is worth, above 0.
     """
     columns = []
-    for item, (chain, own) in enumerate(zip(chains, profiles, strict=True)):
+    for item, (chain, record) in enumerate(zip(chains, profiles, strict=True)):
         pose = frames.poses[item]
         away = np.array([camera.eye for camera in frames.scene.cameras]) - pose.corners().mean(axis=0)
-        views = np.argmax(unit(away) @ pose.turn @ own.directions.T, axis=1)
-        cubes = [_cube(camera, pose, own.points) for camera in frames.scene.cameras]
-        columns.append(cheapest_at(chain, own.sums[views] * np.array(cubes)[:, None], price))
+        views = np.argmax(unit(away) @ pose.turn @ record.directions.T, axis=1)
+        cubes = [_cube(camera, pose, record.points) for camera in frames.scene.cameras]
+        columns.append(cheapest_at(chain, record.sums[views] * np.array(cubes)[:, None], price))
     return Plan(np.stack(columns, axis=1), chains, frames)
 
 
@@ -85,7 +85,7 @@ def rendered_sums(frames: Frames, chains: Sequence[Sequence[Level]]) -> list[np.
 
     Every level is rendered in every frame: the errors that a planner with any amount of time would know.
     """
-    found = []
+    tables = []
     for item, chain in enumerate(chains):
         full, sums = frames.full[item], np.zeros((len(frames.in_view), len(chain)))
         where = [(int(frame), k) for frame in np.flatnonzero(frames.in_view[:, item]) for k in range(1, len(chain))]
@@ -94,13 +94,13 @@ def rendered_sums(frames: Frames, chains: Sequence[Sequence[Level]]) -> list[np.
             sums[frame, k] = sum(
                 frames.moved(frame, item, *pair).sum() for pair in ((full, chain[k]), (chain[k], full))
             )
-        found.append(sums)
-    return found
+        tables.append(sums)
+    return tables
 
 
 def by_sums(frames: Frames, chains: Sequence[Sequence[Level]], sums: Sequence[np.ndarray], price: float) -> Plan:
     """The Plan by displacements (f, l) of each object, as `rendered_sums` gives them."""
-    columns = [cheapest_at(chain, own, price) for chain, own in zip(chains, sums, strict=True)]
+    columns = [cheapest_at(chain, table, price) for chain, table in zip(chains, sums, strict=True)]
     return Plan(np.stack(columns, axis=1), chains, frames)
 
 

@@ -94,7 +94,9 @@ class _Search:
             if not len(over):
                 return levels
             for frame in over:  # none twice: no level is finer than its `least`
-                counts = [own * seen for own, seen in zip(self.faces, self.frames.in_view[frame], strict=True)]
+                counts = [
+                    faces * visible for faces, visible in zip(self.faces, self.frames.in_view[frame], strict=True)
+                ]
                 errors = [error[frame] for error in self.errors]
                 least[frame] = share_limit(levels[frame], counts, errors, self.scene.limit)
 
@@ -116,8 +118,8 @@ class _Search:
         for item, column in enumerate(levels.T):
             for frame, level in enumerate(column):
                 if self.frames.in_view[frame, item]:
-                    for tried in range(level, min(level + 2, len(self.chains[item]))):
-                        yield frame, item, 0, int(tried)
+                    for candidate in range(level, min(level + 2, len(self.chains[item]))):
+                        yield frame, item, 0, int(candidate)
                     if frame and column[frame - 1] != level:
                         yield frame, item, int(column[frame - 1]), int(level)
 
@@ -125,12 +127,12 @@ class _Search:
         pairs = [(frame, item, *(self.chains[item][k] for k in pair)) for frame, item, *pair in fresh]
         if self.scene.kind == "pixels":
             self.frames.measure(pairs)
-        for (frame, item, one, other), pair in zip(fresh, pairs, strict=True):
-            self.rendered.add((frame, item, one, other))
-            found = self.frames.between(*pair)
-            self.jumps[item][frame, one, other] = self.jumps[item][frame, other, one] = found
-            if one == 0:
-                self.errors[item][frame, other] = found
+        for (frame, item, first, second), pair in zip(fresh, pairs, strict=True):
+            self.rendered.add((frame, item, first, second))
+            error = self.frames.between(*pair)
+            self.jumps[item][frame, first, second] = self.jumps[item][frame, second, first] = error
+            if first == 0:
+                self.errors[item][frame, second] = error
 
     def _reject_broken(self, levels):
         """Renders whole frames; True where one breaks the tolerance though its objects one by one were within it."""
@@ -159,8 +161,8 @@ class _Search:
 
         if self.scene.kind == "pixels" or error_without(item) <= self.scene.tolerance:
             return item
-        others = [k for k, level in enumerate(plan.levels[frame]) if level > 0 and k != item]
-        return min(others, key=error_without)
+        suspects = [k for k, level in enumerate(plan.levels[frame]) if level > 0 and k != item]
+        return min(suspects, key=error_without)
 
 
 VIOLATION_COST = 1e9  # in faces, of an error of twice the tolerance: no saving is worth a visible error
@@ -231,11 +233,11 @@ def share_limit(
     total = sum(counts[level] for counts, level in zip(faces, levels, strict=True))
     while total > limit:
         prices = [_price(counts, error, level) for counts, error, level in zip(faces, errors, levels, strict=True)]
-        chosen = prices.index(min(prices))
-        if not np.isfinite(prices[chosen][0]):
+        item = prices.index(min(prices))
+        if not np.isfinite(prices[item][0]):
             break
-        total += faces[chosen][levels[chosen] + 1] - faces[chosen][levels[chosen]]
-        levels[chosen] += 1
+        total += faces[item][levels[item] + 1] - faces[item][levels[item]]
+        levels[item] += 1
     return levels
 
 

@@ -64,13 +64,13 @@ def build_lod_chain(mesh: Mesh, seed: int = 0, **options: Any) -> tuple[Level, .
     levels = [finest(mesh)]
     for count in face_counts(len(mesh.faces)):
         try:
-            found = simplify(mesh, count, shrink=True, **options)
+            reduced = simplify(mesh, count, shrink=True, **options)
         except InfeasibleTarget:
             break
         except SimplifyError:
             continue
-        if len(found.faces) < levels[-1].faces:
-            levels.append(Level(found, level_errors(found, levels[0].surface, seed)))
+        if len(reduced.faces) < levels[-1].faces:
+            levels.append(Level(reduced, level_errors(reduced, levels[0].surface, seed)))
     return tuple(levels)
 
 
@@ -85,22 +85,22 @@ def face_counts(faces: int) -> list[int]:
     return [int(count) for count in counts if count >= COARSEST]
 
 
-def level_errors(level_mesh: Mesh, own: SurfaceIndex, seed: int = 0) -> dict[str, float]:
-    """dict of ERRORS: distances between a mesh and the surface `own` in their unit, the larger of the two directions.
+def level_errors(level_mesh: Mesh, base: SurfaceIndex, seed: int = 0) -> dict[str, float]:
+    """dict of ERRORS: distances between a mesh and the surface `base` in their unit, the larger of the two directions.
 
     From SAMPLES points on either surface, and the vertices.
     """
-    other = SurfaceIndex(level_mesh)
-    there, back = _distances(own, other, rng(seed, "own")), _distances(other, own, rng(seed, "level"))
-    found = {"rms": np.sqrt([(there**2).mean(), (back**2).mean()])}
-    found |= {f"q{share}": [np.quantile(side, share / 100) for side in (there, back)] for share in (95, 99)}
-    corners = [own.nearest(_corners(level_mesh))[0].max(), other.nearest(_corners(own.mesh))[0].max()]
-    found["max"] = [there.max(), back.max(), *corners]
-    return {name: float(max(found[name])) for name in ERRORS}
+    coarse = SurfaceIndex(level_mesh)
+    forth, back = _distances(base, coarse, rng(seed, "own")), _distances(coarse, base, rng(seed, "level"))
+    distances = {"rms": np.sqrt([(forth**2).mean(), (back**2).mean()])}
+    distances |= {f"q{share}": [np.quantile(side, share / 100) for side in (forth, back)] for share in (95, 99)}
+    corners = [base.nearest(_corners(level_mesh))[0].max(), coarse.nearest(_corners(base.mesh))[0].max()]
+    distances["max"] = [forth.max(), back.max(), *corners]
+    return {name: float(max(distances[name])) for name in ERRORS}
 
 
-def _distances(surface, other, generator):
-    return other.nearest(surface.sample(SAMPLES, generator)[0])[0]
+def _distances(surface, target, generator):
+    return target.nearest(surface.sample(SAMPLES, generator)[0])[0]
 
 
 def _corners(mesh):

@@ -112,29 +112,32 @@ class Frames:
     def visible(self, frame: int, item: int, level: Level) -> np.ndarray:
         """(k,) boolean: the pixels of a Rendering that no other object, at full detail, hides."""
         first, second, owner = self._others[frame]
-        own = self.rendering(frame, item, level)
-        limit = np.where(owner[own.pixels] == item, second[own.pixels], first[own.pixels])
-        return own.depth < limit
+        rendering = self.rendering(frame, item, level)
+        limit = np.where(owner[rendering.pixels] == item, second[rendering.pixels], first[rendering.pixels])
+        return rendering.depth < limit
 
     def measure(self, pairs: Iterable[tuple[int, int, Level, Level]]) -> None:
         """Computes the displacements of many (frame, object, level, other level), one query per pair of meshes."""
         missing, groups = {}, {}
         for frame, item, first, second in pairs:
-            for one, other in ((first, second), (second, first)):
-                if (frame, item, one, other) not in self._displacements:
-                    missing[frame, item, one, other] = None
-        for frame, item, one, other in missing:
-            groups.setdefault((one, other), []).append((frame, item))
-        for (one, other), places in groups.items():
-            renderings = [self.rendering(frame, item, one) for frame, item in places]
+            for source, target in ((first, second), (second, first)):
+                if (frame, item, source, target) not in self._displacements:
+                    missing[frame, item, source, target] = None
+        for frame, item, source, target in missing:
+            groups.setdefault((source, target), []).append((frame, item))
+        for (source, target), places in groups.items():
+            renderings = [self.rendering(frame, item, source) for frame, item in places]
             points = np.concatenate(
-                [self._points(frame, item, own) for (frame, item), own in zip(places, renderings, strict=True)]
+                [
+                    self._points(frame, item, rendering)
+                    for (frame, item), rendering in zip(places, renderings, strict=True)
+                ]
             )
-            found = other.surface.nearest(points)[0] if one is not other else np.zeros(len(points))
-            ends = np.cumsum([len(own.pixels) for own in renderings])[:-1]
-            for (frame, item), own, part in zip(places, renderings, np.split(found, ends), strict=True):
-                pixels = self._pixels_per_unit(frame, item, own)
-                self._displacements[frame, item, one, other] = (part * pixels).astype(np.float32)
+            distances = target.surface.nearest(points)[0] if source is not target else np.zeros(len(points))
+            ends = np.cumsum([len(rendering.pixels) for rendering in renderings])[:-1]
+            for (frame, item), rendering, part in zip(places, renderings, np.split(distances, ends), strict=True):
+                pixels = self._pixels_per_unit(frame, item, rendering)
+                self._displacements[frame, item, source, target] = (part * pixels).astype(np.float32)
 
     def _points(self, frame, item, rendering):
         return rays_of(rendering, self.scene.cameras[frame], self.poses[item])[0]
@@ -142,21 +145,23 @@ class Frames:
     def _pixels_per_unit(self, frame, item, rendering):
         return self.poses[item].scale * self.scene.cameras[frame].focal / rendering.depth
 
-    def between(self, frame: int, item: int, one: Level, other: Level) -> float:
+    def between(self, frame: int, item: int, first: Level, second: Level) -> float:
         """Error on the screen of one level of an object against another, with the other objects at full detail."""
-        if one is other:
+        if first is second:
             return 0.0
         if self.scene.kind == "ssim":
-            return structure_lost(self, frame, item, one, other)
-        self.measure([(frame, item, one, other)])
-        return _quantile(np.concatenate([self.moved(frame, item, *pair) for pair in ((one, other), (other, one))]))
+            return structure_lost(self, frame, item, first, second)
+        self.measure([(frame, item, first, second)])
+        return _quantile(
+            np.concatenate([self.moved(frame, item, *pair) for pair in ((first, second), (second, first))])
+        )
 
-    def moved(self, frame: int, item: int, one: Level, other: Level) -> np.ndarray:
-        """(k,) f4: displacements from `other` of the pixels that show an object at level `one`; `measure` comes first.
+    def moved(self, frame: int, item: int, level: Level, base: Level) -> np.ndarray:
+        """(k,) f4: displacements from `base` of the pixels that show an object at level `level`; `measure` comes first.
 
         The other objects, at full detail, hide some of the object's pixels.
         """
-        return self._displacements[frame, item, one, other][self.visible(frame, item, one)]
+        return self._displacements[frame, item, level, base][self.visible(frame, item, level)]
 
     def check(self, frame: int, levels: Sequence[Level]) -> FrameError:
         """The FrameError of a rendered frame with one level per object, over the pixels in which each is visible.
@@ -164,24 +169,24 @@ class Frames:
         The latest of each frame are remembered: two plans of a search often show a frame at the same levels.
         """
         key = frame, tuple(levels)
-        self._checks[key] = found = self._checks.pop(key, None) or self._check(*key)
+        self._checks[key] = error = self._checks.pop(key, None) or self._check(*key)
         if len(self._checks) > RECENT * len(self.scene.cameras):
             del self._checks[next(iter(self._checks))]
-        return found
+        return error
 
     def _check(self, frame, levels):
         self.measure([(frame, item, self.full[item], level) for item, level in enumerate(levels)])
         sides = [[np.zeros(0, np.float32)] for _ in levels]
         owners = self._others[frame][2], self.owners(frame, levels)
-        for owner, shown, others in zip(owners, (self.full, levels), (levels, self.full), strict=True):
-            for item, (one, other) in enumerate(zip(shown, others, strict=True)):
-                mine = owner[self.rendering(frame, item, one).pixels] == item
-                sides[item].append(self._displacements[frame, item, one, other][mine])
-        found = [np.concatenate(side) for side in sides]
-        errors = np.array([_quantile(side) for side in found])
+        for owner, sources, targets in zip(owners, (self.full, levels), (levels, self.full), strict=True):
+            for item, (source, target) in enumerate(zip(sources, targets, strict=True)):
+                visible = owner[self.rendering(frame, item, source).pixels] == item
+                sides[item].append(self._displacements[frame, item, source, target][visible])
+        moves = [np.concatenate(side) for side in sides]
+        errors = np.array([_quantile(side) for side in moves])
         if self.scene.kind == "ssim":
             errors = structures_lost(self, frame, levels)
-        return FrameError(float(errors.max()), errors, np.concatenate(found))
+        return FrameError(float(errors.max()), errors, np.concatenate(moves))
 
     def weighted(self, frame: int, item: int, level: Level, values: np.ndarray) -> tuple[float, float]:
         """(sum of displacement times value, sum of values) over the pixels that show an object in the full frame.
@@ -190,9 +195,9 @@ class Frames:
         """
         full = self.full[item]
         self.measure([(frame, item, full, level)])
-        own, shown = self.rendering(frame, item, full), self.visible(frame, item, full)
-        weights = values[full.mesh.faces[own.faces[shown]]].mean(axis=1)
-        return float(self._displacements[frame, item, full, level][shown] @ weights), float(weights.sum())
+        rendering, visible = self.rendering(frame, item, full), self.visible(frame, item, full)
+        weights = values[full.mesh.faces[rendering.faces[visible]]].mean(axis=1)
+        return float(self._displacements[frame, item, full, level][visible] @ weights), float(weights.sum())
 
     def displacements(self, frame: int, item: int, level: Level) -> np.ndarray:
         """(k,) f4: the displacement of each pixel of an object's Rendering at a level from the full mesh."""
@@ -242,8 +247,8 @@ class Plan:
 
         Where no pixel shows it before or after, nothing jumps: its box reaches into the view before it does.
         """
-        shown = self.frames.scale > 0
-        where = np.argwhere((np.diff(self.levels, axis=0) != 0) & shown[1:] & shown[:-1])
+        visible = self.frames.scale > 0
+        where = np.argwhere((np.diff(self.levels, axis=0) != 0) & visible[1:] & visible[:-1])
         return [(int(f) + 1, int(o), self._jump(f + 1, o)) for f, o in where]
 
     def _jump(self, frame, item):

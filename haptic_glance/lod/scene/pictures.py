@@ -30,10 +30,10 @@ def shaded(frames: "Frames", frame: int, levels: Sequence[Level], only: int | No
     for item, level in enumerate(levels):
         if only is not None and not _overlap(frames, frame, only, item):
             continue
-        own = frames.rendering(frame, item, level)
-        nearer = own.depth < depth[own.pixels]
-        at = own.pixels[nearer]
-        depth[at], image[at] = own.depth[nearer], frames.colors(frame, item, level)[nearer]
+        rendering = frames.rendering(frame, item, level)
+        nearer = rendering.depth < depth[rendering.pixels]
+        at = rendering.pixels[nearer]
+        depth[at], image[at] = rendering.depth[nearer], frames.colors(frame, item, level)[nearer]
     return image.reshape(h, w, 3)
 
 
@@ -47,22 +47,22 @@ def picture_error(frames: "Frames", frame: int, levels: Sequence[Level]) -> floa
     return ssim_error(picture(frames, frame, frames.full), picture(frames, frame, levels))
 
 
-def structure_lost(frames: "Frames", frame: int, item: int, one: Level, other: Level) -> float:
+def structure_lost(frames: "Frames", frame: int, item: int, first: Level, second: Level) -> float:
     """1 - SSIM between an object at two levels, the others at full detail: see `structures_lost`."""
-    levels, shown, visible = list(frames.full), [], []
-    for level in (one, other):
+    levels, pictures, visible = list(frames.full), [], []
+    for level in (first, second):
         levels[item] = level
-        shown.append(picture(frames, frame, levels, only=item))
+        pictures.append(picture(frames, frame, levels, only=item))
         visible.append(frames.rendering(frame, item, level).pixels[frames.visible(frame, item, level)])
-    return _lost(frames, frame, item, shown[0], shown[1], np.union1d(visible[0], visible[1]))
+    return _lost(frames, frame, item, pictures[0], pictures[1], np.union1d(visible[0], visible[1]))
 
 
 def structures_lost(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
     """(o,) mean of 1 - SSIM against the full frame, over the pixels that show each object in either picture."""
     before, after = picture(frames, frame, frames.full), picture(frames, frame, levels)
-    owners = [frames.owners(frame, shown) for shown in (frames.full, levels)]
-    own = [np.flatnonzero((owners[0] == item) | (owners[1] == item)) for item in range(len(levels))]
-    return np.array([_lost(frames, frame, item, before, after, pixels) for item, pixels in enumerate(own)])
+    owners = [frames.owners(frame, side) for side in (frames.full, levels)]
+    regions = [np.flatnonzero((owners[0] == item) | (owners[1] == item)) for item in range(len(levels))]
+    return np.array([_lost(frames, frame, item, before, after, pixels) for item, pixels in enumerate(regions)])
 
 
 def displacement_picture(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
@@ -71,8 +71,8 @@ def displacement_picture(frames: "Frames", frame: int, levels: Sequence[Level]) 
     image = np.full(owner.shape, np.nan, np.float32)
     for item, level in enumerate(levels):
         pixels = frames.rendering(frame, item, level).pixels
-        mine = owner[pixels] == item
-        image[pixels[mine]] = frames.displacements(frame, item, level)[mine]
+        visible = owner[pixels] == item
+        image[pixels[visible]] = frames.displacements(frame, item, level)[visible]
     return image.reshape(frames.scene.cameras[frame].size)
 
 
@@ -94,8 +94,8 @@ def _padded(frames, frame, item):
     return rows, slice(max(min(left, w - WINDOW) - WINDOW, 0), min(max(right, WINDOW) + WINDOW, w))
 
 
-def _overlap(frames, frame, one, other):
-    (rows, columns), (top, bottom, left, right) = _padded(frames, frame, one), frames.boxes[frame][other]
+def _overlap(frames, frame, first, second):
+    (rows, columns), (top, bottom, left, right) = _padded(frames, frame, first), frames.boxes[frame][second]
     return rows.start < bottom and top < rows.stop and columns.start < right and left < columns.stop
 
 
@@ -172,9 +172,9 @@ def shade(level: Level, rendering: Rendering, camera: Camera, pose: Pose) -> np.
 def nearest(renderings: Sequence[Rendering], pixels: int) -> np.ndarray:
     """(pixels,) the index of the nearest Rendering, -1 where there is none."""
     depth, owner = np.full(pixels, np.inf), np.full(pixels, -1)
-    for item, seen in enumerate(renderings):
-        nearer = seen.depth < depth[seen.pixels]
-        depth[seen.pixels[nearer]], owner[seen.pixels[nearer]] = seen.depth[nearer], item
+    for item, rendering in enumerate(renderings):
+        nearer = rendering.depth < depth[rendering.pixels]
+        depth[rendering.pixels[nearer]], owner[rendering.pixels[nearer]] = rendering.depth[nearer], item
     return owner
 
 
@@ -183,10 +183,10 @@ def nearest_two(renderings: Sequence[Rendering], pixels: int) -> tuple[np.ndarra
     and the index of the nearest, -1 for none.
     """
     first, second, owner = np.full(pixels, np.inf), np.full(pixels, np.inf), np.full(pixels, -1)
-    for item, seen in enumerate(renderings):
-        before = first[seen.pixels]
-        nearer = seen.depth < before
-        second[seen.pixels] = np.where(nearer, before, np.minimum(second[seen.pixels], seen.depth))
-        first[seen.pixels] = np.where(nearer, seen.depth, before)
-        owner[seen.pixels[nearer]] = item
+    for item, rendering in enumerate(renderings):
+        before = first[rendering.pixels]
+        nearer = rendering.depth < before
+        second[rendering.pixels] = np.where(nearer, before, np.minimum(second[rendering.pixels], rendering.depth))
+        first[rendering.pixels] = np.where(nearer, rendering.depth, before)
+        owner[rendering.pixels[nearer]] = item
     return first, second, owner

@@ -31,8 +31,8 @@ class Geodesics:
 
     def distances(self, sources: np.ndarray | Sequence[int], limit: float = np.inf) -> np.ndarray:
         """(k, n) from each of the vertices sources (k,) to every vertex; infinite beyond `limit`, units of the mesh."""
-        found = dijkstra(self.graph, indices=self.place[np.asarray(sources, dtype=np.int64)], limit=limit)
-        return found[:, self.place]
+        lengths = dijkstra(self.graph, indices=self.place[np.asarray(sources, dtype=np.int64)], limit=limit)
+        return lengths[:, self.place]
 
 
 @lru_cache(maxsize=2)  # many methods are evaluated on one mesh, then on the next

@@ -42,9 +42,9 @@ def gaze_peaks(
     if len(peaks) == 0:
         raise ValueError("density is uniform, so that it has no peak: leave this mesh out")
     weights, even = _shares(surface.distances(peaks, limit), density * areas, areas)
-    kept = np.argsort(-weights, kind="stable")
-    kept = kept[((weights >= min_weight) & (weights > even))[kept]]
-    return peaks[kept], weights[kept]
+    order = np.argsort(-weights, kind="stable")
+    order = order[((weights >= min_weight) & (weights > even))[order]]
+    return peaks[order], weights[order]
 
 
 def _peaks(mesh, surface, levels, limit):
@@ -54,14 +54,14 @@ def _peaks(mesh, surface, levels, limit):
     ranks[order] = np.arange(len(order))
     lowest = _neighbour_minimum(mesh, levels)
     candidates = order[((levels > 0) & (_neighbour_minimum(mesh, ranks) == ranks))[order]]
-    found = [candidates[:0]]
+    peaks = [candidates[:0]]
     for start in range(0, len(candidates), BATCH):
         batch = candidates[start : start + BATCH]
         near = np.isfinite(surface.distances(batch, limit))
         first = np.where(near, ranks, len(ranks)).min(axis=1) == ranks[batch]
         above = np.where(near, lowest, np.inf).min(axis=1) < levels[batch]
-        found.append(batch[first & above])
-    return np.concatenate(found)
+        peaks.append(batch[first & above])
+    return np.concatenate(peaks)
 
 
 def _neighbour_minimum(mesh, values):
@@ -77,7 +77,7 @@ def _shares(distances, *amounts):
     """For each of amounts (n,), the share (k,) nearest to each peak by distances (k, n), infinite beyond the limit."""
     inside = np.isfinite(distances.min(axis=0))
     owner = np.argmin(distances, axis=0)[inside]
-    return [np.bincount(owner, weights=one[inside], minlength=len(distances)) / one.sum() for one in amounts]
+    return [np.bincount(owner, weights=amount[inside], minlength=len(distances)) / amount.sum() for amount in amounts]
 
 
 TOLERANCES = np.linspace(0.0, 0.12, 13)  # of the diagonal: the range of the paper's curves
@@ -107,12 +107,12 @@ def interest_point_errors(
     weights = _checked_weights(weights, len(points), len(tolerances))
     detected = np.unique(_vertex_ids(mesh, detected, "detected"))
     distances = geodesics(mesh).distances(points, _distance_limits(mesh, tolerances).max())[:, detected]
-    found = _nearest_detection(distances, weights)[:, None] <= _distance_limits(mesh, tolerances)
-    count = found.sum(axis=0)
+    hits = _nearest_detection(distances, weights)[:, None] <= _distance_limits(mesh, tolerances)
+    count = hits.sum(axis=0)
     return {
         "fne": 1 - count / len(points),
         "fpe": 1 - count / len(detected) if len(detected) else np.zeros(len(tolerances)),
-        "wme": 1 - (weights * found).sum(axis=0) / weights.sum(axis=0),
+        "wme": 1 - (weights * hits).sum(axis=0) / weights.sum(axis=0),
     }
 
 

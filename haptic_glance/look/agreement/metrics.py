@@ -30,8 +30,12 @@ class GroundTruth:
             if not np.isfinite(values).all() or (values < 0).any():
                 raise ValueError(f"{name} must be finite and not negative: set missing values to 0")
             object.__setattr__(self, name, values)
-        for name, seen in (("areas", self.areas), ("amounts", self.amounts), ("density", self.density * self.areas)):
-            if not seen.any():
+        for name, quantity in (
+            ("areas", self.areas),
+            ("amounts", self.amounts),
+            ("density", self.density * self.areas),
+        ):
+            if not quantity.any():
                 raise ValueError(f"the ground truth is empty, {name} is zero on the whole surface: leave this mesh out")
 
     @cached_property
@@ -108,8 +112,8 @@ def kl(saliency: np.ndarray, truth: GroundTruth) -> float:
     shape, with NaN or with negative values.
     """
     predicted = as_density(checked_saliency(saliency, truth), truth.shares, "saliency")
-    seen = as_density(truth.density, truth.shares, "density")
-    lost = truth.shares @ (seen * np.log(EPSILON + seen / (predicted + EPSILON)))
+    observed = as_density(truth.density, truth.shares, "density")
+    lost = truth.shares @ (observed * np.log(EPSILON + observed / (predicted + EPSILON)))
     return float(max(lost, 0.0))  # rounding leaves -1e-16 for equal distributions
 
 
@@ -134,8 +138,8 @@ def sim(saliency: np.ndarray, truth: GroundTruth) -> float:
     of another shape, with NaN or with negative values.
     """
     predicted = as_density(checked_saliency(saliency, truth), truth.shares, "saliency")
-    seen = as_density(truth.density, truth.shares, "density")
-    return float(truth.shares @ np.minimum(predicted, seen))
+    observed = as_density(truth.density, truth.shares, "density")
+    return float(truth.shares @ np.minimum(predicted, observed))
 
 
 METRICS = {"cc": cc, "nss": nss, "auc": auc, "sim": sim, "kl": kl}  # higher is better, except for kl

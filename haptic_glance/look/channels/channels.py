@@ -83,10 +83,10 @@ def conspicuity(
 
 def check_channels(names: Iterable[str]) -> list[str]:
     """The names as a list; ValueError for a name that is neither in CHANNELS nor in OTHERS."""
-    known = [*CHANNELS, *OTHERS]
-    unknown = [name for name in names if name not in known]
+    choices = [*CHANNELS, *OTHERS]
+    unknown = [name for name in names if name not in choices]
     if unknown:
-        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(known)}")
+        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(choices)}")
     return list(names)
 
 

@@ -167,6 +167,6 @@ def facing(mesh: Mesh, viewpoints: Sequence[Viewpoint], scene: RayScene | None =
         depth = camera.DISTANCE - mesh.vertices @ back
         origins = mesh.vertices + depth[:, None] * back
         hits = scene.cast(origins, np.broadcast_to(-back, origins.shape))
-        seen = hits.distance >= depth - SAME_DEPTH
-        row[seen] = np.abs(mesh.vertex_normals[seen] @ back)
+        visible = hits.distance >= depth - SAME_DEPTH
+        row[visible] = np.abs(mesh.vertex_normals[visible] @ back)
     return cosines

@@ -23,8 +23,8 @@ def curvature(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     0.40 with on-centre cells and of 0.11 with |c - s|. For VisAttAll the values are 0.38 and 0.30. Symmetry, whose map
     is a thin line on black, uses |c - s|: an NSS of 0.12 against 0.05.
     """
-    seen = visible_surface(view, mesh)
-    values = np.einsum("ij,ij->i", seen.weights, capped_curvature(mesh)[mesh.faces[seen.faces]])
+    surface = visible_surface(view, mesh)
+    values = np.einsum("ij,ij->i", surface.weights, capped_curvature(mesh)[mesh.faces[surface.faces]])
     return surface_conspicuity(values, mesh, view, filled, on_centre=True)
 
 

@@ -13,7 +13,7 @@ def window_entropy(padded: np.ndarray, side: int) -> np.ndarray:
     height, width, pixels = padded.shape[0] - side + 1, padded.shape[1] - side + 1, side * side
     shares = np.arange(pixels + 1) / pixels
     terms = -shares * np.log2(np.maximum(shares, 1 / pixels))
-    found = np.empty((height, width), dtype=np.float32)
+    entropy = np.empty((height, width), dtype=np.float32)
     for i in range(height):
         counts, total = np.zeros(256, dtype=np.int64), 0.0
         for a in range(i, i + side):
@@ -21,12 +21,12 @@ def window_entropy(padded: np.ndarray, side: int) -> np.ndarray:
                 counts[padded[a, b]] += 1
         for count in counts:
             total += terms[count]
-        found[i, 0] = total
+        entropy[i, 0] = total
         for j in range(1, width):
             for a in range(i, i + side):
                 total += _moved(counts, terms, padded[a, j - 1], -1) + _moved(counts, terms, padded[a, j + side - 1], 1)
-            found[i, j] = total
-    return found
+            entropy[i, j] = total
+    return entropy
 
 
 @kernel
@@ -85,23 +85,23 @@ def _is_peak(values, i, j):
 
 @kernel
 def locate_pixels(
-    right: np.ndarray, up: np.ndarray, heights: np.ndarray, axes: np.ndarray, shown: np.ndarray,
+    right: np.ndarray, up: np.ndarray, heights: np.ndarray, axes: np.ndarray, face_ids: np.ndarray,
     vertices: np.ndarray, faces: np.ndarray, crosses: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """(points (k, 3), barycentric weights (k, 3) in 0..1) of k pixels that show the faces `shown` (k,).
+    """(points (k, 3), barycentric weights (k, 3) in 0..1) of k pixels that show the faces `face_ids` (k,).
 
     right, up, heights (k,): the coordinates of a point along the camera's axes (3, 3), see Viewpoint.axes.
     vertices (n, 3) and faces (m, 3) of the mesh; crosses (m, 3): the faces' normals, of twice their area.
     """
-    count = len(shown)
+    count = len(face_ids)
     points, weights = np.empty((count, 3)), np.empty((count, 3))
     for k in range(count):
         px = right[k] * axes[0, 0] + up[k] * axes[1, 0] + heights[k] * axes[2, 0]
         py = right[k] * axes[0, 1] + up[k] * axes[1, 1] + heights[k] * axes[2, 1]
         pz = right[k] * axes[0, 2] + up[k] * axes[1, 2] + heights[k] * axes[2, 2]
         points[k, 0], points[k, 1], points[k, 2] = px, py, pz
-        a, b, c = faces[shown[k]]
-        nx, ny, nz = crosses[shown[k]]
+        a, b, c = faces[face_ids[k]]
+        nx, ny, nz = crosses[face_ids[k]]
         ax, ay, az = vertices[a]
         bx, by, bz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
         cx, cy, cz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az

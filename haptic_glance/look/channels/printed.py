@@ -77,7 +77,7 @@ def orientation(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
     """T eq. 3.2, with the magnitude of the even and the odd response."""
     levels = pyramid(_intensity(view))
     responses = [{scale: gabor(level, angle) for scale, level in levels.items() if scale > 1} for angle in ANGLES]
-    return np.mean([normalise(centre_surround(own, mended), mended) for own in responses], axis=0)
+    return np.mean([normalise(centre_surround(response, mended), mended) for response in responses], axis=0)
 
 
 def color(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
@@ -131,8 +131,12 @@ def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str
     Of a channel of the surface T prints no formula but C = N(map).
     """
     mended = formulas == MENDED
-    own = {name: _of_picture(PICTURE[name], mended) for name in channels if name in PICTURE}
-    return {**channels, **own, **{name: _renormalised(channels[name], mended) for name in channels if name in SURFACE}}
+    printed = {name: _of_picture(PICTURE[name], mended) for name in channels if name in PICTURE}
+    return {
+        **channels,
+        **printed,
+        **{name: _renormalised(channels[name], mended) for name in channels if name in SURFACE},
+    }
 
 
 def _of_picture(channel, mended):

@@ -59,8 +59,8 @@ def shape_symmetries(mesh: Mesh, strongest: bool = False, /) -> Symmetries:
     dense = sample_surface(mesh, DENSE)
     surface = SampledSurface(dense, mesh.diagonal, sample_surface(mesh, SPARSE))
     principal = np.linalg.eigh(_products(dense, dense))[1].T
-    found = _mirror_planes(surface, principal)
-    planes = [plane for plane in found if plane[2] >= MIN_SCORE]
+    mirrors = _mirror_planes(surface, principal)
+    planes = [plane for plane in mirrors if plane[2] >= MIN_SCORE]
     candidates = _axes(surface, principal, planes)
     axes = [axis for axis in candidates if axis[1] >= MIN_SCORE]
     revolution = [(axis, score) for axis, score, revolves in axes if revolves]
@@ -69,7 +69,7 @@ def shape_symmetries(mesh: Mesh, strongest: bool = False, /) -> Symmetries:
     distinct = [p for p in planes if not any(_through_axis(p, *axis) for axis in revolution)]
     if strongest:
         axes = axes or [max(candidates, key=itemgetter(1))]
-        distinct = [(n, d, 1.0) for n, d, _ in distinct or ([] if revolution else found[:1])]
+        distinct = [(n, d, 1.0) for n, d, _ in distinct or ([] if revolution else mirrors[:1])]
         axes = [(axis, 1.0, revolves) for axis, _, revolves in axes]
     return Symmetries(surface.centre, tuple(distinct), tuple(axes))
 
@@ -129,11 +129,11 @@ def _mirror_planes(surface, principal):
     few = surface.sparse[:: max(len(surface.sparse) // SEARCH, 1)]
     errors = surface.error(np.stack([mirror(few, n, n @ surface.centre) for n in directions]))
     starts = _distinct(directions[np.argsort(errors, kind="stable")])[:STARTS]
-    found = [_refine(surface, few, normal) for normal in [*principal, *starts]]
-    scores = [surface.score(mirror(surface.sparse, n, d)) for n, d in found]
-    ranked = [(*found[k], scores[k]) for k in np.argsort(scores, kind="stable")[::-1]]
-    chosen = _distinct([n for n, _, _ in ranked], positions=True)
-    return [ranked[k] for k in chosen]
+    refined = [_refine(surface, few, normal) for normal in [*principal, *starts]]
+    scores = [surface.score(mirror(surface.sparse, n, d)) for n, d in refined]
+    ranked = [(*refined[k], scores[k]) for k in np.argsort(scores, kind="stable")[::-1]]
+    distinct = _distinct([n for n, _, _ in ranked], positions=True)
+    return [ranked[k] for k in distinct]
 
 
 def _refine(surface, points, normal):
@@ -159,14 +159,14 @@ def _products(p, q):
 def _axes(surface, principal, planes):
     crossings = [np.cross(a[0], b[0]) for i, a in enumerate(planes) for b in planes[:i]]
     candidates = _distinct([*principal, *(unit(c) for c in crossings if np.linalg.norm(c) > 0.2)])
-    found = []
+    axes = []
     for axis in candidates:
         score = min(_rotation_score(surface, axis, angle) for angle in GENERIC)
         revolves = score >= MIN_SCORE
         if not revolves:
             score = max(_rotation_score(surface, axis, 360 / n) for n in ORDERS)
-        found.append((axis, score, revolves))
-    return found
+        axes.append((axis, score, revolves))
+    return axes
 
 
 def _rotation_score(surface, axis, angle):
@@ -177,7 +177,7 @@ def _distinct(directions, positions=False):
     """The directions (or their positions) that are not near an earlier one, up to sign."""
     kept = []
     for k, direction in enumerate(directions):
-        if all(abs(direction @ directions[other]) < SEPARATION for other in kept):
+        if all(abs(direction @ directions[earlier]) < SEPARATION for earlier in kept):
             kept.append(k)
     return kept if positions else [directions[k] for k in kept]
 
@@ -214,8 +214,8 @@ def symmetry(
 @weak_cache
 def _seen_symmetry(view, mesh, kind, strongest):
     """symmetric_points of one kind at the points of visible_surface, which two channels use."""
-    seen = visible_surface(view, mesh)
-    return symmetric_points(mesh, seen.points, seen.back, (kind,), strongest)
+    surface = visible_surface(view, mesh)
+    return symmetric_points(mesh, surface.points, surface.back, (kind,), strongest)
 
 
 def symmetric_points(
@@ -230,35 +230,35 @@ def symmetric_points(
     back (3,): the unit direction to the camera, by which planes and axes are weighted; None weights all equally.
     kinds: which of KINDS count. strongest: as in `shape_symmetries`.
     """
-    found = shape_symmetries(mesh, strongest)
+    symmetries = shape_symmetries(mesh, strongest)
     spread = 2 * (BAND * mesh.diagonal) ** 2
     response = np.zeros(len(points))
-    for normal, offset, weight in weighted_planes(found, back) if "lateral" in kinds else ():
+    for normal, offset, weight in weighted_planes(symmetries, back) if "lateral" in kinds else ():
         np.maximum(response, weight * np.exp(-((points @ normal - offset) ** 2) / spread), out=response)
-    away = points - found.centre
+    away = points - symmetries.centre
     square = np.einsum("ij,ij->i", away, away)
-    for axis, weight in weighted_axes(found, back) if "radial" in kinds else ():
+    for axis, weight in weighted_axes(symmetries, back) if "radial" in kinds else ():
         distance = square - (away @ axis) ** 2
         np.maximum(response, weight * np.exp(-distance / (4 * spread)), out=response)
     return response
 
 
-def weighted_planes(found: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float, float]]:
+def weighted_planes(symmetries: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float, float]]:
     """[(normal (3,), offset, weight)]: the planes, and of those through an axis of revolution the one seen edge-on.
 
-    found: Symmetries; back as in `symmetric_points`.
+    symmetries: Symmetries; back as in `symmetric_points`.
     """
-    planes = list(found.planes)
-    for axis, score, revolves in found.axes:
+    planes = list(symmetries.planes)
+    for axis, score, revolves in symmetries.axes:
         if revolves and back is not None:
             normal = np.cross(axis, back)
             if np.linalg.norm(normal) > 1e-6:
                 normal = unit(normal)
                 # It is edge-on by construction, so its weight depends on the angle of the axis to the image.
-                planes.append((normal, normal @ found.centre, score * (1 - (axis @ back) ** 2)))
+                planes.append((normal, normal @ symmetries.centre, score * (1 - (axis @ back) ** 2)))
     return [(n, offset, score if back is None else score * (1 - (n @ back) ** 2)) for n, offset, score in planes]
 
 
-def weighted_axes(found: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float]]:
+def weighted_axes(symmetries: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float]]:
     """[(axis (3,), weight)] of Symmetries; back as in `symmetric_points`."""
-    return [(axis, score if back is None else score * (axis @ back) ** 2) for axis, score, _ in found.axes]
+    return [(axis, score if back is None else score * (axis @ back) ** 2) for axis, score, _ in symmetries.axes]

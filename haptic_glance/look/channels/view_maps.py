@@ -56,8 +56,8 @@ class ViewMaps:
 
     def _cast_rays(self, view, mask):
         """Marks the pixels of one view that see the mesh, and returns the vertex that each of them shows."""
-        wanted = np.ones(self.size, dtype=bool) if mask is None else np.asarray(mask[view], dtype=bool)
-        rows, columns = np.nonzero(wanted & self._silhouette_box(view))
+        pixels = np.ones(self.size, dtype=bool) if mask is None else np.asarray(mask[view], dtype=bool)
+        rows, columns = np.nonzero(pixels & self._silhouette_box(view))
         origins, directions = camera.pixel_rays(rows, columns, self.viewpoints[view], self.size)
         hits = self._scene.cast(origins, directions)
         hit = np.flatnonzero(hits.hit)
@@ -73,14 +73,14 @@ class ViewMaps:
 
     def cropped_image(self, values: np.ndarray, view: int) -> tuple[np.ndarray, np.ndarray]:
         """The values (p,) in one view as an image, cropped to the object: ((h', w') f8, vertex ids (h', w') i8)."""
-        seen = self._seen[view]
-        if not seen.any():
+        visible = self._seen[view]
+        if not visible.any():
             return np.zeros((1, 1)), np.zeros((1, 1), dtype=np.int64)
-        rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+        rows, columns = np.flatnonzero(visible.any(axis=1)), np.flatnonzero(visible.any(axis=0))
         box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         part = self.pixels_of_view(view)
         image, ids = np.zeros(self.size), np.zeros(self.size, dtype=np.int64)
-        image[seen], ids[seen] = values[part], self.vertices[part]
+        image[visible], ids[visible] = values[part], self.vertices[part]
         return image[box], ids[box]
 
     def pixels_of_view(self, view: int) -> slice:

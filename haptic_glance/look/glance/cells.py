@@ -25,21 +25,21 @@ def cut(corners: np.ndarray) -> np.ndarray:
     """
     rows = np.empty((4 * len(corners) + 64, 8))
     scratch = np.empty((DEPTH, CORNERS, 3)), np.empty(DEPTH, dtype=np.int64), np.empty(3, dtype=np.int64)
-    face, found = _cut(corners, 0, rows, 0, *scratch)
+    face, filled = _cut(corners, 0, rows, 0, *scratch)
     while face < len(corners):
         rows = np.concatenate([rows, np.empty_like(rows)])
-        face, found = _cut(corners, face, rows, found, *scratch)
-    return rows[:found]
+        face, filled = _cut(corners, face, rows, filled, *scratch)
+    return rows[:filled]
 
 
 @kernel
-def _cut(corners, face, rows, found, stack, counts, cell):
-    """Fills the rows from row `found` on with the pieces of the triangles from `face` on.
+def _cut(corners, face, rows, filled, stack, counts, cell):
+    """Fills the rows from row `filled` on with the pieces of the triangles from `face` on.
 
     Returns (the first triangle whose pieces no longer fit, the number of rows). stack, counts, cell: scratch.
     """
     for f in range(face, len(corners)):
-        begun, counts[0], top = found, 3, np.int64(0)  # numba compiles what `top` is passed to anew for a plain 0
+        begun, counts[0], top = filled, 3, np.int64(0)  # numba compiles what `top` is passed to anew for a plain 0
         for i in range(3):
             for k in range(3):
                 stack[0, i, k] = corners[f, i, k]
@@ -58,14 +58,14 @@ def _cut(corners, face, rows, found, stack, counts, cell):
                 counts[top], counts[top + 1] = _halve(stack, top, count, axis, wall)
                 top += 1
                 continue
-            if found == len(rows):
+            if filled == len(rows):
                 return f, begun
-            rows[found, 0] = f
+            rows[filled, 0] = f
             for k in range(3):
-                rows[found, 1 + k] = cell[k]
-            _moments(stack, top, count, rows, found)
-            found, top = found + 1, top - 1
-    return len(corners), found
+                rows[filled, 1 + k] = cell[k]
+            _moments(stack, top, count, rows, filled)
+            filled, top = filled + 1, top - 1
+    return len(corners), filled
 
 
 @helper
@@ -74,16 +74,16 @@ def _halve(stack, top, count, axis, wall):
     below, above = 0, 0
     for i in range(count):
         j = (i + 1) % count
-        here, there = stack[top, i, axis] - wall, stack[top, j, axis] - wall
+        start, end = stack[top, i, axis] - wall, stack[top, j, axis] - wall
         for k in range(3):
-            if here <= 0:
+            if start <= 0:
                 stack[top + 2, below, k] = stack[top, i, k]
-            if here >= 0:
+            if start >= 0:
                 stack[top + 1, above, k] = stack[top, i, k]
-        below, above = below + (here <= 0), above + (here >= 0)
-        if here * there < 0:
+        below, above = below + (start <= 0), above + (start >= 0)
+        if start * end < 0:
             for k in range(3):
-                at = stack[top, i, k] + (stack[top, j, k] - stack[top, i, k]) * (here / (here - there))
+                at = stack[top, i, k] + (stack[top, j, k] - stack[top, i, k]) * (start / (start - end))
                 at = wall if k == axis else at
                 stack[top + 2, below, k], stack[top + 1, above, k] = at, at
             below, above = below + 1, above + 1
@@ -130,10 +130,10 @@ def visibility(samples: "Samples") -> tuple[np.ndarray, np.ndarray, np.ndarray, 
     group = np.digitize(eyes[:, 2], [-SIDE, SIDE])
     places = (samples.points - samples.middle) / samples.spacing
     count, width = len(places), 2 * int(np.sqrt((places**2).sum(axis=1).max(initial=0)) / PIXEL) + 5
-    found, scratch = np.zeros((4, count)), (np.empty((count, 2), dtype=np.int64), np.empty(count))
-    _seen(places, samples.normals, pictures, group, found, np.empty((width, width)), *scratch)
-    found[:3] /= np.bincount(group)[:, None]
-    below, side, above, seen = found
+    sums, scratch = np.zeros((4, count)), (np.empty((count, 2), dtype=np.int64), np.empty(count))
+    _seen(places, samples.normals, pictures, group, sums, np.empty((width, width)), *scratch)
+    sums[:3] /= np.bincount(group)[:, None]
+    below, side, above, seen = sums
     return seen / len(eyes), side, above, below
 
 
@@ -146,8 +146,8 @@ def _directions():
 
 
 @kernel
-def _seen(places, normals, pictures, group, found, depth, pixels, near):
-    """Adds to found (4, s) the cosine between normal and direction where it sees the point, and 1 for each that does.
+def _seen(places, normals, pictures, group, sums, depth, pixels, near):
+    """Adds to sums (4, s) the cosine between normal and direction where it sees the point, and 1 for each that does.
 
     The sums are over the directions of each of three groups; pictures (d, 3, 3) look along their third row. depth: a
     picture, as wide as it is high; pixels (s, 2), near (s,): scratch.
@@ -173,7 +173,7 @@ def _seen(places, normals, pictures, group, found, depth, pixels, near):
                 for row in range(pixels[i, 0] - 1, pixels[i, 0] + 2):
                     for column in range(pixels[i, 1] - 1, pixels[i, 1] + 2):
                         front = max(front, depth[row, column])
-                shown = (FAR - (front - near[i]) * max(cosine, STEEP)) / (FAR - NEAR)
-                shown = min(max(shown, 0.0), 1.0)
-                found[group[d], i] += shown * cosine
-                found[3, i] += shown
+                share = (FAR - (front - near[i]) * max(cosine, STEEP)) / (FAR - NEAR)
+                share = min(max(share, 0.0), 1.0)
+                sums[group[d], i] += share * cosine
+                sums[3, i] += share

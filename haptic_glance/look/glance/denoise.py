@@ -44,7 +44,7 @@ def _on_patches(samples, normals):
     weight *= np.sqrt(samples.areas[near]) / samples.spacing
     terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2) * weight[:, :, None]
     inner = np.einsum("nki,nkj->nij", terms, terms) + RIDGE * np.eye(terms.shape[2])
-    found = np.linalg.solve(inner, np.einsum("nki,nk->ni", terms, z * weight)[:, :, None])[:, :, 0]
-    steps = found[:, :1].clip(-FARTHEST, FARTHEST) * samples.spacing
-    slopes = np.einsum("ni,nij->nj", found[:, 1:3].clip(-STEEPEST, STEEPEST), frame[:, :2])
+    fit = np.linalg.solve(inner, np.einsum("nki,nk->ni", terms, z * weight)[:, :, None])[:, :, 0]
+    steps = fit[:, :1].clip(-FARTHEST, FARTHEST) * samples.spacing
+    slopes = np.einsum("ni,nij->nj", fit[:, 1:3].clip(-STEEPEST, STEEPEST), frame[:, :2])
     return replace(samples, points=samples.points + steps * normals, normals=unit(normals - slopes))

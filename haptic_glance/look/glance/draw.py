@@ -55,8 +55,8 @@ def samples_of_points(points: np.ndarray, normals: np.ndarray, count: int = COUN
         raise ValueError("the points of a cloud must lie at different places")
     axes, middle = object_axes(points, np.ones(len(points)), points)
     cells = np.floor((points - middle) @ (axes.T / max(CELL * np.sqrt(area / count), SMALLEST)) + ROUNDING)
-    found = _gathered(cells.astype(np.int64), points, normals, np.ones(len(points)), axes)
-    return denoised(replace(found, areas=np.full(len(found.points), area / len(found.points))))
+    samples = _gathered(cells.astype(np.int64), points, normals, np.ones(len(points)), axes)
+    return denoised(replace(samples, areas=np.full(len(samples.points), area / len(samples.points))))
 
 
 def _gathered(cells, places, normals, areas, axes):
@@ -91,5 +91,5 @@ def _gathered(cells, places, normals, areas, axes):
 def _means(owner, values, areas, count=0):
     """(sum of the areas, mean of the values (p, d) by area) of the pieces of each owner."""
     total = np.bincount(owner, areas, count)
-    sums = np.stack([np.bincount(owner, one * areas, count) for one in values.T], axis=1)
+    sums = np.stack([np.bincount(owner, column * areas, count) for column in values.T], axis=1)
     return total, sums / np.maximum(total, 1e-300)[:, None]

@@ -57,12 +57,12 @@ def _rank(height, shares):
 
 def standardised(samples: Samples) -> dict[str, np.ndarray]:
     """dict name -> (s,) f8: the features with mean 0 and deviation 1, or less where one hardly varies."""
-    found = {}
+    columns = {}
     for name, values in features(samples).items():
         centred = values - samples.shares @ values
         deviation = float(np.sqrt(samples.shares @ centred**2))
-        found[name] = (centred / max(deviation, FEATURES[name] / 2)).clip(-LIMIT, LIMIT)
-    return found
+        columns[name] = (centred / max(deviation, FEATURES[name] / 2)).clip(-LIMIT, LIMIT)
+    return columns
 
 
 FINE, COARSE = 1, 6  # steps over the graph of the finest relief, and of a coarser one
@@ -109,5 +109,5 @@ def fullness(samples: Samples, radius: float) -> np.ndarray:
     voxels = np.ravel_multi_index(np.rint(places).astype(np.int64).T, shape)
     amounts = np.bincount(voxels, samples.shares, minlength=shape.prod()).reshape(shape).astype(np.float32)
     around = ndimage.gaussian_filter(amounts, deviation * VOXELS, mode="constant", truncate=CUT)
-    found = ndimage.map_coordinates(around, places.T, order=1) * (np.sqrt(2 * np.pi) * deviation * VOXELS) ** 3
-    return np.log(np.maximum(found / radius**2, 1e-6))
+    density = ndimage.map_coordinates(around, places.T, order=1) * (np.sqrt(2 * np.pi) * deviation * VOXELS) ** 3
+    return np.log(np.maximum(density / radius**2, 1e-6))

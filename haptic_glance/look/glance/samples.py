@@ -115,5 +115,5 @@ def object_axes(points: np.ndarray, areas: np.ndarray, ends: np.ndarray) -> tupl
 def nearest(tree: KDTree, positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """(distances (n, k), ids (n, k)) of the nearest of a tree's points; k is less than count where it has fewer."""
     near = tree.query(positions, min(count, tree.n))
-    distance, ids = (np.reshape(one, (len(positions), -1)) for one in near)
+    distance, ids = (np.reshape(values, (len(positions), -1)) for values in near)
     return distance, ids

@@ -99,12 +99,12 @@ class SvmDetector(FusedDetector):
 
         An SVM takes far more of a map for salient than the other methods do.
         """
-        found = super().find(mesh, sight, options)
-        far = select_far_points(mesh.vertices[found.points], POINTS if count is None else min(POINTS, count))
-        points = found.points[np.sort(far)]
-        if count is not None and found.saliency is not None:
-            points = continue_on_surface(mesh, points, found.saliency, options.radius, count)
-        return Detection(points, len(far), found.saliency)
+        detection = super().find(mesh, sight, options)
+        far = select_far_points(mesh.vertices[detection.points], POINTS if count is None else min(POINTS, count))
+        points = detection.points[np.sort(far)]
+        if count is not None and detection.saliency is not None:
+            points = continue_on_surface(mesh, points, detection.saliency, options.radius, count)
+        return Detection(points, len(far), detection.saliency)
 
 
 class MergedDetector(FusedDetector):
@@ -173,13 +173,13 @@ def random_vertices(mesh: Mesh, count: int, generator: np.random.Generator) -> n
     total, count = mesh.face_areas.sum(), min(count, len(mesh.used))
     if not total > 0:
         raise ValueError("the mesh has no area to draw points from")
-    drawn = np.zeros(0, dtype=np.int64)
+    vertices = np.zeros(0, dtype=np.int64)
     for _ in range(ROUNDS):
-        drawn = np.r_[drawn, _draw(mesh, mesh.face_areas / total, 4 * count, generator)]
-        drawn = drawn[np.sort(np.unique(drawn, return_index=True)[1])]
-        if len(drawn) >= count:
+        vertices = np.r_[vertices, _draw(mesh, mesh.face_areas / total, 4 * count, generator)]
+        vertices = vertices[np.sort(np.unique(vertices, return_index=True)[1])]
+        if len(vertices) >= count:
             break
-    return drawn[:count]
+    return vertices[:count]
 
 
 def _draw(mesh, probabilities, size, generator):
@@ -209,9 +209,9 @@ class SurfaceDetector:
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: the detector's own points are strong; count continues them by the value."""
         saliency = self.saliency(mesh, sight, options)
-        own = peaks(mesh, saliency, options) if self._points is None else self._points(mesh, saliency)
-        points = own if count is None else continue_on_surface(mesh, own, saliency, options.radius, count)
-        return Detection(points, min(len(own), len(points)), saliency)
+        strong = peaks(mesh, saliency, options) if self._points is None else self._points(mesh, saliency)
+        points = strong if count is None else continue_on_surface(mesh, strong, saliency, options.radius, count)
+        return Detection(points, min(len(strong), len(points)), saliency)
 
 
 def scaled(values: np.ndarray) -> np.ndarray:
@@ -229,8 +229,8 @@ def peaks(mesh: Mesh, saliency: np.ndarray, options: Options) -> np.ndarray:
     if not saliency.any():
         return np.zeros(0, dtype=np.int64)
     smooth = smoother(mesh, np.ones(len(saliency)), options.smoothing)(saliency).clip(0)
-    found = local_maxima(mesh, smooth, options.radius)
-    return found[standardise(smooth, mesh.vertex_areas)[found] > 1]
+    maxima = local_maxima(mesh, smooth, options.radius)
+    return maxima[standardise(smooth, mesh.vertex_areas)[maxima] > 1]
 
 
 def height(mesh: Mesh) -> np.ndarray:

@@ -125,11 +125,11 @@ class Looked:
 
     def detect(self, count: int | None = None) -> Detection:
         """The Detection of `count` points, None for those past the method's own threshold; ValueError below 1."""
-        found = self.detector.find(self.mesh, self.sight, self.options, _check(count))
-        if found.saliency is None:
-            return found
-        scores = scores_of(self.mesh, found.points, found.saliency, self._places)
-        return replace(found, scores=scores, ties=tied(scores))
+        detection = self.detector.find(self.mesh, self.sight, self.options, _check(count))
+        if detection.saliency is None:
+            return detection
+        scores = scores_of(self.mesh, detection.points, detection.saliency, self._places)
+        return replace(detection, scores=scores, ties=tied(scores))
 
 
 def _check(count):
@@ -151,8 +151,8 @@ def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, places: KDTr
         places.query_ball_point(mesh.vertices[points], radius), points, strict=True)]  # fmt: skip
     areas = [mesh.vertex_areas[ids] for ids in near]
     means = [
-        np.average(saliency[ids], weights=own) if own.any() else saliency[point]
-        for ids, own, point in zip(near, areas, points, strict=True)
+        np.average(saliency[ids], weights=area) if area.any() else saliency[point]
+        for ids, area, point in zip(near, areas, points, strict=True)
     ]
     return np.minimum.accumulate(np.array(means, dtype=np.float64))
 
@@ -222,10 +222,10 @@ def check_name(method: str, first: Sequence[str] = (), points_alone: bool = Fals
     usable = [*first, *(name for name in runs if points_alone or hasattr(METHODS[name], "saliency"))]
     if method in usable:
         return
-    said = method.lower().replace("-", "_").replace(" ", "_")
-    near = meant(said, usable)
+    spelling = method.lower().replace("-", "_").replace(" ", "_")
+    near = meant(spelling, usable)
     reason = f"there is no such method{near}"
     if method in METHODS:
         reason = "its weights are learned in the pipeline" if method in learned else "it has no saliency"
-    rest = "" if near and method not in METHODS else f"; choose one of {', '.join([*first, *MAIN])}"
-    raise ValueError(f"--method {method}: {reason}{rest}")
+    advice = "" if near and method not in METHODS else f"; choose one of {', '.join([*first, *MAIN])}"
+    raise ValueError(f"--method {method}: {reason}{advice}")

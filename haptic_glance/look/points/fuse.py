@@ -91,12 +91,12 @@ def select_by_suppression(
     count.
     """
     image = check_map(image)
-    left = image.copy()
+    remaining = image.copy()
     if radius < 0 or (count is not None and count < 0):
         raise ValueError(f"radius and count must not be negative, got {radius} and {count}")
-    floor = threshold * left.max()
-    taken = suppress(left, radius, left.size if count is None else count, floor if count is None else 0.0)
-    rows, columns = np.unravel_index(taken, left.shape)
+    floor = threshold * remaining.max()
+    pixels = suppress(remaining, radius, remaining.size if count is None else count, floor if count is None else 0.0)
+    rows, columns = np.unravel_index(pixels, remaining.shape)
     values = image[rows, columns]
     return SelectedPixels(rows, columns, values, int((values > floor).sum()))
 
@@ -173,9 +173,9 @@ def continue_on_surface(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, ra
     x, y, z = mesh.vertices[used].round(9).T
     ranked = used[np.lexsort((z, y, x, -saliency[used]))]
     while len(points) < min(count, len(used)):
-        both = np.r_[points, ranked[~np.isin(ranked, points)]]
+        queue = np.r_[points, ranked[~np.isin(ranked, points)]]
         if radius < SAME_PLACE * mesh.diagonal:  # only coincident vertices are left
-            return both[:count]
-        points = both[spaced(mesh.vertices[both], radius, len(points), count)]
+            return queue[:count]
+        points = queue[spaced(mesh.vertices[queue], radius, len(points), count)]
         radius /= 2
     return points[:count]

@@ -93,20 +93,20 @@ class SampledDetector(ABC):
 
         sight: a Seen of the same mesh and options spares the work of `seen`; anything else is not looked at.
         """
-        seen = sight if isinstance(sight, Seen) else self.seen(mesh, options)
-        if seen is None:
+        surface = sight if isinstance(sight, Seen) else self.seen(mesh, options)
+        if surface is None:
             return Detection(np.zeros(0, dtype=np.int64), 0, np.zeros(len(mesh.vertices)))
-        smooth = seen.smooth
-        peaks = local_maxima(Mesh(seen.points, NO_FACES), smooth, options.radius)
-        peaks = peaks[standardise(smooth, seen.areas)[peaks] > 1]
-        peaks = peaks[by_place(tied(smooth[peaks]), seen.points[peaks])]
-        order = peaks if count is None else visited(seen.points, smooth, options.radius, count)
+        smooth = surface.smooth
+        peaks = local_maxima(Mesh(surface.points, NO_FACES), smooth, options.radius)
+        peaks = peaks[standardise(smooth, surface.areas)[peaks] > 1]
+        peaks = peaks[by_place(tied(smooth[peaks]), surface.points[peaks])]
+        order = peaks if count is None else visited(surface.points, smooth, options.radius, count)
         is_peak = np.isin(order, peaks)
-        at = seen.vertices[np.r_[order[is_peak], order[~is_peak]]]
+        at = surface.vertices[np.r_[order[is_peak], order[~is_peak]]]
         points = at[np.sort(np.unique(at, return_index=True)[1])]
         if count is not None:
-            points = continue_on_surface(mesh, points, seen.smoothed, options.radius, count)
-        return Detection(points, min(int(is_peak.sum()), len(points)), seen.saliency)
+            points = continue_on_surface(mesh, points, surface.smoothed, options.radius, count)
+        return Detection(points, min(int(is_peak.sum()), len(points)), surface.saliency)
 
 
 class GlanceDetector(SampledDetector):
@@ -127,7 +127,7 @@ def _on_vertices(mesh, samples, *values):
     """(n,) f8 in 0..1 of each of the values (s,) of the samples: at the vertices, 0 where these have no area."""
     near, weights = samples.interpolation(mesh.vertices, mesh.vertex_normals)
     has_area = mesh.vertex_areas > 0
-    return [scaled(np.where(has_area, (one[near] * weights).sum(axis=1), 0)) for one in values]
+    return [scaled(np.where(has_area, (column[near] * weights).sum(axis=1), 0)) for column in values]
 
 
 BLOCK = 13  # of MobileNetV2: the last one with maps of a sixteenth of the side of the picture
@@ -164,7 +164,7 @@ def maps_on_surface(mesh: Mesh, samples: Samples) -> np.ndarray:
     framed = Mesh((mesh.vertices - middle) / (2 * radius), mesh.faces)
     points, spacing = (samples.points - middle) / (2 * radius), samples.spacing / (2 * radius)
     first = np.degrees(np.arctan2(samples.axes[0, 1], samples.axes[0, 0]))
-    total, seen = 0.0, np.zeros(len(samples.points))
+    total, coverage = 0.0, np.zeros(len(samples.points))
     for azimuth in AROUND:
         viewpoint = Viewpoint(first + azimuth, 0)
         view = render(framed, viewpoint, (SIZE, SIZE), "raster")
@@ -174,11 +174,13 @@ def maps_on_surface(mesh: Mesh, samples: Samples) -> np.ndarray:
         weight = (samples.normals @ viewpoint.axes[2]).clip(0) * (depths < nearest[*pixel] + NEAR * spacing)
         places = torch.from_numpy(np.stack([2 * columns + 1, 2 * rows + 1], axis=1) / SIZE - 1).float()
         maps = _maps(trunk, torch.from_numpy(view.rgb))
-        found = torch.nn.functional.grid_sample(maps, places[None, :, None], padding_mode="border", align_corners=False)
-        total = total + weight[:, None] * found[0, :, :, 0].T.numpy()
-        seen += weight
-    by_area = samples.shares @ total / max(samples.shares @ seen, 1e-9)
-    return (total + UNSEEN * by_area) / (seen + UNSEEN)[:, None]
+        sampled = torch.nn.functional.grid_sample(
+            maps, places[None, :, None], padding_mode="border", align_corners=False
+        )
+        total = total + weight[:, None] * sampled[0, :, :, 0].T.numpy()
+        coverage += weight
+    by_area = samples.shares @ total / max(samples.shares @ coverage, 1e-9)
+    return (total + UNSEEN * by_area) / (coverage + UNSEEN)[:, None]
 
 
 def _frame(mesh, samples):

@@ -100,12 +100,12 @@ def method_for(purpose: str, method: str | None = None) -> str:
     return PURPOSES[purpose] if method is None else method
 
 
-def meant(said: str, usable: Sequence[str]) -> str:
+def meant(spelling: str, usable: Sequence[str]) -> str:
     """ " (did you mean NAME?)" for a name in other words or mistyped; else empty."""
     lower = {name.lower(): name for name in usable}
-    close = get_close_matches(said, [*MEANT, *lower], 1)
-    found = MEANT.get(close[0], lower.get(close[0])) if close else None
-    return f" (did you mean {found}?)" if found in usable else ""
+    close = get_close_matches(spelling, [*MEANT, *lower], 1)
+    match = MEANT.get(close[0], lower.get(close[0])) if close else None
+    return f" (did you mean {match}?)" if match in usable else ""
 
 
 def split_runnable(methods: Iterable[str], learned: LearnedWeights) -> tuple[list[str], list[str]]:
@@ -120,24 +120,24 @@ def split_runnable(methods: Iterable[str], learned: LearnedWeights) -> tuple[lis
 
 def find_all(
     mesh: Mesh, sight: ViewMaps | None, methods: Iterable[str], options: Options, count: int | None,
-    known: Mapping[str, Detection] | None = None,
+    earlier: Mapping[str, Detection] | None = None,
 ) -> tuple[dict[str, Detection], dict[str, float]]:  # fmt: skip
     """Runs methods on one object: (dict method -> Detection, dict method -> seconds).
 
-    known: the Detections of methods that have run on it before.
+    earlier: the Detections of methods that have run on it before.
 
     A method without a threshold of its own (random, farthest) gets as many strong points as the first one that has one,
     so that what the LOD keeps for either differs in place alone.
     """
-    found, seconds = {}, {}
+    detections, seconds = {}, {}
     for method in methods:
         with Stopwatch() as watch:
-            found[method] = (known or {}).get(method) or method_named(method).find(mesh, sight, options, count)
+            detections[method] = (earlier or {}).get(method) or method_named(method).find(mesh, sight, options, count)
         seconds[method] = watch.seconds
-    strong = next((result.strong for result in found.values() if result.strong is not None), count)
-    for method, result in found.items():
+    strong = next((result.strong for result in detections.values() if result.strong is not None), count)
+    for method, result in detections.items():
         if result.strong is None:
-            found[method] = replace(
+            detections[method] = replace(
                 result, strong=len(result.points) if strong is None else min(strong, len(result.points))
             )
-    return found, seconds
+    return detections, seconds

@@ -92,15 +92,15 @@ def visited(points: np.ndarray, values: np.ndarray, radius: float, count: int) -
     on its own slope, not on the rim of a disc cut out, which noise moves. At most `count`, fewer where no value above
     zero is left.
     """
-    left = np.maximum(values, 0.0)
-    found, strength = [], []
-    while len(found) < count and left.any():
-        best = int(left.argmax())
-        found.append(best)
-        strength.append(left[best])
+    remaining = np.maximum(values, 0.0)
+    visits, strength = [], []
+    while len(visits) < count and remaining.any():
+        best = int(remaining.argmax())
+        visits.append(best)
+        strength.append(remaining[best])
         away = ((points - points[best]) ** 2).sum(axis=1) / radius**2
-        left *= np.where(away <= 1, 0.0, 1 - np.exp(-away / (2 * FADING**2)))
-    order, ids = tied(np.array(strength)), np.array(found, dtype=np.int64)
+        remaining *= np.where(away <= 1, 0.0, 1 - np.exp(-away / (2 * FADING**2)))
+    order, ids = tied(np.array(strength)), np.array(visits, dtype=np.int64)
     return ids[by_place(order, points[ids])]
 
 

@@ -61,19 +61,23 @@ def _seen(mesh, up):
 
 
 def reasons(
-    found: dict[str, np.ndarray], method: str = GLANCE, count: int = 3, against: bool = False
+    terms: dict[str, np.ndarray], method: str = GLANCE, count: int = 3, against: bool = False
 ) -> list[list[tuple[str, float]]]:  # fmt: skip
     """For each place its `contributions` above 0 in words, the `count` largest first: [(words, contribution), ...].
 
     against: those below 0 instead, the most negative first.
     """
-    names, amounts, sign = list(found), np.array(list(found.values())), -1 if against else 1
+    names, amounts, sign = list(terms), np.array(list(terms.values())), -1 if against else 1
 
     def said(name: str, amount: float) -> str:
         much, little = WORDS[name]
         return much if amount * GLANCES[method][name] > 0 else little
 
     return [
-        [(said(names[k], own[k]), float(own[k])) for k in np.argsort(-sign * own)[:count] if sign * own[k] > 0]
-        for own in amounts.T
+        [
+            (said(names[k], column[k]), float(column[k]))
+            for k in np.argsort(-sign * column)[:count]
+            if sign * column[k] > 0
+        ]
+        for column in amounts.T
     ]

@@ -46,9 +46,9 @@ class TouchDetector(SampledDetector):
 
     def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
         """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
-        both = np.hstack([mesh.vertices, samples.spacing * mesh.vertex_normals])[mesh.used]
-        wanted = np.hstack([samples.points, samples.spacing * samples.normals])
-        return mesh.used[KDTree(both).query(wanted)[1]]
+        candidates = np.hstack([mesh.vertices, samples.spacing * mesh.vertex_normals])[mesh.used]
+        targets = np.hstack([samples.points, samples.spacing * samples.normals])
+        return mesh.used[KDTree(candidates).query(targets)[1]]
 
 
 def spread(samples: Samples, count: int) -> np.ndarray:

@@ -20,11 +20,11 @@ def best_viewpoints(mesh: Mesh, method: str = "thesis_ssim", seed: int = 0) -> l
     weights named by method (T eq. 3.9). Raises ValueError for an unknown method, one that weighs no channels, or a mesh
     without area.
     """
-    chosen = weights(method)
-    check_channels(chosen)
+    factors = weights(method)
+    check_channels(factors)
 
     def level(viewpoint: Viewpoint) -> float:
         view = render(mesh, viewpoint, VIEW_SIZE)
-        return float(fuse(conspicuity(mesh, view, list(chosen)), chosen).sum())
+        return float(fuse(conspicuity(mesh, view, list(factors)), factors).sum())
 
     return best_set(mesh, level, seed)

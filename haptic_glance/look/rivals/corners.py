@@ -45,12 +45,12 @@ def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """
     check_values(mesh, values)
     responses = np.pad(_responses(mesh), ((1, 1), (0, 0)))
-    found = [
-        peaks[own[peaks] >= np.maximum(NOISE, np.maximum(finer, coarser)[peaks])]
-        for finer, own, coarser in zip(responses, responses[1:], responses[2:], strict=False)
-        for peaks in [ring_maxima(mesh, own, 1)]
+    corners = [
+        peaks[response[peaks] >= np.maximum(NOISE, np.maximum(finer, coarser)[peaks])]
+        for finer, response, coarser in zip(responses, responses[1:], responses[2:], strict=False)
+        for peaks in [ring_maxima(mesh, response, 1)]
     ]
-    ids = np.unique(np.concatenate(found))
+    ids = np.unique(np.concatenate(corners))
     return ids[np.lexsort((*-mesh.vertices[ids].T[::-1], -values[ids]))]
 
 
@@ -61,13 +61,13 @@ def _responses(mesh):
     if not area > 0:
         return np.zeros((len(SCALES), len(mesh.vertices)))
     mesh = Mesh(mesh.vertices / np.sqrt(area), mesh.faces)
-    normals, variance, found = mesh.vertex_normals, 0.0, []
+    normals, variance, responses = mesh.vertex_normals, 0.0, []
     for scale in SCALES:
         smooth = _smoother(mesh, scale**2 - variance)
         normals, variance = smooth(normals), scale**2
         response = scale**2 * smooth(_smaller_eigenvalue(mesh, unit(normals)))[:, 0]
-        found.append(np.sqrt(np.maximum(response, 0)))
-    return np.where(_sum_around(mesh, mesh.face_areas) > 0, found, 0).round(DIGITS)
+        responses.append(np.sqrt(np.maximum(response, 0)))
+    return np.where(_sum_around(mesh, mesh.face_areas) > 0, responses, 0).round(DIGITS)
 
 
 def _smoother(mesh, variance):

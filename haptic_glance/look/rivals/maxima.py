@@ -59,8 +59,8 @@ def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
         return local_maxima(mesh, values, 1.0)
     used = mesh.vertices[mesh.used]
     size = 2 * np.linalg.norm(used - used.mean(axis=0), axis=1).max()
-    found = local_maxima(mesh, values, SPACING * size)
-    return found[values[found] >= values[found].mean()] if len(found) else found
+    maxima = local_maxima(mesh, values, SPACING * size)
+    return maxima[values[maxima] >= values[maxima].mean()] if len(maxima) else maxima
 
 
 def _levels(mesh, values):
@@ -73,11 +73,11 @@ def _levels(mesh, values):
 
 def _above_nearest(tree, levels, ranks, radius):
     """Vertex ids above zero that none of the nearest vertices within the radius outranks."""
-    found = np.flatnonzero(levels > 0)
+    candidates = np.flatnonzero(levels > 0)
     count = min(NEAREST, tree.n)
-    ids = tree.query(tree.data[found], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
+    ids = tree.query(tree.data[candidates], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
     best = np.append(ranks, tree.n)[ids].min(axis=1)  # an empty slot has the id n
-    return found[ranks[found] <= best]
+    return candidates[ranks[candidates] <= best]
 
 
 def ring_maxima(mesh: Mesh, values: np.ndarray, rings: int) -> np.ndarray:
@@ -104,7 +104,7 @@ def representatives(mesh: Mesh, vertices: np.ndarray, distance: float) -> np.nda
     """Vertices of (k,), best first, in the same order, that are farther than distance from all better ones kept."""
     near = cKDTree(mesh.vertices[vertices]).query_ball_point(mesh.vertices[vertices], distance)
     free = np.ones(len(vertices), dtype=bool)
-    for rank, others in enumerate(near):
+    for rank, neighbours in enumerate(near):
         if free[rank]:
-            free[[other for other in others if other > rank]] = False
+            free[[neighbour for neighbour in neighbours if neighbour > rank]] = False
     return vertices[free]

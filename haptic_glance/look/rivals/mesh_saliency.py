@@ -48,8 +48,8 @@ def _contrasts(mesh):
         return {}
     surface = surface_elements(mesh, mean_curvature(mesh, smoothing=EPSILON)[:, None])
     sigmas = [scale * EPSILON * mesh.diagonal for scale in SCALES]
-    wanted = sorted({factor * sigma for sigma in sigmas for factor in (1, 2)})
-    means = {sigma: gaussian_average(mesh, surface, sigma)[:, 0] for sigma in wanted}
+    widths = sorted({factor * sigma for sigma in sigmas for factor in (1, 2)})
+    means = {sigma: gaussian_average(mesh, surface, sigma)[:, 0] for sigma in widths}
     unused = (mesh.vertex_normals == 0).all(axis=1)  # in no face: not part of the surface
     contrasts = {sigma: np.where(unused, 0, np.abs(means[sigma] - means[2 * sigma])) for sigma in sigmas}
     return {sigma: c / c.max() for sigma, c in contrasts.items() if c.max() * mesh.diagonal > FLOOR}
@@ -57,6 +57,6 @@ def _contrasts(mesh):
 
 def _uniqueness(mesh, contrast, sigma):
     """The factor (M - m)^2 of the non-linear suppression: M = 1, m the mean of the other local maxima (section 3.3)."""
-    others = local_maxima(mesh, contrast, 2 * sigma)[1:]
-    mean = contrast[others].mean() if len(others) else 0
+    maxima = local_maxima(mesh, contrast, 2 * sigma)[1:]
+    mean = contrast[maxima].mean() if len(maxima) else 0
     return max((1 - mean) ** 2, 1e-6)  # two equal maxima, as on an ellipsoid, must not erase the map

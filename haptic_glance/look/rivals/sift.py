@@ -62,8 +62,8 @@ def saliency(mesh: Mesh) -> np.ndarray:
 def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first, by saliency: the vertices nearest to the keypoints."""
     check_values(mesh, values)
-    found = np.unique(_nearest(mesh, _keypoints(mesh)))
-    return found[np.lexsort((*-mesh.vertices[found].T[::-1], -values[found]))]
+    vertices = np.unique(_nearest(mesh, _keypoints(mesh)))
+    return vertices[np.lexsort((*-mesh.vertices[vertices].T[::-1], -values[vertices]))]
 
 
 def _nearest(mesh, keypoints):

@@ -165,12 +165,12 @@ def point_visibility(mesh: Mesh, viewpoints: Sequence[Viewpoint]) -> np.ndarray:
     surface = scaled_to_unit_diagonal(mesh)
     points, _ = surface_points(surface)
     scene = RayScene(surface)
-    seen = np.zeros((len(viewpoints), len(points)), dtype=bool)
-    for row, viewpoint in zip(seen, viewpoints, strict=True):
+    visible = np.zeros((len(viewpoints), len(points)), dtype=bool)
+    for row, viewpoint in zip(visible, viewpoints, strict=True):
         origins, directions, distances = sightlines(points, viewpoint)
         hits = scene.cast(origins, directions)
         row[:] = hits.hit & (hits.distance >= distances - SAME_DEPTH)
-    return seen
+    return visible
 
 
 def cumulative_coverage(mesh: Mesh, viewpoints: Sequence[Viewpoint]) -> np.ndarray:
@@ -181,10 +181,10 @@ def cumulative_coverage(mesh: Mesh, viewpoints: Sequence[Viewpoint]) -> np.ndarr
     """
     candidates = dict(zip(CANDIDATES, _candidate_visibility(mesh), strict=True))
     visible = np.any(list(candidates.values()), axis=0)
-    others = [viewpoint for viewpoint in viewpoints if viewpoint not in candidates]
-    known = candidates | dict(zip(others, point_visibility(mesh, others), strict=True))
-    seen = np.logical_or.accumulate([known[viewpoint][visible] for viewpoint in viewpoints], axis=0)
-    return seen.sum(axis=1) / max(visible.sum(), 1)
+    extras = [viewpoint for viewpoint in viewpoints if viewpoint not in candidates]
+    visibility = candidates | dict(zip(extras, point_visibility(mesh, extras), strict=True))
+    covered = np.logical_or.accumulate([visibility[viewpoint][visible] for viewpoint in viewpoints], axis=0)
+    return covered.sum(axis=1) / max(visible.sum(), 1)
 
 
 def greedy_views(mesh: Mesh, count: int = 12) -> tuple[list[Viewpoint], np.ndarray]:
@@ -218,8 +218,8 @@ def _candidate_visibility(mesh):
 
 def _visible_points(mesh):
     """(62, p') boolean: the visibility of the points that at least one candidate sees."""
-    seen = _candidate_visibility(mesh)
-    return seen[:, seen.any(axis=0)]
+    visible = _candidate_visibility(mesh)
+    return visible[:, visible.any(axis=0)]
 
 
 def _with_viewpoints(chosen, shares):
@@ -228,14 +228,14 @@ def _with_viewpoints(chosen, shares):
 
 def _greedy(seen, share, count):
     """(rows of seen in the order of what each adds (k,) i8, cumulative shares (k,))."""
-    left = np.ones(seen.shape[1], dtype=bool)
+    unseen = np.ones(seen.shape[1], dtype=bool)
     chosen, shares = [], []
-    while left.any() and len(chosen) < count and (1 - left.mean()) < share - ROUNDING:
-        gains = (seen & left).sum(axis=1)
+    while unseen.any() and len(chosen) < count and (1 - unseen.mean()) < share - ROUNDING:
+        gains = (seen & unseen).sum(axis=1)
         best = int(gains.argmax())
-        left &= ~seen[best]
+        unseen &= ~seen[best]
         chosen.append(best)
-        shares.append(1 - left.mean())
+        shares.append(1 - unseen.mean())
     return np.array(chosen, dtype=np.int64), np.array(shares)
 
 

@@ -32,21 +32,21 @@ def find_cover(seen: np.ndarray, counts: np.ndarray, need: float, most: int, nod
         state, prices = waiting.pop()
         taken, free = np.flatnonzero(state == 1), np.flatnonzero(state == 0)
         more = min(most - len(taken), len(free))
-        left = counts * (1 - _times(seen, taken).clip(0, 1))
+        unseen = counts * (1 - _times(seen, taken).clip(0, 1))
         best, bound = free[:0], 0.0
         for _ in range(STEPS):
             # For one view more, its gain is the bound.
-            prices = np.minimum(prices, left) if more > 1 else left
+            prices = np.minimum(prices, unseen) if more > 1 else unseen
             earned = np.array([_product(seen[v], prices) for v in free])
             order = np.argsort(-earned)[:more]
             best, bound = free[order], total - prices.sum() + earned[order].sum()
             surplus = _times(seen, best) - 1
-            if total - _product(left, (surplus < 0).astype(np.float32)) >= need:
+            if total - _product(unseen, (surplus < 0).astype(np.float32)) >= need:
                 return np.concatenate((taken, best))
             if bound < need - MARGIN or more < 2:
                 break
-            step = np.float32((bound - need + AIM * total) / max(_product(left, surplus * surplus), np.float32(1)))
-            prices = np.maximum(prices - step * left * surplus, np.float32(0))
+            step = np.float32((bound - need + AIM * total) / max(_product(unseen, surplus * surplus), np.float32(1)))
+            prices = np.maximum(prices - step * unseen * surplus, np.float32(0))
         if bound >= need - MARGIN and more > 1:
             for choice in (-1, 1):
                 child = state.copy()

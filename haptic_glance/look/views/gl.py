@@ -54,9 +54,9 @@ def render_pyrender(
     _offscreen()._renderer._program_cache.material = material
     ids, depth = _draw(scene, node, size, FACE_IDS)
     shaded, _ = _draw(scene, node, size, SHADED)
-    drawn = ids.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
-    on = drawn > 0
-    face = np.where(on, (drawn - 1) % max(len(mesh.faces), 1), -1).astype(np.int32)
+    codes = ids.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
+    on = codes > 0
+    face = np.where(on, (codes - 1) % max(len(mesh.faces), 1), -1).astype(np.int32)
     rgb = np.where(on[..., None], shaded, view.rgb)
     return View(rgb, np.where(on, round_depth(_linear(depth)), view.depth), face, viewpoint)
 

@@ -45,9 +45,9 @@ def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face:
             z = z0 + second * (z1 - z0) + third * (z2 - z0)
             y = np.uint64(row - top)  # unsigned: numba looks for no index from the end
             for column in range(int(np.ceil(low)), int(np.floor(high)) + 1):
-                x, here = np.uint64(column - left), z + column * step
-                if here < depth[y, x]:
-                    depth[y, x], face[y, x] = here, f
+                x, distance = np.uint64(column - left), z + column * step
+                if distance < depth[y, x]:
+                    depth[y, x], face[y, x] = distance, f
 
 
 @helper
@@ -114,17 +114,17 @@ def background_colour(rgb: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, bo
 
     Black when the mask covers the image.
     """
-    colour, found = np.zeros(3, dtype=np.uint8), False
+    colour, has_colour = np.zeros(3, dtype=np.uint8), False
     for i in range(mask.shape[0]):
         for j in range(mask.shape[1]):
             if mask[i, j]:
                 continue
             for k in range(3):
-                if not found:
+                if not has_colour:
                     colour[k] = rgb[i, j, k]
                 elif rgb[i, j, k] != colour[k]:
                     return colour, False
-            found = True
+            has_colour = True
     return colour, True
 
 

@@ -53,8 +53,8 @@ def view_similarities(
 def _ssim(values, gts, moments, mask):
     if np.ptp(values) == 0:
         return 0.0
-    found, edge = ssim_map(gts, values, moments, white=1), WINDOW // 2
-    inside = found[edge:-edge, edge:-edge] if mask is None else found[mask]  # whole windows alone, as in MATLAB's ssim
+    index, edge = ssim_map(gts, values, moments, white=1), WINDOW // 2
+    inside = index[edge:-edge, edge:-edge] if mask is None else index[mask]  # whole windows alone, as in MATLAB's ssim
     return float(inside.mean())
 
 
@@ -222,8 +222,8 @@ def fit_fixations(
 
     from scipy.optimize import minimize  # takes a tenth of a second to import, and only a fit needs it
 
-    found = minimize(loss, np.zeros(features[0].shape[1]), jac=True, method="L-BFGS-B", options={"maxiter": 500})
-    return found.x
+    optimum = minimize(loss, np.zeros(features[0].shape[1]), jac=True, method="L-BFGS-B", options={"maxiter": 500})
+    return optimum.x
 
 
 def fixation_density(features: Mapping[str, np.ndarray], weights: Mapping[str, float]) -> np.ndarray:

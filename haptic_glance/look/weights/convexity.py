@@ -56,9 +56,9 @@ def _boundary_edges(faces, count):
     tails, heads = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     size = (count, count)
     edges = sparse.coo_matrix((np.ones(len(tails)), (tails, heads)), shape=size).tocsr()
-    left = (edges - edges.T).tocoo()
-    times = left.data.clip(0).astype(np.int64)
-    return np.repeat(left.row, times), np.repeat(left.col, times)
+    unpaired = (edges - edges.T).tocoo()
+    times = unpaired.data.clip(0).astype(np.int64)
+    return np.repeat(unpaired.row, times), np.repeat(unpaired.col, times)
 
 
 def _volume(points, faces, tails, heads):

@@ -82,8 +82,8 @@ def fit_svm(features: np.ndarray, labels: np.ndarray, seed: int, max_rows: int =
     Raises ValueError for NaN, unequal lengths, a single class, or `max_rows` below 2.
     """
     features, labels = checked_rows(features, labels, max_rows)
-    chosen = balanced_rows(labels, rng(seed, "svm"), max_rows)
-    return fit_rows(features[chosen], labels[chosen])
+    rows = balanced_rows(labels, rng(seed, "svm"), max_rows)
+    return fit_rows(features[rows], labels[rows])
 
 
 def fit_rows(features: np.ndarray, labels: np.ndarray) -> SVMModel:
@@ -115,7 +115,8 @@ def information_gains(features: np.ndarray, labels: np.ndarray) -> np.ndarray:
     cuts = np.quantile(features, np.arange(1, BINS) / BINS, axis=0)[:, None]
     bins = (features > cuts).sum(axis=0) + (features >= cuts).sum(axis=0) + (2 * BINS - 1) * np.arange(c)
     rows, salient = (
-        np.bincount(bins[kept].ravel(), minlength=c * (2 * BINS - 1)).reshape(c, -1) for kept in (slice(None), labels)
+        np.bincount(bins[subset].ravel(), minlength=c * (2 * BINS - 1)).reshape(c, -1)
+        for subset in (slice(None), labels)
     )
     within = (rows * _entropy(salient / np.maximum(rows, 1))).sum(axis=1) / k
     bias = ((rows > 0).sum(axis=1) - 1) / (2 * k * np.log(2))
@@ -205,8 +206,8 @@ def pixel_samples(
     fewer = min(labels.sum(), (~labels).sum())
     if fewer == 0:
         return features[:0], labels[:0]
-    chosen = balanced_rows(labels, rng(seed, f"svm pixels {name}"), 2 * int(np.ceil(share * fewer)))
-    return features[chosen], labels[chosen]
+    rows = balanced_rows(labels, rng(seed, f"svm pixels {name}"), 2 * int(np.ceil(share * fewer)))
+    return features[rows], labels[rows]
 
 
 def select_far_points(points: np.ndarray, count: int = POINTS) -> np.ndarray:

@@ -123,20 +123,20 @@ def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWe
     """
     table = read_table(Path(folder) / "weights.csv").fillna({"left_out": ALL})
     from_all = table[table.left_out == ALL]
-    own = table[table.left_out == name]
-    every = _by_method(from_all)
-    found = every | _by_method(own)
-    if own.empty and (Path(folder) / "ground_truth" / f"{name}.npz").exists():
-        published = np.allclose([*every[GLANCE].values()], [*weights(GLANCE).values()])
-        usable = {*METHODS} if published else {*METHODS} - {*GLANCES}
-        found = {method: values for method, values in every.items() if method in usable}
-    seen = {f"{method}{SEEN_SUFFIX}": values for method, values in every.items() if method not in METHODS}
+    without = table[table.left_out == name]
+    overall = _by_method(from_all)
+    learned = overall | _by_method(without)
     gazed = (Path(folder) / "ground_truth" / f"{name}.npz").exists()  # weights of DEEP that leave it out do not exist
-    return LearnedWeights(found | seen | ({} if gazed else _deep()), _svms(Path(folder), name, mesh))
+    if without.empty and gazed:
+        published = np.allclose([*overall[GLANCE].values()], [*weights(GLANCE).values()])
+        usable = {*METHODS} if published else {*METHODS} - {*GLANCES}
+        learned = {method: values for method, values in overall.items() if method in usable}
+    seen = {f"{method}{SEEN_SUFFIX}": values for method, values in overall.items() if method not in METHODS}
+    return LearnedWeights(learned | seen | ({} if gazed else _deep()), _svms(Path(folder), name, mesh))
 
 
 def _deep():
-    return {method: dict(found) for method, found in DEEP.items()}
+    return {method: dict(factors) for method, factors in DEEP.items()}
 
 
 def _by_method(table):
@@ -148,18 +148,18 @@ def _svms(folder, name, mesh):
     if not (folder / "convexity.csv").exists():
         return {}
     convexities = read_table(folder / "convexity.csv").set_index("object").convexity.to_dict()
-    own = folder / "svm" / f"{name}.npz"
+    path = folder / "svm" / f"{name}.npz"
     others = {other: value for other, value in convexities.items() if other != name}
-    found = {"svm": read_models(own, "without") if own.exists() else read_models(folder / "svm.npz", "all")}
-    found["svm_seen"] = read_models(folder / "svm.npz", "all")
+    svms = {"svm": read_models(path, "without") if path.exists() else read_models(folder / "svm.npz", "all")}
+    svms["svm_seen"] = read_models(folder / "svm.npz", "all")
     if others:  # their names are texts, which pandas does not tell
-        found["svm_nearest"] = read_models(
+        svms["svm_nearest"] = read_models(
             folder / "svm" / f"{nearest_convexity(convexity(mesh), others)}.npz",  # pyright: ignore[reportArgumentType]
             "object",
         )
-    found["svm_object"] = read_models(own, "object")
-    found["svm_viewpoint"] = read_models(own, "view")
-    return {kind: models for kind, models in found.items() if models}
+    svms["svm_object"] = read_models(path, "object")
+    svms["svm_viewpoint"] = read_models(path, "view")
+    return {kind: models for kind, models in svms.items() if models}
 
 
 def write_models(path: str | Path, models: Mapping[str, Sequence[SVMModel | None]]) -> None:
@@ -199,16 +199,16 @@ def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list
     per_object = {name: _views(arrays) for name, arrays in training_data.items()}
     rows = []
     for left_out in folds:
-        kept = [name for name in training_data if name != left_out]
-        found = {
-            "guided_ed": average([per_object[name][0] for name in kept]),
-            "guided_ssim": average([per_object[name][1] for name in kept]),
-            "guided_ssim_object": average([per_object[name][2] for name in kept]),
-            **{method: _glance([training_data[name] for name in kept], method) for method in GLANCES},
+        names = [name for name in training_data if name != left_out]
+        learned = {
+            "guided_ed": average([per_object[name][0] for name in names]),
+            "guided_ssim": average([per_object[name][1] for name in names]),
+            "guided_ssim_object": average([per_object[name][2] for name in names]),
+            **{method: _glance([training_data[name] for name in names], method) for method in GLANCES},
         }
         rows += [
             {"method": method, "channel": channel, "weight": round(weight, 9), "left_out": left_out}
-            for method, weights in found.items()
+            for method, weights in learned.items()
             for channel, weight in weights.items()
         ]
     return rows
@@ -230,6 +230,6 @@ def _glance(objects, method):
     """The weights of a method of GLANCES."""
     names = list(GLANCES[method])
     columns = [objects[0]["glance_names"].tolist().index(name) for name in names]
-    amounts, areas = ([one[key] for one in objects] for key in ("glance_amounts", "glance_areas"))
-    weights = fit_fixations([one["glance"][:, columns] for one in objects], amounts, areas)
+    amounts, areas = ([arrays[key] for arrays in objects] for key in ("glance_amounts", "glance_areas"))
+    weights = fit_fixations([arrays["glance"][:, columns] for arrays in objects], amounts, areas)
     return dict(zip(names, weights.tolist(), strict=True))

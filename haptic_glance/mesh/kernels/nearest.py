@@ -34,13 +34,13 @@ def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes
     px, py, pz = x - low[0], y - low[1], z - low[2]
     least, second, face = np.inf, np.inf, np.int64(-1)
     for e in range(first, last):
-        one = np.int64(entries[e])  # as `face`: each further type compiles the callees once more
-        bound = bound_to(planes, one, px, py, pz)
+        candidate = np.int64(entries[e])  # as `face`: each further type compiles the callees once more
+        bound = bound_to(planes, candidate, px, py, pz)
         if bound <= enough:
-            square = square_to(vertices, faces, planes, one, x, y, z)
+            square = square_to(vertices, faces, planes, candidate, x, y, z)
             if square <= enough:
-                return square, one
-        face = one if bound < least else face
+                return square, candidate
+        face = candidate if bound < least else face
         larger = bound if bound > least else least
         second = larger if larger < second else second
         least = bound if bound < least else least
@@ -49,11 +49,11 @@ def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes
         best = square_to(vertices, faces, planes, face, x, y, z)
         if best > second * EQUAL:  # the nearest point is a corner: another face may be nearer
             for e in range(first, last):
-                one = np.int64(entries[e])
-                if bound_to(planes, one, px, py, pz) < best:
-                    square = square_to(vertices, faces, planes, one, x, y, z)
+                candidate = np.int64(entries[e])
+                if bound_to(planes, candidate, px, py, pz) < best:
+                    square = square_to(vertices, faces, planes, candidate, x, y, z)
                     if square < best:
-                        best, face = square, one
+                        best, face = square, candidate
     return best, face
 
 
@@ -67,8 +67,10 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
     px, py, pz, per_unit = x - low[0], y - low[1], z - low[2], 1 / cell
     gx, gy, gz = px * per_unit, py * per_unit, pz * per_unit
     x0, y0, z0 = _clipped(gx, shape[0]), _clipped(gy, shape[1]), _clipped(gz, shape[2])
-    own = (z0 * shape[1] + y0) * shape[0] + x0
-    best, face = _nearest_in_cell(x, y, z, starts[own], starts[own + 1], low, vertices, faces, entries, planes, enough)
+    home = (z0 * shape[1] + y0) * shape[0] + x0
+    best, face = _nearest_in_cell(
+        x, y, z, starts[home], starts[home + 1], low, vertices, faces, entries, planes, enough
+    )
     needed = math.sqrt(best) * per_unit
     sure = gx - needed >= x0 and gx + needed < x0 + 1 and gy - needed >= y0 and gy + needed < y0 + 1
     sure = (sure and gz - needed >= z0 and gz + needed < z0 + 1) or best <= enough
@@ -86,11 +88,11 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
                     continue
                 row = layer * shape[1] + column
                 for e in range(starts[row * shape[0] + x0], starts[row * shape[0] + x1 + 1]):
-                    one = np.int64(entries[e])
-                    if bound_to(planes, one, px, py, pz) < best:
-                        square = square_to(vertices, faces, planes, one, x, y, z)
+                    candidate = np.int64(entries[e])
+                    if bound_to(planes, candidate, px, py, pz) < best:
+                        square = square_to(vertices, faces, planes, candidate, x, y, z)
                         if square < best:
-                            best, face = square, one
+                            best, face = square, candidate
                             if best <= enough:
                                 return best, face, True
         sure = needed <= limit or best * per_unit**2 <= radius**2
@@ -103,17 +105,17 @@ def search(
     points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, grid: Grid, planes: np.ndarray, far: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """(squared distances (k,), faces (k,)) of the nearest faces; face -1 where all are more than `far` cells away."""
-    squares, found = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
-    _search(points, vertices, faces, *grid, planes, far, squares, found)
-    return squares, found
+    squares, ids = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
+    _search(points, vertices, faces, *grid, planes, far, squares, ids)
+    return squares, ids
 
 
 @kernel
-def _search(points, vertices, faces, starts, entries, low, cell, shape, planes, far, squares, found):
+def _search(points, vertices, faces, starts, entries, low, cell, shape, planes, far, squares, ids):
     """Fills what `search` returns."""
     for i in range(len(points)):
         best, face, sure = _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, -1.0, far)
-        squares[i], found[i] = best, face if sure else -1
+        squares[i], ids[i] = best, face if sure else -1
 
 
 def farthest(
@@ -130,21 +132,21 @@ def farthest(
 
     Not searched are points more than `far` cells away.
     """
-    done, away = np.zeros(len(points), dtype=np.bool_), np.empty(len(points), dtype=np.int64)
-    square, count = _farthest(points, corners, vertices, faces, *grid, planes, square, far, done, away)
+    visited, away = np.zeros(len(points), dtype=np.bool_), np.empty(len(points), dtype=np.int64)
+    square, count = _farthest(points, corners, vertices, faces, *grid, planes, square, far, visited, away)
     return square, away[:count]
 
 
 @kernel
-def _farthest(points, corners, vertices, faces, starts, entries, low, cell, shape, planes, square, far, done, away):
-    """`farthest`, but for the number of `away` in the place of those ids. done: no point yet."""
+def _farthest(points, corners, vertices, faces, starts, entries, low, cell, shape, planes, square, far, visited, away):
+    """`farthest`, but for the number of `away` in the place of those ids. visited: no point yet."""
     count = 0
     for f in range(len(corners)):
         for corner in range(3):
             v = corners[f, corner]
-            if done[v]:
+            if visited[v]:
                 continue
-            done[v] = True
+            visited[v] = True
             best, _, sure = _search_one(
                 points, v, vertices, faces, starts, entries, low, cell, shape, planes, square, far
             )

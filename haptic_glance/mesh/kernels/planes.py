@@ -75,11 +75,11 @@ def set_planes(vertices: np.ndarray, a: Id, b: Id, c: Id, low: np.ndarray, plane
 def bound_to(planes: np.ndarray, f: Id, x: float, y: float, z: float) -> float:
     """Lower bound of the squared distance of a point, relative to `low`, to a face: that to its planes."""
     w = planes[f, 0] * x + planes[f, 4] * y + planes[f, 8] * z + planes[f, 12]
-    one = planes[f, 1] * x + planes[f, 5] * y + planes[f, 9] * z + planes[f, 13]
-    two = planes[f, 2] * x + planes[f, 6] * y + planes[f, 10] * z + planes[f, 14]
-    three = planes[f, 3] * x + planes[f, 7] * y + planes[f, 11] * z + planes[f, 15]
-    beyond = one if one > two else two  # numba's max of several numbers takes twice as long
-    beyond = three if three > beyond else beyond
+    side_a = planes[f, 1] * x + planes[f, 5] * y + planes[f, 9] * z + planes[f, 13]
+    side_b = planes[f, 2] * x + planes[f, 6] * y + planes[f, 10] * z + planes[f, 14]
+    side_c = planes[f, 3] * x + planes[f, 7] * y + planes[f, 11] * z + planes[f, 15]
+    beyond = side_a if side_a > side_b else side_b  # numba's max of several numbers takes twice as long
+    beyond = side_c if side_c > beyond else beyond
     beyond = beyond if beyond > 0.0 else 0.0
     return w * w + beyond * beyond
 
@@ -105,10 +105,10 @@ def square_to(
     bx, by, bz = x - vertices[b, 0], y - vertices[b, 1], z - vertices[b, 2]
     cx, cy, cz = x - vertices[c, 0], y - vertices[c, 1], z - vertices[c, 2]
     w = planes[f, 0] * ax + planes[f, 4] * ay + planes[f, 8] * az
-    one = planes[f, 1] * ax + planes[f, 5] * ay + planes[f, 9] * az
-    two = planes[f, 2] * bx + planes[f, 6] * by + planes[f, 10] * bz
-    three = planes[f, 3] * cx + planes[f, 7] * cy + planes[f, 11] * cz
-    if one < 0.0 and two < 0.0 and three < 0.0:
+    side_a = planes[f, 1] * ax + planes[f, 5] * ay + planes[f, 9] * az
+    side_b = planes[f, 2] * bx + planes[f, 6] * by + planes[f, 10] * bz
+    side_c = planes[f, 3] * cx + planes[f, 7] * cy + planes[f, 11] * cz
+    if side_a < 0.0 and side_b < 0.0 and side_c < 0.0:
         return w * w
     best = _square_to_side(ax, ay, az, ax - bx, ay - by, az - bz)
     best = min(best, _square_to_side(bx, by, bz, bx - cx, by - cy, bz - cz))

@@ -98,7 +98,7 @@ class KnowPanel(Panel):
             begun = guess(library, meshes, None if hidden else table) if hidden or table is not None else None
             return notes, library, seconds, begun
 
-        self.window.work("Learning the known objects", work, lambda found: self.begin(*found))
+        self.window.work("Learning the known objects", work, lambda outcome: self.begin(*outcome))
 
     def begin(self, notes: list[str], library: Library, seconds: float, begun: Guess | None) -> None:
         """The library is there: an object can be touched."""
@@ -165,12 +165,12 @@ class KnowPanel(Panel):
         """Lets the planner touch until the object is known."""
         if not self.touchable() or self.guess is None:
             return
-        one, before = self.guess, self.guess.touches
+        game, before = self.guess, self.guess.touches
 
         def work(report: Report) -> bool:
-            exploration = one.exploration
-            while not exploration.belief.known and one.touches < before + 30:
-                report((one.touches - before) / 30, f"touch {one.touches + 1}")
+            exploration = game.exploration
+            while not exploration.belief.known and game.touches < before + 30:
+                report((game.touches - before) / 30, f"touch {game.touches + 1}")
                 place = exploration.next_place()
                 if place is None:
                     return False
@@ -186,21 +186,21 @@ class KnowPanel(Panel):
 
     def report(self) -> None:
         """The bars, and what is known by now."""
-        one = self.guess
-        if one is None:
+        game = self.guess
+        if game is None:
             return
-        belief = one.exploration.belief
+        belief = game.exploration.belief
         self.bars.content, self.bars.visible = bars_html(belief.probabilities, belief.known), True
-        touches = f"after {count(one.touches)}"
-        begin = HIDDEN if one.hidden else ASK
+        touches = f"after {count(game.touches)}"
+        begin = HIDDEN if game.hidden else ASK
         self.about.content = (
             f"**{escaped(belief.known)}**, {touches}." if belief.known else f"Not sure {touches}. {begin}"
         )
-        if one.over:
-            self.about.content = one.told or f"**It is {escaped(one.name)}.**"
-        elif not one.touches:
+        if game.over:
+            self.about.content = game.told or f"**It is {escaped(game.name)}.**"
+        elif not game.touches:
             self.about.content = begin
-        if one.hidden and belief.known:
+        if game.hidden and belief.known:
             self.show_it()
 
     def said(self) -> None:
@@ -211,37 +211,39 @@ class KnowPanel(Panel):
 
     def show_it(self) -> None:
         """Ends a mystery: how the planner does alone is found in the background, then the object is shown."""
-        one = self.guess
-        if one is None or not one.hidden or one.over:
+        game = self.guess
+        if game is None or not game.hidden or game.over:
             return
-        one.over = True
+        game.over = True
         self.draw()
-        self.window.work("Letting the planner try", lambda _: by_planner(one), lambda planner: self.tell(one, planner))
+        self.window.work(
+            "Letting the planner try", lambda _: by_planner(game), lambda planner: self.tell(game, planner)
+        )
 
-    def tell(self, one: Guess, planner: tuple[int, str]) -> None:
+    def tell(self, game: Guess, planner: tuple[int, str]) -> None:
         """Says who knew the hidden object."""
-        one.told = verdict(one, planner, escaped)
+        game.told = verdict(game, planner, escaped)
         self.report()
 
     def draw(self) -> None:
         """Everything anew: the mesh unless it hides, the touches, the controls that fit."""
-        scene, one = self.window.scene, self.guess
+        scene, game = self.window.scene, self.guess
         scene.clear(DRAWN)
-        hides = one is not None and one.hidden and not one.over
+        hides = game is not None and game.hidden and not game.over
         self.name.visible = self.reveal.visible = hides
-        if one is None or not one.hidden:
+        if game is None or not game.hidden:
             if self.window.session.specimen is not None:
                 self.window.show()
         else:
             scene.clear(MESH)
-        if one is None:
+        if game is None:
             return
         if hides:
-            self.name.options = (GUESS, *one.exploration.library.names)
+            self.name.options = (GUESS, *game.exploration.library.names)
             scene.api.add_icosphere(ROOM, 0.5, (150, 160, 190), subdivisions=5, opacity=0.12, cast_shadow=False)
-        elif one.hidden:
-            scene.mesh(SHOWN, one.specimen.mesh, np.full((len(one.specimen.mesh.vertices), 3), GREY, np.uint8))
-        for number in range(one.touches):
+        elif game.hidden:
+            scene.mesh(SHOWN, game.specimen.mesh, np.full((len(game.specimen.mesh.vertices), 3), GREY, np.uint8))
+        for number in range(game.touches):
             self.show_touch(number)
         self.report()
 

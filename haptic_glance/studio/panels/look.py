@@ -81,12 +81,12 @@ class LookPanel(Panel):
         specimen, count = session.on_table, session.count
 
         def work(report: Report) -> list[Look]:
-            found = []
+            looks = []
             for number, name in enumerate(names):
                 tell = partial(report, number / len(names), name)
                 tell()
-                found.append(specimen.look(name, count, tell))
-            return found
+                looks.append(specimen.look(name, count, tell))
+            return looks
 
         self.window.work(f"Looking at {specimen.name}", work, self.draw, slot=self.title)
 
@@ -136,7 +136,7 @@ class LookPanel(Panel):
             self.window.work(
                 "Asking why here",
                 lambda _: contributions(specimen.baked, np.array([hit.vertex]), look.method),
-                lambda found: setattr(self.here, "content", text + for_and_against(found, look.method)),
+                lambda terms: setattr(self.here, "content", text + for_and_against(terms, look.method)),
             )
 
     def start_views(self) -> None:
@@ -180,9 +180,9 @@ def methods() -> list[str]:
 
 def colours(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """(n, 3) u1 colours of values (n,) >= 0."""
-    found = coloured(mesh, values).colors
-    assert found is not None
-    return found
+    colors = coloured(mesh, values).colors
+    assert colors is not None
+    return colors
 
 
 def listing(look: Look, why: Sequence[Sequence[tuple[str, float]]]) -> str:
@@ -191,27 +191,27 @@ def listing(look: Look, why: Sequence[Sequence[tuple[str, float]]]) -> str:
         return "No place stands out."
     lines = [
         f"{row[0]}. vertex {row[1]}, saliency {row[5]:.2f}"
-        + (": " + ", ".join(f"{words} ({amount:+.1f})" for words, amount in own) if own else "")
-        for row, own in zip(look.points, why, strict=True)
+        + (": " + ", ".join(f"{words} ({amount:+.1f})" for words, amount in causes) if causes else "")
+        for row, causes in zip(look.points, why, strict=True)
     ]
     return "\n".join(lines)
 
 
-def for_and_against(found: dict[str, np.ndarray], method: str) -> str:
+def for_and_against(terms: dict[str, np.ndarray], method: str) -> str:
     """The reasons for looking at one place, and those against, in Markdown."""
-    sides = {"For it": reasons(found, method)[0], "against it": reasons(found, method, against=True)[0]}
-    said = [
+    sides = {"For it": reasons(terms, method)[0], "against it": reasons(terms, method, against=True)[0]}
+    sentences = [
         f"{name}: " + ", ".join(f"{words} ({amount:+.1f})" for words, amount in side)
         for name, side in sides.items()
         if side
     ]
-    return "\n\n" + "; ".join(said) + "."
+    return "\n\n" + "; ".join(sentences) + "."
 
 
 def views_of(mesh: Mesh, saliency: np.ndarray, report: Report) -> np.ndarray:
     """The twelve views of the thesis as one picture, (rows, columns, 3) u1, three in a row."""
-    shown, tiles = coloured(mesh, saliency), []
+    model, tiles = coloured(mesh, saliency), []
     for number, viewpoint in enumerate(TWELVE):
         report(number / len(TWELVE), f"{number + 1} of {len(TWELVE)}")
-        tiles.append(render(shown, viewpoint, TILE, "raster", "white").rgb)
+        tiles.append(render(model, viewpoint, TILE, "raster", "white").rgb)
     return np.concatenate([np.concatenate(tiles[k : k + 3], axis=1) for k in range(0, len(tiles), 3)])

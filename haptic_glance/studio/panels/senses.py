@@ -87,14 +87,14 @@ class SensesPanel(Panel):
             self.answer,
         )
 
-    def answer(self, found: Answer) -> None:
+    def answer(self, verdict: Answer) -> None:
         """Shows what both senses say, and which is trusted."""
-        of_all = found.vision if found.sense == "vision" else found.touch
+        of_all = verdict.vision if verdict.sense == "vision" else verdict.touch
         best = next(iter(of_all), "")
-        trusted = f"It trusts **{found.sense}**: {best}, {of_all[best]:.0%}." if best else "Both senses are absent."
+        trusted = f"It trusts **{verdict.sense}**: {best}, {of_all[best]:.0%}." if best else "Both senses are absent."
         self.about.content = trusted
-        self.images.content, self.images.visible = pair_html(found.picture, found.imprint), True
-        for part, values in ((self.seen, found.vision), (self.felt, found.touch)):
+        self.images.content, self.images.visible = pair_html(verdict.picture, verdict.imprint), True
+        for part, values in ((self.seen, verdict.vision), (self.felt, verdict.touch)):
             part.content, part.visible = (
                 bars_html(dict(list(values.items())[:4]), best if values is of_all else ""),
                 True,

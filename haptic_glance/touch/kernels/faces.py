@@ -245,13 +245,13 @@ def project_corner(block: np.ndarray, k: int, frame: Frame) -> tuple[float, floa
 @helper
 def faces_above(block: np.ndarray, frame: Frame, floor: float) -> int:
     """How many faces of a block have a corner at the height `floor` or above it."""
-    found = 0
+    count = 0
     for f in range(LANES):
         _, _, w = project_corner(block, f, frame)
         _, _, w1 = project_corner(block, 3 * LANES + f, frame)
         _, _, w2 = project_corner(block, 6 * LANES + f, frame)
-        found += 1 if max3(w, w1, w2) >= floor else 0
-    return found
+        count += 1 if max3(w, w1, w2) >= floor else 0
+    return count
 
 
 @helper

@@ -46,11 +46,11 @@ def measure(
     blocks, boxes, children: the face_tree; lift: the distance from the plane within which a face counts on both sides.
     """
     rows, columns = cells
-    found = np.empty((len(centres), rows, columns))
+    distances = np.empty((len(centres), rows, columns))
     above, back, out = np.empty(cells), np.empty(cells, dtype=np.bool_), np.empty(cells, dtype=np.bool_)
     stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
     for k in range(len(centres)):
-        below = found[k]
+        below = distances[k]
         below[:], back[:], out[:] = -np.inf, False, False
         frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
         search(blocks, boxes, children, frame, cells, stack, projected, below, back, np.inf, None)
@@ -60,7 +60,7 @@ def measure(
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = above[i, j] if out[i, j] else -below[i, j]
-    return found
+    return distances
 
 
 @kernel
@@ -81,17 +81,17 @@ def first_below(
     inf where it is missed, or more than `window` below the nearest of the array: what is deeper need not be searched.
     """
     rows, columns = cells
-    found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
+    distances, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
     stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
     for k in range(len(centres)):
-        below = found[k]
+        below = distances[k]
         below[:], back[:] = -np.inf, False
         frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
         lowest = search(blocks, boxes, children, frame, cells, stack, projected, below, back, window, None) - window
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = -below[i, j] if below[i, j] >= lowest else np.inf
-    return found
+    return distances
 
 
 @kernel
@@ -117,14 +117,14 @@ def press(
     `depths_of_loads`. Writes the depths of loads to `depths`, and NaN for a touch that is invalid and left out.
     """
     rows, columns = cells
-    found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
+    forces, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
     stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
     start, near, weight = np.empty(3), np.empty(rows * columns), np.empty(rows * columns)
     reach, within, loaded = max(rows, columns) * pitch, 0.0, len(loads) > 0
     for k in range(len(centres)):
-        known = loads[k] > 0 if loaded else depths[k] >= 0
+        valid = loads[k] > 0 if loaded else depths[k] >= 0
         depths[k] = limit if loaded else depths[k]
-        if not (known and is_placed(centres[k], axes[k])):
+        if not (valid and is_placed(centres[k], axes[k])):
             depths[k] = np.nan
         elif depths[k] > within:
             within = depths[k]
@@ -132,7 +132,7 @@ def press(
     for k in range(len(centres)):
         if not depths[k] >= 0:
             continue
-        felt = found[k]
+        felt = forces[k]
         for i in range(rows):
             for j in range(columns):
                 felt[i, j], back[i, j] = -np.inf, False
@@ -157,7 +157,7 @@ def press(
             for j in range(columns):
                 pressed = depths[k] - felt[i, j]
                 felt[i, j] = (pressed if pressed > 0 else 0.0) * stiffness
-    return found
+    return forces
 
 
 @kernel
@@ -180,12 +180,12 @@ def below_taxels(
 
     Less the taxels' rise. inf where it is missed, or may be if it is more than `window` farther than the least.
     """
-    found, heights = np.empty((len(centres), count)), np.empty((1, len(taxels.rise)))
+    distances, heights = np.empty((len(centres), count)), np.empty((1, len(taxels.rise)))
     back, stack, projected = np.empty((0, 0), dtype=np.bool_), np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
     middle = np.empty(3)
     for k in range(len(centres)):
         for t in range(count):
-            found[k, t] = np.inf
+            distances[k, t] = np.inf
         for t in range(heights.shape[1]):
             heights[0, t] = -np.inf
         for axis in range(3):
@@ -194,8 +194,8 @@ def below_taxels(
         frame = frame_of(middle, axes[k], pitch, *cells, 1.0, 0.0, diagonal, 0.5)
         search(blocks, boxes, children, frame, cells, stack, projected, heights, back, window, taxels)
         for t in range(heights.shape[1]):
-            found[k, taxels.number[t]] = -heights[0, t] - taxels.rise[t]
-    return found
+            distances[k, taxels.number[t]] = -heights[0, t] - taxels.rise[t]
+    return distances
 
 
 MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
@@ -274,9 +274,9 @@ def search(
                     highest = raise_taxels(projected, frame, columns, best, taxels, highest)
             continue
         x, y, z = from_centre(boxes, child, frame)
-        one = abs(along(frame.normal, x, y, z))
+        away = abs(along(frame.normal, x, y, z))
         x, y, z = from_centre(boxes, child + 1, frame)
-        nearer = 0 if one < abs(along(frame.normal, x, y, z)) else 1
+        nearer = 0 if away < abs(along(frame.normal, x, y, z)) else 1
         stack[size], stack[size + 1] = child + 1 - nearer, child + nearer
         size += 2
     return highest
@@ -313,16 +313,16 @@ def depths_of_loads(gaps: np.ndarray, weights: np.ndarray, loads: np.ndarray, li
 @helper
 def depth_of_load(near: np.ndarray, weight: np.ndarray, size: int, load: float) -> float:
     """The depth at which the first `size` springs bear the load, inf without any; overwrites `near` and `weight`."""
-    kept, depth = -1, np.inf
-    while kept != size:
-        size = size if kept < 0 else kept
-        total, moment, kept = 0.0, 0.0, 0
+    count, depth = -1, np.inf
+    while count != size:
+        size = size if count < 0 else count
+        total, moment, count = 0.0, 0.0, 0
         for j in range(size):
             total += weight[j]
             moment += weight[j] * near[j]
         depth = (load + moment) / total
         for j in range(size):
             if near[j] <= depth:
-                near[kept], weight[kept] = near[j], weight[j]
-                kept += 1
+                near[count], weight[count] = near[j], weight[j]
+                count += 1
     return depth
