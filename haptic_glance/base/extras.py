@@ -7,12 +7,12 @@ from pathlib import Path
 MODULES = {
     "pictures": ("cv2", "matplotlib"),
     "pipeline": (
-        "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "omegaconf", "pandas",
+        "cloudpickle", "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "omegaconf", "pandas",
         "point_cloud_utils", "pymeshlab", "pypcd4", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage",
         "sklearn", "threadpoolctl", "tqdm", "yaml",
     ),
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
-    "cluster": ("cloudpickle", "dask", "distributed"),
+    "cluster": ("dask", "distributed"),
     "studio": ("viser",),
     "front": ("optuna",),
     "agents": ("gymnasium",),

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from joblib.externals.cloudpickle import dumps
+import cloudpickle
 
 from haptic_glance.base.files import sha256, whole_file
 from stages.engine.code import file_digest, files_behind
@@ -71,6 +71,6 @@ def taken_again(name: str, key: str, results: Results) -> Any:
 def keep(name: str, key: str, part: Any, results: Results) -> None:
     """Keeps a part below build/, with its key and the hashes of its files."""
     paths = [path for item in part.items for path in item.paths] if isinstance(part, Built) else []
-    content = dumps((key, {path: sha256(path) for path in paths}, part))
+    content = cloudpickle.dumps((key, {path: sha256(path) for path in paths}, part))
     with whole_file(results.workspace.build / FOLDER / f"{name}.pickle") as file:
         file.write_bytes(content)
