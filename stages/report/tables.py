@@ -163,7 +163,7 @@ def number(value: Any, digits: int = 3) -> str:
     if 0 < abs(value) < 1e-4:
         return f"{value:.{digits - 1}e}"
     places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:z.{places}f}"  # z: no minus before a zero
+    return f"{value:.{places}f}"
 
 
 def with_interval(mean: float, low: float, high: float, scale: float = 1, places: int | None = None) -> str:

@@ -21,6 +21,7 @@ from stages.report.tables import (
     leading,
     means,
     number,
+    percent,
     signed,
     with_interval,
 )
@@ -102,7 +103,8 @@ def test_interval_reads_well():
     assert with_interval(0.512, 0.41, 0.61, 100, 0) == "51 [41, 61]"
     assert with_interval(0.5, np.nan, np.nan, 100, 0) == "50"
     assert with_interval(np.nan, np.nan, np.nan) == "not run"
-    assert signed(-0.001, -0.004, 0.002) == "+0.00 [0.00, 0.00]"  # zero has no minus
+    assert with_interval(-0.001, -0.004, 0.002, 100, 0) == "0 [0, 0]" and percent(-0.001) == "0"  # zero has no minus
+    assert signed(-0.001, -0.004, 0.002) == "+0.00 [0.00, 0.00]"
     assert signed(0.126, np.nan, np.nan) == "+0.13"
     assert is_numeric(as_text(pd.DataFrame({"a": [1.5, np.nan]}))["a"])
     assert not is_numeric(pd.Series(["1.5 % of it"]))
@@ -193,7 +195,12 @@ def reports(tmp_path):
     claims = {"key": ["kept", "read", "untested"], "effect": -100.0, "low": -120.0, "high": 0.0}
     claims["verdict"] = ["contradicted", "depends on the reading", "not testable"]
     write_table(tmp_path / "claims.csv", pd.DataFrame(claims))
-    signs = {"kind": ["none of both", "open"], "mean": [1, 1], "low": [-2, None], "high": [4, 2]}
+    signs = {
+        "kind": ["none of both", "open", "tiny"],
+        "mean": [1, 1, -0.2],
+        "low": [-2, None, -0.4],
+        "high": [4, 2, 0.3],
+    }
     write_table(tmp_path / "tables/signs.csv", pd.DataFrame(signs))
     return tmp_path
 
@@ -213,6 +220,7 @@ def reports(tmp_path):
     ("tables/rates note=x method!=one: rows", "1"),
     ("tables/rates : rows", "3"),
     ("tables/signs kind=open: mean low high", "1"),
+    ("tables/signs kind=tiny: mean low high .0f", "0 [0, 0]"),
     ("tables/rates highest=low: method", "one"),
     ("tables/rates method=two lowest=mean: mean low high NSS higher|NSS lower .2f", "0.50 [0.25, 0.75] NSS higher"),
     ("tables/rates method=two note=: -mean -low -high higher|lower .1f", "0.5 [0.2, 0.8] lower"),
