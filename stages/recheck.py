@@ -207,7 +207,7 @@ def outcome(rows: pd.DataFrame) -> dict[str, float]:
     counts = by_method(rows).rename(columns={"rows": "compared"})
     least = (counts["close"] / counts["compared"]).min()
     sums = {name: int(counts[name].sum()) for name in ("compared", "close", "only_committed")}
-    return sums | {"least": round(least, 4) if sums["compared"] else 0.0}
+    return sums | {"least": round(float(least), 4) if sums["compared"] else 0.0}
 
 
 def _file(name: str) -> Path:
