@@ -43,16 +43,16 @@ class Tacto:
         turns = np.stack([-normal, -right, up], axis=2)  # the sensor looks along its +x, its +z is up
         places = scale * job["positions"] - turns @ (GEL - [PRESSED, 0, 0])
         angles = Rotation.from_matrix(turns).as_euler("xyz")
-        found = []
+        pictures = []
         renderer.update_camera_pose(places[0], angles[0])
         renderer.render(noise=False, calibration=False)  # hands the mesh to GL
         start = time.process_time()
         for place, angle in zip(places, angles, strict=True):
             renderer.update_camera_pose(place, angle)
             _, depths = renderer.render(noise=False, calibration=False)
-            found.append(depths[0])
+            pictures.append(depths[0])
         seconds = time.process_time() - start
-        return seconds, self._points(found[-1]) / scale
+        return seconds, self._points(pictures[-1]) / scale
 
     def _points(self, depth):
         """(n, 3) m: where the pixels of the last picture met the object."""

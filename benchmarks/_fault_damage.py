@@ -43,8 +43,8 @@ def damaged_cache(whole):
         for path in [index] if "index" in way else list(index.parent.rglob("*.val")):
             spoil(path)
         forget("lod", cache=False)
-        done = command("stages.lod", SET)
-        yield "damaged", "build/objects", way, said(done), lost(whole)
+        process = command("stages.lod", SET)
+        yield "damaged", "build/objects", way, said(process), lost(whole)
 
 
 def _prime():
@@ -79,26 +79,26 @@ def damaged_files(whole):
     for path in (DATA / "meshes/ball.npz", ROOT / "params.yaml"):
         sound = path.read_bytes()
         _garbage(path)
-        done = command("stages.views", SET)
+        process = command("stages.views", SET)
         path.write_bytes(sound)
         forget("views", cache=False)
         again = command("stages.views", SET)
         where = path.relative_to(ROOT).as_posix()
-        tried = "`python -m stages.views`, then again with the sound file"
-        yield "damaged", where, tried, f"{said(done)}; then {said(again)}", lost(whole)
+        attempt = "`python -m stages.views`, then again with the sound file"
+        yield "damaged", where, attempt, f"{said(process)}; then {said(again)}", lost(whole)
     for name in ("dvc.lock", "params.yaml", ".dvc/tmp/rwlock", f"data/{SET}/meshes/ball.npz"):
         path = ROOT / name
         sound = path.read_bytes() if path.exists() else b"{}"
         _garbage(path)
-        done = command("stages.repro")
-        if done.returncode:
+        process = command("stages.repro")
+        if process.returncode:
             path.write_bytes(sound)
         again = command("stages.repro")
-        tried = "`python -m stages.repro`, then again" + (" with the sound file" if done.returncode else "")
-        yield "damaged", name, tried, f"{said(done)}; then {said(again)}", lost(whole)
+        attempt = "`python -m stages.repro`, then again" + (" with the sound file" if process.returncode else "")
+        yield "damaged", name, attempt, f"{said(process)}; then {said(again)}", lost(whole)
     (ROOT / "dvc.lock").unlink()
-    done = command("stages.repro")
-    yield "damaged", "dvc.lock", "removed, then `python -m stages.repro`", said(done), lost(whole)
+    process = command("stages.repro")
+    yield "damaged", "dvc.lock", "removed, then `python -m stages.repro`", said(process), lost(whole)
 
 
 def damaged_checkpoint():
@@ -121,29 +121,29 @@ def damaged_checkpoint():
         return model.state_dict()
 
     reference = train(3)
-    for spoil, tried in ((_half, "cut in half"), (_garbage, "garbage")):
+    for spoil, damage in ((_half, "cut in half"), (_garbage, "garbage")):
         path.unlink()
         train(2)
         spoil(path)
-        found = train(3)
-        same = all(torch.equal(reference[key], found[key]) for key in reference)
+        weights = train(3)
+        same = all(torch.equal(reference[key], weights[key]) for key in reference)
         happened = "ignored and said so; trained from the beginning, the same weights" if same else "other weights"
-        yield "damaged", "training checkpoint", tried, happened, "nothing" if same else "the weights"
+        yield "damaged", "training checkpoint", damage, happened, "nothing" if same else "the weights"
 
 
 def clock(whole):
     """Times of files before and after those that are known, with the same content and with another one."""
-    own = sorted((ROOT / "own").iterdir())
+    inputs = sorted((ROOT / "own").iterdir())
     made = [path for path in DATA.rglob("*") if path.is_file()]
     command("stages.repro").check_returncode()
-    for name, paths, moment in (("inputs", own, PAST), ("outputs", made, PAST), ("outputs", made, FUTURE)):
+    for name, paths, moment in (("inputs", inputs, PAST), ("outputs", made, PAST), ("outputs", made, FUTURE)):
         for path in paths:
             os.utime(path, (moment, moment))
-        done = command("stages.repro")
-        happened = f"ran {_ran(done)} stages; {said(done)}"
+        process = command("stages.repro")
+        happened = f"ran {_ran(process)} stages; {said(process)}"
         year = time.gmtime(moment).tm_year
         yield "clock set back", name, f"same content, times of {year}; stages.repro", happened, lost(whole)
-    yield from _other_content(own[0], whole)
+    yield from _other_content(inputs[0], whole)
 
 
 def _ran(process):
@@ -159,15 +159,15 @@ def _other_content(path, whole):
         before = path.stat().st_mtime_ns if known else (PAST - 86400) * 10**9
         path.write_bytes(other)
         os.utime(path, ns=(before, before))
-        done = command("stages.repro")
-        ran = _ran(done)
+        process = command("stages.repro")
+        count = _ran(process)
         path.write_bytes(sound)
         command("stages.repro").check_returncode()
-        tried = (
+        attempt = (
             f"other content of the same size in place, {'the time it had' if known else 'times of 1979'}; back again"
         )
-        gone = lost(whole) if ran else "nothing, but DVC sees no change until the file is touched or replaced"
-        yield "clock set back", "inputs", tried, f"ran {ran} stages on it; {said(done)}", gone
+        loss = lost(whole) if count else "nothing, but DVC sees no change until the file is touched or replaced"
+        yield "clock set back", "inputs", attempt, f"ran {count} stages on it; {said(process)}", loss
 
 
 def cut_network():
@@ -194,10 +194,16 @@ def cut_network():
         more |= {"PIP_NO_CACHE_DIR": "1", "PIP_RETRIES": "1", "PIP_CONFIG_FILE": os.devnull, "NO_PROXY": "127.0.0.1"}
         for state in ("closes the connection half-way", "is sound again"):
             whole = [sys.executable, "-c", asks]
-            done = subprocess.run(whole, env=environment() | more, capture_output=True, text=True, timeout=300)
-            there = sorted(path.name for path in Path(folder, "kept").iterdir())
-            tried = f"fetch_package from a local index that {state}"
-            yield "network cut", "haptic_glance.base.fetch", tried, f"{said(done)}; in the cache: {there}", "nothing"
+            process = subprocess.run(whole, env=environment() | more, capture_output=True, text=True, timeout=300)
+            cached = sorted(path.name for path in Path(folder, "kept").iterdir())
+            attempt = f"fetch_package from a local index that {state}"
+            yield (
+                "network cut",
+                "haptic_glance.base.fetch",
+                attempt,
+                f"{said(process)}; in the cache: {cached}",
+                "nothing",
+            )
             cut.clear()
         server.shutdown()
 

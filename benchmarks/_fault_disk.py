@@ -37,15 +37,15 @@ def cases(whole):
         keep = f"mkdir -p kept && rm -rf kept/* && cp -a data/{SET}/lod reports/measurements/{SET}/lod.csv.gz kept"
         look = "echo first $?; find data reports -path '*lod*'; echo"
         script = f"set -e; {spoil.format(mount='mount')}; set +e; {RUN}; {look}; {mend} && {RUN} && {keep}"
-        done = in_namespace(script)
+        process = in_namespace(script)
         fault = "read-only" if "read-only" in where else "disk full"
-        if "first" not in done.stdout:
-            yield fault, where, "mount", f"not tried: {said(done)}", "nothing"
+        if "first" not in process.stdout:
+            yield fault, where, "mount", f"not tried: {said(process)}", "nothing"
             continue
         _take_over()
-        status, _, there = done.stdout.partition("first ")[2].partition("\n\n")[0].partition("\n")
-        left = [path for path in there.split() if path != f"reports/metrics/{SET}/lod.json"]
-        happened = f"status {status}, in place after it: {', '.join(left) or 'nothing'}; {said(done)}"
+        status, _, files = process.stdout.partition("first ")[2].partition("\n\n")[0].partition("\n")
+        left = [path for path in files.split() if path != f"reports/metrics/{SET}/lod.json"]
+        happened = f"status {status}, in place after it: {', '.join(left) or 'nothing'}; {said(process)}"
         yield fault, where, f"`{RUN}`, then again on a mended disk", happened, lost(whole)
 
 

@@ -92,9 +92,9 @@ def forked(stage, seconds=None):
     start, child = time.perf_counter(), os.fork()
     if not child:
         os.setsid()
-        with open(ROOT / "said", "w") as said:
-            os.dup2(said.fileno(), 1)
-            os.dup2(said.fileno(), 2)
+        with open(ROOT / "said", "w") as log:
+            os.dup2(log.fileno(), 1)
+            os.dup2(log.fileno(), 2)
         try:
             run_here(stage)
         except BaseException:
@@ -119,14 +119,14 @@ def forget(*stages, cache=True):
 
 def content(*stages):
     """{file: SHA-256} of data and of rows without seconds of some stages, of all without names."""
-    found = {}
+    digests = {}
     for stage in stages or STAGES:
         for path in sorted((DATA / stage).rglob("*")):
             if path.is_file():
-                found[str(path.relative_to(ROOT))] = hashlib.sha256(path.read_bytes()).hexdigest()
+                digests[str(path.relative_to(ROOT))] = hashlib.sha256(path.read_bytes()).hexdigest()
         rows = ROWS / f"{stage}.csv.gz"
         if rows.exists():
             frame = pd.read_csv(io.BytesIO(gzip.decompress(rows.read_bytes()))).drop(columns="seconds")
             still = frame[~frame["metric"].astype(str).str.contains("seconds")]
-            found[rows.name] = hashlib.sha256(still.to_csv().encode()).hexdigest()
-    return found
+            digests[rows.name] = hashlib.sha256(still.to_csv().encode()).hexdigest()
+    return digests

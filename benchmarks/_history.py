@@ -62,8 +62,8 @@ def limits(history: pd.DataFrame, here: str) -> pd.Series:
     """The highest ratio of each kernel: its last limit on this machine, else WIDER times the highest of the others'."""
     rows = history.dropna(subset=["limit"]).sort_values("date", kind="stable")
     last = rows.groupby(["what", "machine"])["limit"].last()
-    own = last[last.index.get_level_values("machine") == here].droplevel("machine")
-    return own.combine_first(WIDER * last.groupby("what").max())
+    local = last[last.index.get_level_values("machine") == here].droplevel("machine")
+    return local.combine_first(WIDER * last.groupby("what").max())
 
 
 def slower(history: pd.DataFrame, here: str, kernels: Collection[str], measure: Callable[[str], dict]) -> list[str]:
@@ -72,20 +72,20 @@ def slower(history: pd.DataFrame, here: str, kernels: Collection[str], measure: 
     history: rows of HISTORY; here: this machine; measure: from a kernel's name to its row.
     """
     limit = limits(history, here)
-    lines = [f"{what} is in {HISTORY}, but is no longer measured: remove its rows there if that is meant"
-             for what in limit.index if what not in kernels]  # fmt: skip
-    suspects = {what: [] for what in kernels if what in limit}
+    lines = [f"{name} is in {HISTORY}, but is no longer measured: remove its rows there if that is meant"
+             for name in limit.index if name not in kernels]  # fmt: skip
+    suspects = {name: [] for name in kernels if name in limit}
     for _ in range(TRIES):
-        for what, ratios in suspects.items():
-            ratios.append(measure(what)["ratio"])
-        suspects = {what: ratios for what, ratios in suspects.items() if not ratios[-1] <= limit[what]}
-    lines += [f"{what} is slower: {min(ratios):.3g} times its peer's time in the best of {TRIES} measurements, at most "
-              f"{limit[what]:.3g} is expected" for what, ratios in suspects.items()]  # fmt: skip
+        for name, ratios in suspects.items():
+            ratios.append(measure(name)["ratio"])
+        suspects = {name: ratios for name, ratios in suspects.items() if not ratios[-1] <= limit[name]}
+    lines += [f"{name} is slower: {min(ratios):.3g} times its peer's time in the best of {TRIES} measurements, at most "
+              f"{limit[name]:.3g} is expected" for name, ratios in suspects.items()]  # fmt: skip
     return lines
 
 
 def _git(*arguments: str) -> str:
-    done = subprocess.run(["git", *arguments], capture_output=True, text=True)
-    if done.returncode:
-        raise SystemExit(f"kernels: git {arguments[0]}: {done.stderr.strip()}; commit {HISTORY} first")
-    return done.stdout.rstrip("\n")
+    process = subprocess.run(["git", *arguments], capture_output=True, text=True)
+    if process.returncode:
+        raise SystemExit(f"kernels: git {arguments[0]}: {process.stderr.strip()}; commit {HISTORY} first")
+    return process.stdout.rstrip("\n")

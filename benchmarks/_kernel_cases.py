@@ -71,7 +71,7 @@ def picture_error() -> tuple[Call, Call]:
     mesh = ball(4)
     small = simplify(mesh, len(mesh.faces) // 4)
     down, across = np.mgrid[:225, :300].reshape(2, -1)
-    casters = [trimesh.Trimesh(each.vertices, each.faces, process=False).ray for each in (mesh, small)]
+    casters = [trimesh.Trimesh(surface.vertices, surface.faces, process=False).ray for surface in (mesh, small)]
     views = VIEWPOINTS["four"]
     rays = [pixel_rays(down, across, viewpoint, (225, 300)) for viewpoint in views]
     return (

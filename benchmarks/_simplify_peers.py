@@ -31,15 +31,15 @@ def peers(javascript=None):
     """
     made = {"meshoptimizer": lambda: Meshoptimizer(javascript), "meshoptimizer_native": meshoptimizer_native}
     made |= {"vtk": lambda: vtk, "pyfqmr": lambda: pyfqmr, "fast_simplification": lambda: fast_simplification}
-    found = {}
+    backends = {}
     for name, module in NEEDS.items():
         if importlib.util.find_spec(module) is None:
             print(f"{name} is left out: no module {module}")
         elif name == "meshoptimizer" and javascript is None:
             print(f"{name} is left out: --meshoptimizer names no meshopt_simplifier.js")
         else:
-            found[name] = made[name]()
-    return found
+            backends[name] = made[name]()
+    return backends
 
 
 class Meshoptimizer:
@@ -64,7 +64,7 @@ class Meshoptimizer:
     def _simplified(self, mesh, faces, bits, weight=None, update=True):
         ids, points, colors = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32), None
         start = self._call("sbrk", 0)
-        at, place, byte, error = (self._put(each) for each in (ids, points, bits, np.zeros(1, np.float32)))
+        at, place, byte, error = (self._put(array) for array in (ids, points, bits, np.zeros(1, np.float32)))
         paint = 0, 0, 0, 0
         if weight is not None:
             colors = (mesh.colors / 255).astype(np.float32)
@@ -114,11 +114,11 @@ def meshoptimizer_native():
 
     def backend(mesh, faces, frozen):
         ids, points = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32)
-        found, bits = np.empty_like(ids), locks(mesh, frozen)
-        surface = found.ctypes.data, ids.ctypes.data, ids.size, points.ctypes.data, len(points), points.strides[0]
+        corners, bits = np.empty_like(ids), locks(mesh, frozen)
+        surface = corners.ctypes.data, ids.ctypes.data, ids.size, points.ctypes.data, len(points), points.strides[0]
         lock = bits.ctypes.data if bits.any() else None
         left = run(*surface, None, 0, None, 0, lock, 3 * faces, NO_LIMIT, 0, None)
-        return in_use(points, found.ravel()[:left].reshape(-1, 3))
+        return in_use(points, corners.ravel()[:left].reshape(-1, 3))
 
     return backend
 
@@ -132,9 +132,9 @@ def locks(mesh, frozen):
 
 def in_use(points, faces, colors=None):
     """The Mesh of those points that have faces."""
-    there = np.zeros(len(points), bool)
-    there[faces] = True
-    return Mesh(points[there], (np.cumsum(there) - 1)[faces], None if colors is None else colors[there])
+    used = np.zeros(len(points), bool)
+    used[faces] = True
+    return Mesh(points[used], (np.cumsum(used) - 1)[faces], None if colors is None else colors[used])
 
 
 def vtk(mesh, faces, _):
@@ -152,9 +152,9 @@ def vtk(mesh, faces, _):
     work.SetInputData(surface)
     work.SetTargetReduction(1 - faces / len(mesh.faces))
     work.Update()
-    found = work.GetOutput()
-    ids = vtk_to_numpy(found.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    return Mesh(vtk_to_numpy(found.GetPoints().GetData()), ids)
+    reduced = work.GetOutput()
+    ids = vtk_to_numpy(reduced.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return Mesh(vtk_to_numpy(reduced.GetPoints().GetData()), ids)
 
 
 def pyfqmr(mesh, faces, _):

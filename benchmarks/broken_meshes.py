@@ -74,17 +74,21 @@ def _rows(path, backend):
         return
     specimen = Specimen(mesh, QemErrorCurve(mesh), "sound", path.stem, 0)
     look = specimen.surface
-    what = {
+    counts = {
         "has": len(mesh.faces),
         "pieces": look.components,
         "rim": len(look.boundary_edges),
         "flat": look.degenerate_faces,
     }
-    what |= {"folds": int(look.folds.max()), "crowded": look.non_manifold_edges, "pinches": look.non_manifold_vertices}
+    counts |= {
+        "folds": int(look.folds.max()),
+        "crowded": look.non_manifold_edges,
+        "pinches": look.non_manifold_vertices,
+    }
     for case, answer in run_cases(specimen, backend, CASES):
         row = {"budget": case.budget, "kept": case.kept, "asked": answer.asked, "outcome": answer.outcome}
         row |= {"faces": 0 if answer.mesh is None else len(answer.mesh.faces), "error": answer.error}
-        yield what | row | {"note": answer.note, "seconds": answer.seconds}
+        yield counts | row | {"note": answer.note, "seconds": answer.seconds}
 
 
 def rows_of(path, backend):

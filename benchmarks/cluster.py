@@ -56,18 +56,18 @@ def timed(function, task, root):
 
 def items_of(workspace, stage):
     """[{input, result (bytes), seconds}] of the items of a stage, which is run."""
-    found = []
+    items = []
 
     def watched(function, tasks, root, *rest, **options):
         uses = Counter(digest for task in tasks for digest in set(task.files.values()))
         for task, (content, seconds) in finished(functools.partial(timed, function), tasks, root, *rest, **options):
             size = sum((root / path).stat().st_size for path, d in task.files.items() if d and uses[d] == 1)
-            found.append({"input": size, "result": len(content), "seconds": seconds})
+            items.append({"input": size, "result": len(content), "seconds": seconds})
             yield task, content
 
     run.finished = watched
     importlib.import_module(f"stages.{stage}.__main__").run(workspace)
-    return found
+    return items
 
 
 def seconds_a_task(root, size):
@@ -110,7 +110,7 @@ def main():
     items = {stage: items_of(workspace, stage) for stage in STAGES}
     empty = seconds_a_task(COPY, 0)
     byte = (seconds_a_task(COPY, MEGABYTE) - empty) / (2 * MEGABYTE)
-    frame = pd.DataFrame([line(stage, found, empty, byte) for stage, found in items.items()])
+    frame = pd.DataFrame([line(stage, entries, empty, byte) for stage, entries in items.items()])
     whole = frame.drop(columns=["stage", "items", "limit"]).sum()
     whole["limit"] = whole["seconds"] / (frame[["scheduler_ms", "network_ms"]].max(axis=1).sum() / 1000)
     frame = pd.concat([frame, pd.DataFrame([{"stage": "all", "items": OBJECTS, **whole}])], ignore_index=True)

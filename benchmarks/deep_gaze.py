@@ -49,12 +49,12 @@ class Gaze(NamedTuple):
 
 def simple_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
     """dict name -> (s,) f8: standardised height, facing and distance."""
-    found = {
+    features = {
         "height": samples.points[:, 2],
         "facing": visibility(samples)[1],
         "distance": np.linalg.norm(samples.local, axis=1),
     }
-    return {name: standardise(values, samples.areas).clip(-LIMIT, LIMIT) for name, values in found.items()}
+    return {name: standardise(values, samples.areas).clip(-LIMIT, LIMIT) for name, values in features.items()}
 
 
 FEATURES = {"glance": cell_features, "glance_deep": deep_features, "simple": simple_features}
@@ -90,12 +90,12 @@ def left_out(method: str, objects: Mapping[tuple[str, str], Gaze], names: list[s
     ridge = np.where(np.isin(names, MAPS), MAPS_RIDGE, RIDGE)
     everything = fitted(objects.values(), ridge, np.zeros(len(names)))
     slopes, bends = (np.stack(part) for part in zip(*(quadratic(g, everything) for g in objects.values()), strict=True))
-    found = {("", ""): everything}
+    learned = {("", ""): everything}
     for k, item in enumerate(progress(objects, method)):
         slope, bend = np.delete(slopes, k, axis=0).mean(axis=0), np.delete(bends, k, axis=0).mean(axis=0)
         start = everything - np.linalg.solve(bend + np.diag(2 * ridge), slope + 2 * ridge * everything)
-        found[item] = fitted([gaze for other, gaze in objects.items() if other != item], ridge, start)
-    return {item: dict(zip(names, weights.tolist(), strict=True)) for item, weights in found.items()}
+        learned[item] = fitted([gaze for other, gaze in objects.items() if other != item], ridge, start)
+    return {item: dict(zip(names, weights.tolist(), strict=True)) for item, weights in learned.items()}
 
 
 def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]]:
@@ -126,9 +126,9 @@ def summary(table: pd.DataFrame, method: str, than: str) -> pd.DataFrame:
     """By set and metric: means and median seconds of both methods, and the interval of their paired difference."""
     seconds = table.groupby("method")["seconds"].median()
     wide = table.pivot(index=["set", "item", "metric"], columns="method", values="value").reset_index()
-    both = pd.concat([wide, wide.assign(set="both")])
+    pooled = pd.concat([wide, wide.assign(set="both")])
     rows = []
-    for (name, metric), group in both.groupby(["set", "metric"]):
+    for (name, metric), group in pooled.groupby(["set", "metric"]):
         mean, low, high = interval(group[method] - group[than])
         means = {"mean": group[method].mean(), "seconds": seconds[method], "than_mean": group[than].mean()}
         means |= {"than_seconds": seconds[than], "difference": mean, "low": low, "high": high}
@@ -138,11 +138,11 @@ def summary(table: pd.DataFrame, method: str, than: str) -> pd.DataFrame:
 
 def main():
     arguments(__doc__)
-    objects = {(name, item): found for name in SETS for item, found in gazed(name, SHARED / f"{name}.zip").items()}
+    objects = {(name, item): part for name in SETS for item, part in gazed(name, SHARED / f"{name}.zip").items()}
     rows = []
     for method in FEATURES:
-        found, weights = rows_of(method, objects)
-        rows += found
+        part, weights = rows_of(method, objects)
+        rows += part
         print(method, {name: round(weight, 3) for name, weight in weights.items()})
     table = pd.DataFrame(rows)
     write_table(OUT, table.round({"value": 6, "seconds": 3}))

@@ -35,16 +35,16 @@ def meshes():
     """dict name -> Mesh."""
     from haptic_glance.mesh import load, normalise
 
-    found = {name: read_mesh(MESHES / f"{name}.npz") for name in HOUSEHOLD if (MESHES / f"{name}.npz").exists()}
+    named = {name: read_mesh(MESHES / f"{name}.npz") for name in HOUSEHOLD if (MESHES / f"{name}.npz").exists()}
     if PSB.exists():
         with zipfile.ZipFile(PSB) as stored:
             for name in FROM_PSB:
                 path = Path("build") / f"{name.replace('/', '_')}.off"
                 path.parent.mkdir(exist_ok=True)
                 path.write_bytes(io.BytesIO(stored.read(f"LabeledDB_new/{name}.off")).getvalue())
-                found[name] = normalise(load(path))
+                named[name] = normalise(load(path))
                 path.unlink()
-    return found
+    return named
 
 
 def coarser(mesh, share):
@@ -64,19 +64,19 @@ def hausdorff(reference, mesh, samples, vertices):
     import pymeshlab
 
     work = pymeshlab.MeshSet(verbose=False)
-    for each in (reference, mesh):
-        work.add_mesh(pymeshlab.Mesh(each.vertices, each.faces))
+    for side in (reference, mesh):
+        work.add_mesh(pymeshlab.Mesh(side.vertices, side.faces))
 
     def ask():
-        both = [
+        sides = [
             work.apply_filter(
-                "get_hausdorff_distance", sampledmesh=one, targetmesh=1 - one, savesample=False, samplevert=vertices,
+                "get_hausdorff_distance", sampledmesh=k, targetmesh=1 - k, savesample=False, samplevert=vertices,
                 sampleedge=False, samplefauxedge=False, sampleface=True, samplenum=samples,
                 maxdist=pymeshlab.PercentageValue(50),
             )
-            for one in (0, 1)
+            for k in (0, 1)
         ]  # fmt: skip
-        return max(each["mean"] for each in both) / reference.diagonal
+        return max(side["mean"] for side in sides) / reference.diagonal
 
     return ask
 
@@ -104,11 +104,11 @@ def speed_rows(name, mesh):
             "pymeshlab, with vertices, from arrays": lambda small=small: hausdorff(mesh, small, USUAL, True)(),
         }
         metro(mesh, small, USUAL)
-        found = {method: [timed(call) for _ in range(RUNS)] for method, call in calls.items()}
-        peer = np.median([seconds for seconds, _ in found["pymeshlab"]])
+        timings = {method: [timed(call) for _ in range(RUNS)] for method, call in calls.items()}
+        peer = np.median([seconds for seconds, _ in timings["pymeshlab"]])
         seeds = [metro(mesh, small, USUAL, seed)["mean"] for seed in range(RUNS)]
-        for method, runs in found.items():
-            seconds = float(np.median([each for each, _ in runs]))
+        for method, runs in timings.items():
+            seconds = float(np.median([spent for spent, _ in runs]))
             values = seeds if method.startswith("metro") else [value for _, value in runs]
             rows.append(
                 {"what": "speed", "mesh": name, "faces": len(mesh.faces), "left": len(small.faces), "method": method,
@@ -125,14 +125,14 @@ def sample_rows(name, mesh):
     for samples in SAMPLES:
         runs = RUNS if samples < 100_000 else 2
         theirs = hausdorff(mesh, small, samples, False)
-        found = {
+        timings = {
             "metro": [timed(functools.partial(_mean_error, mesh, small, samples, seed)) for seed in range(runs)],
             "pymeshlab": [timed(theirs) for _ in range(runs)],
         }
-        peer = np.median([seconds for seconds, _ in found["pymeshlab"]])
-        for method, each in found.items():
-            off = np.array([value for _, value in each]) / truth - 1
-            seconds = float(np.median([seconds for seconds, _ in each]))
+        peer = np.median([seconds for seconds, _ in timings["pymeshlab"]])
+        for method, pairs in timings.items():
+            off = np.array([value for _, value in pairs]) / truth - 1
+            seconds = float(np.median([seconds for seconds, _ in pairs]))
             rows.append(
                 {"what": "samples", "mesh": name, "faces": len(mesh.faces), "left": len(small.faces), "method": method,
                  "samples": samples, "metric": "metro_mean", "value": float(np.sqrt((off**2).mean())),
@@ -153,12 +153,14 @@ def view_rows(name, mesh):
     from haptic_glance.look.views import CANDIDATES, VIEWPOINTS
 
     small, rows = coarser(mesh, 0.1), []
-    taken = [take_pictures(each, CANDIDATES) for each in (mesh, small)]
-    one = float(np.median([timed(lambda: take_pictures(fresh(small), VIEWPOINTS["twelve"]))[0] for _ in range(3)])) / 12
+    taken = [take_pictures(entry, CANDIDATES) for entry in (mesh, small)]
+    per_view = (
+        float(np.median([timed(lambda: take_pictures(fresh(small), VIEWPOINTS["twelve"]))[0] for _ in range(3)])) / 12
+    )
     seconds, _ = timed(lambda: picture_errors(*taken))
-    single = [picture_errors(*(each[[k]] for each in taken)) for k in range(len(CANDIDATES))]
+    single = [picture_errors(*(entry[[k]] for entry in taken)) for k in range(len(CANDIDATES))]
     for metric in single[0]:
-        values = np.array([each[metric] for each in single])
+        values = np.array([entry[metric] for entry in single])
         sets = {"any": [(n, [rng(seed, f"{name} {n}").permutation(62)[:n] for seed in range(CHOICES)]) for n in VIEWS]}
         sets |= {set_: [(len(views), [_places(views, CANDIDATES)])] for set_, views in VIEWPOINTS.items()}
         for method, choices in sets.items():
@@ -167,7 +169,7 @@ def view_rows(name, mesh):
                 rows.append(
                     {"what": "views", "mesh": name, "faces": len(mesh.faces), "left": len(small.faces),
                      "method": method, "views": n, "metric": metric, "value": float(np.sqrt(np.mean(np.square(off)))),
-                     "sd": float(np.std(off)), "seconds": n * (one + seconds / len(CANDIDATES))}
+                     "sd": float(np.std(off)), "seconds": n * (per_view + seconds / len(CANDIDATES))}
                 )  # fmt: skip
     return rows
 
@@ -194,12 +196,12 @@ def main():
 
     cv2.setNumThreads(1)
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    found, rows = meshes(), []
-    for name, mesh in found.items():
+    named, rows = meshes(), []
+    for name, mesh in named.items():
         rows += speed_rows(name, mesh)
-    for name in [name for name in ("duck", "Vase/361", "Armadillo/281") if name in found]:
-        rows += sample_rows(name, found[name])
-    for name, mesh in found.items():
+    for name in [name for name in ("duck", "Vase/361", "Armadillo/281") if name in named]:
+        rows += sample_rows(name, named[name])
+    for name, mesh in named.items():
         rows += view_rows(name, mesh)
     frame = pd.DataFrame(rows)
     write_table(OUT, frame)

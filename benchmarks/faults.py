@@ -33,8 +33,8 @@ def said(process):
 
 def lost(reference, *stages):
     """`nothing` where the results are those of the whole run, else what differs."""
-    found = content(*stages)
-    wrong = sorted(name for name in reference.keys() | found.keys() if reference.get(name) != found.get(name))
+    digests = content(*stages)
+    wrong = sorted(name for name in reference.keys() | digests.keys() if reference.get(name) != digests.get(name))
     return f"{len(wrong)} files differ: {', '.join(wrong[:3])}" if wrong else "nothing"
 
 
@@ -53,9 +53,9 @@ def killed_stages(whole, moments):
             left = {name: digest for name, digest in content(stage).items() if name.startswith("data")}
             half += bool(left) and any(reference.get(name) != digest for name, digest in left.items())
             same += forked(stage)[0] and content(stage) == reference
-        tried = f"SIGKILL at {moments} random moments of {seconds:.1f} s, then run again"
+        attempt = f"SIGKILL at {moments} random moments of {seconds:.1f} s, then run again"
         happened = f"half a folder in place {half} times, same bytes {same} times ({late} had ended before)"
-        yield "killed", stage, tried, happened, lost(whole)
+        yield "killed", stage, attempt, happened, lost(whole)
 
 
 def killed_run(whole, moments):
@@ -74,8 +74,14 @@ def killed_run(whole, moments):
             wrong += lost(whole) != "nothing" or again.returncode != 0
             words = said(again)
         who = "all its processes" if all_of_it else "itself alone"
-        tried = f"SIGKILL of {who} at {moments} random moments, then run again"
-        yield "killed", "stages.repro", tried, f"{moments - wrong} of {moments} went on; the last: {words}", lost(whole)
+        attempt = f"SIGKILL of {who} at {moments} random moments, then run again"
+        yield (
+            "killed",
+            "stages.repro",
+            attempt,
+            f"{moments - wrong} of {moments} went on; the last: {words}",
+            lost(whole),
+        )
 
 
 def two_at_once(whole):
@@ -88,8 +94,8 @@ def two_at_once(whole):
 
 
 def _twice(module, where, whole, *rest):
-    both = [started(module, *rest) for _ in range(2)]
-    ended = [subprocess.CompletedProcess((), run.wait(), None, run.stderr.read()) for run in both]
+    runs = [started(module, *rest) for _ in range(2)]
+    ended = [subprocess.CompletedProcess((), run.wait(), None, run.stderr.read()) for run in runs]
     return "two at once", where, f"two `python -m {module}` started together", "; ".join(map(said, ended)), lost(whole)
 
 

@@ -79,10 +79,10 @@ class Renderer:
 def vertex_normals(mesh):
     """(n, 3) the mean of the normals of the faces at each vertex, by their areas."""
     a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2)
-    found, across = np.zeros_like(mesh.vertices), np.cross(b - a, c - a)
+    normals, across = np.zeros_like(mesh.vertices), np.cross(b - a, c - a)
     for corner in mesh.faces.T:
-        np.add.at(found, corner, across)
-    return found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-12)
+        np.add.at(normals, corner, across)
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
 
 
 def measured(settings, names, data, renderer):
@@ -101,9 +101,9 @@ def measured(settings, names, data, renderer):
             drawn[plan] = renderer.scene(scene.cameras[frame], placed)
             renderer.seconds(drawn[plan])  # uploads
             faces[plan].append(sum(level.faces for level in levels))
-        times = [{plan: renderer.seconds(own) for plan, own in drawn.items()} for _ in range(REPEATS)]
+        times = [{plan: renderer.seconds(drawing) for plan, drawing in drawn.items()} for _ in range(REPEATS)]
         for plan in PLANS:
-            taken[plan].append(min(one[plan] for one in times))
+            taken[plan].append(min(seconds[plan] for seconds in times))
     mean = {plan: 1000 * float(np.mean(values)) for plan, values in taken.items()}
     return [{"scene": settings.name, "method": plan, "rows": scene.cameras[0].size[0], "faces": np.mean(faces[plan]),
              "ms": value, "ratio": value / mean["full"]} for plan, value in mean.items()]  # fmt: skip
@@ -112,15 +112,15 @@ def measured(settings, names, data, renderer):
 def main():
     """Measures every scene and writes the table, anew after each."""
     arguments(__doc__)
-    workspace, found = Workspace(Path(), SET), []
+    workspace, rows = Workspace(Path(), SET), []
     settings, names = workspace.settings(Params), object_names(workspace)
-    every = scenes_of(settings, names, workspace.data, load_params()["seed"])
-    camera = scene_of(every[0], names)[0].cameras[0]
+    scenes = scenes_of(settings, names, workspace.data, load_params()["seed"])
+    camera = scene_of(scenes[0], names)[0].cameras[0]
     renderer = Renderer(camera)
     device = renderer.device
-    for own in progress(every, "frame_times"):
-        found += [row | {"device": device} for row in measured(own, names, workspace.data, renderer)]
-        write_table(OUT, pd.DataFrame(found))
+    for scene in progress(scenes, "frame_times"):
+        rows += [row | {"device": device} for row in measured(scene, names, workspace.data, renderer)]
+        write_table(OUT, pd.DataFrame(rows))
 
 
 if __name__ == "__main__":

@@ -82,8 +82,8 @@ class Camera:
             self.process.kill()
             self.process.wait()
             self.said.seek(0)
-            said = self.said.read().strip().splitlines()
-            raise ValueError(said[-1] if said else "it ended without a word") from None
+            lines = self.said.read().strip().splitlines()
+            raise ValueError(lines[-1] if lines else "it ended without a word") from None
 
     def close(self):
         """Ends the process."""
@@ -122,13 +122,13 @@ class Cameras:
 
 def meshes(archive):
     """(source, name, Mesh): the least, middle and most faces of the household objects and of psb."""
-    own = {path.stem: read_mesh(path) for path in sorted(MESHES.glob("*.npz"))}
-    found = [("household", own)]
+    household = {path.stem: read_mesh(path) for path in sorted(MESHES.glob("*.npz"))}
+    groups = [("household", household)]
     if Path(archive).exists():
         files = collection_files(archive, *PRINCETON)
         first = {path.split("/")[1]: path for path in reversed(sorted(files)) if path.endswith(".off")}
-        found.append(("psb", {name: normalise(parse(files[path](), ".off")) for name, path in sorted(first.items())}))
-    for source, named in found:
+        groups.append(("psb", {name: normalise(parse(files[path](), ".off")) for name, path in sorted(first.items())}))
+    for source, named in groups:
         by_size = sorted(named, key=lambda name: len(named[name].faces))
         for place in dict.fromkeys((0, len(by_size) // 2, len(by_size) - 1)) if by_size else ():
             yield source, by_size[place], named[by_size[place]]
@@ -177,9 +177,9 @@ def by_trimesh(rays, positions, axes, cells, pitch):
     starts = (positions[:, None, None] + down * up + along * right + reach * normal).reshape(-1, 3)
     ways = np.broadcast_to(-normal, (len(axes), rows, columns, 3)).reshape(-1, 3)
     places, ray, _ = rays.intersects_location(starts, ways, multiple_hits=False)
-    found = np.full(len(starts), reach)
-    found[ray] = np.einsum("ij,ij->i", places - starts[ray], ways[ray]) - reach
-    return np.clip(found, -reach, reach).reshape(len(axes), rows, columns)
+    distances = np.full(len(starts), reach)
+    distances[ray] = np.einsum("ij,ij->i", places - starts[ray], ways[ray]) - reach
+    return np.clip(distances, -reach, reach).reshape(len(axes), rows, columns)
 
 
 def in_turns(works, common):
@@ -190,14 +190,14 @@ def in_turns(works, common):
             if name in notes:
                 continue
             try:
-                found = work()
+                answer = work()
             except ValueError as error:
                 notes[name] = str(error)
                 continue
             if turn:  # the first round warms up
-                best[name] = min(best.get(name, np.inf), found["seconds"] / common["touches"])
-            if "gl" in found:
-                notes.setdefault(f"{name} by", f"version {found['version']}, GL {found['gl']}")
+                best[name] = min(best.get(name, np.inf), answer["seconds"] / common["touches"])
+            if "gl" in answer:
+                notes.setdefault(f"{name} by", f"version {answer['version']}, GL {answer['gl']}")
     rows = []
     for name in works:
         seconds = best.get(name)

@@ -38,9 +38,9 @@ GAZE = "bunny", "cow", "rockerarm", "carter", "MaxPlanck"
 PRINCETON = "Airplane/61", "Bearing/341", "Bird/241", "Chair/101", "Human/1", "Vase/361"
 ARCHIVES = [  # (file, its members, axis that points up)
     (cache_folder() / "MyoSuite-2.2.0-py3-none-any.whl",
-     [f"myosuite/simhive/object_sim/{one}/{one}.stl" for one in HOUSEHOLD], "z"),
-    (SHARED / "gaze.zip", [f"Models_3D/{one}.obj" for one in GAZE], "y"),
-    (SHARED / "psb.zip", [f"LabeledDB_new/{one}.off" for one in PRINCETON], "y"),
+     [f"myosuite/simhive/object_sim/{name}/{name}.stl" for name in HOUSEHOLD], "z"),
+    (SHARED / "gaze.zip", [f"Models_3D/{name}.obj" for name in GAZE], "y"),
+    (SHARED / "psb.zip", [f"LabeledDB_new/{name}.off" for name in PRINCETON], "y"),
 ]  # fmt: skip
 
 
@@ -78,12 +78,12 @@ def rows_of(name: str, mesh: Mesh, method: str) -> list[dict]:
     saliency, places, ties, seconds = look(mesh, method)
     rows = [{"object": name, "faces": len(mesh.faces), "change": "none", "seconds": seconds}]
     for change, other, matrix, ids in changed(mesh):
-        found, positions, _, seconds = look(other, method)
-        back = [one @ matrix for one in positions]
+        values, positions, _, seconds = look(other, method)
+        back = [points @ matrix for points in positions]
         away = np.linalg.norm(places[0][ties] - back[0][0], axis=1).min() if len(back[0]) else np.nan
         rows.append(
             {"object": name, "faces": len(other.faces), "change": change, "seconds": seconds,
-             "r": np.nan if ids is None else np.corrcoef(saliency, found[ids])[0, 1],
+             "r": np.nan if ids is None else np.corrcoef(saliency, values[ids])[0, 1],
              "ten": repeatability(places[0], back[0], 0.02 * mesh.diagonal),
              "thirty": repeatability(places[1], back[1], 0.03 * mesh.diagonal), "first": away / mesh.diagonal}
         )  # fmt: skip
@@ -93,11 +93,11 @@ def rows_of(name: str, mesh: Mesh, method: str) -> list[dict]:
 def look(mesh: Mesh, method: str) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, float]:
     """(saliency, positions of 10 and of 30 places, ids of the places that are as good as the first, seconds)."""
     start = time.process_time()
-    found = detect(mesh, method, 10)
+    detection = detect(mesh, method, 10)
     seconds = time.process_time() - start
-    assert found.saliency is not None and found.ties is not None
-    places = [mesh.vertices[ids] for ids in (found.points, detect(mesh, method, 30).points)]
-    return found.saliency, places, np.flatnonzero(found.ties == 0), seconds
+    assert detection.saliency is not None and detection.ties is not None
+    places = [mesh.vertices[ids] for ids in (detection.points, detect(mesh, method, 30).points)]
+    return detection.saliency, places, np.flatnonzero(detection.ties == 0), seconds
 
 
 def main() -> None:

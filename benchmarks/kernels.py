@@ -44,15 +44,15 @@ def in_pairs(*calls) -> np.ndarray:
     """(pairs, 2) processor seconds of two calls in turns, which goes first alternating; kernels are compiled before."""
     for call in 2 * calls:
         call()
-    found = []
-    while len(found) < PAIRS[0] or (np.sum(found) < SECONDS and len(found) < PAIRS[1]):
+    pairs = []
+    while len(pairs) < PAIRS[0] or (np.sum(pairs) < SECONDS and len(pairs) < PAIRS[1]):
         pair = np.empty(2)
-        for place in (0, 1) if len(found) % 2 else (1, 0):
+        for place in (0, 1) if len(pairs) % 2 else (1, 0):
             start = time.process_time()
             calls[place]()
             pair[place] = time.process_time() - start
-        found.append(pair)
-    return np.array(found)
+        pairs.append(pair)
+    return np.array(pairs)
 
 
 def main() -> None:

@@ -45,16 +45,16 @@ def rows_of(meshes, placed, draws):
     """The rows of one kind of knowing."""
     library, rows = learn(meshes, placed), []
     common = {"objects": len(meshes), "placed": placed, "draws": draws}
-    found = {way: {metric: [] for metric in METRICS} for way in ("planner", "random")}
+    by_way = {way: {metric: [] for metric in METRICS} for way in ("planner", "random")}
     for name in progress(list(meshes), "objects"):
         surface = Surface(meshes[name])
-        for way, values in found.items():
-            each = [explored(library, surface, name, draw, way) for draw in range(draws)]
+        for way, values in by_way.items():
+            trials = [explored(library, surface, name, draw, way) for draw in range(draws)]
             for metric in METRICS:
-                values[metric].append(np.mean([one[metric] for one in each]))
-    planner, random = (found[way] for way in ("planner", "random"))
-    found["difference"] = {metric: np.subtract(planner[metric], random[metric]) for metric in METRICS}
-    for way, values in found.items():
+                values[metric].append(np.mean([trial[metric] for trial in trials]))
+    planner, random = (by_way[way] for way in ("planner", "random"))
+    by_way["difference"] = {metric: np.subtract(planner[metric], random[metric]) for metric in METRICS}
+    for way, values in by_way.items():
         for metric in METRICS:
             mean, low, high = interval(np.array(values[metric]))
             rows.append(common | {"way": way, "metric": metric, "value": mean, "low": low, "high": high})

@@ -34,7 +34,7 @@ def torus(faces):
     """A closed torus of about so many faces, its tube rippled coarsely and finely."""
     side = int(np.sqrt(faces / 2))
     turn = 2 * np.pi * np.arange(side) / side
-    u, v = (each.ravel() for each in np.meshgrid(turn, turn, indexing="ij"))
+    u, v = (grid.ravel() for grid in np.meshgrid(turn, turn, indexing="ij"))
     tube = 0.35 + 0.01 * np.sin(31 * u) * np.cos(17 * v) + 0.002 * np.sin(211 * u + 101 * v)
     away = 1 + tube * np.cos(v)
     a = np.arange(side * side).reshape(side, side)
@@ -50,11 +50,11 @@ def measured(way, faces):
     WAYS[way](small, 200, np.zeros(len(small.faces), bool))  # loads compiled code
     nothing = np.zeros(len(mesh.faces), bool)
     wall, start = time.perf_counter(), time.process_time()
-    found = WAYS[way](mesh, len(mesh.faces) // SHARE, nothing)
+    simple = WAYS[way](mesh, len(mesh.faces) // SHARE, nothing)
     taken = {"wall": time.perf_counter() - wall, "seconds": time.process_time() - start}
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    errors = metro(mesh, found)
-    row = {"way": way, "full": len(mesh.faces), "faces": len(found.faces)} | taken
+    errors = metro(mesh, simple)
+    row = {"way": way, "full": len(mesh.faces), "faces": len(simple.faces)} | taken
     return row | {"memory": memory, "metro_mean": errors["mean"], "metro_max": errors["max"]}
 
 

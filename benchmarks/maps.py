@@ -18,8 +18,8 @@ RUNS = 5
 
 def nine_maps_rows():
     """Rows (what, metric, value, unit, limit) measured in a process of its own that is held to one core."""
-    done = subprocess.run([sys.executable, "-m", "benchmarks.maps"], capture_output=True, text=True, check=True)
-    return json.loads(done.stdout.splitlines()[-1])
+    process = subprocess.run([sys.executable, "-m", "benchmarks.maps"], capture_output=True, text=True, check=True)
+    return json.loads(process.stdout.splitlines()[-1])
 
 
 def measure():
@@ -46,10 +46,10 @@ def measure():
             entropy(view.rgb[..., 0], np.ones((9, 9), dtype=np.uint8))
         peer.append(watch.seconds)
     seconds, other = (statistics.median(times) for times in (ours, peer))
-    what = "nine maps, 1200 x 900, one core"
+    label = "nine maps, 1200 x 900, one core"
     return [
-        {"what": what, "metric": "wall time", "value": seconds, "unit": "s", "limit": 0.35},
-        {"what": what, "metric": "ratio to scikit-image's rank entropy alone", "value": seconds / other, "unit": ""},
+        {"what": label, "metric": "wall time", "value": seconds, "unit": "s", "limit": 0.35},
+        {"what": label, "metric": "ratio to scikit-image's rank entropy alone", "value": seconds / other, "unit": ""},
         *saliency_rows(),
     ]
 
@@ -70,10 +70,10 @@ def saliency_rows():
                 saliency(mesh, method)
             seconds.append(watch.seconds)
     ours, lee = (statistics.median(seconds) for seconds in times.values())
-    what = f"saliency(mesh), {len(ball.faces):,} faces, one core"
+    label = f"saliency(mesh), {len(ball.faces):,} faces, one core"
     return [
-        {"what": what, "metric": "wall time", "value": ours, "unit": "s", "limit": 1.0},
-        {"what": what, "metric": "ratio to mesh saliency (Lee 2005)", "value": ours / lee, "unit": ""},
+        {"what": label, "metric": "wall time", "value": ours, "unit": "s", "limit": 1.0},
+        {"what": label, "metric": "ratio to mesh saliency (Lee 2005)", "value": ours / lee, "unit": ""},
     ]
 
 

@@ -86,12 +86,12 @@ def measured(mesh, faces, work):
     for _ in range(ROUNDS):
         fresh, start = Mesh(mesh.vertices, mesh.faces, mesh.colors), time.process_time()
         try:
-            found = work(fresh, faces)
+            simple = work(fresh, faces)
         except (InfeasibleTarget, SimplifyError) as refusal:
             return {"note": str(refusal)}
         seconds.append(time.process_time() - start)
-    errors = {"colour_error": colour_error(mesh, found), "metro_mean": metro(mesh, found)["mean"]}
-    return {"faces": len(found.faces), "seconds": min(seconds)} | errors
+    errors = {"colour_error": colour_error(mesh, simple), "metro_mean": metro(mesh, simple)["mean"]}
+    return {"faces": len(simple.faces), "seconds": min(seconds)} | errors
 
 
 def compared(rows):

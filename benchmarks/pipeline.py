@@ -74,8 +74,8 @@ def watch(command, cwd):
 
 def memory(process):
     """Bytes of a process, of shared pages its part."""
-    found = process.memory_full_info()
-    return getattr(found, "pss", found.rss)
+    usage = process.memory_full_info()
+    return getattr(usage, "pss", usage.rss)
 
 
 def main():

@@ -61,7 +61,7 @@ def warm_rows(name, mesh):
             saliency(Mesh(mesh.vertices, mesh.faces), method)  # a new Mesh: nothing is cached
             seconds += [time.process_time() - start] if turn else []
     common = {"what": "warm", "object": name, "faces": len(mesh.faces), "cache": "full"}
-    return [common | {"method": method, "seconds": min(found)} for method, found in taken.items()]
+    return [common | {"method": method, "seconds": min(times)} for method, times in taken.items()]
 
 
 def cold_rows():
@@ -70,10 +70,10 @@ def cold_rows():
     for method in ("saliency", "simplify", "press"):
         with tempfile.TemporaryDirectory() as folder:
             for cache in ("empty", "full"):
-                done = subprocess.run([sys.executable, "-c", FIRST, method], capture_output=True, text=True, check=True,
+                run = subprocess.run([sys.executable, "-c", FIRST, method], capture_output=True, text=True, check=True,
                                       env=os.environ | {"HAPTIC_GLANCE_CACHE": folder})  # fmt: skip
                 rows.append({"what": "cold", "object": "sphere", "faces": 20_480, "method": method, "cache": cache,
-                             "seconds": float(done.stdout)})  # fmt: skip
+                             "seconds": float(run.stdout)})  # fmt: skip
     return rows
 
 

@@ -48,7 +48,7 @@ def subjects(archive):
 
 def ways(gaze, meshoptimizer):
     """dict name -> function(mesh, faces) of all ways to simplify."""
-    found = {"fast": simplify, "fast_weights": lambda mesh, faces: simplify(mesh, faces, weights=gaze)}
+    works = {"fast": simplify, "fast_weights": lambda mesh, faces: simplify(mesh, faces, weights=gaze)}
     if meshoptimizer:
         nobody, order = np.zeros(len(gaze), np.uint8), np.argsort(-gaze)
         chosen = {"meshoptimizer": nobody}
@@ -58,8 +58,8 @@ def ways(gaze, meshoptimizer):
                 bits[order[: int(share * len(gaze))]] = bit
                 chosen[f"meshoptimizer_{word}_{share:g}"] = bits
         for name, bits in chosen.items():
-            found[name] = lambda mesh, faces, bits=bits: meshoptimizer(mesh, faces, None, bits)
-    return found
+            works[name] = lambda mesh, faces, bits=bits: meshoptimizer(mesh, faces, None, bits)
+    return works
 
 
 def cell(mesh, faces, gaze, works):
@@ -69,12 +69,12 @@ def cell(mesh, faces, gaze, works):
         for name, work in works.items():
             fresh, start = Mesh(mesh.vertices, mesh.faces), time.process_time()
             try:
-                found = work(fresh, faces)
+                simple = work(fresh, faces)
             except (InfeasibleTarget, SimplifyError) as refusal:
                 rows[name] = {"method": name, "outcome": "refused", "note": str(refusal)}
                 continue
             seconds = time.process_time() - start
-            row = rows.setdefault(name, {"method": name, "seconds": np.inf} | errors(mesh, found, faces, gaze))
+            row = rows.setdefault(name, {"method": name, "seconds": np.inf} | errors(mesh, simple, faces, gaze))
             row["seconds"] = min(row["seconds"], seconds)
     reached = {name: row for name, row in rows.items() if row["outcome"] == "reached"}
     bar = min((row["salient"] for name, row in reached.items() if "meshoptimizer" in name), default=np.nan)
@@ -102,7 +102,7 @@ def main():
         for share in SHARES:
             faces = int(share * len(mesh.faces))
             row = {"mesh": name, "share": share, "full": len(mesh.faces), "target": faces}
-            rows += [row | found for found in cell(mesh, faces, gaze, works)]
+            rows += [row | columns for columns in cell(mesh, faces, gaze, works)]
         write_table(OUT, pd.DataFrame(rows))
     table = pd.DataFrame(rows).query("outcome == 'reached'")
     print(table.groupby(["share", "method"])[["seconds", "metro_mean", "salient", "salient_ratio"]].median())

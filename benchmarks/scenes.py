@@ -60,11 +60,11 @@ def measured(workspace):
 def main():
     """Measures every case and writes the table, anew after each."""
     arguments(__doc__)
-    dataset, found = load_params()["graph"]["scene"][0], []
+    dataset, tables = load_params()["graph"]["scene"][0], []
     for case in progress(list(CASES), "scenes"):
         start = time.perf_counter()
-        found.append(measured(workspace_of(case, dataset, Path("data") / dataset)))
-        write_table(OUT, pd.concat(found).reindex(columns=COLUMNS))
+        tables.append(measured(workspace_of(case, dataset, Path("data") / dataset)))
+        write_table(OUT, pd.concat(tables).reindex(columns=COLUMNS))
         print(f"{case}: {time.perf_counter() - start:.0f} s", flush=True)
 
 

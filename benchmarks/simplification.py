@@ -73,16 +73,16 @@ def meshes(archive):
     """(source, name, Mesh), small to large."""
     files = collection_files(archive, *PRINCETON)
     first = {path.split("/")[1]: path for path in reversed(sorted(files)) if path.endswith(".off")}
-    found = {name: single(normalise(parse(files[path](), ".off"))) for name, path in sorted(first.items())}
-    by_size = sorted(found, key=lambda name: len(found[name].faces))
+    named = {name: single(normalise(parse(files[path](), ".off"))) for name, path in sorted(first.items())}
+    by_size = sorted(named, key=lambda name: len(named[name].faces))
     for name in by_size[:: -(len(by_size) // SMALL_OF)][:SMALL_OF]:
-        mesh = found[name]
+        mesh = named[name]
         yield "reduced", name, single(fast(mesh, SMALL, np.zeros(len(mesh.faces), dtype=bool)))
     for name in by_size:
-        yield "psb", name, found[name]
+        yield "psb", name, named[name]
     for faces, count in SUBDIVIDED.items():
-        for name in sorted(found, key=lambda name: 4 ** cuts(found[name], faces) * len(found[name].faces))[:count]:
-            yield "subdivided", name, single(subdivided(found[name], faces))
+        for name in sorted(named, key=lambda name: 4 ** cuts(named[name], faces) * len(named[name].faces))[:count]:
+            yield "subdivided", name, single(subdivided(named[name], faces))
 
 
 def single(mesh):
@@ -97,10 +97,10 @@ def cuts(mesh, faces):
 
 def subdivided(mesh, faces):
     """The mesh with each face cut in four, smoothly (Loop), until it has `faces` or more."""
-    vertices, found = mesh.vertices, mesh.faces
+    vertices, triangles = mesh.vertices, mesh.faces
     for _ in range(cuts(mesh, faces)):
-        vertices, found = trimesh.remesh.subdivide_loop(vertices, found, iterations=1)
-    return Mesh(vertices, found)
+        vertices, triangles = trimesh.remesh.subdivide_loop(vertices, triangles, iterations=1)
+    return Mesh(vertices, triangles)
 
 
 def kept_set(mesh, far, faces):
@@ -153,28 +153,28 @@ def in_turns(works, rounds):
             if not isinstance(known, ValueError):
                 start = time.process_time()
                 try:
-                    found = work()
+                    answer = work()
                 except (InfeasibleTarget, SimplifyError) as error:
-                    found = error
-                best[name] = min(before, time.process_time() - start), found
+                    answer = error
+                best[name] = min(before, time.process_time() - start), answer
     return best
 
 
 def measured(mesh, faces, keep, timed, name):
     """Time, errors and checks of one backend."""
-    seconds, found = timed[name]
-    if isinstance(found, ValueError):
-        return {"outcome": "refused", "note": str(found)}
-    outcome = "reached" if len(found.faces) <= faces else "missed"
-    row = {"outcome": outcome, "seconds": seconds, "faces": len(found.faces)}
-    errors = metro(mesh, found)
-    row |= {"metro_mean": errors["mean"], "metro_max": errors["max"], "valid": valid(mesh, found), "note": ""}
-    row |= {"kept": survives(mesh.vertices[keep], found.vertices)}
+    seconds, answer = timed[name]
+    if isinstance(answer, ValueError):
+        return {"outcome": "refused", "note": str(answer)}
+    outcome = "reached" if len(answer.faces) <= faces else "missed"
+    row = {"outcome": outcome, "seconds": seconds, "faces": len(answer.faces)}
+    errors = metro(mesh, answer)
+    row |= {"metro_mean": errors["mean"], "metro_max": errors["max"], "valid": valid(mesh, answer), "note": ""}
+    row |= {"kept": survives(mesh.vertices[keep], answer.vertices)}
     if name in WHOLE:
         row |= {f"{column}_seconds": timed[f"{column} {name}"][0] for column in ("whole", "colours")}
     if len(mesh.faces) <= SEEN and name not in UNSEEN:
         try:
-            row["ssim_error"] = perceptual(mesh, found)["ssim"]
+            row["ssim_error"] = perceptual(mesh, answer)["ssim"]
         except ValueError as error:  # it leaves the frame
             row["note"] = str(error)
     return row
@@ -182,8 +182,8 @@ def measured(mesh, faces, keep, timed, name):
 
 def survives(places, vertices):
     """True where all places (k, 3) are among the vertices, bit for bit."""
-    there = {place.tobytes() for place in np.ascontiguousarray(vertices)}
-    return all(place.tobytes() in there for place in np.ascontiguousarray(places))
+    stored = {place.tobytes() for place in np.ascontiguousarray(vertices)}
+    return all(place.tobytes() in stored for place in np.ascontiguousarray(places))
 
 
 def valid(mesh, found):
@@ -203,8 +203,8 @@ def main():
         for share in SHARES if len(mesh.faces) <= LARGE else SHARES[1:2]:
             faces = int(share * len(mesh.faces))
             for keep, rings in ((far[:0], 0), kept_set(mesh, far, faces)):
-                found = cell(mesh, faces, keep, rings)
-                rows += [{"mesh": name, "source": source, "share": share} | row for row in found]
+                cells = cell(mesh, faces, keep, rings)
+                rows += [{"mesh": name, "source": source, "share": share} | row for row in cells]
         write_table(OUT, pd.DataFrame(rows))
     table = pd.DataFrame(rows)
     print(pd.crosstab(table["backend"], table["outcome"]))

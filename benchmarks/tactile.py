@@ -73,14 +73,14 @@ class Peer:
 
     def touch(self, centres, axes):
         """(k, 1024) depths in metres, in the order of the taxels' vertices."""
-        found, turn = np.empty((len(centres), SIDE * SIDE)), np.empty(4)
+        depths, turn = np.empty((len(centres), SIDE * SIDE)), np.empty(4)
         for k, centre in enumerate(centres):
             self.mujoco.mju_mat2Quat(turn, axes[k].T.ravel())
             self.data.qpos[:3], self.data.qpos[3:] = centre, turn
             for step in (self.mujoco.mj_fwdPosition, self.mujoco.mj_fwdVelocity, self.mujoco.mj_sensorVel):
                 step(self.model, self.data)
-            found[k] = self.data.sensordata[: SIDE * SIDE]
-        return found
+            depths[k] = self.data.sensordata[: SIDE * SIDE]
+        return depths
 
     def taxels(self, centre, axes):
         """(1024, 3): where the taxels are after a touch."""

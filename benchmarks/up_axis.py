@@ -89,13 +89,13 @@ UPRIGHT = {  # objects of psb by class
 
 def class_of(name):
     """The class of an object by its name, None where its upright pose is not known."""
-    known = {one: group for group, names in UPRIGHT.items() for one in names.split()}
+    known = {member: group for group, names in UPRIGHT.items() for member in names.split()}
     if name in known or re.fullmatch(r"[A-Z][A-Za-z]+_\d+", name):
         return known.get(name)
     if LEFT_OUT.fullmatch(name) or name in NO_UP or ("__" in name and ON_WALLS.fullmatch(name.partition("__")[2])):
         return None
-    own = re.sub(r"(large|medium|small)$", "", name.rpartition("__")[2])
-    return next((group for group, words in CLASSES.items() if re.search(words, own.lower())), own)
+    stem = re.sub(r"(large|medium|small)$", "", name.rpartition("__")[2])
+    return next((group for group, words in CLASSES.items() if re.search(words, stem.lower())), stem)
 
 
 def measured(source, file, other):
@@ -107,12 +107,12 @@ def measured(source, file, other):
         if group is None and item.name not in NO_UP:
             continue
         try:
-            found = features(rotate_to_z_up(parse(item.content(), item.suffix), item.up), ("z", "x", "y"))
+            by_axis = features(rotate_to_z_up(parse(item.content(), item.suffix), item.up), ("z", "x", "y"))
         except MeshError:
             continue
         for axis in "xy":
             rows.append((source, item.name, group, axis, axis == other))
-            differences.append({name: found["z"][name] - found[axis][name] for name in found["z"]})
+            differences.append({name: by_axis["z"][name] - by_axis[axis][name] for name in by_axis["z"]})
     return pd.DataFrame(rows, columns=["set", "object", "class", "axis", "convention"]), pd.DataFrame(differences)
 
 
@@ -128,12 +128,12 @@ def weights_of(rows):
 def fit(differences, weights):
     """(f,) weights of the features: logistic regression without intercept, penalised in units of their spread."""
     spread = np.sqrt((differences**2 * weights[:, None]).sum(axis=0) / weights.sum()) + 1e-9
-    x, found = differences / spread, np.zeros(differences.shape[1])
+    x, slopes = differences / spread, np.zeros(differences.shape[1])
     for _ in range(20):  # Newton's method
-        p = 1 / (1 + np.exp(-x @ found))
-        curvature = (x * (weights * p * (1 - p))[:, None]).T @ x + RIDGE * np.eye(len(found))
-        found = found + np.linalg.solve(curvature, x.T @ (weights * (1 - p)) - RIDGE * found)
-    return found / spread
+        p = 1 / (1 + np.exp(-x @ slopes))
+        curvature = (x * (weights * p * (1 - p))[:, None]).T @ x + RIDGE * np.eye(len(slopes))
+        slopes = slopes + np.linalg.solve(curvature, x.T @ (weights * (1 - p)) - RIDGE * slopes)
+    return slopes / spread
 
 
 def left_out(rows, differences):
@@ -142,8 +142,8 @@ def left_out(rows, differences):
     fold = rows["class"].map({group: number % FOLDS for number, group in enumerate(sizes.index)}).to_numpy()
     odds, weights = np.zeros(len(rows)), weights_of(rows)
     for number in range(FOLDS):
-        there = fold == number
-        odds[there] = differences[there] @ fit(differences[~there], weights[~there])
+        inside = fold == number
+        odds[inside] = differences[inside] @ fit(differences[~inside], weights[~inside])
     return odds
 
 
@@ -158,26 +158,26 @@ def main():
     arguments(__doc__)
     learned = [measured(source, *how) for source, how in LEARNED.items()]
     tested = [measured(source, *how) for source, how in TESTED.items()]
-    rows, names = pd.concat([one for one, _ in learned], ignore_index=True), list(learned[0][1])
-    values = pd.concat([one for _, one in learned])[names].to_numpy()
+    rows, names = pd.concat([frame for frame, _ in learned], ignore_index=True), list(learned[0][1])
+    values = pd.concat([frame for _, frame in learned])[names].to_numpy()
     weights = fit(values, weights_of(rows))
     print("WEIGHTS =", {name: round(float(weight), 2) for name, weight in zip(names, weights, strict=True)})
-    odds, found = left_out(rows, values), []
+    odds, summaries = left_out(rows, values), []
     for name in LEARNED:
-        found.append(summary(name, odds[(rows["set"] == name) & rows["convention"]]))
-        found.append(summary(f"{name}, both other axes", odds[rows["set"] == name]))
-    test = pd.concat([one for one, _ in tested], ignore_index=True)
-    there = pd.concat([one for _, one in tested])[names].to_numpy() @ weights
+        summaries.append(summary(name, odds[(rows["set"] == name) & rows["convention"]]))
+        summaries.append(summary(f"{name}, both other axes", odds[rows["set"] == name]))
+    test = pd.concat([frame for frame, _ in tested], ignore_index=True)
+    scores = pd.concat([frame for _, frame in tested])[names].to_numpy() @ weights
     upright = test["convention"] & ~test["object"].isin(NO_UP)
     for name in TESTED:
-        found.append(summary(name, there[upright & (test["set"] == name)]))
-    found.append(summary("gaze, parts that lie anyhow", there[test["convention"] & test["object"].isin(NO_UP)]))
+        summaries.append(summary(name, scores[upright & (test["set"] == name)]))
+    summaries.append(summary("gaze, parts that lie anyhow", scores[test["convention"] & test["object"].isin(NO_UP)]))
     sure = 1 / (1 + np.exp(-np.abs(odds)))
     for low, high in ((0.5, 0.6), (0.6, 0.7), (0.7, 0.8), (0.8, 0.9), (0.9, 1.0)):
-        found.append(summary(f"calibration {low} to {high}", odds[(sure >= low) & (sure < high + (high == 1))]))
-    table = pd.DataFrame(found).round(3)
+        summaries.append(summary(f"calibration {low} to {high}", odds[(sure >= low) & (sure < high + (high == 1))]))
+    table = pd.DataFrame(summaries).round(3)
     print(table.to_string(index=False))
-    print("wrong:", *test["object"][upright & (there < 0)])
+    print("wrong:", *test["object"][upright & (scores < 0)])
     write_table(OUT, table)
 
 

@@ -40,15 +40,15 @@ EYE = LEFT[-1][1][0]
 
 def field(points: np.ndarray) -> np.ndarray:
     """(n,) signed distance of points (n, 3) to the animal, negative inside; exact outside the blends."""
-    found = np.full(len(points), np.inf)
+    distances = np.full(len(points), np.inf)
     mirrored = np.column_stack([np.abs(points[:, 0]), points[:, 1:]])
     for parts, at in ((BODY, points), (LEFT, mirrored)):
         for blend, joints in parts:
             bones = zip(np.array(joints)[:-1], np.array(joints)[1:], strict=True)
-            found = blended(found, np.min([cone(at, *ends) for ends in bones], axis=0), blend)
+            distances = blended(distances, np.min([cone(at, *ends) for ends in bones], axis=0), blend)
     ground = 0.012 - points[:, 1]  # flat soles
     nostril = NOSTRIL[3] - np.linalg.norm(mirrored - NOSTRIL[:3], axis=1)
-    return np.maximum(np.maximum(found, ground), nostril)
+    return np.maximum(np.maximum(distances, ground), nostril)
 
 
 def cone(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:

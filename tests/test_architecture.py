@@ -23,8 +23,8 @@ def settings_read(stage):
     path = ROOT / "stages" / stage / "__main__.py"
     module = importlib.import_module(f"stages.{stage}.__main__")
     calls = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
-    asked = [call for call in calls if getattr(call.func, "attr", "") == "settings"]
-    schemas = [getattr(module, ast.unparse(call.args[0]).partition(".")[0]) for call in asked]
+    requests = [call for call in calls if getattr(call.func, "attr", "") == "settings"]
+    schemas = [getattr(module, ast.unparse(call.args[0]).partition(".")[0]) for call in requests]
     return {schema.__module__.split(".")[-1] for schema in schemas}
 
 
@@ -48,10 +48,10 @@ def test_every_stage_is_in_the_pipeline_and_every_setting_is_read():
     assert sorted(ORDER) == stage_names()
     texts = {path: path.read_text() for path in (ROOT / "stages").rglob("*.py")}
     for section in stage_names():
-        own = ROOT / "stages" / section / "__init__.py"
-        fields = re.findall(r"^    (\w+): [^\n]*$", texts[own][texts[own].index("class Params") :], re.M)
+        file = ROOT / "stages" / section / "__init__.py"
+        fields = re.findall(r"^    (\w+): [^\n]*$", texts[file][texts[file].index("class Params") :], re.M)
         assert fields == list(schema_of(section).__dataclass_fields__)
-        others = "\n".join(text for path, text in texts.items() if path != own)
+        others = "\n".join(text for path, text in texts.items() if path != file)
         for name in fields:
             assert re.search(rf"\.{name}\b|\"{name}\"", others), f"{section}.{name} is never read"
 

@@ -58,12 +58,12 @@ def file(tmp_path):
 @pytest.fixture
 def toys(monkeypatch):
     """Three pairs of triangles of width 1, 2 and 3, with gaze at their highest vertex."""
-    found = {}
+    shapes = {}
     for width, name in enumerate(OBJECTS, start=1):
         corners = np.array([[0, 0, 0], [width, 0, 0.2], [0, 1, 0.5], [width, 1, 1.0]])
         mesh = Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]]))
-        found[name] = mesh, GroundTruth(np.array([0, 0, 0, 1.0]), np.array([0, 0, 0.1, 1.0]), mesh.vertex_areas)
-    monkeypatch.setattr(bench, "gazed", lambda dataset, archive: found)
+        shapes[name] = mesh, GroundTruth(np.array([0, 0, 0, 1.0]), np.array([0, 0, 0.1, 1.0]), mesh.vertex_areas)
+    monkeypatch.setattr(bench, "gazed", lambda dataset, archive: shapes)
 
 
 def listed(capsys, *options):
@@ -83,30 +83,30 @@ ROWS = [("a", "glance", 2.0), ("b", "glance", 1.0), ("c", "glance", 9.0), ("a", 
 
 def test_a_method_is_ranked_by_its_scores_and_compared_on_the_same_meshes():
     assert set(bench.SCORES) == set(METRICS)
-    found = bench.leaderboard(frame_of(ROWS))
-    assert [row["method"] for row in found] == ["glance", "yours", "older"]
-    older = found[2]
+    table = bench.leaderboard(frame_of(ROWS))
+    assert [row["method"] for row in table] == ["glance", "yours", "older"]
+    older = table[2]
     assert older["objects"] == 2 and older["nss_lead"] == pytest.approx((2.4 + 0.8) / 2)
-    assert older["nss_lead_low"] < older["nss_lead"] < older["nss_lead_high"] and "nss_lead" not in found[1]
-    assert [line.split()[0] for line in bench.as_text(found).splitlines()[1:4]] == ["1", ">", "2"]
+    assert older["nss_lead_low"] < older["nss_lead"] < older["nss_lead_high"] and "nss_lead" not in table[1]
+    assert [line.split()[0] for line in bench.as_text(table).splitlines()[1:4]] == ["1", ">", "2"]
 
 
 def test_less_kl_is_better_in_order_and_lead():
-    found = bench.leaderboard(frame_of(ROWS), "kl")
-    assert [row["method"] for row in found] == ["older", "yours", "glance"]
-    assert found[0]["kl_lead"] == pytest.approx(-(2.4 + 0.8) / 2) and found[2]["kl_lead"] > 0
-    assert "KL (less is better)" in bench.as_text(found, "kl") and "  -1.60 [" in bench.as_text(found, "kl")
+    table = bench.leaderboard(frame_of(ROWS), "kl")
+    assert [row["method"] for row in table] == ["older", "yours", "glance"]
+    assert table[0]["kl_lead"] == pytest.approx(-(2.4 + 0.8) / 2) and table[2]["kl_lead"] > 0
+    assert "KL (less is better)" in bench.as_text(table, "kl") and "  -1.60 [" in bench.as_text(table, "kl")
 
 
 @pytest.mark.slow
 def test_a_method_is_judged_beside_the_committed_rows(file, toys, capsys):
-    found = listed(capsys, f"{file}:height")
-    assert found["yours"]["objects"] == 3 and found["yours"]["nss"] > 0 and found["yours"]["auc"] > 0.8
-    assert found["glance"]["objects"] == 19 and found["glance"]["nss"] > found["itti"]["nss"]
-    assert all(low < found["glance"][metric] < high for metric in bench.SCORES
-               for low, high in [(found["glance"][f"{metric}_low"], found["glance"][f"{metric}_high"])])  # fmt: skip
-    assert found["glance"]["values"]["cow"].keys() == {*bench.SCORES, "seconds"}
-    assert found["svm_object"]["has_seen"] and not found["svm"]["has_seen"]
+    table = listed(capsys, f"{file}:height")
+    assert table["yours"]["objects"] == 3 and table["yours"]["nss"] > 0 and table["yours"]["auc"] > 0.8
+    assert table["glance"]["objects"] == 19 and table["glance"]["nss"] > table["itti"]["nss"]
+    assert all(low < table["glance"][metric] < high for metric in bench.SCORES
+               for low, high in [(table["glance"][f"{metric}_low"], table["glance"][f"{metric}_high"])])  # fmt: skip
+    assert table["glance"]["values"]["cow"].keys() == {*bench.SCORES, "seconds"}
+    assert table["svm_object"]["has_seen"] and not table["svm"]["has_seen"]
 
 
 @pytest.mark.slow
@@ -126,7 +126,7 @@ def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(fi
 @pytest.mark.slow
 def test_a_method_that_learns_never_gets_the_object_that_it_is_judged_on(file, toys, capsys):
     options = listed(capsys, f"{file}:counts", "--train"), listed(capsys, f"{file}:height")
-    assert [found["yours"]["nss"] for found in options] == pytest.approx([options[1]["yours"]["nss"]] * 2)
+    assert [table["yours"]["nss"] for table in options] == pytest.approx([options[1]["yours"]["nss"]] * 2)
     assert options[0]["yours"]["nss"] > 0
 
 
@@ -140,8 +140,8 @@ def test_a_function_that_is_no_saliency_is_named(file, toys):
 def test_a_new_method_takes_few_lines(code, options, tmp_path, toys, capsys):
     (tmp_path / "my_method.py").write_text(code)
     (name,) = re.findall(r"my_method\.py:(\w+).*" + (options[0] if options else "$"), PAGE, re.M)[:1]
-    found = listed(capsys, f"{tmp_path / 'my_method.py'}:{name}", *options)
-    assert len(code.splitlines()) <= SHORT and found["yours"]["objects"] == len(OBJECTS)
+    table = listed(capsys, f"{tmp_path / 'my_method.py'}:{name}", *options)
+    assert len(code.splitlines()) <= SHORT and table["yours"]["objects"] == len(OBJECTS)
 
 
 def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):

@@ -29,9 +29,9 @@ def test_help_of_a_benchmark_is_its_docstring(name, monkeypatch, capsys):
     doc = importlib.import_module(f"benchmarks.{name}").__doc__.splitlines()
     with pytest.raises(SystemExit) as end:
         run_as_program(monkeypatch, name, "--help")
-    said = capsys.readouterr().out
-    assert end.value.code == 0 and said.startswith(f"usage: python -m benchmarks.{name} ")
-    assert doc[0] in said and doc[-1] in said
+    text = capsys.readouterr().out
+    assert end.value.code == 0 and text.startswith(f"usage: python -m benchmarks.{name} ")
+    assert doc[0] in text and doc[-1] in text
 
 
 def of_backends(monkeypatch, faces, **answers):
@@ -72,10 +72,10 @@ def test_nothing_is_compared_with_a_reference_that_did_not_reach_the_target(monk
 def history(*rows):
     """Rows (commit, hour, kernel, ratio, machine) of a made-up history, with quartiles 5 % about the ratio."""
     return pd.DataFrame([
-        {"commit": commit, "date": f"2026-11-21T{hour:02}:00:00+00:00", "what": what, "peer": "peer", "ratio": ratio,
+        {"commit": commit, "date": f"2026-11-21T{hour:02}:00:00+00:00", "what": kernel, "peer": "peer", "ratio": ratio,
          "low": 0.95 * ratio, "high": 1.05 * ratio, "limit": _history.TOLERANCE * 1.05 * ratio, "seconds": 1,
          "machine": machine}
-        for commit, hour, what, ratio, machine in rows
+        for commit, hour, kernel, ratio, machine in rows
     ])  # fmt: skip
 
 

@@ -19,14 +19,16 @@ KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]
 @pytest.mark.slow
 def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
     assert run([*KEYS, "--json"]) == 0
-    found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
-    assert {one["key"] for one in found} == set(KEYS)
-    for one in found:
+    records = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert {record["key"] for record in records} == set(KEYS)
+    for record in records:
         judged = [
-            pair for pair in one["differences"] if one["key"] != "equal_over_itti_gaze" or pair.startswith("gaze/")
+            pair
+            for pair in record["differences"]
+            if record["key"] != "equal_over_itti_gaze" or pair.startswith("gaze/")
         ]
-        assert len(judged) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
-    (fit,) = (one for one in found if one["key"] == "fit_gaze")
+        assert len(judged) == record["pairs"] and all(map(Path.exists, map(Path, record["rows"])))
+    (fit,) = (record for record in records if record["key"] == "fit_gaze")
     anew = "python -m stages.compose experiment=attention && dvc repro lod@gaze lod@gaze_clouds report"
     assert fit["command"] == anew
 
@@ -36,9 +38,9 @@ def test_a_verdict_that_is_not_the_committed_one_is_named(monkeypatch, capsys):
     judging = import_module("stages.report.verdict")
     monkeypatch.setattr(judging, "verdict", lambda low, high, unit: "contradicted")
     assert run(["fit_gaze"]) == 1
-    said = capsys.readouterr()
-    assert "fit_gaze: contradicted (10.6, 31 units), in reports/claims.csv supported" in said.err
-    assert "31 objects" in said.out and "measure anew" in said.out
+    captured = capsys.readouterr()
+    assert "fit_gaze: contradicted (10.6, 31 units), in reports/claims.csv supported" in captured.err
+    assert "31 objects" in captured.out and "measure anew" in captured.out
 
 
 @pytest.fixture
@@ -61,9 +63,9 @@ def test_rows_that_are_missing_are_named(clone, capsys):
     file = Path("reports/measurements/gaze_3_2/lod.csv.gz")
     file.unlink()
     assert run(["keep_metro"]) == 1
-    said = capsys.readouterr().err
-    assert "contradicted (-31.4, 14 units), in reports/claims.csv contradicted (-70.9, 17 units)" in said
-    assert f"{file} is missing; `git checkout {file}`" in said
+    message = capsys.readouterr().err
+    assert "contradicted (-31.4, 14 units), in reports/claims.csv contradicted (-70.9, 17 units)" in message
+    assert f"{file} is missing; `git checkout {file}`" in message
 
 
 @pytest.mark.parametrize(
@@ -76,9 +78,9 @@ def test_rows_that_are_missing_are_named(clone, capsys):
 def test_an_effect_in_percent_of_both_is_also_a_share_as_the_readme_states_it(key, text):
     """README.md has 7.2 [5.2, 9.1] % and 2.10 [1.93, 2.24] times for the two."""
     row = rows_of(ROOT / "reports/claims.csv").set_index("key").loc[key]
-    found = {"unit": row["unit"]} | {name: float(row[name]) for name in ("effect", "low", "high")}
-    assert as_share(found) == [f"  as a share: the second is {text}"]
-    assert as_share(found | {"unit": "NSS"}) == []
+    fields = {"unit": row["unit"]} | {name: float(row[name]) for name in ("effect", "low", "high")}
+    assert as_share(fields) == [f"  as a share: the second is {text}"]
+    assert as_share(fields | {"unit": "NSS"}) == []
 
 
 def test_a_key_without_a_claim_is_answered_by_its_neighbour():

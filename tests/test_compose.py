@@ -29,18 +29,18 @@ def test_params_yaml_is_the_composed_default():
 
 def covering():
     """(data set, overrides) that name each option of conf/ at least once; an experiment goes with a set of its own."""
-    options, found = groups(), []
+    options, cases = groups(), []
     sets = set(options.pop("data"))
     for experiment in options.pop("experiment"):
-        own = OmegaConf.load(CONF / f"experiment/{experiment}.yaml").sets
-        chosen = next((name for name in own if name in sets), own[0])
+        names = OmegaConf.load(CONF / f"experiment/{experiment}.yaml").sets
+        chosen = next((name for name in names if name in sets), names[0])
         sets.discard(chosen)
-        found.append((chosen, [f"experiment={experiment}"]))
-    found += [(name, []) for name in sorted(sets)]
+        cases.append((chosen, [f"experiment={experiment}"]))
+    cases += [(name, []) for name in sorted(sets)]
     for row in zip_longest(*options.values()):
         chosen = [f"{group}={option}" for group, option in zip(options, row, strict=True) if option]
-        found.append(("household", chosen))
-    return found
+        cases.append(("household", chosen))
+    return cases
 
 
 @pytest.mark.slow

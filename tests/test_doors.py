@@ -43,22 +43,22 @@ def file(body, tmp_path, request):
 @pytest.mark.parametrize("file", [".glb"], indirect=True)
 def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, capsys):
     mesh = load(file)
-    found = detect(mesh, count=COUNT)
-    assert (np.diff(found.scores) <= 0).all() and len(found.scores) == COUNT
-    assert find_points(mesh, COUNT).tolist() == find_points(mesh, count=COUNT).tolist() == found.points.tolist()
-    assert (found.saliency == saliency(mesh)).all()
+    detection = detect(mesh, count=COUNT)
+    assert (np.diff(detection.scores) <= 0).all() and len(detection.scores) == COUNT
+    assert find_points(mesh, COUNT).tolist() == find_points(mesh, count=COUNT).tolist() == detection.points.tolist()
+    assert (detection.saliency == saliency(mesh)).all()
     for command in ("saliency", "points"):
         run(command, [str(file), "--count", str(COUNT), "--json"])
         rows = json.loads(capsys.readouterr().out)
-        assert [row["vertex"] for row in rows] == found.points.tolist()
-        assert [row["score"] for row in rows] == found.scores.tolist()
+        assert [row["vertex"] for row in rows] == detection.points.tolist()
+        assert [row["score"] for row in rows] == detection.scores.tolist()
     run("touch", [str(file), "--count", str(COUNT), "--out", str(tmp_path / "touched"), "--json"])
-    assert [row["vertex"] for row in json.loads(capsys.readouterr().out)] == found.points.tolist()
+    assert [row["vertex"] for row in json.loads(capsys.readouterr().out)] == detection.points.tolist()
     stored = np.load(tmp_path / "touched/imprints.npz")
-    assert np.allclose(stored["images"], press_many(mesh, found.points), atol=1e-5)
+    assert np.allclose(stored["images"], press_many(mesh, detection.points), atol=1e-5)
     look = open_file(file).look("glance", COUNT)
-    assert [row[1] for row in look.points] == found.points.tolist()
-    assert [row[-1] for row in look.points] == found.scores.tolist()
+    assert [row[1] for row in look.points] == detection.points.tolist()
+    assert [row[-1] for row in look.points] == detection.scores.tolist()
 
 
 @pytest.mark.slow
@@ -106,8 +106,11 @@ def test_forces_take_lengths_as_texts(body):
     assert felt.any() and (felt == numbers).all()
     gaps = haptic_glance.gaps_at(mesh, *place, within="2mm", pitch="0.15cm", unit="mm")
     assert np.allclose(gaps, haptic_glance.gaps_at(mesh, *place, within=0.002, pitch=1.5, unit=0.001))
-    for wrong, said in ({"unit": "yd"}, "unit='yd': give a number"), ({"pitch": "wide"}, "pitch='wide': give a number"):
-        with pytest.raises(ValueError, match=said):
+    for wrong, message in (
+        ({"unit": "yd"}, "unit='yd': give a number"),
+        ({"pitch": "wide"}, "pitch='wide': give a number"),
+    ):
+        with pytest.raises(ValueError, match=message):
             haptic_glance.press_forces(mesh, *place, layer, depth=0.002, **wrong)
 
 
@@ -194,13 +197,13 @@ def test_a_guess_of_the_axis_is_said_once_and_no_other(body, tmp_path):
     mesh = Mesh(*body)
     write_any(tmp_path / "body.ply", mesh)
     trimesh.Trimesh(*body, process=False).export(tmp_path / "plain.ply")
-    with pytest.warns(UserWarning, match=r"assuming z is up.*plain.ply does not say.*load\(path, up='y'\)") as told:
+    with pytest.warns(UserWarning, match=r"assuming z is up.*plain.ply does not say.*load\(path, up='y'\)") as caught:
         load(tmp_path / "plain.ply")
     with pytest.warns(UserWarning, match=r"assuming z is up.*plain.ply does not say.* up='y'"):
         saliency(tmp_path / "plain.ply")
     with pytest.warns(UserWarning, match="the mesh does not say which axis points up"):
         find_points(body, 1)
-    assert [one.filename for one in told] == [__file__]
+    assert [warning.filename for warning in caught] == [__file__]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert load(tmp_path / "body.ply").up == "z"  # as its comment says
@@ -245,16 +248,16 @@ def test_a_triangle_soup_and_an_open_patch_are_simplified(body):
 def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch):
     import haptic_glance.lod
 
-    inner, asked = haptic_glance.lod.simplify, []
+    inner, counts = haptic_glance.lod.simplify, []
 
     def folding(mesh, faces, **options):
-        asked.append(faces)
+        counts.append(faces)
         if faces > 316:
             raise haptic_glance.SimplifyError(f"{faces} faces leave 1 new folded pairs of faces: ask for more faces")
         return inner(mesh, faces, **options)
 
     monkeypatch.setattr(haptic_glance.lod, "simplify", folding)
-    assert len(simplify(Mesh(*body), 320).faces) == 316 and asked == [320, 318, 316]
+    assert len(simplify(Mesh(*body), 320).faces) == 316 and counts == [320, 318, 316]
     with pytest.raises(haptic_glance.SimplifyError, match="400 faces leave"):
         simplify(Mesh(*body), 400)
 

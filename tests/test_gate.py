@@ -23,12 +23,12 @@ CAUGHT = 0.95  # of the swaps of two methods
 @pytest.fixture
 def workspace(make_workspace):
     """A set `toys` with one stage, beside the metrics of a set that is not switched on."""
-    found = make_workspace({"lod": {}})
-    write_json(found.metrics / "lod.json", {"meshes": 100, "error": 0.5})
-    write_json(found.on("other").metrics / "lod.json", {"error": 3})
-    write_json(found.reports / "metrics/report.json", {"tables": 2})
-    gate.update(gate.measured(found), gate.baseline_of(found))
-    return found
+    toys = make_workspace({"lod": {}})
+    write_json(toys.metrics / "lod.json", {"meshes": 100, "error": 0.5})
+    write_json(toys.on("other").metrics / "lod.json", {"error": 3})
+    write_json(toys.reports / "metrics/report.json", {"tables": 2})
+    gate.update(gate.measured(toys), gate.baseline_of(toys))
+    return toys
 
 
 def test_the_gate_names_what_moved(workspace):
@@ -47,22 +47,22 @@ def test_only_sets_that_are_switched_on_count_and_nested_metrics_are_flat_withou
 
 def test_what_the_baseline_lacks_is_named(workspace):
     write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.5, "new": 1})
-    said = gate.hold(gate.measured(workspace), gate.baseline_of(workspace), Tolerances())
-    assert said.endswith("not in the baseline yet: toys.lod.new")
+    message = gate.hold(gate.measured(workspace), gate.baseline_of(workspace), Tolerances())
+    assert message.endswith("not in the baseline yet: toys.lod.new")
     many = {"a": 1.0} | {f"new{k}": 1.0 for k in range(10)}
     write_json(workspace.reports / "a.json", {"a": 1.0})
-    said = gate.hold(many, workspace.reports / "a.json", Tolerances())
-    assert said.endswith(f"yet: {', '.join(f'new{k}' for k in range(8))} and 2 more")
+    message = gate.hold(many, workspace.reports / "a.json", Tolerances())
+    assert message.endswith(f"yet: {', '.join(f'new{k}' for k in range(8))} and 2 more")
 
 
 def test_a_published_run_has_the_baseline_of_its_profile_and_one_of_ones_own_that_of_its_folder(workspace):
     assert gate.baseline_of(workspace) == workspace.published / "baselines/test.json"
-    own = SimpleNamespace(params={}, reports=Path("runs/mine"), published=workspace.published)
-    assert gate.baseline_of(own) == Path("runs/mine/baseline.json")
+    own_run = SimpleNamespace(params={}, reports=Path("runs/mine"), published=workspace.published)
+    assert gate.baseline_of(own_run) == Path("runs/mine/baseline.json")
     write_json(workspace.published / "baselines/mine.json", {})
-    assert gate.baseline_of(own) == workspace.published / "baselines/mine.json"
-    own = SimpleNamespace(params={}, reports=workspace.published, published=workspace.published)
-    assert gate.baseline_of(own) == workspace.published / "baselines/laptop.json"
+    assert gate.baseline_of(own_run) == workspace.published / "baselines/mine.json"
+    own_run = SimpleNamespace(params={}, reports=workspace.published, published=workspace.published)
+    assert gate.baseline_of(own_run) == workspace.published / "baselines/laptop.json"
 
 
 def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
@@ -124,11 +124,11 @@ def test_a_baseline_holds_against_itself_and_every_rule_is_of_a_metric():
 @pytest.mark.slow
 def test_two_methods_that_change_places_are_caught(profile, stage, method):
     baseline, rules = committed(profile)
-    mine = {name: value for name, value in baseline.items() if name.split(".")[1] == stage}
-    methods = sorted({found[1] for name in mine if (found := re.search(method, name))})
-    swaps = [exchanged(mine, *pair) for pair in combinations(methods, 2)]
-    swaps = [swapped for swapped in swaps if swapped != mine]  # the rest has the same values
-    caught = [bool(compare(swapped, mine, rules)) for swapped in swaps]
+    metrics = {name: value for name, value in baseline.items() if name.split(".")[1] == stage}
+    methods = sorted({match[1] for name in metrics if (match := re.search(method, name))})
+    swaps = [exchanged(metrics, *pair) for pair in combinations(methods, 2)]
+    swaps = [swapped for swapped in swaps if swapped != metrics]  # the rest has the same values
+    caught = [bool(compare(swapped, metrics, rules)) for swapped in swaps]
     assert len(swaps) >= 3 and sum(caught) >= CAUGHT * len(swaps)
 
 
@@ -140,12 +140,12 @@ def committed(profile):
 
 def exchanged(metrics, one, other):
     """The metrics with those of two methods in each other's place."""
-    found, whole = dict(metrics), re.compile(rf"(?<![^._]){re.escape(one)}(?![^._])")
+    swapped, whole = dict(metrics), re.compile(rf"(?<![^._]){re.escape(one)}(?![^._])")
     for name in metrics:
         place = whole.sub(other, name, count=1)
         if place != name and place in metrics:
-            found[name], found[place] = metrics[place], metrics[name]
-    return found
+            swapped[name], swapped[place] = metrics[place], metrics[name]
+    return swapped
 
 
 @pytest.fixture

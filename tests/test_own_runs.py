@@ -14,7 +14,7 @@ from haptic_glance.base.files import write_text
 
 ROOT = Path(__file__).parents[1]
 OTHERS = sorted(
-    {one for extra in MODULES.keys() - {"pipeline", "pictures"} for one in MODULES[extra]} - {"cloudpickle"}
+    {module for extra in MODULES.keys() - {"pipeline", "pictures"} for module in MODULES[extra]} - {"cloudpickle"}
 )
 # An interpreter without what [pipeline] does not bring, but for what joblib has a copy of; its children inherit that.
 BLOCKED = f"""
@@ -54,16 +54,16 @@ def test_a_folder_ends_in_a_page_with_pipeline_alone(tmp_path):
         assert not subprocess.run([sys.executable, "-c", "import torch"], **options).returncode
     quick = ["views.size=[150,200]", "conspicuity.size=[60,80]", "lod.targets=[50%]", "views.viewpoints=four"]
     chosen = ["sets=[folder]", "meshes.folder=scans", *quick, "parallel=sequential"]
-    done = subprocess.run([sys.executable, "-m", "stages.compose", *chosen], **options)
-    assert done.returncode == 0, done.stderr
-    done = subprocess.run([sys.executable, "-m", "dvc", "repro"], **options)
-    assert done.returncode == 0, done.stdout + done.stderr
+    process = subprocess.run([sys.executable, "-m", "stages.compose", *chosen], **options)
+    assert process.returncode == 0, process.stderr
+    process = subprocess.run([sys.executable, "-m", "dvc", "repro"], **options)
+    assert process.returncode == 0, process.stdout + process.stderr
     page = (tree / "runs/folder/index.html").read_text()
     assert all(f"<h2>{name}</h2>" in page for name in ("cup", "teapot")) and "broken.stl" in page
     addresses = re.findall(r'href="(site/[^"]+)"', page)
     assert addresses and all((tree / "runs/folder" / address).exists() for address in addresses)
     changed = {line[3:] for line in git("status", "--short", "--untracked-files=all", cwd=tree).splitlines()}
     assert changed <= {"params.yaml", "dvc.lock", "runs/folder/headlines.json"}
-    assert "0 of 2 objects have ground truth" in done.stdout
-    said = subprocess.run([sys.executable, "-m", "stages.gate"], **options)
-    assert said.returncode == 1 and said.stderr.count("\n") == 1 and "runs/folder/baseline.json" in said.stderr
+    assert "0 of 2 objects have ground truth" in process.stdout
+    gate = subprocess.run([sys.executable, "-m", "stages.gate"], **options)
+    assert gate.returncode == 1 and gate.stderr.count("\n") == 1 and "runs/folder/baseline.json" in gate.stderr

@@ -82,7 +82,7 @@ def normalised(name):
 
 def third_party():
     """{top-level module that the stages import and Python does not have: one file that does}."""
-    found = {}
+    modules = {}
     guard = ROOT / "haptic_glance/studio/guard.py"  # wraps parts of websockets, which viser brings
     for path in sorted({*ROOT.glob("stages/**/*.py"), *ROOT.glob("haptic_glance/**/*.py")} - {guard}):
         for node in ast.walk(ast.parse(path.read_bytes())):
@@ -92,8 +92,8 @@ def third_party():
                 names = [node.module]
             else:
                 continue
-            found |= {name.partition(".")[0]: str(path) for name in names}
-    return {name: path for name, path in found.items() if name not in OURS}
+            modules |= {name.partition(".")[0]: str(path) for name in names}
+    return {name: path for name, path in modules.items() if name not in OURS}
 
 
 @pytest.fixture
@@ -110,8 +110,8 @@ def ball(tmp_path):
 
 @pytest.mark.slow
 def test_what_a_mesh_of_ones_own_needs_runs_in_a_core_install(ball):
-    done = python(CORE + SIX, ball)
-    assert done.returncode == 0, done.stderr
+    process = python(CORE + SIX, ball)
+    assert process.returncode == 0, process.stderr
 
 
 @pytest.mark.slow
@@ -119,35 +119,35 @@ def test_the_studio_needs_no_picture_table_or_learner(ball):
     pytest.importorskip("viser")
     absent = without([*MODULES["pictures"], "pandas", "pywt", "sklearn"])
     code = "from haptic_glance.studio import app, guard, marking, mystery, opening, window\n"
-    done = python(f"{absent}\n{code}mystery.study(mystery.gather([], None, None, True, None)[0], True)")
-    assert done.returncode == 0, done.stderr
+    process = python(f"{absent}\n{code}mystery.study(mystery.gather([], None, None, True, None)[0], True)")
+    assert process.returncode == 0, process.stderr
 
 
 @pytest.mark.slow
 def test_the_commands_do_their_work_in_a_core_install(ball):
-    done = run_command("simplify", ball, "--faces", 200, "--out", ball.with_suffix(".ply"), before=CORE)
-    assert done.returncode == 0 and ball.with_suffix(".ply").exists(), done.stderr
-    measures = [line.split() for line in done.stdout.splitlines() if "SSIM" in line or "pyramid" in line]
+    process = run_command("simplify", ball, "--faces", 200, "--out", ball.with_suffix(".ply"), before=CORE)
+    assert process.returncode == 0 and ball.with_suffix(".ply").exists(), process.stderr
+    measures = [line.split() for line in process.stdout.splitlines() if "SSIM" in line or "pyramid" in line]
     assert len(measures) == 3 and all(words[-3:] == ["-", "-", "-"] for words in measures)
-    assert done.stderr.count("which is not installed: pip install '.[pictures]'\n") == 1
+    assert process.stderr.count("which is not installed: pip install '.[pictures]'\n") == 1
 
     written = [ball.with_suffix(suffix) for suffix in (".glb", ".csv", ".png")]
     options = [word for pair in zip(("--out", "--points", "--picture"), written, strict=True) for word in pair]
-    done = run_command("saliency", ball, *options, before=CORE)
-    assert done.returncode == 0 and all(path.exists() for path in written), done.stderr
-    assert done.stdout.startswith("rank,vertex,x,y,z,score")
+    process = run_command("saliency", ball, *options, before=CORE)
+    assert process.returncode == 0 and all(path.exists() for path in written), process.stderr
+    assert process.stdout.startswith("rank,vertex,x,y,z,score")
 
-    done = run_command("touch", ball, "--at", "0,0,0.5", "--up", "z", "--out", ball.parent / "out", before=CORE)
-    assert done.returncode == 0, done.stderr
+    process = run_command("touch", ball, "--at", "0,0,0.5", "--up", "z", "--out", ball.parent / "out", before=CORE)
+    assert process.returncode == 0, process.stderr
     assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "places.csv"}
-    (line,) = (line for line in done.stderr.splitlines() if "imprints.png" in line)
+    (line,) = (line for line in process.stderr.splitlines() if "imprints.png" in line)
     assert line.endswith("by matplotlib, which is not installed: pip install '.[pictures]'")
 
 
 @pytest.mark.slow
 def test_a_stage_names_the_extra_that_a_core_install_lacks():
-    done = python(f"{CORE}\nimport runpy\nrunpy.run_module('stages.lod', run_name='__main__')")
-    assert done.returncode == 1 and done.stderr.strip().endswith("pip install -e '.[pipeline]'")
+    process = python(f"{CORE}\nimport runpy\nrunpy.run_module('stages.lod', run_name='__main__')")
+    assert process.returncode == 1 and process.stderr.strip().endswith("pip install -e '.[pipeline]'")
 
 
 @pytest.mark.slow
@@ -184,30 +184,30 @@ def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
 
 
 def test_the_list_of_commands_imports_no_stage():
-    done = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
-    assert done.returncode == 0
+    process = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
+    assert process.returncode == 0
     for name in {**command.OWN, **command.SHELL}:
-        assert re.search(rf"^  {name} +[A-Z].{{20,}}$", done.stdout, re.M)
-    assert max(map(len, done.stdout.splitlines()[:-1])) <= 120
-    loaded = ast.literal_eval(done.stdout.splitlines()[-1])
+        assert re.search(rf"^  {name} +[A-Z].{{20,}}$", process.stdout, re.M)
+    assert max(map(len, process.stdout.splitlines()[:-1])) <= 120
+    loaded = ast.literal_eval(process.stdout.splitlines()[-1])
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
 
 
 @pytest.mark.slow
 def test_ctrl_c_during_imports_is_one_line(ball):
     stop = without(["numba"]).replace("raise ModuleNotFoundError", "raise KeyboardInterrupt  #")
-    done = run_command("saliency", ball, before=stop)
-    assert done.returncode == -signal.SIGINT and done.stderr == "saliency: stopped\n"
+    process = run_command("saliency", ball, before=stop)
+    assert process.returncode == -signal.SIGINT and process.stderr == "saliency: stopped\n"
 
 
 def test_an_unknown_command_is_named_with_one_like_it_and_none_at_all_shows_the_list():
-    done = run_command("salience")
-    assert done.returncode == 2 and "Traceback" not in done.stderr
-    assert done.stderr.splitlines()[-1].endswith("there is no command 'salience': try saliency")
+    process = run_command("salience")
+    assert process.returncode == 2 and "Traceback" not in process.stderr
+    assert process.stderr.splitlines()[-1].endswith("there is no command 'salience': try saliency")
     assert "one of those that --help lists" in run_command("quux").stderr
     assert "`python -m stages.gate` in a clone" in run_command("gate", "--update").stderr.splitlines()[-1]
-    done = run_command()
-    assert done.returncode == 2 and "with a mesh of your own:" in done.stderr and not done.stdout
+    process = run_command()
+    assert process.returncode == 2 and "with a mesh of your own:" in process.stderr and not process.stdout
 
 
 @pytest.mark.slow
@@ -221,8 +221,8 @@ for name in OWN:
     except SystemExit:
         pass
 """
-    done = python(CORE + code)
-    texts = dict(zip(command.OWN, done.stdout.split("=========\n")[1:], strict=True))
+    process = python(CORE + code)
+    texts = dict(zip(command.OWN, process.stdout.split("=========\n")[1:], strict=True))
     for name, text in texts.items():
         assert text.startswith(f"usage: haptic-glance {name} ")
         assert f"  haptic-glance {name} " in text.partition("examples:")[2]
@@ -231,9 +231,9 @@ for name in OWN:
 
 @pytest.mark.slow
 def test_what_a_person_got_wrong_is_one_line_without_a_source_position(ball):
-    done = run_command("simplify", ball, "--faces", "9000", "--out", "x.glb", cwd=ball.parent)
-    assert done.returncode == 1 and not done.stdout
-    assert done.stderr.splitlines()[-1].startswith("simplify: ") and ".py" not in done.stderr
+    process = run_command("simplify", ball, "--faces", "9000", "--out", "x.glb", cwd=ball.parent)
+    assert process.returncode == 1 and not process.stdout
+    assert process.stderr.splitlines()[-1].startswith("simplify: ") and ".py" not in process.stderr
 
 
 def test_a_missing_module_of_nobodys_is_left_as_it_is():
@@ -268,11 +268,11 @@ def test_the_wheel_holds_the_library_and_nothing_else(installed):
 def test_an_installed_demo_needs_no_extra_and_no_checkout(installed, tmp_path):
     code = f"{CORE}\nfrom haptic_glance.__main__ import main\nmain()"
     environment = {**os.environ, "PYTHONPATH": str(installed)}
-    done = python(code, "demo", cwd=tmp_path, env=environment)
-    assert done.returncode == 0, done.stderr
+    process = python(code, "demo", cwd=tmp_path, env=environment)
+    assert process.returncode == 0, process.stderr
     assert (tmp_path / "haptic_glance_demo/index.html").stat().st_size > 50_000
 
 
 def test_the_version_is_that_of_the_package():
-    done = run_command("--version")
-    assert done.stdout == f"haptic-glance {haptic_glance.__version__}\n" == f"haptic-glance {PROJECT['version']}\n"
+    process = run_command("--version")
+    assert process.stdout == f"haptic-glance {haptic_glance.__version__}\n" == f"haptic-glance {PROJECT['version']}\n"

@@ -37,10 +37,10 @@ def test_every_figure_is_that_of_its_table(line):
 
 
 def test_the_minutes_of_a_run_are_those_that_the_benchmark_took():
-    [said] = re.findall(r"(\d+) minutes of one core, (\d+) of two", TEXT)
+    [minutes] = re.findall(r"(\d+) minutes of one core, (\d+) of two", TEXT)
     metrics = ("processor time", "wall time")
     rows = [rows_of(ROOT / "reports/bench/pipeline.csv", f"what=all stages metric={name}") for name in metrics]
-    assert [float(text) for text in said] == pytest.approx([number_of(row, "value") / 60 for row in rows], abs=0.5)
+    assert [float(text) for text in minutes] == pytest.approx([number_of(row, "value") / 60 for row in rows], abs=0.5)
 
 
 COUNTED = re.compile(r"(\d+) (?:meshes|point clouds|random sets)")

@@ -41,15 +41,15 @@ def outcome(committed):
 def test_equal_rows_of_the_first_items_are_kept_as_close_and_another_value_is_named(committed, capsys):
     whole = committed.read_bytes()
     rows = read_rows(committed)
-    own = (rows["item"] == "cube").sum()
+    count = (rows["item"] == "cube").sum()
     assert run(["toys/views", "--items", "1"]) == 0
-    assert outcome(committed)["compared"] == outcome(committed)["close"] == own < len(rows)
+    assert outcome(committed)["compared"] == outcome(committed)["close"] == count < len(rows)
     assert committed.read_bytes() == whole
     value = rows.loc[rows["item"] == "cube", "value"].iloc[0]
     committed.write_bytes(gzip.compress(gzip.decompress(whole).replace(f"{value:.6g},".encode(), b"0.9123,", 1)))
     assert run(["toys/views", "--items", "1"]) == 1
-    assert outcome(committed)["close"] == own - 1
-    assert f"raster     {own}      {own - 1}" in capsys.readouterr().out
+    assert outcome(committed)["close"] == count - 1
+    assert f"raster     {count}      {count - 1}" in capsys.readouterr().out
 
 
 def test_rows_about_all_items_are_compared_when_all_were_measured_again(committed, monkeypatch):
@@ -110,8 +110,8 @@ def frame(**columns):
     ],
 )
 def test_rows_are_compared_by_all_that_tells_them_apart(again, counts):
-    found = by_method(compared(frame(), again)).set_index("method").loc["x"]
-    assert list(found[["rows", "equal", "close", "only_committed", "only_again"]]) == counts
+    row = by_method(compared(frame(), again)).set_index("method").loc["x"]
+    assert list(row[["rows", "equal", "close", "only_committed", "only_again"]]) == counts
 
 
 def test_rows_of_a_trial_count_where_another_metric_of_it_was_measured_again():

@@ -80,12 +80,12 @@ def repository(tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_a_failing_stage_is_named_and_the_others_go_on_side_by_side_until_dvc_sees_nothing_left_to_do(repository: Path):
     (repository / "dvc.yaml").write_text(GRAPH.replace("cat a > b", "echo no such sensor >&2; exit 3"))
-    found = repro(repository)
-    assert found.returncode == 1 and (repository / "c").exists() and not (repository / "d").exists()
-    assert "b failed:\nno such sensor" in found.stderr and "left out: d" in found.stderr
+    process = repro(repository)
+    assert process.returncode == 1 and (repository / "c").exists() and not (repository / "d").exists()
+    assert "b failed:\nno such sensor" in process.stderr and "left out: d" in process.stderr
     (repository / "dvc.yaml").write_text(GRAPH)
-    found = repro(repository)
-    assert found.returncode == 0 and (repository / "d").read_text() == "oneone", found.stderr
-    assert found.stderr.endswith("repro: all stages are up to date\n")
+    process = repro(repository)
+    assert process.returncode == 0 and (repository / "d").read_text() == "oneone", process.stderr
+    assert process.stderr.endswith("repro: all stages are up to date\n")
     status = subprocess.run([sys.executable, "-m", "dvc", "status"], cwd=repository, capture_output=True, text=True)
     assert "up to date" in status.stdout

@@ -66,8 +66,8 @@ def root(tmp_path, monkeypatch, compose_once):
 def test_jobs_begin_with_the_settings_of_params_yaml_and_missing_results_are_named(root):
     sweep.prepare(["-m", "data=household_four", "classifier=knn,svm"])
     values = compose.composed(["data=household_four", "classifier=knn"])
-    found = sweep.based(values, "household_four")["classification"]
-    assert found["repetitions"] == 3 and found["classifiers"] == ["knn"]
+    section = sweep.based(values, "household_four")["classification"]
+    assert section["repetitions"] == 3 and section["classifiers"] == ["knn"]
     assert values["classification"]["repetitions"] == 20
     values["classification"]["repetitions"] = 7
     assert sweep.based(values, "household_four")["classification"]["repetitions"] == 7
@@ -94,8 +94,8 @@ def test_a_set_without_a_section_begins_with_its_other_settings(root):
     values["household_four"]["salient_points"]["radius"] = 0.07
     (root / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
     sweep.prepare(["-m", "data=household_four"])
-    found = sweep.based(compose.composed(["data=household_four"]), "household_four")
-    assert found["salient_points"]["radius"] == 0.07 and found["classification"]["repetitions"] == 20
+    sections = sweep.based(compose.composed(["data=household_four"]), "household_four")
+    assert sections["salient_points"]["radius"] == 0.07 and sections["classification"]["repetitions"] == 20
 
 
 @pytest.mark.slow
@@ -116,26 +116,26 @@ def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):
 @pytest.mark.slow
 def test_a_path_with_a_blank_and_an_accent_reaches_the_jobs(root, monkeypatch):
     words = ["sweep", "-m", "data=household_four", "meshes.folder=/my scans/Möbel (alt)", "classifier=knn,svm"]
-    asked = []
+    arguments = []
     monkeypatch.setattr(sweep.sys, "argv", words)
     monkeypatch.setattr(sweep, "check_clone", lambda: None)
-    monkeypatch.setattr(sweep, "job", lambda: asked.extend(sweep.sys.argv))
+    monkeypatch.setattr(sweep, "job", lambda: arguments.extend(sweep.sys.argv))
     monkeypatch.setattr(sweep, "errors_in_one_line", lambda name: None)
     sweep.main()
-    assert asked == [*words[:3], 'meshes.folder="/my scans/Möbel (alt)"', words[4]]
+    assert arguments == [*words[:3], 'meshes.folder="/my scans/Möbel (alt)"', words[4]]
 
 
 @pytest.mark.slow
 def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
     (root / "data/household_four/weights/there.json").unlink()
-    asked, before = [], Path("params.yaml").read_text()
+    commands, before = [], Path("params.yaml").read_text()
 
     def run(command):
-        asked.append((command[1:], load_params()["out"]))
+        commands.append((command[1:], load_params()["out"]))
         return SimpleNamespace(returncode=0)
 
     monkeypatch.setattr(sweep.subprocess, "run", run)
     sweep.prepare(["-m", "data=household_four"])
-    assert asked == [(["-m", "dvc", "repro", "weights@household_four"], "runs/sweeps")]
+    assert commands == [(["-m", "dvc", "repro", "weights@household_four"], "runs/sweeps")]
     assert Path("params.yaml").read_text() == before
     assert "weights@household_four first: `dvc repro` makes them" in capsys.readouterr().err

@@ -32,8 +32,8 @@ class Command:
     @property
     def name(self) -> str:
         """The part of the text that differs from command to command."""
-        found = re.search(r"(experiment=\w+|sets=\[\w+\])", self.text)
-        return found[1] if found else self.text
+        match = re.search(r"(experiment=\w+|sets=\[\w+\])", self.text)
+        return match[1] if match else self.text
 
     @property
     def minutes(self) -> float:
@@ -41,31 +41,31 @@ class Command:
         if self.text == DEFAULT:
             timed = rows_of(REPORTS / "bench/pipeline.csv", "what=all stages metric=wall time")
             return number_of(timed, "minutes:value")
-        return sum(seconds(*each) for each in self.work) / 60
+        return sum(seconds(*pair) for pair in self.work) / 60
 
 
 def commands() -> list[Command]:
     """The commands that test claims, the default run first, then those with most claims."""
     written = {row["key"]: row for row in rows_of(REPORTS / "claims.csv").to_dict("records")}
-    found: dict[str, Command] = {}
+    by_text: dict[str, Command] = {}
     for claim in CLAIMS:
         if claim.key not in written or not (sets := sets_of(claim)):
             continue
         text = command_for(sets[0], claim.stage)
-        command = found.setdefault(text, Command(text))
+        command = by_text.setdefault(text, Command(text))
         command.claims.append(written[claim.key])
         command.work |= {(sets[0], stage) for stage in stages_of(sets[0]) if command_for(sets[0], stage) == text}
-    return sorted(found.values(), key=lambda one: (one.text != DEFAULT, -len(one.claims)))
+    return sorted(by_text.values(), key=lambda entry: (entry.text != DEFAULT, -len(entry.claims)))
 
 
 def sets_of(claim: Claim) -> list[str]:
     """The sets whose rows a claim compares; a default set comes before others."""
     defaults = settings()["sets"]
-    every = sorted(path.name for path in (ROOT / "reports/measurements").iterdir())
-    found = sorted((name for name in every if claim.stage in stages_of(name)), key=lambda name: name not in defaults)
-    others = [name for name in found if name not in claim.sets]
+    names = sorted(path.name for path in (ROOT / "reports/measurements").iterdir())
+    sets = sorted((name for name in names if claim.stage in stages_of(name)), key=lambda name: name not in defaults)
+    others = [name for name in sets if name not in claim.sets]
     wanted = [name or next(iter(others), "") for name in claim.sets]
-    return [name for name in wanted if name in found]
+    return [name for name in wanted if name in sets]
 
 
 def stages_of(dataset: str) -> list[str]:

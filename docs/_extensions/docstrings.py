@@ -60,10 +60,10 @@ def linked(code: str, module: str) -> str:
 
 def with_bold_names(lines: list[str], names: list[str]) -> list[str]:
     """The lines with parameters in bold where a sentence begins with them: `faces: how many`, `rows, columns: of`."""
-    one = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
-    if not one:
+    name = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
+    if not name:
         return lines
-    begins = re.compile(rf"(?:(?<=^)|(?<=[.;:] )|(?<=\n))((?:{one})(?:(?:, | and )(?:{one}))*)(?=(?: \([^)]*\))?:)")
+    begins = re.compile(rf"(?:(?<=^)|(?<=[.;:] )|(?<=\n))((?:{name})(?:(?:, | and )(?:{name}))*)(?=(?: \([^)]*\))?:)")
     return begins.sub(r"**\1**", "\n".join(lines)).splitlines()
 
 
@@ -71,9 +71,9 @@ def _said(thing):
     """A constant in words: a number itself, of a dict or tuple its items by their names."""
     if isinstance(thing, int):
         return f"``{thing}``"
-    if any(isinstance(each, tuple) for each in thing):
+    if any(isinstance(item, tuple) for item in thing):
         return f"A {type(thing).__name__} of {len(thing)} tuples."
-    return f"A {type(thing).__name__} of " + ", ".join(f"``{getattr(each, 'name', each)}``" for each in thing) + "."
+    return f"A {type(thing).__name__} of " + ", ".join(f"``{getattr(item, 'name', item)}``" for item in thing) + "."
 
 
 def _parameters(thing):

@@ -28,13 +28,13 @@ class Measured(SphinxRole):
 
     def run(self) -> tuple[list[nodes.Node], list]:
         """The number, or a problem that ends the build."""
-        asked = " ".join(self.text.split())
+        query = " ".join(self.text.split())
         try:
-            shown = measured(asked)
+            shown = measured(query)
         except LookupError as error:
-            message = self.inliner.reporter.error(f"{asked}: {error}", line=self.lineno)
+            message = self.inliner.reporter.error(f"{query}: {error}", line=self.lineno)
             return [self.inliner.problematic(self.rawtext, self.rawtext, message)], [message]
-        return [nodes.abbreviation(self.rawtext, shown, explanation=f"reports/{asked}", classes=["measured"])], []
+        return [nodes.abbreviation(self.rawtext, shown, explanation=f"reports/{query}", classes=["measured"])], []
 
 
 def measured(asked: str) -> str:
@@ -42,5 +42,5 @@ def measured(asked: str) -> str:
     place = PLACE.fullmatch(f"{{{asked}}}")
     if place is None:
         raise LookupError("write FILE KEY=VALUE KEY=VALUE: COLUMN [LOW HIGH] FORMAT")
-    name, where, what = place.groups()
-    return text_of(rows_of(REPORTS / f"{name}.csv", where), what)
+    name, where, column = place.groups()
+    return text_of(rows_of(REPORTS / f"{name}.csv", where), column)

@@ -41,9 +41,9 @@ class SettingsTable(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """A heading and a table for each section."""
         made: list[nodes.Node] = []
-        for section, found in settings().items():
+        for section, entries in settings().items():
             rows = [
-                (nodes.literal(text=name), nodes.literal(text=value), words) for name, (value, words) in found.items()
+                (nodes.literal(text=name), nodes.literal(text=value), words) for name, (value, words) in entries.items()
             ]
             made += [nodes.rubric(text=section), made_table(("setting", "default", "meaning"), rows, (20, 25, 55))]
         return made

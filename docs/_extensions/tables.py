@@ -51,9 +51,9 @@ class Claims(SphinxDirective):
         """A table."""
         lines = []
         for key in self.arguments[0].replace(",", " ").split():
-            found = rows_of(REPORTS / "claims.csv", f"key={key}")
-            (row,) = found.to_dict("records")
-            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(found), row["tested_on"]))
+            rows = rows_of(REPORTS / "claims.csv", f"key={key}")
+            (row,) = rows.to_dict("records")
+            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(rows), row["tested_on"]))
         return [made_table(("", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
 
 
@@ -69,14 +69,14 @@ class Rows(SphinxDirective):
         names = dict(pair.strip().split("=") for pair in self.options.get("names", "").split(";") if pair)
         columns = [column.strip() for column in self.options["columns"].split(";")]
         lines = []
-        found = rows_of(REPORTS / f"{file}.csv", where)
-        for place, name in enumerate(found[columns[0]]):
+        rows = rows_of(REPORTS / f"{file}.csv", where)
+        for place, name in enumerate(rows[columns[0]]):
             if not names or name in names:
-                row = found.iloc[place : place + 1]
-                lines.append([names.get(name, name.replace("_", " ")), *(shown(row, one) for one in columns[1:])])
+                row = rows.iloc[place : place + 1]
+                lines.append([names.get(name, name.replace("_", " ")), *(shown(row, text) for text in columns[1:])])
         if not lines:
             raise self.error(f"{file} has no row with {where or 'these names'}")
-        return [made_table([one.strip() for one in self.options["titles"].split(";")], lines)]
+        return [made_table([text.strip() for text in self.options["titles"].split(";")], lines)]
 
 
 class Notes(SphinxDirective):
@@ -88,10 +88,10 @@ class Notes(SphinxDirective):
         """A quotation of the notes that contain the text, of which there must be one or more."""
         path, text = REPORTS / f"{self.arguments[0]}.md", " ".join(self.content)
         lines = path.read_text(encoding="utf-8").splitlines()
-        found = [line.removeprefix("- ") for line in lines if line.startswith("- ") and text in line]
-        if not found:
+        notes = [line.removeprefix("- ") for line in lines if line.startswith("- ") and text in line]
+        if not notes:
             raise self.error(f"{path.name} has no note with {text!r}")
-        return [nodes.block_quote("", *(nodes.paragraph("", note) for note in found))]
+        return [nodes.block_quote("", *(nodes.paragraph("", note) for note in notes))]
 
 
 class Artifact(SphinxDirective):
@@ -99,15 +99,19 @@ class Artifact(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """A table of the commands, then a section for each."""
-        found = commands()
-        lines = [(code(one.text), str(len(one.claims)), tally(one), f"{max(one.minutes, 1):.0f}") for one in found]
+        listed = commands()
+        lines = [
+            (code(command.text), str(len(command.claims)), tally(command), f"{max(command.minutes, 1):.0f}")
+            for command in listed
+        ]
         head = ("command", "claims", ", ".join(WORDS), "minutes")
-        return [made_table(head, lines, (52, 10, 24, 14)), *(self.section(one) for one in found)]
+        return [made_table(head, lines, (52, 10, 24, 14)), *(self.section(command) for command in listed)]
 
     def section(self, command: Command) -> nodes.section:
         """The claims of one command."""
         lines = [
-            (each["section"], each["claim"], verdict(each["verdict"]), code(each["key"])) for each in command.claims
+            (claim["section"], claim["claim"], verdict(claim["verdict"]), code(claim["key"]))
+            for claim in command.claims
         ]
         title = nodes.title(command.name, command.name)
         body = made_table(("", "claim", "verdict", "key"), lines, (10, 50, 16, 24))
@@ -148,7 +152,7 @@ def code(text: str) -> nodes.Node:
 
 def tally(command: Command) -> str:
     """How many of each verdict."""
-    return ", ".join(str(sum(each["verdict"] == word for each in command.claims)) for word in WORDS)
+    return ", ".join(str(sum(claim["verdict"] == word for claim in command.claims)) for word in WORDS)
 
 
 def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]], widths=None) -> nodes.table:
@@ -166,4 +170,4 @@ def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]],
 def made_row(cells: Iterable[str | nodes.Node]) -> nodes.row:
     """A row of texts or nodes."""
     inner = ((nodes.Text(cell) if isinstance(cell, str) else cell) for cell in cells)
-    return nodes.row("", *(nodes.entry("", nodes.paragraph("", "", each)) for each in inner))
+    return nodes.row("", *(nodes.entry("", nodes.paragraph("", "", node)) for node in inner))

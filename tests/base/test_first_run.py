@@ -46,11 +46,11 @@ def user(file, number=3):
 def test_of_two_processes_that_need_a_kernel_at_once_one_compiles_it(kernels):
     held = claim(marker(kernels, "double", kept_in(kernels)))
     assert held is not None
-    both = [user(kernels), user(kernels)]
+    users = [user(kernels), user(kernels)]
     time.sleep(3)
-    assert all(each.poll() is None for each in both)  # they wait for the one that has the marker
+    assert all(process.poll() is None for process in users)  # they wait for the one that has the marker
     held.close()
-    assert sorted(each.communicate(timeout=120)[0].strip() for each in both) == ["0", "1"]
+    assert sorted(process.communicate(timeout=120)[0].strip() for process in users) == ["0", "1"]
     assert is_kept(kernels, "double")
 
 
@@ -88,8 +88,8 @@ def test_helpers_are_started_only_where_kernels_are_missing(tmp_path, monkeypatc
     monkeypatch.setattr(first_run, "_cores", lambda: 2)
     monkeypatch.setattr(first_run.subprocess, "Popen", lambda *line, **_: started.append(line) or Dead)
     first_run.start("demo")
-    every = len(first_run.COMMANDS["demo"])
-    assert len(started) == 1 and capsys.readouterr().err == f"demo: compiling {every} of {every} kernels, once\n"
+    count = len(first_run.COMMANDS["demo"])
+    assert len(started) == 1 and capsys.readouterr().err == f"demo: compiling {count} of {count} kernels, once\n"
     for file, name, _ in first_run.COMMANDS["demo"]:
         folder = kept_in(first_run.PACKAGE / f"{file}.py")
         folder.mkdir(parents=True, exist_ok=True)
@@ -99,7 +99,7 @@ def test_helpers_are_started_only_where_kernels_are_missing(tmp_path, monkeypatc
     next(tmp_path.rglob("*.nbc")).unlink()
     monkeypatch.setattr(first_run, "_cores", lambda: 1)
     first_run.start("demo")
-    assert len(started) == 1 and f"compiling 1 of {every} kernels" in capsys.readouterr().err
+    assert len(started) == 1 and f"compiling 1 of {count} kernels" in capsys.readouterr().err
 
 
 class Dead:
@@ -114,8 +114,8 @@ def test_a_cache_that_cannot_be_written_to_is_named_with_the_remedy(kernels, mon
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(cache))
     monkeypatch.setattr(first_run.subprocess, "Popen", lambda *_, **__: pytest.fail("started"))
     first_run.start("demo")
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and str(cache) in said and "set HAPTIC_GLANCE_CACHE" in said
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1 and str(cache) in message and "set HAPTIC_GLANCE_CACHE" in message
 
 
 def test_help_and_other_commands_start_nothing(monkeypatch):
@@ -158,17 +158,17 @@ def test_the_kernels_of_a_list_are_just_those_of_its_command(command, tmp_path):
     if command == "touch":
         pytest.importorskip("matplotlib")
     for file, name, _ in first_run.COMMANDS[command]:
-        there = kept_in(first_run.PACKAGE / f"{file}.py")
-        copy = tmp_path / there.relative_to(cache_folder())
+        folder = kept_in(first_run.PACKAGE / f"{file}.py")
+        copy = tmp_path / folder.relative_to(cache_folder())
         copy.mkdir(parents=True, exist_ok=True)
-        for kept in there.glob(f"{Path(file).name}.{name}-*"):
+        for kept in folder.glob(f"{Path(file).name}.{name}-*"):
             shutil.copy(kept, copy)
     mesh = [] if command == "demo" else [str(sample())]
     levels = ["--levels", "50%,10%"] if command == "simplify" else []
-    done = in_process(ASKED, tmp_path, command, *mesh, *levels, "--out", str(tmp_path / "out"))
-    assert done.splitlines()[-1] == "set()"
+    printed = in_process(ASKED, tmp_path, command, *mesh, *levels, "--out", str(tmp_path / "out"))
+    assert printed.splitlines()[-1] == "set()"
     if command == "demo":
-        assert "6 places, 3 levels, 6 imprints" in done and done.count("  haptic-glance ") == 3
+        assert "6 places, 3 levels, 6 imprints" in printed and printed.count("  haptic-glance ") == 3
         assert (tmp_path / "out/dromedary/dromedary_10pct.glb").is_file()
 
 

@@ -71,9 +71,9 @@ def test_little_work_is_interpreted_and_more_is_compiled(tmp_path, monkeypatch):
     assert few.for_work(2)(3) == 6 and double.signatures
     another = UntilWorthCompiling(double, str(tmp_path / "one/kernels.py"), budget=10)
     assert another.for_work(1) is double  # its machine code is kept
-    ready = UntilWorthCompiling(double, str(tmp_path / "empty/kernels.py"), budget=10)
-    ready.compile_always()
-    assert ready.for_work(0) is double
+    eager = UntilWorthCompiling(double, str(tmp_path / "empty/kernels.py"), budget=10)
+    eager.compile_always()
+    assert eager.for_work(0) is double
 
 
 def test_a_kernel_is_interpreted_only_while_another_process_compiles_it_and_its_mesh_is_small(tmp_path, monkeypatch):
@@ -93,7 +93,7 @@ def test_a_kernel_is_interpreted_only_while_another_process_compiles_it_and_its_
 
 
 def test_signatures_are_remembered_for_kernels_of_this_package_alone():
-    asked = numba.types.Function.get_call_type
+    original = numba.types.Function.get_call_type
     for package in ("somebody", "haptic_glance"):
 
         def total(x, y):
@@ -102,4 +102,4 @@ def test_signatures_are_remembered_for_kernels_of_this_package_alone():
         total.__module__, before = f"{package}.kernels", len(jit.signatures)
         assert numba.njit(total)(np.float32(2), 3j) == 2 + 3j  # a pair of types that no other kernel adds
         assert (len(jit.signatures) > before) == (package == "haptic_glance")
-        assert numba.types.Function.get_call_type is asked
+        assert numba.types.Function.get_call_type is original

@@ -64,13 +64,13 @@ def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
     scalings = {}
     for row in rows:
         scalings.setdefault((row["variant"], row["split"]), []).append((row["scaling"], row["metric"]))
-    every, valid = ("training", "beforehand", "min_max"), ("accuracy", "train_accuracy", "commonest_share")
+    all_scalings, valid = ("training", "beforehand", "min_max"), ("accuracy", "train_accuracy", "commonest_share")
     further = [(scaling, metric) for scaling in ("beforehand", "components", "min_max") for metric in valid]
     assert scalings["plain", "random"] == further  # `evaluate_prepared` has those of the scaling `training`
-    assert scalings["plain", "regions"] == [(scaling, "accuracy") for scaling in every[1:]]
-    assert scalings["first_15", "random"] == [(scaling, "accuracy") for scaling in every]
+    assert scalings["plain", "regions"] == [(scaling, "accuracy") for scaling in all_scalings[1:]]
+    assert scalings["first_15", "random"] == [(scaling, "accuracy") for scaling in all_scalings]
     for variant in ("touches_2", "first_15_touches_2_mixed"):
-        assert scalings[variant, "random"] == [(scaling, metric) for scaling in every for metric in valid[::2]]
+        assert scalings[variant, "random"] == [(scaling, metric) for scaling in all_scalings for metric in valid[::2]]
     assert scalings["touches_2_ordered", "random"] == [("training", "accuracy")]
     assert scalings["touches_2_mixed", "random"] == [("training", metric) for metric in valid[::2]]
     for variant in ("selected", "selected_control"):

@@ -42,7 +42,7 @@ def simplified(file, tmp_path, capsys, monkeypatch):
 
     def work(*options, source=file, out="out.obj"):
         run([str(source), "--method", "height", "--out", str(tmp_path / out), *map(str, options)])
-        said = capsys.readouterr()
-        return load(tmp_path / out), said.out, said.err
+        captured = capsys.readouterr()
+        return load(tmp_path / out), captured.out, captured.err
 
     return work

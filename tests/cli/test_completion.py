@@ -21,8 +21,8 @@ def test_bash_completes_commands_and_options_and_leaves_files():
     for words, expected in TYPED.items():
         typed = f"COMP_WORDS=(haptic-glance {words}); COMP_CWORD={len(words.split())}"
         script = f'{bash(KNOWN)}{typed}; _haptic_glance; echo "${{COMPREPLY[@]}}"'
-        ran = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-        assert ran.stdout.strip() == expected
+        process = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+        assert process.stdout.strip() == expected
 
 
 def test_fish_has_a_line_for_each_command_and_option(capsys):

@@ -57,8 +57,8 @@ def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
     assert run([str(file), "--levels", "50%,200,10%", "--out", str(tmp_path / "out")]) == 0
     faces = {path.name: len(load(path).faces) for path in (tmp_path / "out").iterdir()}
     assert faces == {"egg_50pct.ply": 640, "egg_200.ply": 200, "egg_10pct.ply": 128} and len(looks) == 1
-    said = capsys.readouterr().out
-    assert said.splitlines()[1].split() == ["faces", "1,280", "640", "200", "128"] and "QEM" not in said
+    printed = capsys.readouterr().out
+    assert printed.splitlines()[1].split() == ["faces", "1,280", "640", "200", "128"] and "QEM" not in printed
 
 
 def test_a_level_that_is_infeasible_does_not_cost_the_others(file, tmp_path, capsys):
@@ -72,8 +72,8 @@ def test_a_level_that_is_infeasible_does_not_cost_the_others(file, tmp_path, cap
 def test_a_folder_goes_through_at_once_and_what_is_broken_is_named(folder, tmp_path, capsys):
     assert run([str(folder), "--faces", "300", "--format", "glb", "--json", "--out", str(tmp_path / "out")]) == 1
     shown = capsys.readouterr()
-    (found,) = json.loads(shown.out)
-    assert found["faces"] == 1280 and found["levels"][0]["faces"] == 300 and found["levels"][0]["mean"] > 0
+    (row,) = json.loads(shown.out)
+    assert row["faces"] == 1280 and row["levels"][0]["faces"] == 300 and row["levels"][0]["mean"] > 0
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_300.glb"]
     assert "simplify: " in shown.err and "bad.stl: " in shown.err and "notes" not in shown.err
 
@@ -123,10 +123,10 @@ def scene(path, painted):
         for part, colour in ((ball, [200, 30, 30, 255]), (box, [30, 30, 200, 255])):
             material = trimesh.visual.material.PBRMaterial(baseColorFactor=colour)
             part.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(part.vertices), 2)), material=material)
-    found = trimesh.Scene()
-    found.add_geometry(box, node_name="stand", geom_name="g1")
-    found.add_geometry(ball, node_name="vase", transform=trimesh.transformations.translation_matrix([0, 2, 0]))
-    found.export(path)
+    graph = trimesh.Scene()
+    graph.add_geometry(box, node_name="stand", geom_name="g1")
+    graph.add_geometry(ball, node_name="vase", transform=trimesh.transformations.translation_matrix([0, 2, 0]))
+    graph.export(path)
 
 
 def named_heights(path):
@@ -146,13 +146,13 @@ def test_the_nodes_of_a_scene_keep_their_names_and_places(tmp_path, painted):
 
 def test_faces_go_with_the_closest_face(file):
     low, high = egg(2), egg(2, at=(0, 0, 5.0))
-    both = Mesh(np.r_[low.vertices, high.vertices], np.r_[low.faces, high.faces + len(low.vertices)])
+    joined = Mesh(np.r_[low.vertices, high.vertices], np.r_[low.faces, high.faces + len(low.vertices)])
     count = len(low.faces)
     parts = {"low": np.arange(count), "high": np.arange(count, 2 * count), "gone": np.zeros(0, dtype=int)}
     order = np.random.default_rng(0).permutation(2 * count)
-    found = moved_parts(parts, both, Mesh(both.vertices, both.faces[order]))
-    assert set(found) == {"low", "high"} and set(order[found["low"]]) == set(range(count))
-    assert moved_parts({}, both, both) == {} == parts_of(file)  # only a GLB has nodes
+    moved = moved_parts(parts, joined, Mesh(joined.vertices, joined.faces[order]))
+    assert set(moved) == {"low", "high"} and set(order[moved["low"]]) == set(range(count))
+    assert moved_parts({}, joined, joined) == {} == parts_of(file)  # only a GLB has nodes
 
 
 @pytest.mark.parametrize("up", ["z", "y"])
@@ -160,8 +160,8 @@ def test_faces_go_with_the_closest_face(file):
 def test_a_glb_stands_as_the_format_has_it_and_other_formats_stay(file, tmp_path, capsys, up):
     for out in ("small.glb", "small.stl"):
         run([str(file), "--faces", "300", "--up", up, "--out", str(tmp_path / out)])
-    said, (glb, stl) = capsys.readouterr().err, (load(tmp_path / f"small.{suffix}") for suffix in ("glb", "stl"))
+    messages, (glb, stl) = capsys.readouterr().err, (load(tmp_path / f"small.{suffix}") for suffix in ("glb", "stl"))
     long = rotate_to_z_up(glb).vertices[:, 2] if up == "z" else glb.vertices[:, 2]
     assert np.ptp(long) == pytest.approx(2.8, rel=0.02) and glb.up == "y"
     assert np.ptp(stl.vertices[:, 2]) == pytest.approx(2.8, rel=0.02)
-    assert ("small.glb is y up, as every GLB: turned from z up" in said) == (up == "z")
+    assert ("small.glb is y up, as every GLB: turned from z up" in messages) == (up == "z")

@@ -113,9 +113,9 @@ def test_a_file_that_cannot_be_read_is_named_and_the_mesh_is_not_overwritten(egg
     with pytest.raises(ValueError, match="is the mesh itself"):
         run([str(egg), "--out", str(egg)])
     assert egg.read_bytes() == before
-    both = str(tmp_path / "both.ply")
-    with pytest.raises(ValueError, match=f"{both} is named for two results"):
-        run([str(egg), "--out", both, "--weights", os.path.relpath(both)])
+    path = str(tmp_path / "both.ply")
+    with pytest.raises(ValueError, match=f"{path} is named for two results"):
+        run([str(egg), "--out", path, "--weights", os.path.relpath(path)])
 
 
 def test_the_picture_has_the_ranks_of_the_visible_points_and_the_others_are_counted(egg, capsys, monkeypatch):

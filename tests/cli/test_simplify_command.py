@@ -39,23 +39,23 @@ def textured():
 
 def test_result_has_the_faces_and_stands_where_the_mesh_stood_with_its_kept_places(simplified):
     mesh = bumpy()
-    found, said, told = simplified("--faces", "40%", "--neighbourhood", "fixed", "--keep", 3, "--rings", 2)
-    assert len(found.faces) == 512 and found.watertight and metro(mesh, found)["mean"] < 0.005
+    simple, table, messages = simplified("--faces", "40%", "--neighbourhood", "fixed", "--keep", 3, "--rings", 2)
+    assert len(simple.faces) == 512 and simple.watertight and metro(mesh, simple)["mean"] < 0.005
     top = mesh.rings([mesh.vertices[:, 2].argmax()], 2)
-    away = np.linalg.norm(found.vertices[:, None] - mesh.vertices[top], axis=2).min(axis=0)
+    away = np.linalg.norm(simple.vertices[:, None] - mesh.vertices[top], axis=2).min(axis=0)
     assert away.max() < 1e-7 * SIZE
-    assert rows(said)["faces"] == ["1,280", "512", "512"] and rows(said)["points kept"] == ["3", "3", "-"]
-    assert all(value != "-" for value in rows(said)["1 - SSIM of the pictures"][1:])
-    assert "z up, as the file says" in told and "border" not in said
+    assert rows(table)["faces"] == ["1,280", "512", "512"] and rows(table)["points kept"] == ["3", "3", "-"]
+    assert all(value != "-" for value in rows(table)["1 - SSIM of the pictures"][1:])
+    assert "z up, as the file says" in messages and "border" not in table
 
 
 def test_tolerance_gives_a_small_mesh_within_it_or_the_mesh_itself(simplified):
-    found, _, told = simplified("--tolerance", "0.5%")
-    assert metro(bumpy(), found)["mean"] <= 0.005 and len(found.faces) < 500
-    assert "faces: " in told and "simplifying to 0.5 % of the diagonal" in told
-    found, said, told = simplified("--tolerance", "1e-9")
-    assert len(found.faces) == 1280 and rows(said)["faces"][1] == "1,280"
-    assert "no simplified mesh is within the tolerance" in told
+    simple, _, messages = simplified("--tolerance", "0.5%")
+    assert metro(bumpy(), simple)["mean"] <= 0.005 and len(simple.faces) < 500
+    assert "faces: " in messages and "simplifying to 0.5 % of the diagonal" in messages
+    simple, table, messages = simplified("--tolerance", "1e-9")
+    assert len(simple.faces) == 1280 and rows(table)["faces"][1] == "1,280"
+    assert "no simplified mesh is within the tolerance" in messages
 
 
 def test_attributes_that_count_come_out_closer(simplified, tmp_path):
@@ -64,29 +64,29 @@ def test_attributes_that_count_come_out_closer(simplified, tmp_path):
     painted = Mesh(mesh.vertices, mesh.faces, colors)
     write_any(tmp_path / "painted.ply", painted)
     options = "--faces", 400, "--attributes", "colors=1"
-    found, said, _ = simplified(*options, source=tmp_path / "painted.ply", out="out.ply")
-    ours, plain = map(float, rows(said)["colours, of 255"][1:])
-    assert ours < plain / 3 and len(found.faces) == 400
-    assert colour_error(painted, found) == pytest.approx(ours, rel=0.2)
+    simple, table, _ = simplified(*options, source=tmp_path / "painted.ply", out="out.ply")
+    ours, plain = map(float, rows(table)["colours, of 255"][1:])
+    assert ours < plain / 3 and len(simple.faces) == 400
+    assert colour_error(painted, simple) == pytest.approx(ours, rel=0.2)
 
 
 @pytest.mark.parametrize("out", ["out.glb", "out.obj"])
 def test_pictures_go_along(simplified, tmp_path, out):
     mesh = textured()
     write_any(tmp_path / "wrapped.obj", mesh)
-    found, said, told = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out=out)
-    assert float(rows(said)["colours, of 255"][1]) > 0 and told.count("--attributes uv=1") == 1
-    assert len(found.faces) == 500 and found.watertight
-    assert (found.texture.images[0] == mesh.texture.images[0]).all()
-    standing = found.vertices * [1, -1, 1] if out == "out.obj" else found.vertices[:, [0, 2, 1]]  # a GLB is y up
-    want = 0.5 + (standing[found.faces][..., :2] * [1, -1] - PLACE[:2]) / 100
-    assert np.abs(found.texture.uv - want).max() < 0.02
+    simple, table, messages = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out=out)
+    assert float(rows(table)["colours, of 255"][1]) > 0 and messages.count("--attributes uv=1") == 1
+    assert len(simple.faces) == 500 and simple.watertight
+    assert (simple.texture.images[0] == mesh.texture.images[0]).all()
+    standing = simple.vertices * [1, -1, 1] if out == "out.obj" else simple.vertices[:, [0, 2, 1]]  # a GLB is y up
+    want = 0.5 + (standing[simple.faces][..., :2] * [1, -1] - PLACE[:2]) / 100
+    assert np.abs(simple.texture.uv - want).max() < 0.02
 
 
 def test_format_without_colours_says_so(simplified, tmp_path):
     write_any(tmp_path / "wrapped.obj", textured())
-    _, _, said = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")
-    assert ".stl files have no colours" in said
+    _, _, messages = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")
+    assert ".stl files have no colours" in messages
 
 
 @pytest.mark.slow
@@ -109,10 +109,10 @@ def test_without_options_the_saliency_weighs_nothing_is_frozen_and_equal_command
         return real(*arguments, weights=weights, **options)
 
     monkeypatch.setattr("haptic_glance.lod.task.simplify", watched)
-    _, said, _ = simplified("--faces", 300, out="a.glb")
+    _, table, _ = simplified("--faces", 300, out="a.glb")
     ours, plain = weights
     assert plain is None and np.ptp(ours) > 0.5 and len(ours) == len(bumpy().vertices)
-    assert "height-soft" in said and "plain QEM" in said and "points kept" not in said
+    assert "height-soft" in table and "plain QEM" in table and "points kept" not in table
     simplified("--faces", 300, out="b.glb")
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
     assert "plain QEM" not in simplified("--faces", 300, "--method", "qem")[1]
@@ -121,9 +121,9 @@ def test_without_options_the_saliency_weighs_nothing_is_frozen_and_equal_command
 def test_open_borders_that_stay_are_counted_with_what_they_allow(simplified, tmp_path):
     mesh, edges = bowl()
     write_any(tmp_path / "bowl.ply", mesh)
-    _, said, _ = simplified("--faces", 400, source=tmp_path / "bowl.ply")
-    assert rows(said)["border edges kept"] == [str(edges), str(edges), "-"]
-    least = int(rows(said)["fewest faces that keep them"][1])
+    _, table, _ = simplified("--faces", 400, source=tmp_path / "bowl.ply")
+    assert rows(table)["border edges kept"] == [str(edges), str(edges), "-"]
+    least = int(rows(table)["fewest faces that keep them"][1])
     simplified("--faces", least, source=tmp_path / "bowl.ply")
     with pytest.raises(ValueError, match=f"since {edges} boundary edges are frozen: ask for {least:,} faces or"):
         simplified("--faces", least - 1, source=tmp_path / "bowl.ply")
@@ -133,24 +133,24 @@ def test_borders_between_materials_that_are_given_up_are_counted(simplified, tmp
     mesh = textured()
     plain = np.full((1, 1, 4), 255, dtype=np.uint8)
     upper = (mesh.vertices[mesh.faces].mean(axis=1)[:, 2] > PLACE[2]).astype(int)
-    both = Texture(mesh.texture.uv, upper, (*mesh.texture.images, plain))
-    write_any(tmp_path / "two.glb", Mesh(mesh.vertices, mesh.faces, None, both))
-    _, said, _ = simplified("--faces", 500, source=tmp_path / "two.glb")
-    edges = rows(said)["border edges kept"]
+    texture = Texture(mesh.texture.uv, upper, (*mesh.texture.images, plain))
+    write_any(tmp_path / "two.glb", Mesh(mesh.vertices, mesh.faces, None, texture))
+    _, table, _ = simplified("--faces", 500, source=tmp_path / "two.glb")
+    edges = rows(table)["border edges kept"]
     assert int(edges[0]) > 20 and edges[0] == edges[1]
-    few = int(rows(said)["fewest faces that keep them"][1]) // 2
-    _, said, _ = simplified("--faces", few, source=tmp_path / "two.glb")
-    assert int(rows(said)["border edges kept"][1]) < int(edges[1])
+    few = int(rows(table)["fewest faces that keep them"][1]) // 2
+    _, table, _ = simplified("--faces", few, source=tmp_path / "two.glb")
+    assert int(rows(table)["border edges kept"][1]) < int(edges[1])
 
 
 def test_a_soup_of_doubled_faces_is_joined_and_simplified(simplified, tmp_path):
     mesh = bumpy()
     corners = np.repeat(mesh.vertices[mesh.faces], 2, axis=0).reshape(-1, 3)
     write_any(tmp_path / "soup.ply", Mesh(corners, np.arange(len(corners)).reshape(-1, 3)))
-    found, said, told = simplified("--faces", 300, source=tmp_path / "soup.ply")
-    assert len(found.faces) == 300 and found.watertight and rows(said)["faces"][0] == "1,280"
-    assert "1280 duplicate faces removed" in told
-    assert f"{6 * 1280 - len(mesh.vertices):,} coincident vertices merged" in told
+    simple, table, messages = simplified("--faces", 300, source=tmp_path / "soup.ply")
+    assert len(simple.faces) == 300 and simple.watertight and rows(table)["faces"][0] == "1,280"
+    assert "1280 duplicate faces removed" in messages
+    assert f"{6 * 1280 - len(mesh.vertices):,} coincident vertices merged" in messages
 
 
 def test_vertices_are_joined_only_where_that_closes_edges():
@@ -168,9 +168,9 @@ def smooth():
 
 def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_said(simplified, tmp_path):
     write_any(tmp_path / "smooth.ply", smooth())
-    _, said, told = simplified("--faces", 60, source=tmp_path / "smooth.ply")
-    assert "the pictures show all meshes at 9" in told
-    pictures = [line.split()[-2:] for line in said.splitlines() if "SSIM" in line or "pyramid" in line]
+    _, table, messages = simplified("--faces", 60, source=tmp_path / "smooth.ply")
+    assert "the pictures show all meshes at 9" in messages
+    pictures = [line.split()[-2:] for line in table.splitlines() if "SSIM" in line or "pyramid" in line]
     assert len(pictures) == 3 and all(0 < float(value) < 1 for values in pictures for value in values)
     assert "the pictures show" not in simplified("--faces", 600, source=tmp_path / "smooth.ply")[2]
 
@@ -203,26 +203,26 @@ def test_interrupted_writing_leaves_no_part_of_the_files(tmp_path, monkeypatch):
 
 
 def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
-    found, said, _ = simplified("--faces", 90, "--neighbourhood", "fixed", "--keep", 9, "--shrink")
-    assert len(found.faces) <= 90
-    assert int(rows(said)["fewest faces that keep them"][1].replace(",", "")) > 90
+    simple, table, _ = simplified("--faces", 90, "--neighbourhood", "fixed", "--keep", 9, "--shrink")
+    assert len(simple.faces) <= 90
+    assert int(rows(table)["fewest faces that keep them"][1].replace(",", "")) > 90
 
 
 def test_fewest_faces_are_found_to_two_per_cent():
     mesh, errors = bumpy(), {}
 
     def moved(faces):  # a stand-in for simplification, whose error is one over the count
-        found = Mesh(mesh.vertices + mesh.vertex_normals * mesh.diagonal / faces, mesh.faces)
-        errors[faces] = metro(mesh, found)["mean"]
-        return found
+        shifted = Mesh(mesh.vertices + mesh.vertex_normals * mesh.diagonal / faces, mesh.faces)
+        errors[faces] = metro(mesh, shifted)["mean"]
+        return shifted
 
     fewest_faces(mesh, moved, 4, 0.01)
     passed, failed = ([n for n, e in errors.items() if (e <= 0.01) == wanted] for wanted in (True, False))
     assert max(failed) < min(passed) <= 1.02 * max(failed) + 1
     assert len(errors) < 20
-    asked = []
-    fewest_faces(mesh, lambda faces: asked.append(faces) or mesh, 40, 0.01)
-    assert asked == [40]  # the lowest count at once, where it is good enough
+    counts = []
+    fewest_faces(mesh, lambda faces: counts.append(faces) or mesh, 40, 0.01)
+    assert counts == [40]  # the lowest count at once, where it is good enough
 
 
 def test_nothing_sound_means_the_mesh_itself():
@@ -252,10 +252,10 @@ def test_a_faulty_result_of_a_mesh_with_a_boundary_names_both_remedies(tmp_path,
 def test_every_format_that_is_written_reads_back(tmp_path, suffix):
     mesh = textured()
     write_any(tmp_path / f"my ball{suffix}", mesh)
-    found = load(tmp_path / f"my ball{suffix}")
-    assert len(found.faces) == len(mesh.faces) and found.watertight
-    assert metro(mesh, found)["max"] < 1e-6
-    assert (found.texture is not None) == (suffix in (".glb", ".obj"))
+    again = load(tmp_path / f"my ball{suffix}")
+    assert len(again.faces) == len(mesh.faces) and again.watertight
+    assert metro(mesh, again)["max"] < 1e-6
+    assert (again.texture is not None) == (suffix in (".glb", ".obj"))
 
 
 def test_small_units_keep_their_digits(tmp_path):

@@ -39,19 +39,19 @@ def touched(file, tmp_path, capsys, monkeypatch):
 
     def work(*options, source=file):
         run([str(source), *map(str, options), "--out", str(tmp_path / "out")])
-        said = capsys.readouterr()
+        captured = capsys.readouterr()
         with np.load(tmp_path / "out/imprints.npz") as stored:
             arrays = dict(stored)
-        return arrays, pd.read_csv(tmp_path / "out/places.csv"), said.out, said.err
+        return arrays, pd.read_csv(tmp_path / "out/places.csv"), captured.out, captured.err
 
     return work
 
 
 def test_json_has_the_places_as_the_table_has_them(touched):
-    _, table, said, told = touched("--at", 3, 50, "--json")
-    assert "touch: pressing\ntouch: drawing\ntouch: written: " in told
+    _, table, printed, messages = touched("--at", 3, 50, "--json")
+    assert "touch: pressing\ntouch: drawing\ntouch: written: " in messages
     assert "touch: replaced: " in touched("--at", 3, 50, "--json")[-1]
-    rows = json.loads(said)
+    rows = json.loads(printed)
     assert [list(row) for row in rows] == [list(table.columns)] * 2
     assert [row["vertex"] for row in rows] == [3, 50] and rows[0]["relief"] == pytest.approx(
         table["relief"][0], rel=1e-5
@@ -59,7 +59,7 @@ def test_json_has_the_places_as_the_table_has_them(touched):
 
 
 def test_vertices_feel_what_press_feels_and_relief_has_the_units_of_the_file(touched, file):
-    arrays, table, said, _ = touched("--at", 3, 200, "--cells", 8, 10, "--pitch", 0.02)
+    arrays, table, printed, _ = touched("--at", 3, 200, "--cells", 8, 10, "--pitch", 0.02)
     mesh = normalise(load(file))
     assert np.array_equal(arrays["images"], press_many(mesh, [3, 200], (8, 10), 0.02))
     assert table["vertex"].tolist() == arrays["vertices"].tolist() == [3, 200]
@@ -70,7 +70,7 @@ def test_vertices_feel_what_press_feels_and_relief_has_the_units_of_the_file(tou
     assert table["relief_in_file"][0] == pytest.approx(relief * arrays["unit"], rel=1e-5)
     middle = (x.min(axis=0) + x.max(axis=0)) / 2
     assert arrays["unit"] == pytest.approx(2 * np.linalg.norm(x - middle, axis=1).max())
-    assert f"1 unit is {arrays['unit']:.4g}" in said
+    assert f"1 unit is {arrays['unit']:.4g}" in printed
 
 
 def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
@@ -104,11 +104,11 @@ def test_normals_and_axes_are_those_of_the_file(touched, file):
 @pytest.mark.parametrize("up", ["x", "y"])
 def test_coordinates_come_back_from_the_meshs_frame(up):
     given = Mesh(bumpy().vertices, bumpy().faces, up=up)
-    own = UserMesh(given, "ball")
+    model = UserMesh(given, "ball")
     points = np.random.default_rng(0).random((5, 3))
-    assert np.allclose(own.from_file(own.to_file(points)), points)
-    assert np.allclose(own.to_file(own.mesh.vertices), given.vertices)
-    assert np.allclose(own.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
+    assert np.allclose(model.from_file(model.to_file(points)), points)
+    assert np.allclose(model.to_file(model.mesh.vertices), given.vertices)
+    assert np.allclose(model.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
 
 
 def test_random_places_depend_on_the_seed_alone(touched):
@@ -120,20 +120,20 @@ def test_random_places_depend_on_the_seed_alone(touched):
 
 
 def test_salient_places_are_those_of_the_method(touched, file):
-    arrays, _, _, said = touched("--at", "salient", "--count", 3, "--method", "height", "--up", "z")
+    arrays, _, _, messages = touched("--at", "salient", "--count", 3, "--method", "height", "--up", "z")
     assert len(arrays["images"]) == 3 and load(file).vertices[arrays["vertices"], 2].max() > PLACE[2] + 0.9 * SIZE
-    assert "looking at it" in said
+    assert "looking at it" in messages
 
 
 def test_places_that_are_missing_or_without_a_normal_are_counted(tmp_path, touched):
     box = trimesh.creation.box()
     box.export(tmp_path / "box.stl")
-    _, table, _, said = touched("--at", "random", "--count", 50, source=tmp_path / "box.stl")
-    assert len(table) == 8 and "8 of 50 places: the mesh has no more" in said
+    _, table, _, messages = touched("--at", "random", "--count", 50, source=tmp_path / "box.stl")
+    assert len(table) == 8 and "8 of 50 places: the mesh has no more" in messages
     leaf = trimesh.Trimesh([[2, 0, 0], [3, 0, 0], [2, 1, 0]], [[0, 1, 2], [0, 2, 1]])
     trimesh.util.concatenate([box, leaf]).export(tmp_path / "leaf.ply")
-    _, table, _, said = touched("--at", "random", "--count", 11, source=tmp_path / "leaf.ply")
-    assert len(table) == 8 and "8 of 11 places: the others have no normal" in said
+    _, table, _, messages = touched("--at", "random", "--count", 11, source=tmp_path / "leaf.ply")
+    assert len(table) == 8 and "8 of 11 places: the others have no normal" in messages
 
 
 def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
@@ -147,20 +147,20 @@ def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
 
 def test_a_load_is_shared_by_the_cells_in_newtons(touched):
     options = "--at", 0, 50, "--load", 0.5, "--unit", "mm", "--layer", "thickness=0.004,modulus=5e5"
-    arrays, table, said, _ = touched(*options)
+    arrays, table, printed, _ = touched(*options)
     assert np.allclose(arrays["forces"].sum(axis=(1, 2)), 0.5) and arrays["forces"].shape == (2, 16, 16)
     area = (0.01 * arrays["unit"] * 0.001) ** 2
     assert np.allclose(table["peak_newtons"], arrays["forces"].max(axis=(1, 2)), rtol=1e-4)
     assert np.allclose(table["indentation_metres"] * Layer(0.004, 5e5).stiffness * area, table["peak_newtons"])
-    assert "load: 0.5 N a place" in said
+    assert "load: 0.5 N a place" in printed
     plain, _, _, _ = touched("--at", 0, 50)
     assert "forces" not in plain and np.array_equal(plain["images"], arrays["images"])
 
 
 @pytest.mark.parametrize(("unit", "pitch", "depth"), [("mm", "1mm", "0.05cm"), ("in", "1in", "0.5in")])
 def test_lengths_are_those_of_the_object_in_its_unit(touched, file, unit, pitch, depth):
-    arrays, _, said, _ = touched("--at", 0, 50, "--unit", unit, "--pitch", pitch, "--depth", depth)
-    assert f"({1:.4g} in the file's units" in said
+    arrays, _, printed, _ = touched("--at", 0, 50, "--unit", unit, "--pitch", pitch, "--depth", depth)
+    assert f"({1:.4g} in the file's units" in printed
     units = 1 / arrays["unit"]
     plain, _, _, _ = touched("--at", 0, 50, "--pitch", units, "--depth", 0.5 * units)
     assert np.allclose(arrays["distances"], plain["distances"], atol=1e-6)
@@ -169,8 +169,10 @@ def test_lengths_are_those_of_the_object_in_its_unit(touched, file, unit, pitch,
 
 @pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".off", ".glb"])
 def test_every_format_is_touched(suffix, tmp_path, touched):
-    arrays, _, _, said = touched("--at", 4, source=exported(tmp_path / f"ball{suffix}"))
-    assert arrays["images"].shape == (1, 16, 16) and ("y up, as" if suffix == ".glb" else "assuming y is up") in said
+    arrays, _, _, messages = touched("--at", 4, source=exported(tmp_path / f"ball{suffix}"))
+    assert (
+        arrays["images"].shape == (1, 16, 16) and ("y up, as" if suffix == ".glb" else "assuming y is up") in messages
+    )
 
 
 @pytest.mark.parametrize("count", [1, 25])
@@ -201,8 +203,8 @@ def test_place_behind_another_part_is_out_of_sight():
     box = trimesh.creation.box(extents=(0.2, 0.2, 0.2))
     wall = trimesh.creation.box(extents=(0.02, 0.8, 0.8))
     wall.apply_translation([0.3, 0, 0])
-    both = trimesh.util.concatenate([box, wall])
-    mesh = Mesh(both.vertices, both.faces)
+    solid = trimesh.util.concatenate([box, wall])
+    mesh = Mesh(solid.vertices, solid.faces)
     place = np.array([[0.1, 0, 0]])
     assert not visible(mesh, place, np.array([[1.0, 0, 0]]), CANDIDATES[2]).any()
 

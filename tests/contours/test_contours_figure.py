@@ -32,10 +32,11 @@ def results(root, preferred=()):
 def write(root, names, strategies):
     for name in names:
         write_mesh(root / f"data/furniture/meshes/{name}.npz", RING)
-        found = {
-            one: sample_contours(Surface(RING), np.arange(800), 3, rng(0, one), cells=(8, 8))[0] for one in strategies
+        contours = {
+            strategy: sample_contours(Surface(RING), np.arange(800), 3, rng(0, strategy), cells=(8, 8))[0]
+            for strategy in strategies
         }
-        write_sequences(root / f"data/furniture/contours/{name}.npz", found)
+        write_sequences(root / f"data/furniture/contours/{name}.npz", contours)
 
 
 def figure(name, results):
@@ -47,8 +48,8 @@ def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
     write(tmp_path, ["a", "b"], ["glance", "random", "thesis_ssim"])
     run = results(tmp_path, ["b"])
     contours, felt = figure("figure_4_14", run), figure("figure_4_15", run)
-    assert [one.paths[0].name for one in (contours, felt)] == ["figure_4_14.png", "figure_4_15.png"]
-    assert all(one.paths[0].stat().st_size > 10_000 for one in (contours, felt))
+    assert [picture.paths[0].name for picture in (contours, felt)] == ["figure_4_14.png", "figure_4_15.png"]
+    assert all(picture.paths[0].stat().st_size > 10_000 for picture in (contours, felt))
     assert "b, a" in contours.alt and "blind touch and thesis, SSIM" in contours.alt
     assert "first contour of b" in felt.caption
     write(tmp_path, ["a", "b"], ["random"])
@@ -62,8 +63,8 @@ def test_without_contours_the_figure_is_not_run(tmp_path):
 
 
 def test_the_contour_drawn_is_the_one_followed():
-    found, _ = sample_contours(Surface(RING), np.arange(800), 5, rng(0, "a"), cells=(8, 8))
-    for pair, positions in zip(found.planes, found.positions, strict=True):
+    contours, _ = sample_contours(Surface(RING), np.arange(800), 5, rng(0, "a"), cells=(8, 8))
+    for pair, positions in zip(contours.planes, contours.positions, strict=True):
         drawn = followed(RING, pair)
         ends = np.roll(drawn.points, -1, axis=0)
         away = np.linalg.norm((drawn.points + ends)[None] / 2 - positions[:, None], axis=2).min(axis=1)

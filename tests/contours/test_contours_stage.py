@@ -43,10 +43,16 @@ def test_stage_writes_the_contract(run, tmp_path):
     rows = run(SETTINGS)
     stored = read_sequences(tmp_path / "out/ring.npz")
     assert list(stored) == ["random", "salient"]
-    for found in stored.values():
-        assert found.images.shape == (4, 5, 6, 6) and found.images.dtype == np.uint8
-        assert found.normals.shape == found.positions.shape == (4, 5, 3) and found.normals.dtype == np.float32
-        assert found.pitches.shape == (4, 5) and found.planes.shape == (4, 2) and found.planes.dtype == np.int64
+    for sequences in stored.values():
+        assert sequences.images.shape == (4, 5, 6, 6) and sequences.images.dtype == np.uint8
+        assert (
+            sequences.normals.shape == sequences.positions.shape == (4, 5, 3) and sequences.normals.dtype == np.float32
+        )
+        assert (
+            sequences.pitches.shape == (4, 5)
+            and sequences.planes.shape == (4, 2)
+            and sequences.planes.dtype == np.int64
+        )
     assert np.isin(stored["salient"].planes, POINTS).all()
     metrics = ["sequences", "refused", "loops", "share", "shrunk"]
     assert [(row["method"], row["metric"]) for row in rows] == [(way, key) for way in stored for key in metrics]
@@ -58,11 +64,11 @@ def test_stage_writes_the_contract(run, tmp_path):
 
 
 def test_a_stored_sequence_is_what_follow_feels():
-    found, facts = sample_contours(Surface(RING), POINTS, 3, rng(0, "a"), **SMALL)
-    again = follow(RING, np.r_[np.zeros((1, 3)), RING.vertices[found.planes[2]]], **SMALL)
-    assert np.array_equal(found.images[2], np.round(255 * again.images))
-    assert np.array_equal(found.positions[2], again.positions.astype(np.float32))
-    assert facts["sequences"] == 3 and found.images.max() == 255
+    sequences, facts = sample_contours(Surface(RING), POINTS, 3, rng(0, "a"), **SMALL)
+    again = follow(RING, np.r_[np.zeros((1, 3)), RING.vertices[sequences.planes[2]]], **SMALL)
+    assert np.array_equal(sequences.images[2], np.round(255 * again.images))
+    assert np.array_equal(sequences.positions[2], again.positions.astype(np.float32))
+    assert facts["sequences"] == 3 and sequences.images.max() == 255
 
 
 def test_an_object_with_too_few_pairs_gives_all_and_says_so(run, tmp_path):
@@ -73,18 +79,18 @@ def test_an_object_with_too_few_pairs_gives_all_and_says_so(run, tmp_path):
 
 
 def test_pairs_on_a_line_with_the_centre_are_refused_and_others_drawn():
-    found, facts = sample_contours(
+    sequences, facts = sample_contours(
         Surface(BOX), np.arange(8), 40, rng(0, "b"), **SMALL
     )  # 28 pairs, 4 of opposite corners
-    assert (facts["sequences"], facts["refused"]) == (24, 4) and len(found.images) == 24
-    assert not (BOX.vertices[found.planes].sum(axis=1) == 0).all(axis=1).any()
+    assert (facts["sequences"], facts["refused"]) == (24, 4) and len(sequences.images) == 24
+    assert not (BOX.vertices[sequences.planes].sum(axis=1) == 0).all(axis=1).any()
     few, facts = sample_contours(Surface(BOX), np.arange(8), 20, rng(0, "b"), **SMALL)
-    assert facts["sequences"] == 20 and np.array_equal(few.planes, found.planes[:20])
+    assert facts["sequences"] == 20 and np.array_equal(few.planes, sequences.planes[:20])
 
 
 def test_an_object_without_a_contour_gives_none():
-    found, facts = sample_contours(Surface(BOX), np.array([3]), 5, rng(0, "c"), **SMALL)
-    assert found.images.shape == (0, 5, 6, 6) and found.planes.shape == (0, 2)
+    sequences, facts = sample_contours(Surface(BOX), np.array([3]), 5, rng(0, "c"), **SMALL)
+    assert sequences.images.shape == (0, 5, 6, 6) and sequences.planes.shape == (0, 2)
     assert facts == {"sequences": 0, "refused": 0, "loops": None, "share": None, "shrunk": None}
     with pytest.raises(ValueError, match="count must be"):
         sample_contours(Surface(BOX), np.arange(8), 0, rng(0, "c"), **SMALL)
@@ -134,7 +140,7 @@ def test_all_pairs_come_once_where_there_are_no_more():
     points = np.array([7, 3, 11, 40, 5])
     pairs = draw_pairs(points, 100, rng(0, "a"))
     assert pairs.shape == (10, 2) and len(as_sets(pairs)) == 10
-    assert {one for pair in pairs.tolist() for one in pair} == set(points.tolist())
+    assert {vertex for pair in pairs.tolist() for vertex in pair} == set(points.tolist())
     for few in ([], [3], [3, 3]):
         assert draw_pairs(np.array(few, dtype=np.int64), 5, rng(0, "e")).shape == (0, 2)
 

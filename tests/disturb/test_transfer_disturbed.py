@@ -66,8 +66,8 @@ def test_an_array_that_is_not_square_loses_its_share_anywhere():
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_takes_shares_and_a_severity_in_range(name):
     pictures = np.random.default_rng(0).integers(0, 256, (2, 8, 8, 3)).astype(np.uint8)
-    found = [damage_pictures(each, name, 0.1, np.random.default_rng(0)) for each in (pictures, pictures / 255)]
-    assert np.allclose(*found, atol=1e-6)
+    damaged = [damage_pictures(batch, name, 0.1, np.random.default_rng(0)) for batch in (pictures, pictures / 255)]
+    assert np.allclose(*damaged, atol=1e-6)
     for wrong in (-1.0, np.nan):
         with pytest.raises(ValueError, match="must lie"):
             damage_pictures(pictures, name, wrong, np.random.default_rng(0))

@@ -36,8 +36,8 @@ def text_of(path):
 
 def test_every_figure_is_in_its_table():
     for path in PAGES:
-        for asked in MEASURED.findall(text_of(path)):
-            assert re.search(r"\d", measured(" ".join(asked.split()))), asked
+        for query in MEASURED.findall(text_of(path)):
+            assert re.search(r"\d", measured(" ".join(query.split()))), query
 
 
 def test_every_claim_that_a_page_lists_is_one():
@@ -52,18 +52,18 @@ def test_every_link_and_picture_leads_to_a_file_and_pictures_have_an_alternative
         text = text_of(path)
         links = re.findall(r"\]\((?!https?:|#)([^)\s]+)\)", text) + re.findall(r"```\{figure\} (\S+)", text)
         files = {link.partition("#")[0] for link in links}  # of anchors, Sphinx warns
-        absent = [each for each in files if not (path.parent / each).exists() and "generated/" not in each]
+        absent = [file for file in files if not (path.parent / file).exists() and "generated/" not in file]
         assert not absent, path
         figures = re.findall(r"```\{figure\} \S+\n(.*?)```", text, re.S)
         assert all(re.match(r":alt: .{20,}", figure) for figure in figures), path
 
 
 def test_every_path_that_a_text_names_exists():
-    folders = "|".join(each.name for each in ROOT.iterdir() if each.is_dir() and each.name[0] != ".")
+    folders = "|".join(entry.name for entry in ROOT.iterdir() if entry.is_dir() and entry.name[0] != ".")
     for path in [ROOT / "CONTRIBUTING.md", *SOURCES]:
         named = set(re.findall(rf"`((?:{folders})/[\w./-]+)`", text_of(path)))
         made = {x for x in named if re.search(r"[A-Z]{3}|^build/|^runs/|^reports/index.html$", x)}  # or for example
-        assert not [each for each in named - made if not (ROOT / each).exists()], path
+        assert not [entry for entry in named - made if not (ROOT / entry).exists()], path
 
 
 def test_the_api_lists_every_name_of_the_core():
@@ -79,20 +79,20 @@ def test_the_api_lists_every_name_of_a_package():
             continue
         text = text_of(path)
         package = import_module(re.search(r"automodule:: (\S+)", text)[1])
-        absent = [each for each in package.__all__ if not re.search(rf"\b{each}\b", text)]
+        absent = [member for member in package.__all__ if not re.search(rf"\b{member}\b", text)]
         assert not absent, f"{name(path)} lacks {', '.join(absent)}"
         shown = ", ".join(re.findall(r":members: (.+)", text)).split(", ")
-        gone = [each for each in filter(None, shown) if each not in package.__all__]
-        assert not gone, f"{name(path)} names {', '.join(gone)}, which {package.__name__} lacks"
+        unknown = [member for member in filter(None, shown) if member not in package.__all__]
+        assert not unknown, f"{name(path)} names {', '.join(unknown)}, which {package.__name__} lacks"
 
 
 def test_every_name_that_a_page_mentions_exists():
     import pkgutil
 
-    found = {match for path in [*SOURCES, *DOCS.glob("api/*.rst")] for match in NAME.findall(text_of(path))}
-    assert len(found) > 20
-    for each in sorted(found):
-        pkgutil.resolve_name(each)
+    names = {match for path in [*SOURCES, *DOCS.glob("api/*.rst")] for match in NAME.findall(text_of(path))}
+    assert len(names) > 20
+    for dotted in sorted(names):
+        pkgutil.resolve_name(dotted)
 
 
 def test_every_command_that_a_page_shows_exists():
@@ -101,15 +101,17 @@ def test_every_command_that_a_page_shows_exists():
     assert {"saliency", "simplify", "touch"} <= shown <= {*OWN}
     assert all(find_spec(f"stages.{name}") for name in re.findall(r"python -m stages\.([\w.]*\w)", text))
     experiments = set(re.findall(r"experiment=(\w+)", text))
-    assert experiments and all((ROOT / "conf/experiment" / f"{each}.yaml").is_file() for each in experiments)
+    assert experiments and all(
+        (ROOT / "conf/experiment" / f"{experiment}.yaml").is_file() for experiment in experiments
+    )
 
 
 @pytest.mark.slow
 def test_every_claim_has_a_command_and_a_command_has_minutes():
-    found = commands()
-    keys = [claim["key"] for command in found for claim in command.claims]
+    listed = commands()
+    keys = [claim["key"] for command in listed for claim in command.claims]
     assert len(keys) == len(set(keys)) and {*CLAIMS.loc[CLAIMS["low"] != "", "key"]} <= set(keys)
-    assert found[0].text == DEFAULT and all(command.minutes > 0 for command in found)
+    assert listed[0].text == DEFAULT and all(command.minutes > 0 for command in listed)
 
 
 def test_a_command_is_that_which_switches_the_stage_on():
@@ -134,9 +136,9 @@ def test_figures_are_shown_as_asked():
     assert measured("claims key=keep_metro: effect low high .1f").endswith(f"[{low:.1f}, {high:.1f}]")
     assert measured("claims key=keep_metro: effect high low .1f").endswith(f"[{low:.1f}, {high:.1f}]")
     assert measured("claims key=keep_metro: 100*effect .0f") == f"{100 * float(row['effect']):,.0f}"
-    every = [*map(float, rows_of(REPORTS / "bench/tactile.csv", "what=build")["seconds"])]
-    assert measured("bench/tactile what=build: count:seconds") == str(len(every))
-    assert measured("bench/tactile what=build: most:seconds .6f") == f"{max(every):.6f}"
+    seconds = [*map(float, rows_of(REPORTS / "bench/tactile.csv", "what=build")["seconds"])]
+    assert measured("bench/tactile what=build: count:seconds") == str(len(seconds))
+    assert measured("bench/tactile what=build: most:seconds .6f") == f"{max(seconds):.6f}"
 
 
 def test_citation_and_deposit_say_the_same_as_the_package():

@@ -79,8 +79,8 @@ def test_a_tutorial_says_what_it_needs(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
     names = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     names += [alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names]
-    tops = {each.partition(".")[0] for each in names if each}
+    tops = {module.partition(".")[0] for module in names if module}
     needed = {EXTRAS[top] for top in tops if top in EXTRAS} | ({"pipeline"} if "stages" in tops else set())
     most = next(extra for extra in ("cluster", "pipeline", "pictures") if extra in needed)  # each includes the next
-    said = ast.get_docstring(tree) or ""
-    assert f"[{most}]'``" in said and ("Needs a clone" in said) == (most != "pictures") and "without a network" in said
+    text = ast.get_docstring(tree) or ""
+    assert f"[{most}]'``" in text and ("Needs a clone" in text) == (most != "pictures") and "without a network" in text

@@ -26,8 +26,8 @@ def site(tmp_path_factory):
     for name in ("reports", "conf", "params.yaml"):
         (copy / name).symlink_to(ROOT / name)
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-D", "plot_gallery=0", "docs", "built"]
-    done = subprocess.run(command, cwd=copy, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr[-3000:]
+    process = subprocess.run(command, cwd=copy, capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr[-3000:]
     return copy / "built"
 
 

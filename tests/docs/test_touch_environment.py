@@ -16,9 +16,9 @@ TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "touch_environment
 
 def module():
     spec = importlib.util.spec_from_file_location("touch_environment", TUTORIAL)
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
 
 
 def made(tutorial):

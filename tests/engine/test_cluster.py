@@ -58,8 +58,8 @@ def run(root, backend):
         mesh = Mesh(np.array(shape.vertices) / 3, np.array(shape.faces))
         write_mesh(workspace.data / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices), dtype=np.float32)
-        found = {"points": np.arange(4), "strong": np.int64(4), "saliency": saliency}
-        write_arrays(workspace.data / f"salient_points/{name}.npz", **{f"glance.{key}": x for key, x in found.items()})
+        arrays = {"points": np.arange(4), "strong": np.int64(4), "saliency": saliency}
+        write_arrays(workspace.data / f"salient_points/{name}.npz", **{f"glance.{key}": x for key, x in arrays.items()})
     write_text(workspace.data / "weights/weights.csv", "none")
     simplify_all(workspace, check_section(Params, LOD), "household")
     folder = workspace.data / "lod"
@@ -70,10 +70,10 @@ def run(root, backend):
 def until(ready):
     """Waits for ready() and returns what it answers."""
     end = time.monotonic() + PATIENCE
-    while not (found := ready()):
+    while not (answer := ready()):
         assert time.monotonic() < end, "nothing happens"
         time.sleep(0.01)
-    return found
+    return answer
 
 
 @pytest.fixture
@@ -116,8 +116,8 @@ def machines(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_lost_workers_change_no_byte_and_what_ends_a_run_is_named(machines, tmp_path, monkeypatch):
     """One worker is killed in the middle of an object; no worker can see the run's folder."""
-    there = list(finished(lambda task, folder: os.getpid(), [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
-    assert there[0][1] in [process.pid for process in machines]
+    answers = list(finished(lambda task, folder: os.getpid(), [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
+    assert answers[0][1] in [process.pid for process in machines]
     with monkeypatch.context() as patch:
         patch.setattr(cluster, "stage_digest", lambda stage: "another")
         with pytest.raises(ValueError, match=r"other code of the stage views \(\w{16}\) than this machine \(another\)"):

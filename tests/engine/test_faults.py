@@ -43,9 +43,9 @@ def test_errors_of_the_disk_end_in_one_line_with_a_remedy(number, remedy, monkey
     monkeypatch.setattr(sys, "excepthook", sys.excepthook)
     errors_in_one_line("demo")
     sys.excepthook(OSError, OSError(number, "why\nnot", "a.npz"), None)
-    said = capsys.readouterr().err
-    assert said.startswith(f"demo: [Errno {number}] why") and "a.npz" in said and remedy in said
-    assert said.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith(f"demo: [Errno {number}] why") and "a.npz" in message and remedy in message
+    assert message.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -135,13 +135,13 @@ def test_a_second_run_says_that_it_waits_and_begins_when_the_first_ends(workspac
         with StageRun(workspace, "views"):
             order.append("second")
 
-    thread, said, end = threading.Thread(target=second), "", time.monotonic() + 300
+    thread, message, end = threading.Thread(target=second), "", time.monotonic() + 300
     with StageRun(workspace, "views"):
         thread.start()
-        while "views toys: waits for another run of the same to end" not in said:
+        while "views toys: waits for another run of the same to end" not in message:
             assert time.monotonic() < end
             time.sleep(0.01)
-            said += capfd.readouterr().err
+            message += capfd.readouterr().err
         order.append("first")
     thread.join()
     assert order == ["first", "second"]
@@ -195,6 +195,6 @@ def test_half_a_dvc_lock_gives_way_to_the_last_sound_one(repository, capfd):
         (repository / "dvc.lock").write_bytes(damage)
         capfd.readouterr()
         assert run_alone(Path(".")) == [] and (repository / "dvc.lock").read_text() == sound
-        said = capfd.readouterr()
-        assert "dvc.lock is damaged" in said.err and said.out == ""  # no stage ran again
+        captured = capfd.readouterr()
+        assert "dvc.lock is damaged" in captured.err and captured.out == ""  # no stage ran again
         assert (repository / "build/damaged.lock").read_bytes() == damage

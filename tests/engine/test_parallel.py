@@ -69,9 +69,9 @@ def noisy(name):
 @pytest.mark.slow
 def test_result_does_not_depend_on_workers_or_order():
     names = [f"item {i}" for i in range(8)]
-    one = parallel_map(noisy, names, "one", "sequential", 1)
+    ordered = parallel_map(noisy, names, "one", "sequential", 1)
     turned = parallel_map(noisy, names[::-1], "turned", "loky", 2)
-    assert one == turned[::-1] and len(set(one)) == 8
+    assert ordered == turned[::-1] and len(set(ordered)) == 8
 
 
 def state_of_worker(_item):

@@ -185,10 +185,10 @@ def test_what_a_person_did_ends_in_one_line_with_the_traceback_on_request():
     program = "from haptic_glance.base.errors import errors_in_one_line\nerrors_in_one_line('demo')\n"
     options = {"capture_output": True, "text": True, "cwd": ROOT}
     line = [sys.executable, "-c", f"{program}raise KeyboardInterrupt"]
-    done = subprocess.run(line, env={**os.environ, "HAPTIC_GLANCE_DEBUG": ""}, **options)
-    assert (done.stderr, done.returncode) == ("demo: stopped\n", -signal.SIGINT)
-    done = subprocess.run(line, env={**os.environ, "HAPTIC_GLANCE_DEBUG": "1"}, **options)
-    assert "Traceback" in done.stderr
+    process = subprocess.run(line, env={**os.environ, "HAPTIC_GLANCE_DEBUG": ""}, **options)
+    assert (process.stderr, process.returncode) == ("demo: stopped\n", -signal.SIGINT)
+    process = subprocess.run(line, env={**os.environ, "HAPTIC_GLANCE_DEBUG": "1"}, **options)
+    assert "Traceback" in process.stderr
 
 
 def dies_at_b(name, folder, root):

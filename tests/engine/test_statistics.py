@@ -24,8 +24,8 @@ from stages.engine.statistics import (
 def test_interval_covers_as_often_as_it_says():
     rng = np.random.default_rng(0)
     for count in (4, 19):
-        found = [interval(rng.normal(3, 1, size=count)) for _ in range(300)]
-        assert np.mean([low < 3 < high for _, low, high in found]) > 0.91
+        intervals = [interval(rng.normal(3, 1, size=count)) for _ in range(300)]
+        assert np.mean([low < 3 < high for _, low, high in intervals]) > 0.91
 
 
 def test_few_values_get_a_wider_interval_than_the_plain_percentiles():
@@ -87,8 +87,8 @@ def test_interval_is_the_same_again_and_moves_with_the_seed():
 
 def test_metrics_keep_the_mean_and_leave_out_what_is_unknown():
     assert interval_metrics([0.5]) == {"mean": 0.5}
-    found = interval_metrics([0.1, 0.2, 0.4], seed=3)
-    assert set(found) == {"mean", "low", "high"} and found["mean"] == round(0.7 / 3, 6)
+    metrics = interval_metrics([0.1, 0.2, 0.4], seed=3)
+    assert set(metrics) == {"mean", "low", "high"} and metrics["mean"] == round(0.7 / 3, 6)
 
 
 def test_shares_of_the_splits():
@@ -111,8 +111,8 @@ def test_a_p_value_is_small_just_where_the_interval_leaves_zero_out(shared):
 
 def test_a_p_value_is_uniform_where_there_is_no_effect_and_no_smaller_than_the_draws_can_tell():
     random = np.random.default_rng(1)
-    found = np.array([p_value(random.normal(size=25)) for _ in range(200)])
-    assert abs((found < 0.5).mean() - 0.5) < 0.1 and (found < 0.05).mean() < 0.1
+    p_values = np.array([p_value(random.normal(size=25)) for _ in range(200)])
+    assert abs((p_values < 0.5).mean() - 0.5) < 0.1 and (p_values < 0.05).mean() < 0.1
     assert 0.001 <= p_value(np.random.default_rng(0).normal(9, 1, 30)) <= 0.002
     assert np.isnan(p_value([1.0])) and np.isnan(p_value([1.0, 1.0])) and np.isnan(p_value([]))
 
@@ -136,18 +136,18 @@ def test_an_interval_of_breaking_points_is_that_of_the_curves_of_resampled_units
     left = np.clip(np.random.default_rng(0).uniform(0.2, 1, (9, 4)).cumprod(axis=1) + 0.12, 0, 1)
     left[2, 3] = np.nan
     at, sign = np.abs([0.0, *severities]), np.sign(severities[0])
-    found = []
+    falls = []
     for counts in np.random.default_rng(3).multinomial(9, np.full(9, 1 / 9), 2000):
         units = np.repeat(left, counts, axis=0)
-        found.append(first_fall(at, [1.0, *np.nanmean(units, axis=0)]))
-    found.sort()
+        falls.append(first_fall(at, [1.0, *np.nanmean(units, axis=0)]))
+    falls.sort()
     tail = stats.norm.cdf(np.sqrt(9 / 8) * stats.t.ppf(0.025, 8))
-    wanted = first_fall(at, [1.0, *np.nanmean(left, axis=0)]), *(found[k] for k in _ends(tail))
+    wanted = first_fall(at, [1.0, *np.nanmean(left, axis=0)]), *(falls[k] for k in _ends(tail))
     assert wanted[1] < wanted[0] < wanted[2] < np.inf
     assert breaking_interval(severities, left, 0.0, 3) == pytest.approx(tuple(sign * np.array(wanted)))
-    one = breaking_interval(severities, left[:1], 0.0)
-    assert one == pytest.approx(3 * [sign * first_fall(at, [1.0, *left[0]])])
-    assert breaking_point(severities, left[0], 0.0) == pytest.approx(one[0])
+    bounds = breaking_interval(severities, left[:1], 0.0)
+    assert bounds == pytest.approx(3 * [sign * first_fall(at, [1.0, *left[0]])])
+    assert breaking_point(severities, left[0], 0.0) == pytest.approx(bounds[0])
 
 
 def _ends(tail):
@@ -170,18 +170,18 @@ def trials():
 
 
 def test_the_published_example_comes_out_as_published():
-    found = pool(*trials(), np.full(13, MANY))
-    assert found.interval() == pytest.approx((-0.7145, -1.1084, -0.3206), abs=1e-4)
-    assert (found.error, found.between, found.i2) == pytest.approx((0.1808, 0.3132, 0.9222), abs=1e-4)
-    assert found.freedom == 12 and found.p_value == pytest.approx(0.0019, abs=1e-4)
-    assert found.differ == pytest.approx(stats.chi2.sf(152.2330, 12), rel=1e-3, abs=0)
+    pooled = pool(*trials(), np.full(13, MANY))
+    assert pooled.interval() == pytest.approx((-0.7145, -1.1084, -0.3206), abs=1e-4)
+    assert (pooled.error, pooled.between, pooled.i2) == pytest.approx((0.1808, 0.3132, 0.9222), abs=1e-4)
+    assert pooled.freedom == 12 and pooled.p_value == pytest.approx(0.0019, abs=1e-4)
+    assert pooled.differ == pytest.approx(stats.chi2.sf(152.2330, 12), rel=1e-3, abs=0)
 
 
 def test_equal_effects_are_pooled_by_their_precision_and_none_of_the_variation_is_between():
-    found = pool([2.0, 2.0, 2.0], [1.0, 1.0, 0.5], [MANY] * 3)
-    assert (found.mean, found.i2, found.between) == (2.0, 0.0, 0.0)
-    assert found.error == pytest.approx((1 + 1 + 4) ** -0.5)
-    assert found.interval()[1] == pytest.approx(2 - 1.959964 * found.error, abs=1e-5)
+    pooled = pool([2.0, 2.0, 2.0], [1.0, 1.0, 0.5], [MANY] * 3)
+    assert (pooled.mean, pooled.i2, pooled.between) == (2.0, 0.0, 0.0)
+    assert pooled.error == pytest.approx((1 + 1 + 4) ** -0.5)
+    assert pooled.interval()[1] == pytest.approx(2 - 1.959964 * pooled.error, abs=1e-5)
 
 
 def test_few_units_widen_the_interval():
@@ -208,8 +208,8 @@ def test_pooled_intervals_cover_as_often_as_they_say(sets, apart):
     draw, hits = np.random.default_rng(2), 0
     for _ in range(600):
         values = draw.normal(0, apart, (sets, 1)) + draw.normal(size=(sets, 19))
-        found = pool(values.mean(axis=1), values.std(axis=1, ddof=1) / 19**0.5, [18.0] * sets)
-        hits += np.sign(found.interval()[1:]).sum() == 0
+        pooled = pool(values.mean(axis=1), values.std(axis=1, ddof=1) / 19**0.5, [18.0] * sets)
+        hits += np.sign(pooled.interval()[1:]).sum() == 0
     assert 0.9 < hits / 600 <= 0.99
 
 
@@ -263,8 +263,8 @@ def test_levels_are_averaged_from_the_innermost_and_weigh_the_same():
     index = pd.MultiIndex.from_tuples(
         [("a", "x", 0), ("a", "x", 1), ("a", "y", 0), ("b", "z", 0)], names=["group", "object", "seed"]
     )
-    found = by_unit(pd.Series([1.0, 3.0, 8.0, 10.0], index=index))
-    assert found.to_dict() == {"a": 5.0, "b": 10.0}  # ((1 + 3) / 2 + 8) / 2, not (1 + 3 + 8) / 3
+    means = by_unit(pd.Series([1.0, 3.0, 8.0, 10.0], index=index))
+    assert means.to_dict() == {"a": 5.0, "b": 10.0}  # ((1 + 3) / 2 + 8) / 2, not (1 + 3 + 8) / 3
 
 
 def test_copies_within_a_class_are_one_value_and_unknown_values_are_left_out():
@@ -280,8 +280,8 @@ def test_intervals_over_units_cover_as_often_as_they_say():
     index = pd.MultiIndex.from_product([range(8), range(3)], names=["group", "repetition"])
     for _ in range(300):
         values = draw.normal(0, 1, (8, 1)) + draw.normal(0, 1, (8, 3))
-        found = pd.Series(values.ravel(), index=index)
-        hits.append(np.sign(interval(by_unit(found))[1:]).sum() == 0)
-        plain.append(np.sign(interval(found.to_numpy())[1:]).sum() == 0)
+        series = pd.Series(values.ravel(), index=index)
+        hits.append(np.sign(interval(by_unit(series))[1:]).sum() == 0)
+        plain.append(np.sign(interval(series.to_numpy())[1:]).sum() == 0)
     assert 0.92 < np.mean(hits) < 0.98
     assert np.mean(plain) < 0.9  # all values as if each were a unit

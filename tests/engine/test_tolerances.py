@@ -52,8 +52,8 @@ def test_a_pair_is_held_where_both_of_its_metrics_may_move():
         Rule("touch.*", abs=0.2), Rule("pairs.lead", abs=0.05, direction="more"),
         lead=("touch.ours.accuracy", "touch.blind.accuracy"),
     )  # fmt: skip
-    both = {**BASELINE, "touch.ours.accuracy": 0.55, "touch.blind.accuracy": 0.45}
-    assert compare(both, BASELINE, rules) == []
+    shifted = {**BASELINE, "touch.ours.accuracy": 0.55, "touch.blind.accuracy": 0.45}
+    assert compare(shifted, BASELINE, rules) == []
     swapped = {**BASELINE, "touch.ours.accuracy": 0.60, "touch.blind.accuracy": 0.70}
     (line,) = compare(swapped, BASELINE, rules)
     assert line.startswith("pairs.lead moved by -0.2 from 0.1 to -0.1")
@@ -61,10 +61,10 @@ def test_a_pair_is_held_where_both_of_its_metrics_may_move():
 
 def test_a_pair_with_a_star_is_held_for_each_text_that_fits():
     rules = tolerances(lead=("*.ours.accuracy", "*.blind.accuracy"))
-    found = rules.with_pairs(
+    metrics = rules.with_pairs(
         {**BASELINE, "look.ours.accuracy": 0.5, "look.blind.accuracy": 0.1, "odd.ours.accuracy": 1}
     )
-    added = {name: value for name, value in found.items() if name.startswith("pairs")}
+    added = {name: value for name, value in metrics.items() if name.startswith("pairs")}
     assert added == {"pairs.lead.touch": pytest.approx(0.1), "pairs.lead.look": pytest.approx(0.4)}
 
 

@@ -20,9 +20,9 @@ SETTINGS = Params([0.5, 2.0], 3, [60, 80], 40.0, 1.0, "glance", 12, [16, 16], 0.
 
 def ball(bumps=0.05, seed=0):
     """A closed ball of radius 0.5 with bumps."""
-    found = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
-    waves = np.sin(found.vertices @ np.random.default_rng(seed).normal(size=(3, 3)) * 5).sum(axis=1)
-    return Mesh(found.vertices * (1 + bumps * waves)[:, None], found.faces)
+    sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+    waves = np.sin(sphere.vertices @ np.random.default_rng(seed).normal(size=(3, 3)) * 5).sum(axis=1)
+    return Mesh(sphere.vertices * (1 + bumps * waves)[:, None], sphere.faces)
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +65,8 @@ def samples(seed=0):
     centres = draw.normal(size=(2, 41)) * 5
     levels = [draw.normal(size=(2, 12, 41)) + centres[:, None] for _ in range(5)]
     levels.append(levels[0][::-1])
-    one, other = np.stack(levels, axis=1)
-    return {"one": one, "other": other}
+    first, second = np.stack(levels, axis=1)
+    return {"one": first, "other": second}
 
 
 def test_an_object_is_known_until_its_model_is_that_of_another_and_every_place_is_held_out():
@@ -83,9 +83,9 @@ def test_an_object_is_known_until_its_model_is_that_of_another_and_every_place_i
 def test_the_stage_has_a_row_an_object_task_and_condition(make_workspace, chain, mesh):
     workspace = make_workspace({"face_needs": vars(SETTINGS)})
     meshes = {"one": mesh, "two": ball(seed=1)}
-    for name, own in meshes.items():
-        write_mesh(workspace.data / f"meshes/{name}.npz", own)
-        write_chain(workspace.data / "scene/levels" / name, "ours", chain if name == "one" else build_lod_chain(own))
+    for name, shape in meshes.items():
+        write_mesh(workspace.data / f"meshes/{name}.npz", shape)
+        write_chain(workspace.data / "scene/levels" / name, "ours", chain if name == "one" else build_lod_chain(shape))
         points = np.arange(0, 2400, 200)
         write_arrays(workspace.data / f"salient_points/{name}.npz", **{"glance.points": points, "glance.strong": 2})
     write_table(workspace.data / "meshes/manifest.csv", pd.DataFrame({"object": [*meshes], "size": 0.15}))

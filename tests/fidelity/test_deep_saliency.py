@@ -34,9 +34,9 @@ def test_grad_cam(agreement):
             alpha = sum(float(gradient[k, i, j]) for i in range(4) for j in range(5)) / 20
             total = total + alpha * maps[image, k].detach()
         literal.append(torch.relu(total).numpy())
-    found, _ = grad_cam(maps.detach(), head)
+    heat, _ = grad_cam(maps.detach(), head)
     assert np.max(literal) > 0
-    agreement("difference", float(np.abs(found - literal).max() / np.max(literal)))
+    agreement("difference", float(np.abs(heat - literal).max() / np.max(literal)))
 
 
 def test_convexity(agreement):
@@ -88,12 +88,12 @@ def test_classes(agreement):
     categories = {"mechanical parts", "creatures", "full human body", "sectional human body", "familiar objects",
                   "transportation means", "furniture and dishes"}  # fmt: skip
     table = pd.read_csv(ROOT / "data/reference/semantics.csv")
-    own = table[table["dataset"] == "gaze"]
+    objects = table[table["dataset"] == "gaze"]
     held = [
         set(SHAPE_MEASURES) == {"convexity", "curvature", "eccentricity"},
         list(CLUSTERS) == list(range(2, 11)),
-        set(own["living"]) == {"yes", "no"},
-        set(own["category"]) == categories,
+        set(objects["living"]) == {"yes", "no"},
+        set(objects["category"]) == categories,
         set(FUSED_TASKS) == {"curvature", "eccentricity", "level_1", "level_2"},
     ]
     agreement("settings", (sum(held), len(held)))
@@ -138,9 +138,9 @@ def test_subtractive_clustering(agreement):
         literal.append(best)
         height = potential[best]
         potential = [
-            own - height * np.exp(-4 * ((p - unit[best]) ** 2).sum() / (1.25 * 0.5) ** 2)
-            for own, p in zip(potential, unit, strict=True)
+            value - height * np.exp(-4 * ((p - unit[best]) ** 2).sum() / (1.25 * 0.5) ** 2)
+            for value, p in zip(potential, unit, strict=True)
         ]
-    found = subtractive_clusters(points)[: len(literal)]
+    centres = subtractive_clusters(points)[: len(literal)]
     assert len(literal) == 3
-    agreement("settings", (int((found == literal).sum()), 3))
+    agreement("settings", (int((centres == literal).sum()), 3))

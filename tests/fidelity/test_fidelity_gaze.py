@@ -35,19 +35,21 @@ def by_boxes(saliency, picture, mesh, viewpoint):
     rows, columns = np.nonzero(picture)
     box = saliency[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
     right, up = viewpoint.axes[:2] @ mesh.vertices.T
-    found = []
+    places = []
     for values, pixels in ((-up, box.shape[0]), (right, box.shape[1])):  # plotted on as many pixels as the other box
-        found.append(np.rint((values - values.min()) / (values.max() - values.min()) * (pixels - 1)).astype(int))
+        places.append(np.rint((values - values.min()) / (values.max() - values.min()) * (pixels - 1)).astype(int))
     plotted = np.zeros(box.shape)
-    plotted[found[0], found[1]] = 1
+    plotted[places[0], places[1]] = 1
     assert all(edge.any() for edge in (plotted[0], plotted[-1], plotted[:, 0], plotted[:, -1]))  # its box is all of it
-    return box[found[0], found[1]]
+    return box[places[0], places[1]]
 
 
 def test_boxes_are_those_of_the_text(ring, seconds):
     (mesh, viewpoint, seen), (picture, saliency) = ring, seconds
-    found = project_by_boxes(saliency[None], mesh, viewpoint, seen, picture)[0]
-    assert np.array_equal(found, by_boxes(saliency, picture, mesh, viewpoint) * seen) and np.ptp(found[seen]) > 0.5
+    projected = project_by_boxes(saliency[None], mesh, viewpoint, seen, picture)[0]
+    assert (
+        np.array_equal(projected, by_boxes(saliency, picture, mesh, viewpoint) * seen) and np.ptp(projected[seen]) > 0.5
+    )
 
 
 def test_hidden_vertices_belong_to_the_box(ring, seconds):
@@ -86,20 +88,20 @@ def judged(ring):
 
 
 def test_correlation_has_both_between_zero_and_one_times_the_visibility(judged):
-    people, model, seen, found = judged
-    one, other = ((values - values.min()) / (values.max() - values.min()) * seen for values in (people, model))
-    assert found["pcc_masked"] == pytest.approx(np.corrcoef(one, other)[0, 1])
-    assert abs(found["pcc_masked"] - found["pcc"]) > 0.02  # it is another number
+    people, model, seen, scores = judged
+    first, other = ((values - values.min()) / (values.max() - values.min()) * seen for values in (people, model))
+    assert scores["pcc_masked"] == pytest.approx(np.corrcoef(first, other)[0, 1])
+    assert abs(scores["pcc_masked"] - scores["pcc"]) > 0.02  # it is another number
 
 
 def test_distance_is_the_least_of_the_pairs_of_the_pseudocode(ring, judged):
-    mesh, (people, model, seen, found) = ring[0], judged
+    mesh, (people, model, seen, scores) = ring[0], judged
     ours = [centre for centre in centres(mesh.vertices, model, seen)]
     distances = []
     for centre in centres(mesh.vertices, people, seen):
         if ours:
-            nearest = min(ours, key=lambda one: float(((one - centre) ** 2).sum()))
+            nearest = min(ours, key=lambda peak: float(((peak - centre) ** 2).sum()))
             distances.append(np.linalg.norm(nearest - centre))
-            ours = [one for one in ours if one is not nearest]
-    assert found["distance"] == pytest.approx(min(distances)) and found["distance"] > 0
-    assert found["distance_mean"] == pytest.approx(np.mean(distances))
+            ours = [peak for peak in ours if peak is not nearest]
+    assert scores["distance"] == pytest.approx(min(distances)) and scores["distance"] > 0
+    assert scores["distance_mean"] == pytest.approx(np.mean(distances))

@@ -17,12 +17,12 @@ def test_metro(agreement):
     fine, coarse = (trimesh.creation.icosphere(subdivisions=k, radius=0.5) for k in (4, 2))
     fine.vertices *= 1 + 0.1 * np.sin(7 * fine.vertices[:, :1])
     sides = []
-    for one, other in ((fine, coarse), (coarse, fine)):
-        points, _ = trimesh.sample.sample_surface(one, 20000, seed=5)
+    for first, other in ((fine, coarse), (coarse, fine)):
+        points, _ = trimesh.sample.sample_surface(first, 20000, seed=5)
         sides.append(np.abs(trimesh.proximity.closest_point(other, points)[1]).mean())
     literal = max(sides) / np.linalg.norm(np.ptp(fine.vertices, axis=0))
-    found = metro(Mesh(fine.vertices, fine.faces), Mesh(coarse.vertices, coarse.faces), samples=20000)["mean"]
-    agreement("difference", abs(found - literal))
+    error = metro(Mesh(fine.vertices, fine.faces), Mesh(coarse.vertices, coarse.faces), samples=20000)["mean"]
+    agreement("difference", abs(error - literal))
 
 
 def pictures():
@@ -50,14 +50,14 @@ def blurred(image, scale=1.0):
 
 
 def bands(picture):
-    rest, found = picture / 255.0, []
+    rest, levels = picture / 255.0, []
     for _ in range(5):
         small = blurred(rest)[::2, ::2]
         doubled = np.zeros((2 * small.shape[0], 2 * small.shape[1]))
         doubled[::2, ::2] = small
-        found.append(rest - blurred(doubled, 2)[: rest.shape[0], : rest.shape[1]])
+        levels.append(rest - blurred(doubled, 2)[: rest.shape[0], : rest.shape[1]])
         rest = small
-    return [*found, rest]
+    return [*levels, rest]
 
 
 def distance(first, second):
@@ -68,8 +68,8 @@ def test_laplacian(agreement):
     """T [225]: six bands of the Laplacian pyramid, the root mean square of each, averaged; relative to the error."""
     first, second = pictures()
     literal = distance(bands(first), bands(second))
-    found = band_distance(laplacian_pyramid(first), laplacian_pyramid(second))
-    agreement("difference", abs(found - literal))
+    error = band_distance(laplacian_pyramid(first), laplacian_pyramid(second))
+    agreement("difference", abs(error - literal))
 
 
 def controlled(band, weights, constant):
@@ -83,7 +83,7 @@ def test_normalised_laplacian(agreement):
     """T [225]: each value over a constant and a weighted sum of its neighbours' sizes."""
     sides = []
     for picture in pictures():
-        found = zip(bands(picture), NEIGHBOURS, CONSTANTS, strict=True)
-        sides.append([controlled(*parts) for parts in found])
+        triples = zip(bands(picture), NEIGHBOURS, CONSTANTS, strict=True)
+        sides.append([controlled(*parts) for parts in triples])
     first, second = (normalise(laplacian_pyramid(picture)) for picture in pictures())
     agreement("difference", abs(band_distance(first, second) - distance(*sides)))

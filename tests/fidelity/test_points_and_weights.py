@@ -30,8 +30,8 @@ def test_centroids(agreement):
     image = 0.01 + sum(h * np.exp(-((y - r) ** 2 + (x - c) ** 2) / (2 * s * s)) for r, c, s, h in bumps)
     labels, count = ndimage.label(image >= np.quantile(image, 0.7), np.ones((3, 3)))
     literal = np.array(ndimage.center_of_mass(labels > 0, labels, range(1, count + 1)))
-    found = select_by_centroid(image)
-    places = np.column_stack([found.rows, found.columns])
+    points = select_by_centroid(image)
+    places = np.column_stack([points.rows, points.columns])
     assert len(places) == count > 1
     apart = cdist(np.rint(literal), places).min(axis=1).max()
     agreement("pixels", float(apart))
@@ -45,9 +45,9 @@ def test_suppression(agreement):
         row, column = np.unravel_index(left.argmax(), left.shape)
         points.append((row, column))
         left[(y - row) ** 2 + (x - column) ** 2 <= radius**2] = 0
-    found = select_by_suppression(image, radius)
-    assert len(found.rows) == len(points) > 1
-    agreement("pixels", float(np.abs(np.array(points) - np.column_stack([found.rows, found.columns])).max()))
+    peaks = select_by_suppression(image, radius)
+    assert len(peaks.rows) == len(points) > 1
+    agreement("pixels", float(np.abs(np.array(points) - np.column_stack([peaks.rows, peaks.columns])).max()))
 
 
 def test_weights_by_distance(agreement):
@@ -77,8 +77,8 @@ def test_ground_truth_map(agreement):
     literal = np.zeros(mask.shape)
     for row, column in points:
         literal[row - 25 : row + 26, column - 25 : column + 26] = kernel
-    found = gts_map(*points.T.astype(float), mask)
-    agreement("difference", np.abs(found - literal * mask).max())
+    truth = gts_map(*points.T.astype(float), mask)
+    agreement("difference", np.abs(truth - literal * mask).max())
 
 
 def test_weights_by_similarity(agreement):
@@ -90,8 +90,8 @@ def test_weights_by_similarity(agreement):
         views.append(view_similarities(maps, truth))
         how = {"gaussian_weights": True, "sigma": 1.5, "use_sample_covariance": False, "data_range": 1.0}
         literal.append([structural_similarity(image, truth, **how) for image in maps.values()])
-    found = list(similarity_weights(views).values())
-    agreement("difference", np.abs(found - np.maximum(np.mean(literal, axis=0), 0)).max())
+    weights = list(similarity_weights(views).values())
+    agreement("difference", np.abs(weights - np.maximum(np.mean(literal, axis=0), 0)).max())
 
 
 def test_far_points(agreement):
@@ -100,8 +100,8 @@ def test_far_points(agreement):
     literal = [0]
     while len(literal) < 32:
         literal.append(int(cdist(points, points[literal]).min(axis=1).argmax()))
-    found = select_far_points(points)
-    agreement("settings", (int((np.array(literal) == found).sum()), 32))
+    ids = select_far_points(points)
+    agreement("settings", (int((np.array(literal) == ids).sum()), 32))
 
 
 def test_best_viewpoints(ball, agreement):
@@ -109,11 +109,11 @@ def test_best_viewpoints(ball, agreement):
     maps = {view: smooth_map(k, (30, 40)) for k, view in enumerate(CANDIDATES)}
     sums = {view: float(image.sum()) for view, image in maps.items()}
     literal = max(PERPENDICULAR_SETS, key=lambda views: np.mean([sums[view] for view in views]))
-    found = best_viewpoints(ball, lambda view: sums[view])  # a ball hides nothing, so no view is added
+    best = best_viewpoints(ball, lambda view: sums[view])  # a ball hides nothing, so no view is added
     perpendicular = all(
         abs(views[k].axes[2] @ views[(k + 1) % 4].axes[2]) < 1e-9 for views in PERPENDICULAR_SETS for k in range(4)
     )
-    held = [len(CANDIDATES) == 62, len(PERPENDICULAR_SETS) == 18, perpendicular, list(literal) == found]
+    held = [len(CANDIDATES) == 62, len(PERPENDICULAR_SETS) == 18, perpendicular, list(literal) == best]
     agreement("settings", (sum(held), len(held)))
 
 

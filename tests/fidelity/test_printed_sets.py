@@ -164,7 +164,7 @@ def test_array_sizes(settings, agreement):
 def test_section_4_4(settings, agreement):
     """T4.4.5 to T4.4.10: 22,800 sequences of 25 frames of 32 x 32 cells, 80:20, 50 and 10 passes."""
     printed = CONTOURS | {
-        "meshes.classes": lambda classes: len(classes) == 8 and all(len(own) == 3 for own in classes.values()),
+        "meshes.classes": lambda classes: len(classes) == 8 and all(len(meshes) == 3 for meshes in classes.values()),
         "sequences.image_epochs": 50,
         "sequences.normal_epochs": 10,
     }
@@ -200,12 +200,12 @@ def test_red_channel(agreement):
 
 def test_learning_rates(composed_set, agreement):
     """Tables 5.1 to 5.5: how many of the printed rates are among those tried."""
-    tried = composed_set("princeton_six")["transfer"]
+    transfer = composed_set("princeton_six")["transfer"]
     held, count = 0, 0
     for path in sorted((ROOT / "data/reference/thesis").glob("table_5_[1-5]_*.csv")):
         table = pd.read_csv(path)
         for mode in ("finetuned", "frozen"):
-            held += int(table[f"lr_{mode}"].isin(tried[f"{mode}_rates"]).sum())
+            held += int(table[f"lr_{mode}"].isin(transfer[f"{mode}_rates"]).sum())
             count += len(table)
     agreement("settings", (held, count))
 

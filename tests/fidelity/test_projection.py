@@ -62,10 +62,10 @@ def test_rays(dromedary, agreement):
     for viewpoint in TWELVE[::3]:
         rows, columns, _ = project(dromedary.vertices[::97], viewpoint, SIZE)
         origins, directions = pixel_rays(rows + 0.3, columns - 0.2, viewpoint, SIZE)
-        found = scene.cast(origins, directions)
+        hits = scene.cast(origins, directions)
         literal = np.array([crossings(dromedary, o, d)[0] for o, d in zip(origins, directions, strict=True)])
-        both = np.isfinite(literal) & found.hit
-        apart.append(np.abs(literal[both] - found.distance[both]).max())
+        common = np.isfinite(literal) & hits.hit
+        apart.append(np.abs(literal[common] - hits.distance[common]).max())
     agreement("difference", float(max(apart)))
 
 
@@ -76,12 +76,12 @@ def test_vertex_of_a_face(dromedary, agreement):
     origins, directions = pixel_rays(rows, columns, viewpoint, SIZE)
     hits = scene.cast(origins, directions)
     positions = origins[hits.hit] + hits.distance[hits.hit, None] * directions[hits.hit]
-    found = nearest_corners(dromedary, hits.face[hits.hit], positions)
+    vertices = nearest_corners(dromedary, hits.face[hits.hit], positions)
     corners = dromedary.faces[hits.face[hits.hit]]
     centroids = dromedary.vertices[corners].mean(axis=1, keepdims=True)
     nearest = np.linalg.norm(dromedary.vertices[corners] - centroids, axis=2).argmin(axis=1)
     literal = corners[np.arange(len(corners)), nearest]
-    agreement("share", float(100 * (literal != found).mean()))
+    agreement("share", float(100 * (literal != vertices).mean()))
 
 
 def test_density(dromedary, agreement):

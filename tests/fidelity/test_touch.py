@@ -36,13 +36,13 @@ def test_cross_correlation(imprints, agreement):
     literal = np.empty((len(images), len(images)))
     for i, a in enumerate(images):
         for j, b in enumerate(images):
-            one, two = a - a.mean(dtype=float), b - b.mean(dtype=float)
-            literal[i, j] = (one * two).sum() / np.sqrt((one**2).sum() * (two**2).sum())
-    found, labels = similarity(images), np.arange(len(images)) % 2
+            first, second = a - a.mean(dtype=float), b - b.mean(dtype=float)
+            literal[i, j] = (first * second).sum() / np.sqrt((first**2).sum() * (second**2).sum())
+    matrix, labels = similarity(images), np.arange(len(images)) % 2
     removed = [any(literal[i, j] >= 0.85 and labels[i] != labels[j] for j in range(len(images)))
                for i in range(len(images))]  # fmt: skip
-    assert SIMILARITY_THRESHOLD == 0.85 and (confusable(found, labels) == removed).all() and any(removed)
-    agreement("difference", np.abs(found - literal).max())
+    assert SIMILARITY_THRESHOLD == 0.85 and (confusable(matrix, labels) == removed).all() and any(removed)
+    agreement("difference", np.abs(matrix - literal).max())
 
 
 def test_features(dromedary, agreement):
@@ -58,9 +58,9 @@ def test_features(dromedary, agreement):
                 row += [np.sqrt((band**2).sum()), band.mean(), band.std(), entropy]
         centre = np.array(ndimage.center_of_mass(image)) / (np.array(image.shape) - 1)
         literal.append([*row, image.max(), image.mean(), image.std(), *centre])
-    found = features(images)
-    assert found.shape[1] == len(FEATURES) == 3 * 3 * 4 + 5
-    agreement("difference", np.abs(found - literal).max())
+    vectors = features(images)
+    assert vectors.shape[1] == len(FEATURES) == 3 * 3 * 4 + 5
+    agreement("difference", np.abs(vectors - literal).max())
 
 
 def test_several_touches(imprints, agreement):
@@ -74,7 +74,7 @@ def test_several_touches(imprints, agreement):
     held = [
         mapped.shape == (40, 2),
         vectors.shape == (40, 15),
-        all((vectors[k] == np.concatenate([five[one] for one in chosen[k]])).all() for k in range(40)),
+        all((vectors[k] == np.concatenate([five[touch] for touch in chosen[k]])).all() for k in range(40)),
         (labels[chosen] == labels[:, None]).all() and len(np.unique(chosen, axis=0)) > 20,
     ]
     agreement("settings", (sum(map(bool, held)), len(held)))
@@ -86,12 +86,12 @@ def test_quasi_tangent_plane(dromedary, agreement):
     vertices = np.arange(5, len(mesh.vertices), 997)
     _, axes = quasi_tangent(mesh, vertices)
     apart = []
-    for vertex, found in zip(vertices, axes[:, 2], strict=True):
+    for vertex, axis in zip(vertices, axes[:, 2], strict=True):
         near = np.setdiff1d(mesh.faces[(mesh.faces == vertex).any(axis=1)], [vertex])
         order = np.argsort(np.linalg.norm(mesh.vertices[near] - mesh.vertices[vertex], axis=1))
         first, second, third = mesh.vertices[near[order[:3]]]
         normal = np.cross(second - first, third - first)
-        apart.append(1 - abs(normal @ found) / np.linalg.norm(normal))
+        apart.append(1 - abs(normal @ axis) / np.linalg.norm(normal))
     agreement("difference", max(apart))
 
 
@@ -108,7 +108,7 @@ def printed_distances(mesh, vertex, centres_of_faces):
     p = np.cross(-normal, second)
     determinant = np.einsum("ij,ij->i", first, p)
     inverse = np.divide(1, determinant, out=np.zeros_like(determinant), where=np.abs(determinant) > 1e-14)
-    found = np.full(CELLS, np.inf)
+    lengths = np.full(CELLS, np.inf)
     for i in range(CELLS[0]):
         for j in range(CELLS[1]):
             place = mesh.vertices[vertex] + PITCH * ((j - 7.5) * right + (7.5 - i) * up)
@@ -119,8 +119,8 @@ def printed_distances(mesh, vertex, centres_of_faces):
             hit = (inverse != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (away >= 0)
             if hit.any():
                 face = np.where(hit, away, np.inf).argmin()
-                found[i, j] = (place - corners[face].mean(axis=0)) @ normal if centres_of_faces else away[face]
-    return np.clip(found, -CELLS[0] * PITCH, CELLS[0] * PITCH)
+                lengths[i, j] = (place - corners[face].mean(axis=0)) @ normal if centres_of_faces else away[face]
+    return np.clip(lengths, -CELLS[0] * PITCH, CELLS[0] * PITCH)
 
 
 def convex():
@@ -132,23 +132,23 @@ def convex():
 def sensor_apart(surface, centres_of_faces):
     mesh = convex()
     vertices = [0, 17, 300]
-    found = distances(surface(mesh), vertices, CELLS, PITCH)
+    lengths = distances(surface(mesh), vertices, CELLS, PITCH)
     literal = np.stack([printed_distances(mesh, vertex, centres_of_faces) for vertex in vertices])
     outside = literal > 1e-6
-    return found[outside], literal[outside]
+    return lengths[outside], literal[outside]
 
 
 def test_distances(agreement):
     """The distances to where the rays meet the surface."""
-    found, literal = sensor_apart(lambda mesh: mesh, False)
-    assert len(found) > 600
-    agreement("difference", np.abs(found - literal).max())
+    lengths, literal = sensor_apart(lambda mesh: mesh, False)
+    assert len(lengths) > 600
+    agreement("difference", np.abs(lengths - literal).max())
 
 
 def test_face_centres(agreement):
     """The distances to the centres of the faces, as T4.3.1 prints them."""
-    found, literal = sensor_apart(FaceCentres, True)
-    agreement("difference", np.abs(found - literal).max())
+    lengths, literal = sensor_apart(FaceCentres, True)
+    agreement("difference", np.abs(lengths - literal).max())
 
 
 def test_hit_beside_face_centre(dromedary, agreement):
@@ -164,11 +164,11 @@ def test_smaller_array(dromedary, agreement):
     """T4.4.3: 32 x 32 cells, closer together where the array would intersect the object."""
     mesh, vertices = dromedary, spread(dromedary, 60)
     axes = sensor_axes(sensor_normals(mesh, vertices))
-    pitches, found = adaptive_distances(mesh, mesh.vertices[vertices], axes)
+    pitches, lengths = adaptive_distances(mesh, mesh.vertices[vertices], axes)
     saddles = pitches < 0.01
     plain = distances(mesh, vertices, (32, 32), 0.01)
     held = [
-        found.shape[1:] == (32, 32),
+        lengths.shape[1:] == (32, 32),
         saddles.any() and not saddles.all(),
         (plain[saddles].min(axis=(1, 2)) < 0).all(),
     ]
@@ -179,7 +179,7 @@ def test_contour(agreement):
     """T4.4.6: the section by the plane through the centre and two points, 25 places at equal distances; in units."""
     mesh = convex()
     points = mesh.vertices[[10, 200]] * [1, 1, 0.8]
-    found = follow(mesh, np.stack([np.zeros(3), *points])).positions
+    positions = follow(mesh, np.stack([np.zeros(3), *points])).positions
     normal = np.cross(*points)
     normal /= np.linalg.norm(normal)
     heights = mesh.vertices @ normal
@@ -199,10 +199,10 @@ def test_contour(agreement):
         return np.stack([np.interp(arc % along[-1], along, closed[:, axis]) for axis in range(3)], axis=1)
 
     starts = np.linspace(0, along[-1], 20001)
-    start = starts[np.linalg.norm(at(starts) - found[0], axis=1).argmin()]
+    start = starts[np.linalg.norm(at(starts) - positions[0], axis=1).argmin()]
     literal = at(start + along[-1] / 25 * np.arange(25))
-    assert len(found) == 25
-    agreement("difference", float(np.linalg.norm(found - literal, axis=1).max()))
+    assert len(positions) == 25
+    agreement("difference", float(np.linalg.norm(positions - literal, axis=1).max()))
 
 
 def test_series(agreement):
@@ -211,11 +211,11 @@ def test_series(agreement):
     literal = []
     for sample in values:
         row = []
-        for one in sample.T:
-            details = pywt.wavedec(one, "db2", mode="symmetric", level=3)[:0:-1]
-            for band in (*details, one):
+        for series in sample.T:
+            details = pywt.wavedec(series, "db2", mode="symmetric", level=3)[:0:-1]
+            for band in (*details, series):
                 row += [np.sqrt((band**2).mean()), band.std(), stats.skew(band)]
         literal.append(row)
-    found = sequence_features(values)
-    assert found.shape[1] == 19 * 4 * 3
-    agreement("difference", np.abs(found - literal).max())
+    vectors = sequence_features(values)
+    assert vectors.shape[1] == 19 * 4 * 3
+    agreement("difference", np.abs(vectors - literal).max())

@@ -19,9 +19,9 @@ def shapes():
     tube = np.stack([0.3 * np.cos(u), 0.3 * np.sin(u), v], axis=2).reshape(-1, 3)
     flat = np.stack([u / (2 * np.pi), v, 0 * v], axis=2).reshape(-1, 3)
     i, j = np.meshgrid(np.arange(60), np.arange(29), indexing="ij")
-    here, along, around = (i * 30 + j).ravel(), (i * 30 + j + 1).ravel(), ((i + 1) % 60 * 30 + j).ravel()
-    both = ((i + 1) % 60 * 30 + j + 1).ravel()
-    faces = np.concatenate([np.stack([here, around, both], 1), np.stack([here, both, along], 1)])
+    corner, along, around = (i * 30 + j).ravel(), (i * 30 + j + 1).ravel(), ((i + 1) % 60 * 30 + j).ravel()
+    diagonal = ((i + 1) % 60 * 30 + j + 1).ravel()
+    faces = np.concatenate([np.stack([corner, around, diagonal], 1), np.stack([corner, diagonal, along], 1)])
     inside = faces[(faces // 30).max(axis=1) - (faces // 30).min(axis=1) <= 1]
     return {
         "ball": as_mesh(ball),

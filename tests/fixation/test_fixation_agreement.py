@@ -48,28 +48,28 @@ def ball(shapes):
 
 
 def test_distance_is_that_between_the_bumps_each_used_once_and_zero_to_itself(ball):
-    vertices, seen, one, two = ball
-    assert len(centres(vertices, one + two, seen)) == 2
-    assert centre_distance(vertices, one + two, one + two, seen) == (0, 0)
-    least, mean = centre_distance(vertices, one, two, seen)
+    vertices, seen, first, second = ball
+    assert len(centres(vertices, first + second, seen)) == 2
+    assert centre_distance(vertices, first + second, first + second, seen) == (0, 0)
+    least, mean = centre_distance(vertices, first, second, seen)
     assert least == pytest.approx(np.sqrt(0.5), abs=0.06) and mean == least
-    least, mean = centre_distance(vertices, one + two, two, seen)  # the first centre may take the only answer
+    least, mean = centre_distance(vertices, first + second, second, seen)  # the first centre may take the only answer
     assert least == mean
 
 
 def test_only_what_is_seen_counts_and_a_constant_map_has_no_centre(ball):
-    vertices, seen, one, two = ball
-    assert centre_distance(vertices, two, 5 * one + two, vertices[:, 0] < 0.2)[0] < 0.1
+    vertices, seen, first, second = ball
+    assert centre_distance(vertices, second, 5 * first + second, vertices[:, 0] < 0.2)[0] < 0.1
     for even in (np.zeros(len(seen)), np.ones(len(seen))):
-        assert np.isnan(centre_distance(vertices, one, even, seen)).all()
+        assert np.isnan(centre_distance(vertices, first, even, seen)).all()
 
 
 def test_maximum_to_the_letter_is_one_place_where_the_regions_are_two(ball):
-    vertices, seen, one, two = ball
-    both = one + 1.01 * two
-    assert len(centres(vertices, both, seen)) == 2 and len(centres(vertices, both, seen, top=1)) == 1
-    assert centre_distance(vertices, one, both, seen)[0] < 0.05
-    assert centre_distance(vertices, one, both, seen, top=1)[0] == pytest.approx(np.sqrt(0.5), abs=0.06)
+    vertices, seen, first, second = ball
+    joined = first + 1.01 * second
+    assert len(centres(vertices, joined, seen)) == 2 and len(centres(vertices, joined, seen, top=1)) == 1
+    assert centre_distance(vertices, first, joined, seen)[0] < 0.05
+    assert centre_distance(vertices, first, joined, seen, top=1)[0] == pytest.approx(np.sqrt(0.5), abs=0.06)
 
 
 def test_an_even_saliency_has_half_on_half_of_the_surface_and_a_small_one_on_less():

@@ -28,9 +28,9 @@ def by_backpropagation(network, images, classes):
     hook = network.convolutions.register_forward_hook(lambda *made: kept.append(made[-1]) or made[-1].retain_grad())
     for image, number in zip(images, classes, strict=True):
         network(image[None])[0, int(number)].backward()
-        own = kept[-1].detach()[0]
-        alpha = [kept[-1].grad[0, k].sum() / own[0].numel() for k in range(len(own))]
-        maps.append(torch.relu(sum(weight * own[k] for k, weight in enumerate(alpha))).numpy())
+        features = kept[-1].detach()[0]
+        alpha = [kept[-1].grad[0, k].sum() / features[0].numel() for k in range(len(features))]
+        maps.append(torch.relu(sum(weight * features[k] for k, weight in enumerate(alpha))).numpy())
         gradients.append(kept[-1].grad[0].numpy())
     hook.remove()
     return np.stack(maps), np.stack(gradients)
@@ -69,7 +69,7 @@ def test_grad_cam_from_maps_is_the_one_by_backpropagation_of_each_class(hidden):
 @pytest.mark.parametrize(("name", "seeds"), [("mobilenet_v2", (0, 1)), ("efficientnet_lite0", (0,))])
 def test_folded_normalisations_leave_the_maps_as_they_were_and_follow_the_stored_weights(name, seeds, tmp_path):
     method, pictures = method_named(f"{name}-random"), np.random.default_rng(0).integers(0, 256, (2, 64, 64))
-    found = []
+    per_seed = []
     for seed in seeds:
         plain = build(name, 2, "random", seed)
         for layer in plain.modules():
@@ -81,9 +81,9 @@ def test_folded_normalisations_leave_the_maps_as_they_were_and_follow_the_stored
         assert not any(isinstance(layer, torch.nn.BatchNorm2d) for layer in folded.convolutions.modules())
         expected, maps = (last_maps(network, pictures.astype(np.uint8)) for network in (plain, folded))
         assert np.abs(maps - expected).max() < 1e-5 * np.abs(expected).max()
-        found.append(maps)
+        per_seed.append(maps)
     if len(seeds) > 1:
-        assert np.abs(found[0] - found[1]).max() > 0.1 * np.abs(found[0]).max()
+        assert np.abs(per_seed[0] - per_seed[1]).max() > 0.1 * np.abs(per_seed[0]).max()
 
 
 def test_vgg_is_looked_at_before_its_last_pooling():
@@ -150,10 +150,10 @@ def test_a_picture_of_positions_comes_back_as_positions(shapes):
     ball, viewpoint = shapes["ball"], Viewpoint(40, 25)
     seen = facing(ball, [viewpoint])[0] > 0
     rows, columns = np.mgrid[:64, :64].astype(float)
-    found = project_to_vertices(np.stack([rows, columns]), ball, viewpoint, seen)
+    positions = project_to_vertices(np.stack([rows, columns]), ball, viewpoint, seen)
     expected = project(ball.vertices, viewpoint, (64, 64))
-    assert 0.4 < seen.mean() < 0.6 and not found[:, ~seen].any()
-    assert np.allclose(found[:, seen], np.array(expected[:2])[:, seen], atol=1e-9)
+    assert 0.4 < seen.mean() < 0.6 and not positions[:, ~seen].any()
+    assert np.allclose(positions[:, seen], np.array(expected[:2])[:, seen], atol=1e-9)
 
 
 def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
@@ -176,6 +176,6 @@ def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
         and set(bits) == set(tasks)
         and all(b > 1 for b in bits.values())
     )
-    for one in whole:
-        assert np.linalg.norm(ball.vertices[one.argmax()] - place) < 0.1
+    for saliency in whole:
+        assert np.linalg.norm(ball.vertices[saliency.argmax()] - place) < 0.1
     assert (whole[6] > 0).mean() < (whole[5] > 0).mean()  # four levels leave less

@@ -23,9 +23,9 @@ PICTURES = np.random.default_rng(0).integers(0, 256, (5, 64, 64)).astype(np.uint
 
 def some_network(*_):
     """A MobileNetV2 of random weights, whose maps are not as small as an untrained one's are."""
-    found = build("mobilenet_v2", 3, "random", 0)
-    recalibrate(found, lambda ids: network_inputs(PICTURES[ids]), np.arange(5))
-    return found
+    network = build("mobilenet_v2", 3, "random", 0)
+    recalibrate(network, lambda ids: network_inputs(PICTURES[ids]), np.arange(5))
+    return network
 
 
 @pytest.mark.slow
@@ -42,10 +42,10 @@ def test_the_last_block_on_cached_maps_gives_the_scores_of_the_network(tmp_path,
     with torch.no_grad():
         expected = network.classify(network.convolutions(network_inputs(PICTURES)))
         task = backbone.cached_task(network, method, maps)
-        found = task.model(task.inputs(torch.arange(5)))
-    assert (found - expected).abs().max() < 0.01 * expected.abs().max()
+        scores = task.model(task.inputs(torch.arange(5)))
+    assert (scores - expected).abs().max() < 0.01 * expected.abs().max()
     drawn = task.training_inputs(torch.zeros(64, dtype=torch.long)).half()
-    assert {int((one == maps[0, 0]).all()) for one in drawn} == {0, 1}
+    assert {int((sample == maps[0, 0]).all()) for sample in drawn} == {0, 1}
 
 
 def test_an_object_without_a_class_is_looked_at_but_neither_trains_nor_tests():
@@ -71,10 +71,10 @@ def test_fully_connected_layers_are_those_of_the_state_or_random():
 def test_fully_connected_layers_that_nobody_carries_are_named_with_the_remedy(monkeypatch, capsys, source, word):
     monkeypatch.setattr(backbone, "build", lambda *_: None)
     methods = ["vgg16-last_block", "resnet50-last_block", "vgg16-frozen"]
-    found, missing = backbone.available(Params(**vars(SETTINGS) | {"methods": methods, "source": source}))
-    said = capsys.readouterr().err
-    assert len(found) == 3 and not missing and said.count("\n") == bool(word) and word in said
-    assert "vgg16-last_block" in said or not word
+    usable, missing = backbone.available(Params(**vars(SETTINGS) | {"methods": methods, "source": source}))
+    message = capsys.readouterr().err
+    assert len(usable) == 3 and not missing and message.count("\n") == bool(word) and word in message
+    assert "vgg16-last_block" in message or not word
 
 
 def test_a_network_whose_last_block_is_not_known_is_named():

@@ -66,8 +66,8 @@ def test_stage_writes_the_contract_the_same_bytes_twice_without_networks_that_ha
 
     monkeypatch.setattr(backbone, "build", missing)
     workspace = run(methods=[METHOD, "resnet101-frozen"])
-    said = capsys.readouterr()
-    assert "4 objects, 5 views" in said.out and "resnet101-frozen is left out: nobody carries it" in said.err
+    captured = capsys.readouterr()
+    assert "4 objects, 5 views" in captured.out and "resnet101-frozen is left out: nobody carries it" in captured.err
     folder, rows = workspace.data / "fixation", rows_of(workspace)
     assert rows.loc[rows["method"] == "resnet101-frozen", "note"].tolist() == ["nobody carries it"]
     check_files(folder, rows, len(shapes["ball"].vertices))
@@ -115,9 +115,9 @@ def check_judged(rows):
 def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypatch, mode):
     monkeypatch.setitem(backbone.MODES, mode, "random")  # from scratch: no weights are fetched here
     rows = rows_of(run(methods=[f"mobilenet_v2-{mode}"]))
-    own = rows[rows["method"] == f"mobilenet_v2-{mode}"]
-    assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(own["metric"])
-    rates = own.loc[own["metric"] == "rate", "value"].tolist()
+    trained = rows[rows["method"] == f"mobilenet_v2-{mode}"]
+    assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(trained["metric"])
+    rates = trained.loc[trained["metric"] == "rate", "value"].tolist()
     assert rates in ([0.01], [0.03]) if mode == "last_block" else not rates
 
 

@@ -73,8 +73,8 @@ def test_unknown_objects_and_tasks_of_one_class_are_left_out_with_a_word(capsys)
     tasks, curves = assign_classes(measures, "household", 0, TABLE)
     assert "eccentricity" not in tasks and "eccentricity" not in curves
     assert set(tasks["level_1"]) == {"cup", "mug", "apple"} and set(tasks["level_3"]) == set(measures)
-    said = capsys.readouterr().err
-    assert "thing" in said and "task eccentricity is left out" in said
+    message = capsys.readouterr().err
+    assert "thing" in message and "task eccentricity is left out" in message
 
 
 def test_views_are_split_60_20_20():

@@ -27,11 +27,11 @@ class Made:
         random = rng(0, name)
         label = next((label for label, names in CLASSES.items() if name in names), name)
         code = rng(1, label).normal(size=41) + self.by_object * rng(2, name).normal(size=41)
-        learned, asked = (
+        learned, queried = (
             part + self.noise * random.normal(size=(choice.points, 41)) for part in (code, self.asked(code))
         )
         places = np.c_[self.spread * random.random((choice.points, 2)), np.zeros(choice.points)]
-        return Felt(learned, asked, places, 100, SECONDS)
+        return Felt(learned, queried, places, 100, SECONDS)
 
 
 def ask(made, seed=0, **options):
@@ -63,11 +63,11 @@ def test_unseen_objects_are_never_learned():
 
 @pytest.mark.slow
 def test_several_touches_vote_and_the_same_seed_gives_the_same_answers():
-    one, again, other, five = (
+    single, again, other, five = (
         ask(Made(noise=4), seed, touches=count) for seed, count in ((0, 1), (0, 1), (1, 1), (0, 5))
     )
-    assert accuracy(five, "objects") > accuracy(one, "objects") + 0.05
-    first, second, third = ([row["value"] for row in rows] for rows in (one, again, other))
+    assert accuracy(five, "objects") > accuracy(single, "objects") + 0.05
+    first, second, third = ([row["value"] for row in rows] for rows in (single, again, other))
     assert first == second != third
 
 

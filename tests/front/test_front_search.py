@@ -37,10 +37,10 @@ def dominates(one, other):
 def test_a_dominated_choice_is_never_on_the_front_and_each_rank_is_dominated_by_the_one_before():
     points = np.random.default_rng(0).integers(0, 4, size=(60, 3))  # with many ties
     rank = ranks(points)
-    beaten = np.array([any(dominates(other, one) for other in points) for one in points])
+    beaten = np.array([any(dominates(other, point) for other in points) for point in points])
     assert ((rank == 0) == ~beaten).all() and rank.max() > 1
     for k in range(1, rank.max() + 1):
-        assert all(any(dominates(one, other) for one in points[rank == k - 1]) for other in points[rank == k])
+        assert all(any(dominates(point, other) for point in points[rank == k - 1]) for other in points[rank == k])
 
 
 def test_the_ends_of_an_aim_stand_apart_and_a_crowd_does_not():
@@ -138,7 +138,7 @@ def test_a_third_goes_on_and_of_the_last_the_front_is_confirmed_on_unseen_object
     rows = run(tmp_path)
     counts = [len({row["number"] for row in of_rung(rows, rung)}) for rung in ("wide", "narrow", "last")]
     assert counts[1] == counts[0] // 3 and counts[2] == counts[1] // 3
-    last = {row["number"]: aims([one for one in of_rung(rows, "last") if one["number"] == row["number"]])
+    last = {row["number"]: aims([entry for entry in of_rung(rows, "last") if entry["number"] == row["number"]])
             for row in of_rung(rows, "last")}  # fmt: skip
     front = np.array(list(last))[ranks(np.array(list(last.values())) * [-1, -1, 1, 1, 1]) == 0]
     confirmed = {row["number"]: row["role"] for row in of_rung(rows, "confirmation")}
@@ -164,7 +164,7 @@ def test_where_one_choice_beats_all_it_alone_is_confirmed_beside_the_default(tmp
 
 def test_a_trial_that_a_killed_run_left_is_answered(asked, tmp_path):
     begun = search(tmp_path)
-    options = {name: optuna.distributions.CategoricalDistribution(every) for name, every in module.SPACE.items()}
+    options = {name: optuna.distributions.CategoricalDistribution(values) for name, values in module.SPACE.items()}
     choice = choice_of(begun.study.ask(fixed_distributions=options).params)
     begun.study.ask()  # before it was proposed
     run(tmp_path, trials=4)

@@ -92,10 +92,10 @@ def test_a_tiny_study_leaves_rows_that_a_second_call_finds_done(tmp_path, monkey
         name: read_rows(tmp_path / f"reports/measurements/{name}/front.csv.gz") for name in ("household", "furniture")
     }
     assert set(rows["household"]["split"]) == {"regions"} and set(rows["furniture"]["split"]) == {"objects"}
-    for found in rows.values():
-        seen = found["rung"].isin(["wide", "narrow", "last"])
-        assert seen.any() and not set(found[seen]["item"]) & set(found[~seen]["item"])
-        assert set(found["role"].dropna()) == {"default", "smallest"} and found["value"].dropna().between(0, 1).all()
+    for table in rows.values():
+        seen = table["rung"].isin(["wide", "narrow", "last"])
+        assert seen.any() and not set(table[seen]["item"]) & set(table[~seen]["item"])
+        assert set(table["role"].dropna()) == {"default", "smallest"} and table["value"].dropna().between(0, 1).all()
     capsys.readouterr()
     assert command.run(["--trials", "4", "--minutes", "0"], tmp_path) == 0
     assert "front: wide" not in capsys.readouterr().err

@@ -48,12 +48,12 @@ def test_an_option_that_the_settings_do_not_know_is_named():
 
 
 def test_one_choice_changed_differs_in_one_stage():
-    found = list(one_choice_changed(BLIND))
-    assert len(found) == len(set(found)) and BLIND not in found
-    for other in found:
+    choices = list(one_choice_changed(BLIND))
+    assert len(choices) == len(set(choices)) and BLIND not in choices
+    for other in choices:
         changed = {key for key, value in asdict(other).items() if value != asdict(BLIND)[key]}
         assert len(changed - {"viewpoints", "image_rows"}) == 1
-    pictures = [other for other in found if other.image_rows]
+    pictures = [other for other in choices if other.image_rows]
     assert {other.method for other in pictures} == {"thesis_ssim", "itti"}
     assert {(other.viewpoints, other.image_rows) for other in pictures} == {("twelve", 450)}
-    assert len(found) == sum(map(len, SPACE.values())) - len(SPACE) - (2 + 2 - 2)
+    assert len(choices) == sum(map(len, SPACE.values())) - len(SPACE) - (2 + 2 - 2)

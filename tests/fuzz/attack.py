@@ -87,9 +87,9 @@ def main() -> None:
     logging.disable()
     folder, *names = sys.argv[1:]
     for name in names:
-        own, start = Path(folder, name), time.process_time()
-        own.mkdir()
-        for fault in attack(name, own, READERS[name].count):
+        subfolder, start = Path(folder, name), time.process_time()
+        subfolder.mkdir()
+        for fault in attack(name, subfolder, READERS[name].count):
             print(fault, flush=True)
         print(name, f"{time.process_time() - start:.1f}", file=sys.stderr)
 

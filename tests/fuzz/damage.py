@@ -51,11 +51,11 @@ def _noise(content, random):
 def _lie_in_text(content, random):
     """Another number in place of one that is written as text, mostly of the header."""
     reach = HEADER if random.random() < 0.7 else len(content)
-    found = list(re.finditer(rb"-?\d+(\.\d+)?", content[:reach]))
-    if not found:
+    numbers = list(re.finditer(rb"-?\d+(\.\d+)?", content[:reach]))
+    if not numbers:
         return content
-    one = found[random.integers(len(found))]
-    return content[: one.start()] + LIES[random.integers(len(LIES))] + content[one.end() :]
+    number = numbers[random.integers(len(numbers))]
+    return content[: number.start()] + LIES[random.integers(len(LIES))] + content[number.end() :]
 
 
 def _lie_in_bytes(content, random):

@@ -54,10 +54,12 @@ def mesh_seeds(*kinds):
     """The ball as trimesh writes it in these formats, and as stages.lod does with colours."""
 
     def seeds(folder):
-        found = [BALL.export(file_type=kind) for kind in kinds]
+        contents = [BALL.export(file_type=kind) for kind in kinds]
         colored = folder / f"colored.{kinds[0].partition('_')[0]}"
         write_any(colored, Mesh(BALL.vertices, BALL.faces, COLORS))
-        return [one.encode() if isinstance(one, str) else one for one in found] + [colored.read_bytes()]
+        return [content.encode() if isinstance(content, str) else content for content in contents] + [
+            colored.read_bytes()
+        ]
 
     return seeds
 
@@ -118,10 +120,10 @@ def beside(name):
 
 def gltf_seeds(folder):
     """The JSON parts of two GLB files; the rest lies beside them."""
-    found = [*mesh_seeds("glb")(folder), textured(folder).export(file_type="glb")]
-    ends = [20 + int.from_bytes(content[12:16], "little") for content in found]
-    (folder / "binary").write_bytes(found[0][ends[0] :])
-    return [content[20:end] for content, end in zip(found, ends, strict=True)]
+    contents = [*mesh_seeds("glb")(folder), textured(folder).export(file_type="glb")]
+    ends = [20 + int.from_bytes(content[12:16], "little") for content in contents]
+    (folder / "binary").write_bytes(contents[0][ends[0] :])
+    return [content[20:end] for content, end in zip(contents, ends, strict=True)]
 
 
 def read_gltf(path):
@@ -203,12 +205,12 @@ def mark_seeds(folder):
 def interest_seeds(folder):
     cells = np.empty((10, 8, 2), dtype=object)
     cells[..., 0], cells[..., 1] = 3, "1 2 3"
-    found = []
+    contents = []
     for compressed in (False, True):
         stored = io.BytesIO()
         savemat(stored, {"GT_MODEL": cells}, do_compression=compressed)
-        found.append(stored.getvalue())
-    return found
+        contents.append(stored.getvalue())
+    return contents
 
 
 TRIANGLE = Mesh(np.eye(3), np.array([[0, 1, 2]]))
@@ -233,12 +235,12 @@ def cloud_seeds(folder):
 
 
 def pcd_seeds(folder):
-    made, found = PointCloud.from_xyz_points(BALL.vertices.astype(np.float32)), []
+    made, contents = PointCloud.from_xyz_points(BALL.vertices.astype(np.float32)), []
     for encoding in Encoding:
         file = io.BytesIO()
         made.save(file, encoding)
-        found.append(file.getvalue())
-    return found
+        contents.append(file.getvalue())
+    return contents
 
 
 def las_seeds(folder):

@@ -119,7 +119,7 @@ def unpickling(text):
     """Yields the parts of a module that can build any object from a file."""
     for node in ast.walk(ast.parse(text)):
         name = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
-        given = {one.arg: ast.unparse(one.value) for one in getattr(node, "keywords", [])}
+        given = {keyword.arg: ast.unparse(keyword.value) for keyword in getattr(node, "keywords", [])}
         torch = name == "torch.load" and given.get("weights_only") != "True"
         numpy = name == "np.load" and given.get("allow_pickle", "False") != "False"
         if torch or numpy or name in FORBIDDEN:
@@ -134,7 +134,7 @@ def test_nothing_is_unpickled():
     paths = [path for folder in ("stages", "haptic_glance", "benchmarks") for path in ROOT.glob(f"{folder}/**/*.py")]
     texts = [(path.name, path.read_text()) for path in paths]
     suspects = [(name, text) for name, text in texts if re.search(r"pickle|load\(|eval\(|exec\(|shelve", text)]
-    assert {name: found for name, text in suspects if (found := list(unpickling(text)))} == {
+    assert {name: parts for name, text in suspects if (parts := list(unpickling(text)))} == {
         "converters.py": ["_Arrays"],  # it builds arrays alone: tests/deep/test_weights.py
         "first_run.py": ["eval"],  # of the types of kernels that stand in the file itself
         "cluster.py": ["pickle.loads", "pickle.loads"],  # a worker of dask runs what its client sends in any case

@@ -22,10 +22,10 @@ HALVES = [NAMES[: len(NAMES) // 2], NAMES[len(NAMES) // 2 :]]  # in two processe
 @pytest.mark.parametrize("names", HALVES, ids=["first", "second"])
 def test_damaged_files_are_read_or_refused(names, tmp_path):
     command = [sys.executable, "-m", "tests.fuzz.attack", str(tmp_path), *names]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, f"ended with {done.returncode}: {done.stderr[-2000:]}"
-    assert not done.stdout
-    assert len(done.stderr.splitlines()) == len(names)
+    process = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert process.returncode == 0, f"ended with {process.returncode}: {process.stderr[-2000:]}"
+    assert not process.stdout
+    assert len(process.stderr.splitlines()) == len(names)
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -66,11 +66,11 @@ def huge(name, content):
         return content[:80] + b"\xff" * 4 + content[84:]
     old = {"ply": b"element vertex 42", "off": b"42 80", "glb": b'"count":42', "obj": b"\nf 1"}[name]
     assert old in content
-    found = content.replace(old, old.replace(b"42", most).replace(b"f 1", b"f " + most), 1)
+    changed = content.replace(old, old.replace(b"42", most).replace(b"f 1", b"f " + most), 1)
     if name == "glb":  # the lengths of the file and of its JSON part are right
-        tree = int.from_bytes(content[12:16], "little") + len(found) - len(content)
-        found = found[:8] + len(found).to_bytes(4, "little") + tree.to_bytes(4, "little") + found[16:]
-    return found
+        tree = int.from_bytes(content[12:16], "little") + len(changed) - len(content)
+        changed = changed[:8] + len(changed).to_bytes(4, "little") + tree.to_bytes(4, "little") + changed[16:]
+    return changed
 
 
 @pytest.mark.parametrize("name", ["stl", "ply", "off", "glb", "obj"])

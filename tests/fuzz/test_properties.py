@@ -51,12 +51,12 @@ def test_simplifying_gives_fewer_faces_and_no_new_fault(mesh):
     mesh = usable(mesh)
     target = max(len(mesh.faces) // 2, 1)
     try:
-        found = simplify(mesh, target)
+        simple = simplify(mesh, target)
     except ValueError as error:
         assert str(error)
         return
-    assert 0 < len(found.faces) <= target and np.isfinite(found.vertices).all()
-    assert not faults(found).added(faults(mesh))
+    assert 0 < len(simple.faces) <= target and np.isfinite(simple.vertices).all()
+    assert not faults(simple).added(faults(mesh))
 
 
 @pytest.mark.slow

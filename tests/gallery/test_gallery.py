@@ -45,9 +45,9 @@ def make_scans(folder):
 
 def gallery(meshes, out, *options):
     """Makes the gallery; returns (exit status, page, standard output, standard error)."""
-    with redirect_stdout(io.StringIO()) as said, redirect_stderr(io.StringIO()) as reported:
+    with redirect_stdout(io.StringIO()) as printed, redirect_stderr(io.StringIO()) as reported:
         status = run([str(meshes), "--out", str(out), *options])
-    return status, (out / "index.html").read_text("utf-8"), said.getvalue(), reported.getvalue()
+    return status, (out / "index.html").read_text("utf-8"), printed.getvalue(), reported.getvalue()
 
 
 @pytest.fixture
@@ -67,11 +67,11 @@ def page_data(page):
 
 
 def test_a_broken_file_is_named_and_the_rest_goes_on(whole):
-    out, status, page, said, reported = whole
+    out, status, page, printed, reported = whole
     assert status == 1 and "broken.obj is left out: " in reported
     assert re.search(r"Left out:<ul><li>broken.obj: ", page) and "notes" not in page
-    assert [one["name"] for one in page_data(page)["objects"]] == ["pear & co", "pear"]
-    assert "<h2>pear &amp; co</h2>" in page and said.count("6 places, 3 levels, 6 imprints") == 2
+    assert [item["name"] for item in page_data(page)["objects"]] == ["pear & co", "pear"]
+    assert "<h2>pear &amp; co</h2>" in page and printed.count("6 places, 3 levels, 6 imprints") == 2
     levels = {f"pear_{share}pct.ply" for share in (50, 25, 10)}
     made = {path.name for path in (out / "pear").iterdir()}
     assert made == levels | {"saliency.ply", "points.csv", "imprints.npz", "places.csv"}
@@ -105,21 +105,21 @@ def test_the_same_comes_of_the_three_commands_that_it_names(scans, capsys):
 
 
 def test_what_turns_on_the_page_is_the_mesh_with_its_levels(whole):
-    _, one = page_data(whole[2])["objects"]
-    assert one["faces"] == one["full"]["faces"] == 1280 and one["points"]["glance"]["ids"][1] == 6
-    levels = one["ladders"]["glance"]["levels"]
+    _, item = page_data(whole[2])["objects"]
+    assert item["faces"] == item["full"]["faces"] == 1280 and item["points"]["glance"]["ids"][1] == 6
+    levels = item["ladders"]["glance"]["levels"]
     assert [level["faces"] for level in levels] == [640, 320, 128]
     assert levels[0]["error_mean"] < levels[1]["error_mean"] < levels[2]["error_mean"]
-    store = np.frombuffer(zlib.decompress(base64.b64decode(one["store"])), np.uint8)
-    at, count = one["saliency"]["glance"]["values"]
+    store = np.frombuffer(zlib.decompress(base64.b64decode(item["store"])), np.uint8)
+    at, count = item["saliency"]["glance"]["values"]
     assert (store[at : at + count].cumsum(dtype=np.uint8)).max() == 63  # the brightest of the shades
 
 
 def test_errors_stand_at_the_vertices_that_have_them(scans):
-    one = exhibit(scans / "pear.ply", "pear", scans.parent / "out", None, 3, ["10%"])
-    packed = turnable(one, 20_000)
-    full, level = ordered(one.touched.mesh)[0], packed["ladders"]["glance"]["levels"][0]
-    expected = 100 * vertex_errors(rotate_to_z_up(one.levels[0].mesh), full) / full.diagonal
+    item = exhibit(scans / "pear.ply", "pear", scans.parent / "out", None, 3, ["10%"])
+    packed = turnable(item, 20_000)
+    full, level = ordered(item.touched.mesh)[0], packed["ladders"]["glance"]["levels"][0]
+    expected = 100 * vertex_errors(rotate_to_z_up(item.levels[0].mesh), full) / full.diagonal
     store = np.frombuffer(zlib.decompress(base64.b64decode(packed["store"])), np.uint8)
     at, count = level["error"]
     shown = packed["error_top"] * (store[at : at + count].cumsum(dtype=np.uint8) / 63.0) ** 2
@@ -139,17 +139,17 @@ def test_a_large_mesh_is_drawn_with_fewer_faces_and_says_so(scans, monkeypatch):
     monkeypatch.setattr("haptic_glance.gallery.page.ALL", 600)
     monkeypatch.setattr("haptic_glance.gallery.page.LEAST", 100)
     _, page, _, _ = gallery(scans / "pear.ply", scans.parent / "out", "--levels", "50%,10%")
-    (one,) = page_data(page)["objects"]
-    assert one["faces"] == 1280 and one["full"]["faces"] <= 600
-    levels = one["ladders"]["glance"]["levels"]
+    (item,) = page_data(page)["objects"]
+    assert item["faces"] == 1280 and item["full"]["faces"] <= 600
+    levels = item["ladders"]["glance"]["levels"]
     assert [level["faces"] for level in levels] == [640, 128] and all(level["drawn"] <= 600 for level in levels)
 
 
 def test_json_lists_what_was_made_and_a_level_that_is_infeasible_is_named(scans):
-    _, page, said, reported = gallery(scans, scans.parent / "out", "--json", "--levels", "300,2")
-    found = {row["mesh"].split("/")[-1]: row for row in json.loads(said)}
-    assert set(found) == {"pear.ply", "pear & co.stl", "broken.obj"} and "error" in found["broken.obj"]
-    assert found["pear.ply"]["levels"] == [300] and found["pear.ply"]["faces"] == 1280
+    _, page, printed, reported = gallery(scans, scans.parent / "out", "--json", "--levels", "300,2")
+    by_name = {row["mesh"].split("/")[-1]: row for row in json.loads(printed)}
+    assert set(by_name) == {"pear.ply", "pear & co.stl", "broken.obj"} and "error" in by_name["broken.obj"]
+    assert by_name["pear.ply"]["levels"] == [300] and by_name["pear.ply"]["faces"] == 1280
     assert "<li>2: " in page and "pear_300.ply" in page and "pear.ply has no level 2: " in reported
 
 
@@ -159,18 +159,18 @@ def test_a_boundary_that_leaves_too_many_faces_is_simplified_too(scans):
     faces = np.stack([corner, corner + 1, corner + 41, corner + 1, corner + 42, corner + 41], axis=-1).reshape(-1, 3)
     trimesh.Trimesh(np.stack([np.cos(u), np.sin(u), v], axis=1), faces).export(scans / "strip.ply")
     _, page, _, _ = gallery(scans / "strip.ply", scans.parent / "out", "--levels", "25%")
-    (one,) = page_data(page)["objects"]
-    assert one["faces"] == 320 and [level["faces"] for level in one["ladders"]["glance"]["levels"]] == [80]
+    (item,) = page_data(page)["objects"]
+    assert item["faces"] == 320 and [level["faces"] for level in item["ladders"]["glance"]["levels"]] == [80]
 
 
 def test_where_it_is_stopped_the_page_shows_what_is_done(scans, monkeypatch, capsys):
-    work, done = command.exhibit, []
+    work, exhibits = command.exhibit, []
 
     def stopped(*given):
-        if done:
+        if exhibits:
             raise KeyboardInterrupt
-        done.append(work(*given))
-        return done[0]
+        exhibits.append(work(*given))
+        return exhibits[0]
 
     monkeypatch.setattr(command, "exhibit", stopped)
     (scans / "broken.obj").unlink()
@@ -188,7 +188,7 @@ def test_vertices_that_a_file_doubles_are_touched_where_they_are(tmp_path, capsy
     soup.export(tmp_path / "soup.ply")
     assert run([str(tmp_path / "soup.ply"), "--count", "3", "--levels", "300", "--out", str(tmp_path / "out")]) == 0
     rows = [(tmp_path / "out/soup" / name).read_text().splitlines()[1:] for name in ("points.csv", "places.csv")]
-    points, places = (np.array([row.split(",")[2:5] for row in each], dtype=float) for each in rows)
+    points, places = (np.array([row.split(",")[2:5] for row in lines], dtype=float) for lines in rows)
     assert len(points) == 3 and points == pytest.approx(places, rel=1e-5)
 
 
@@ -206,7 +206,7 @@ def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):
 
 def test_the_page_of_a_folder_has_its_whole_name(tmp_path, monkeypatch):
     (tmp_path / "scans v1.2").mkdir()
-    asked = []
-    monkeypatch.setattr(command, "show", lambda name, title, chosen, out: asked.append((title, str(out))))
+    calls = []
+    monkeypatch.setattr(command, "show", lambda name, title, chosen, out: calls.append((title, str(out))))
     run([str(tmp_path / "scans v1.2")])
-    assert asked == [("Gallery of scans v1.2", "scans v1.2_gallery")]
+    assert calls == [("Gallery of scans v1.2", "scans v1.2_gallery")]

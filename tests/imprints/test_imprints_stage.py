@@ -16,9 +16,9 @@ from tests.touch.conftest import solid, sphere
 
 
 def test_files_keep_methods_images_and_places(tmp_path):
-    one = Imprints(np.ones((2, 4, 4), "f4"), np.array([3, 1]), np.zeros((2, 3), "f4"), 0.02)
-    write_imprints(tmp_path / "a.npz", {"random": one, "Vis.Att": one})
-    write_imprints(tmp_path / "b.npz", {"Vis.Att": one, "random": one})
+    imprints = Imprints(np.ones((2, 4, 4), "f4"), np.array([3, 1]), np.zeros((2, 3), "f4"), 0.02)
+    write_imprints(tmp_path / "a.npz", {"random": imprints, "Vis.Att": imprints})
+    write_imprints(tmp_path / "b.npz", {"Vis.Att": imprints, "random": imprints})
     back = read_imprints(tmp_path / "a.npz")
     assert list(back) == ["Vis.Att", "random"] and back["random"].vertices.tolist() == [3, 1]
     assert back["random"].width == 0.08

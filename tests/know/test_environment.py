@@ -43,7 +43,7 @@ def test_an_episode_ends_with_a_name_or_after_its_touches(task, belief, monkeypa
     _, info = task.reset(seed=0, options={"name": "box"})
     assert info["name"] == "box"
     names = {"right": "box", "wrong": "torus", "none": ""}
-    monkeypatch.setattr("haptic_glance.know.library.Belief.known", property(lambda own: names[belief]))
+    monkeypatch.setattr("haptic_glance.know.library.Belief.known", property(lambda self: names[belief]))
     rewards = {"right": REWARD - 1, "wrong": -REWARD - 1, "none": -1}
     for count in range(1, 5):
         observation, reward, sure, cut_off, info = task.step(task.planned())

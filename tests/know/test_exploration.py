@@ -153,23 +153,23 @@ def trial(likelihood="imprint", split="random", tell=3.0):
 @pytest.mark.parametrize("split", SPLITS)
 @pytest.mark.parametrize("likelihood", LIKELIHOODS)
 def test_a_trial_gives_whole_finite_numbers(likelihood, split):
-    one, places = trial(likelihood, split)
+    case, places = trial(likelihood, split)
     count = places.shape[1]
-    assert one.observed.shape == (2, count, 2) and one.predicted.shape[:3] == (2, count, 2)
-    assert all(np.isfinite(values).all() for values in (one.observed, one.predicted, one.probabilities))
-    assert np.allclose(one.probabilities.sum(axis=3), 1) and one.truth.tolist() == [0, 1]
+    assert case.observed.shape == (2, count, 2) and case.predicted.shape[:3] == (2, count, 2)
+    assert all(np.isfinite(values).all() for values in (case.observed, case.predicted, case.probabilities))
+    assert np.allclose(case.probabilities.sum(axis=3), 1) and case.truth.tolist() == [0, 1]
 
 
 @pytest.mark.parametrize("likelihood", ["imprint", "imprint_place"])
 def test_gain_looks_where_the_objects_differ(likelihood):
-    one, places = trial(likelihood)
-    first = explore("gain", one.observed, one.predicted, one.probabilities, one.calibration, 1, random())
+    case, places = trial(likelihood)
+    first = explore("gain", case.observed, case.predicted, case.probabilities, case.calibration, 1, random())
     first = np.exp(first)[[0, 1], 0, [0, 1]]
-    alike = np.exp(one.calibration.log_belief(one.observed, 1))[[0, 1], :, [0, 1]][places[:, :, 0] < 0]
+    alike = np.exp(case.calibration.log_belief(case.observed, 1))[[0, 1], :, [0, 1]][places[:, :, 0] < 0]
     assert 0.3 < (places[:, :, 0] > 0).mean() < 0.7 and first.min() > 0.7 and first.min() > np.median(alike)
 
 
 def test_no_difference_leaves_the_belief_near_even():
-    one, _ = trial(tell=0.0)
-    beliefs = explore("gain", one.observed, one.predicted, one.probabilities, one.calibration, 10, random())
+    case, _ = trial(tell=0.0)
+    beliefs = explore("gain", case.observed, case.predicted, case.probabilities, case.calibration, 10, random())
     assert np.exp(beliefs).max() < 0.9

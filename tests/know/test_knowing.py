@@ -61,8 +61,8 @@ def test_touches_of_a_known_object_end_in_it(library, shapes, name):
 
 def test_an_object_is_explored_as_a_mesh_too_but_in_another_scale_it_is_refused(library, shapes):
     cone = shapes["cone"]
-    found, again = (Exploration(library, given, rng(3, "cone")) for given in (cone, Surface(cone)))
-    np.testing.assert_array_equal(found.candidates.positions, again.candidates.positions)
+    first, again = (Exploration(library, given, rng(3, "cone")) for given in (cone, Surface(cone)))
+    np.testing.assert_array_equal(first.candidates.positions, again.candidates.positions)
     for scale in (0.1, 100):
         with pytest.raises(ValueError, match="normalise it"):
             Exploration(library, Mesh(cone.vertices * scale, cone.faces), rng(3, "cone"))
@@ -165,8 +165,8 @@ def test_a_learned_touch_is_not_compared_with_itself():
     """Two objects with samples drawn alike: with itself counted each touch would favour its own object."""
     random = np.random.default_rng(0)
     samples, places = random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3))
-    own = Library(("one", "two"), samples, places, False)._own.reshape(2, TOUCHES, 2)
-    ahead = np.stack([own[0, :, 0] - own[0, :, 1], own[1, :, 1] - own[1, :, 0]])
+    scores = Library(("one", "two"), samples, places, False)._own.reshape(2, TOUCHES, 2)
+    ahead = np.stack([scores[0, :, 0] - scores[0, :, 1], scores[1, :, 1] - scores[1, :, 0]])
     assert abs(ahead.mean()) < 0.05
 
 

@@ -49,8 +49,8 @@ def test_neighbours_stay_neighbours():
 def test_map_depends_neither_on_order_nor_on_chance():
     samples, _ = blobs()
     order = np.random.default_rng(1).permutation(len(samples))
-    one, other = SelfOrganisingMap(3).fit(samples), SelfOrganisingMap(3).fit(samples[order])
-    np.testing.assert_allclose(one.neurons_, other.neurons_, atol=1e-8)
+    first, other = SelfOrganisingMap(3).fit(samples), SelfOrganisingMap(3).fit(samples[order])
+    np.testing.assert_allclose(first.neurons_, other.neurons_, atol=1e-8)
 
 
 def test_constant_column_and_equal_samples_are_no_trouble():
@@ -121,10 +121,10 @@ def test_reduction_is_fitted_to_the_training_samples_and_shared_and_the_best_siz
     samples, labels = blobs(apart=1.0, width=30)
     changed, wrong = samples.copy(), labels.copy()
     changed[TEST], wrong[TEST] = 1e3, 0
-    one, other = Reduced(samples, labels, TRAIN, TEST), Reduced(changed, wrong, TRAIN, TEST)
+    first, other = Reduced(samples, labels, TRAIN, TEST), Reduced(changed, wrong, TRAIN, TEST)
     for dimensions in (None, 2):
-        np.testing.assert_array_equal(one.mapped(dimensions).train, other.mapped(dimensions).train)
-    assert one.mapped(2) is one.mapped(2) and one.mapped(2).train.shape == (60, 2)
-    assert one.predict("knn", 2)[1] > one.mapped(2).seconds > one.mapped(None).seconds > 0
-    right = [(one.predict("knn", size)[0] == one.test_labels).mean() for size in MAP_DIMENSIONS]
-    assert choose_dimensions("knn", one)[0] == MAP_DIMENSIONS[int(np.argmax(right))]  # of equals the smallest
+        np.testing.assert_array_equal(first.mapped(dimensions).train, other.mapped(dimensions).train)
+    assert first.mapped(2) is first.mapped(2) and first.mapped(2).train.shape == (60, 2)
+    assert first.predict("knn", 2)[1] > first.mapped(2).seconds > first.mapped(None).seconds > 0
+    right = [(first.predict("knn", size)[0] == first.test_labels).mean() for size in MAP_DIMENSIONS]
+    assert choose_dimensions("knn", first)[0] == MAP_DIMENSIONS[int(np.argmax(right))]  # of equals the smallest

@@ -69,7 +69,7 @@ def test_preparation_is_fitted_to_the_training_part_alone_and_answers_as_the_pip
     train, test = protocol.random_holdout(truth, 3)
     far = samples.copy()
     far[test] += 100
-    prepared, other = (Prepared.from_split(those, truth, (train, test), kind) for those in (samples, far))
+    prepared, other = (Prepared.from_split(values, truth, (train, test), kind) for values in (samples, far))
     assert prepared.train.shape == (60, width) and np.array_equal(prepared.train, other.train)
     assert not np.allclose(prepared.test, other.test) and np.array_equal(prepared.test_truth, truth[test])
     for name in ("knn", "naive_bayes", "decision_tree"):
@@ -83,8 +83,8 @@ def test_other_scalings_are_of_all_data():
     train, test = protocol.random_holdout(truth, 3)
 
     def both(kind, scaling):
-        one = Prepared.from_split(samples, truth, (train, test), kind, scaling)
-        return np.concatenate([one.train, one.test]), samples[np.concatenate([train, test])]
+        prepared = Prepared.from_split(samples, truth, (train, test), kind, scaling)
+        return np.concatenate([prepared.train, prepared.test]), samples[np.concatenate([train, test])]
 
     standard = (samples - samples.mean(axis=0)) / samples.std(axis=0)
     largest = np.linalg.svd(standard, compute_uv=False)[:12] ** 2 / 80
@@ -121,7 +121,7 @@ def test_splits_depend_on_nothing_but_the_repetition(monkeypatch):
     for samples in (np.zeros((40, 2)), np.ones((40, 3))):
         protocol.prepare(samples, np.repeat([0, 1], 20), 2, 0)
     assert len(drawn) == 24 and not np.array_equal(drawn[0], drawn[6])
-    assert all(np.array_equal(one, other) for one, other in zip(drawn[:12], drawn[12:], strict=True))
+    assert all(np.array_equal(first, other) for first, other in zip(drawn[:12], drawn[12:], strict=True))
 
 
 def test_confusion_counts_the_hold_outs_and_regions_are_none_where_all_touches_overlap(bumps):
@@ -142,8 +142,8 @@ def test_apart_holds_out_a_region_far_from_all_training():
         ((train, test),), ((few, other_test),) = splits["regions"], splits["random_fewer"]
         assert len(test) == 12 and len(train) >= 3 * 8
         for first_of_each in (0, 16, 32):
-            own = [part[(part >= first_of_each) & (part < first_of_each + 16)] for part in (train, test)]
-            assert np.ptp(own[1]) == 3 and np.abs(own[0][:, None] - own[1]).min() == 3
+            parts = [part[(part >= first_of_each) & (part < first_of_each + 16)] for part in (train, test)]
+            assert np.ptp(parts[1]) == 3 and np.abs(parts[0][:, None] - parts[1]).min() == 3
         assert np.array_equal(np.bincount(truth[train]), np.bincount(truth[few]))
         assert not np.isin(few, other_test).any()
 

@@ -47,7 +47,7 @@ def test_joined_numbers_stand_one_touch_after_another():
 
 
 def test_similarity_is_a_template_match_at_zero_lag_however_hard_it_was_pressed():
-    expected = [[match_template(one, other)[0, 0] for other in IMAGES] for one in IMAGES]
+    expected = [[match_template(image, other)[0, 0] for other in IMAGES] for image in IMAGES]
     assert np.allclose(similarity(IMAGES), expected)
     assert np.allclose(similarity(IMAGES[:2], IMAGES[1:]), np.array(expected)[:2, 1:])
     assert np.allclose(similarity(IMAGES, 0.3 * IMAGES + 0.2), expected)
@@ -79,5 +79,5 @@ def test_a_control_of_selection_keeps_as_many_of_each_object():
     labels = np.array(["a"] * 5 + ["b"] * 5)
     kept = np.array([True, True, False, False, False] + [True] * 4 + [False])
     drawn = [as_many(labels, kept, np.random.default_rng(seed)) for seed in range(20)]
-    assert {(one[:5].sum(), one[5:].sum()) for one in drawn} == {(2, 4)}
-    assert len({tuple(one) for one in drawn}) > 5
+    assert {(mask[:5].sum(), mask[5:].sum()) for mask in drawn} == {(2, 4)}
+    assert len({tuple(mask) for mask in drawn}) > 5

@@ -70,14 +70,14 @@ def quadrics_of(mesh, name):
 
 def left_of(added, wedges, surface):
     """(n, 4, 4) quadrics of the disagreement alone: the squares without those of the means."""
-    found = np.zeros((len(added), 4, 4))
+    excess = np.zeros((len(added), 4, 4))
     rows, columns = [0, 0, 0, 1, 1, 2, 0, 1, 2, 3], [0, 1, 2, 1, 2, 2, 3, 3, 3, 3]
-    found[:, rows, columns] = found[:, columns, rows] = added
+    excess[:, rows, columns] = excess[:, columns, rows] = added
     owner = np.zeros(len(wedges.merged), dtype=int)
     owner[wedges.wedge] = surface.corner
     means = wedges.sums[:-1, 1:].reshape(len(owner) - 1, -1, 4)
-    np.add.at(found, owner[:-1], -np.einsum("wka,wkb,w->wab", means, means, 1 / wedges.sums[:-1, 0]))
-    return found
+    np.add.at(excess, owner[:-1], -np.einsum("wka,wkb,w->wab", means, means, 1 / wedges.sums[:-1, 0]))
+    return excess
 
 
 def test_no_face_covers_a_curved_seam():
@@ -97,15 +97,17 @@ def wrong_area(mesh, found):
     share = np.random.default_rng(0).dirichlet([1, 1, 1], 20_000)
     face = np.random.default_rng(1).integers(len(mesh.faces), size=len(share))
     points = np.einsum("ij,ijk->ik", share, mesh.vertices[mesh.faces[face]])
-    there = closest(found, points)[0]
-    return (np.abs(mesh.texture.uv[face].mean(axis=1) - found.texture.uv[there].mean(axis=1)).max(axis=1) > 1.5).mean()
+    nearest = closest(found, points)[0]
+    return (
+        np.abs(mesh.texture.uv[face].mean(axis=1) - found.texture.uv[nearest].mean(axis=1)).max(axis=1) > 1.5
+    ).mean()
 
 
 def test_a_straight_seam_costs_few_vertices():
     # Its vertices merge with each other, each side by itself: else all 47 of them would stay.
     mesh = sheet()
-    found = simplify(charted(mesh, centres(mesh)[:, 0] > 0.5), 500, attributes=UV)
-    on = np.flatnonzero(np.abs(found.vertices[:, 0] - 0.5) < 1e-9)
+    simple = simplify(charted(mesh, centres(mesh)[:, 0] > 0.5), 500, attributes=UV)
+    on = np.flatnonzero(np.abs(simple.vertices[:, 0] - 0.5) < 1e-9)
     assert 2 <= len(on) < 30
 
 
@@ -122,9 +124,9 @@ def test_a_seam_within_one_chart_holds():
 
 def test_coordinates_that_agree_are_no_seam():
     mesh = sheet(24)
-    one, two = charted(mesh, centres(mesh)[:, 0] > 0.5, apart=0.0), charted(mesh, np.zeros(len(mesh.faces), bool))
-    found = [simplify(each, 300, attributes=UV) for each in (one, two)]
-    assert found[0].vertices.tobytes() == found[1].vertices.tobytes()
+    first, second = charted(mesh, centres(mesh)[:, 0] > 0.5, apart=0.0), charted(mesh, np.zeros(len(mesh.faces), bool))
+    simple = [simplify(variant, 300, attributes=UV) for variant in (first, second)]
+    assert simple[0].vertices.tobytes() == simple[1].vertices.tobytes()
 
 
 def test_normals_of_an_edged_solid_come_out_closer():
@@ -133,9 +135,9 @@ def test_normals_of_an_edged_solid_come_out_closer():
 
     def off(found):
         face, share = closest(found, centres(mesh))
-        there = np.einsum("ij,ijk->ik", share, found.vertex_normals[found.faces[face]])
-        here = mesh.vertex_normals[mesh.faces].mean(axis=1)
-        return np.sqrt(((here - there) ** 2).sum(axis=1).mean())
+        normals = np.einsum("ij,ijk->ik", share, found.vertex_normals[found.faces[face]])
+        expected = mesh.vertex_normals[mesh.faces].mean(axis=1)
+        return np.sqrt(((expected - normals) ** 2).sum(axis=1).mean())
 
     assert off(simplify(mesh, 800, attributes={"normals": 0.1})) < off(simplify(mesh, 800)) / 2
 
@@ -151,26 +153,26 @@ def test_what_is_kept_keeps_its_colours():
     mesh = sheet(32, height=0.1)
     colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3))
     mesh = Mesh(mesh.vertices, mesh.faces, colors)
-    found = simplify(mesh, 900, [500], 2, attributes=COLORS)
+    simple = simplify(mesh, 900, [500], 2, attributes=COLORS)
     old = {tuple(place): tuple(color) for place, color in zip(mesh.vertices, mesh.colors, strict=True)}
-    new = {tuple(place): tuple(color) for place, color in zip(found.vertices, found.colors, strict=True)}
-    there = {tuple(place) for place in mesh.vertices[mesh.rings([500], 2)]}
-    assert there <= new.keys() and all(new[place] == old[place] for place in there)
+    new = {tuple(place): tuple(color) for place, color in zip(simple.vertices, simple.colors, strict=True)}
+    places = {tuple(place) for place in mesh.vertices[mesh.rings([500], 2)]}
+    assert places <= new.keys() and all(new[place] == old[place] for place in places)
 
 
 def test_salient_places_weigh_more_in_colours_too():
     mesh = sheet(64, lambda x, y: 127 * (1 + np.sin(40 * x) * np.sin(40 * y)))
     left = mesh.vertices[:, 0] < 0.5
-    found = simplify(mesh, 1500, weights=left.astype(float), attributes=COLORS)
-    inside = (found.vertices[:, 1] > 0) & (found.vertices[:, 1] < 1)
-    assert (inside & (found.vertices[:, 0] < 0.5)).sum() > 1.5 * (inside & (found.vertices[:, 0] > 0.5)).sum()
+    simple = simplify(mesh, 1500, weights=left.astype(float), attributes=COLORS)
+    inside = (simple.vertices[:, 1] > 0) & (simple.vertices[:, 1] < 1)
+    assert (inside & (simple.vertices[:, 0] < 0.5)).sum() > 1.5 * (inside & (simple.vertices[:, 0] > 0.5)).sum()
 
 
 def test_scale_and_place_change_nothing():
     mesh = sheet(32, disc, 0.05)
     large = Mesh(1024 * mesh.vertices, mesh.faces, mesh.colors)
-    one, two = (simplify(each, 400, attributes=COLORS) for each in (mesh, large))
-    assert np.array_equal(one.faces, two.faces) and np.array_equal(one.colors, two.colors)
+    first, second = (simplify(variant, 400, attributes=COLORS) for variant in (mesh, large))
+    assert np.array_equal(first.faces, second.faces) and np.array_equal(first.colors, second.colors)
 
 
 def test_vertices_in_no_face_and_their_attributes_do_not_matter():
@@ -179,9 +181,9 @@ def test_vertices_in_no_face_and_their_attributes_do_not_matter():
     vertices = np.random.default_rng(1).normal(size=(9000, 3))
     colors = np.random.default_rng(2).integers(0, 256, (9000, 3))
     vertices[ids], colors[ids] = small.vertices, small.colors
-    one = simplify(small, 400, [5], attributes=COLORS)
-    two = simplify(Mesh(vertices, ids[small.faces], colors), 400, [ids[5]], attributes=COLORS)
-    assert one.vertices.tobytes() == two.vertices.tobytes() and one.colors.tobytes() == two.colors.tobytes()
+    first = simplify(small, 400, [5], attributes=COLORS)
+    second = simplify(Mesh(vertices, ids[small.faces], colors), 400, [ids[5]], attributes=COLORS)
+    assert first.vertices.tobytes() == second.vertices.tobytes() and first.colors.tobytes() == second.colors.tobytes()
 
 
 def test_faces_without_area_and_all_corners_apart_do_no_harm():
@@ -191,10 +193,10 @@ def test_faces_without_area_and_all_corners_apart_do_no_harm():
     texture = Texture(random.random((len(bad), 3, 2)), np.zeros(len(bad)), (GREY,))  # every edge is a seam
     mesh = Mesh(mesh.vertices, bad, mesh.colors, texture)
     try:
-        found = simplify(mesh, 300, attributes={**COLORS, **UV, "normals": 0.1})
+        simple = simplify(mesh, 300, attributes={**COLORS, **UV, "normals": 0.1})
     except InfeasibleTarget as error:
-        found = simplify(mesh, error.smallest, attributes={**COLORS, **UV, "normals": 0.1})
-    assert len(found.faces) < len(bad) and np.isfinite(found.vertices).all() and np.isfinite(found.texture.uv).all()
+        simple = simplify(mesh, error.smallest, attributes={**COLORS, **UV, "normals": 0.1})
+    assert len(simple.faces) < len(bad) and np.isfinite(simple.vertices).all() and np.isfinite(simple.texture.uv).all()
 
 
 def test_slivers_say_nothing_of_gradients():
@@ -225,13 +227,13 @@ def test_wedges_add_up_after_the_collapses():
     rings = {}
     for w in np.flatnonzero(alive[:-1]):
         rings.setdefault(vertex[w], set()).add(w)
-    for own in rings.values():
-        w = next(iter(own))
+    for members in rings.values():
+        w = next(iter(members))
         ring = [w]
         while wedges.following[ring[-1]] != w:
             ring.append(wedges.following[ring[-1]])
-            assert len(ring) <= len(own)
-        assert set(ring) == own
+            assert len(ring) <= len(members)
+        assert set(ring) == members
     assert max(map(len, rings.values())) == 2  # on the seam
 
 

@@ -27,27 +27,27 @@ def bare(mesh):
 def test_onto_itself_nothing_changes(make):
     mesh = make()
     assert carry(bare(mesh), mesh) is mesh
-    found = carry(mesh, bare(mesh))
-    assert np.abs(found.texture.uv - mesh.texture.uv).max() < 1e-6
-    assert (found.texture.image == mesh.texture.image).all()
-    assert mesh.colors is None or (found.colors == mesh.colors).all()
+    carried = carry(mesh, bare(mesh))
+    assert np.abs(carried.texture.uv - mesh.texture.uv).max() < 1e-6
+    assert (carried.texture.image == mesh.texture.image).all()
+    assert mesh.colors is None or (carried.colors == mesh.colors).all()
 
 
 def test_colours_are_interpolated_where_a_vertex_has_moved():
     mesh = painted_sheet()
     shifted = bare(mesh).vertices[mesh.faces].mean(axis=1)
     corners = Mesh(shifted, np.arange(len(shifted) // 3 * 3).reshape(-1, 3))
-    found = carry(mesh, corners)
-    assert np.abs(found.colors[:, :2] - 200 * shifted[:, :2]).max() < 1.5
+    carried = carry(mesh, corners)
+    assert np.abs(carried.colors[:, :2] - 200 * shifted[:, :2]).max() < 1.5
 
 
 def test_no_face_shows_the_picture_between_the_two_sides_of_a_seam():
     mesh = tube()
-    found = carry(mesh, simplify(bare(mesh), 400))
-    centre = found.vertices[found.faces].mean(axis=1)
+    carried = carry(mesh, simplify(bare(mesh), 400))
+    centre = carried.vertices[carried.faces].mean(axis=1)
     angle = np.arctan2(centre[:, 1], centre[:, 0]) / (2 * np.pi) % 1
-    off = np.abs((found.texture.uv.mean(axis=1)[:, 0] - angle + 0.5) % 1 - 0.5)
-    assert np.ptp(found.texture.uv[..., 0], axis=1).max() < 0.5
+    off = np.abs((carried.texture.uv.mean(axis=1)[:, 0] - angle + 0.5) % 1 - 0.5)
+    assert np.ptp(carried.texture.uv[..., 0], axis=1).max() < 0.5
     assert off.max() < 0.03
 
 
@@ -57,10 +57,10 @@ def test_face_takes_the_chart_under_its_centre_and_no_other():
     right = mesh.vertices[mesh.faces][:, :, 0].mean(axis=1) > 0.5
     uv = mesh.vertices[mesh.faces][:, :, :2] + np.where(right, 10, 0)[:, None, None]
     mesh = Mesh(mesh.vertices, mesh.faces, None, Texture(uv, np.zeros(len(uv)), (GREY,)))
-    found = carry(mesh, simplify(bare(mesh), 260))
-    shifted = found.texture.uv.mean(axis=1)[:, 0] > 5
-    assert (shifted == (found.vertices[found.faces].mean(axis=1)[:, 0] > 0.5)).all()
-    assert (np.ptp(found.texture.uv, axis=1) < 1).all()
+    carried = carry(mesh, simplify(bare(mesh), 260))
+    shifted = carried.texture.uv.mean(axis=1)[:, 0] > 5
+    assert (shifted == (carried.vertices[carried.faces].mean(axis=1)[:, 0] > 0.5)).all()
+    assert (np.ptp(carried.texture.uv, axis=1) < 1).all()
 
 
 def test_charts_end_at_seams_and_at_other_materials():
@@ -107,13 +107,13 @@ def test_cut_border_closed_again_is_the_mesh_itself():
 def test_border_between_materials_stays_in_its_place():
     mesh = striped()
     cut, ids = cut_borders(mesh)
-    found = carry(mesh, close_borders(simplify(bare(cut), 500), cut, ids))
-    areas = [np.bincount(one.texture.image, weights=one.face_areas) for one in (mesh, found)]
+    carried = carry(mesh, close_borders(simplify(bare(cut), 500), cut, ids))
+    areas = [np.bincount(surface.texture.image, weights=surface.face_areas) for surface in (mesh, carried)]
     assert areas[1] == pytest.approx(areas[0], rel=0.01)
-    middle = found.vertices[found.faces][:, :, 0]
+    middle = carried.vertices[carried.faces][:, :, 0]
     inside = (middle > 0.25 - 1e-9).all(axis=1) & (middle < 0.75 + 1e-9).all(axis=1)
-    assert (inside == (found.texture.image == 1)).all()
-    assert (found.edge_counts[1] == 1).sum() == (mesh.edge_counts[1] == 1).sum()
+    assert (inside == (carried.texture.image == 1)).all()
+    assert (carried.edge_counts[1] == 1).sum() == (mesh.edge_counts[1] == 1).sum()
 
 
 @pytest.mark.parametrize(

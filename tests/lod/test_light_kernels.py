@@ -43,6 +43,6 @@ def test_interpreted_kernels_give_the_numbers_of_compiled_ones(faces, monkeypatc
     monkeypatch.setattr(UntilCompiledBeside, "__call__", anew)
     monkeypatch.setattr("haptic_glance.base.jit.is_kept", lambda *_: False)
     monkeypatch.setattr(kept.beside, "is_set", lambda: True)
-    for one, two in zip(answers(faces), compiled, strict=True):
-        np.testing.assert_array_equal(one, two)
+    for first, second in zip(answers(faces), compiled, strict=True):
+        np.testing.assert_array_equal(first, second)
     assert len(used) == 7

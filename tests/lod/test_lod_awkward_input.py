@@ -82,7 +82,7 @@ def test_any_kept_set_and_any_target_give_a_sound_mesh_or_a_reason(name, data):
     rings = np.array([data.draw(st.integers(-1, 4), "rings") for _ in keep], dtype=int)
     faces, shrink = data.draw(st.integers(1, total), "faces"), data.draw(st.booleans(), "shrink")
     try:
-        found = simplify(mesh, faces, keep, rings, shrink=shrink)
+        simple = simplify(mesh, faces, keep, rings, shrink=shrink)
     except InfeasibleTarget as error:
         assert error.smallest > faces
         return
@@ -92,9 +92,9 @@ def test_any_kept_set_and_any_target_give_a_sound_mesh_or_a_reason(name, data):
     if shrink:
         rings = shrunk_rings(mesh, faces, keep, rings)
     if faces < total:
-        check_sound(mesh, found, faces, keep, rings)
+        check_sound(mesh, simple, faces, keep, rings)
     else:
-        assert found is mesh
+        assert simple is mesh
 
 
 @pytest.mark.parametrize("name", MESHES)
@@ -115,9 +115,9 @@ def normals_up(mesh):
 
 def test_faces_without_area_do_no_harm():
     mesh = MESHES["faces without area"]
-    found = simplify(mesh, 160)
-    assert len(found.faces) <= 160 and not faults(found).added(faults(mesh))
-    on_ball = np.linalg.norm(found.vertices, axis=1)
+    simple = simplify(mesh, 160)
+    assert len(simple.faces) <= 160 and not faults(simple).added(faults(mesh))
+    on_ball = np.linalg.norm(simple.vertices, axis=1)
     assert np.abs(on_ball[on_ball < 1] - 0.5).max() < 0.03
 
 
@@ -125,8 +125,8 @@ def test_slivers_within_the_surface_do_no_harm():
     mesh = sheet(15)
     row = (np.arange(len(mesh.vertices)) // 16) == 7
     thin = Mesh(mesh.vertices + np.c_[row * (1 / 15 - 1e-9), np.zeros((len(row), 2))], mesh.faces)  # next to row 8
-    found = simplify(thin, 150)
-    assert normals_up(found).min() > 0.999 and found.face_areas.sum() == pytest.approx(1)
+    simple = simplify(thin, 150)
+    assert normals_up(simple).min() > 0.999 and simple.face_areas.sum() == pytest.approx(1)
 
 
 @pytest.mark.parametrize("faces", [400, 90])
@@ -136,11 +136,11 @@ def test_no_face_of_a_flat_sheet_turns_over(faces):
     x, y = mesh.vertices[mesh.faces].mean(axis=1)[:, :2].T
     comb = Mesh(mesh.vertices, mesh.faces[(y < 0.4) | (x * 23 % 6 < 3)])
     try:
-        found = simplify(comb, faces)
+        simple = simplify(comb, faces)
     except InfeasibleTarget as error:
-        found = simplify(comb, error.smallest)
-    assert (normals_up(found) > 0.999).all()
-    assert found.face_areas.sum() == pytest.approx(comb.face_areas.sum())
+        simple = simplify(comb, error.smallest)
+    assert (normals_up(simple) > 0.999).all()
+    assert simple.face_areas.sum() == pytest.approx(comb.face_areas.sum())
 
 
 def test_a_patch_of_reversed_faces_stays_whole():
@@ -148,12 +148,12 @@ def test_a_patch_of_reversed_faces_stays_whole():
     mesh = sheet(19)
     patch = (np.abs(mesh.vertices[mesh.faces].mean(axis=1)[:, :2] - 0.5) < 0.2).all(axis=1)
     faces = np.where(patch[:, None], mesh.faces[:, ::-1], mesh.faces)
-    found = simplify(Mesh(mesh.vertices, faces), 400)
-    down = normals_up(found) < 0
-    assert found.face_areas[down].sum() == pytest.approx(mesh.face_areas[patch].sum())
-    assert found.face_areas.sum() == pytest.approx(1) and len(found.faces) <= 400
+    simple = simplify(Mesh(mesh.vertices, faces), 400)
+    down = normals_up(simple) < 0
+    assert simple.face_areas[down].sum() == pytest.approx(mesh.face_areas[patch].sum())
+    assert simple.face_areas.sum() == pytest.approx(1) and len(simple.faces) <= 400
     rim = np.unique(mesh.faces[patch])[np.isin(np.unique(mesh.faces[patch]), mesh.faces[~patch])]
-    assert {tuple(place) for place in mesh.vertices[rim]} <= {tuple(place) for place in found.vertices}
+    assert {tuple(place) for place in mesh.vertices[rim]} <= {tuple(place) for place in simple.vertices}
 
 
 def test_a_vertex_kept_on_one_side_of_a_seam_is_kept_on_both():
@@ -163,8 +163,8 @@ def test_a_vertex_kept_on_one_side_of_a_seam_is_kept_on_both():
     cut = Mesh(np.r_[mesh.vertices, mesh.vertices], np.where(right[:, None], mesh.faces + n, mesh.faces))
     on_seam = 8 * 17 + 8
     for kept in (on_seam, on_seam + n):
-        found = simplify(cut, 260, [kept], 0)
-        assert (found.vertices == mesh.vertices[on_seam]).all(axis=1).sum() == 2
+        simple = simplify(cut, 260, [kept], 0)
+        assert (simple.vertices == mesh.vertices[on_seam]).all(axis=1).sum() == 2
 
 
 RADIUS = 0.3
@@ -183,10 +183,10 @@ def spiky_ball(length, width):
 
 def test_no_tip_is_cut_by_more_than_a_thirtieth_unless_the_target_leaves_too_few_faces():
     mesh, tips = spiky_ball(2.0, 0.15)
-    found = simplify(mesh, 300)
-    assert len(found.faces) == 300
-    assert vertex_errors(found, mesh)[tips].max() < RADIUS * 2 / 30  # the planes of a tip all run along it
-    assert metro(mesh, found)["mean"] < 0.01
+    simple = simplify(mesh, 300)
+    assert len(simple.faces) == 300
+    assert vertex_errors(simple, mesh)[tips].max() < RADIUS * 2 / 30  # the planes of a tip all run along it
+    assert metro(mesh, simple)["mean"] < 0.01
     assert len(simplify(mesh, 20).faces) == 20
 
 

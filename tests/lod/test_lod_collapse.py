@@ -52,13 +52,15 @@ def spoils(faces, before, v, other, place, turn, shape, fold, cut):
     after[v] = place
     moved = [face for face in faces if v in face and other not in face]
     for face in moved:
-        one, two = normal(face, before), normal(face, after)
-        if cosine(one, two) < turn:
+        first, second = normal(face, before), normal(face, after)
+        if cosine(first, second) < turn:
             return True
         if quality(face, after) < min(shape, quality(face, before) * (1 + 1e-12)):
             return True
         for beside in faces:
-            if len({*face} & {*beside}) == 2 and (beside in moved or (v not in beside and cosine(one, two) < 0.98)):
+            if len({*face} & {*beside}) == 2 and (
+                beside in moved or (v not in beside and cosine(first, second) < 0.98)
+            ):
                 folds = [cosine(normal(face, places), normal(beside, places)) < fold for places in (before, after)]
                 if folds == [False, True]:
                     return True
@@ -74,8 +76,8 @@ def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
     """Whether the edge i-j may collapse to a place."""
     edge, near = {i, j}, {i, j} | neighbours(faces, i) | neighbours(faces, j)
     faces = [face for face in faces if near & {*face}]
-    gone = [face for face in faces if edge <= {*face}]
-    left = [tuple(i if k == j else k for k in face) for face in faces if face not in gone]
+    removed = [face for face in faces if edge <= {*face}]
+    left = [tuple(i if k == j else k for k in face) for face in faces if face not in removed]
     if len(neighbours(faces, i) & neighbours(faces, j)) != 2 or len({frozenset(face) for face in left}) < len(left):
         return False
     for v, other in ((i, j), (j, i)):
@@ -83,11 +85,11 @@ def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
             return False
     after = places.copy()
     after[[i, j]] = place
-    for face in gone:  # the two beside it become neighbours
-        beside = [one for one in faces if one not in gone and len({*face} & {*one}) == 2]
-        one, two = (normal(face, after) for face in beside)
-        folded = any(cosine(normal(face, places), normal(one, places)) < fold for one in beside)
-        if cosine(one, two) < fold and not folded:
+    for face in removed:  # the two beside it become neighbours
+        beside = [neighbour for neighbour in faces if neighbour not in removed and len({*face} & {*neighbour}) == 2]
+        neighbour, opposite = (normal(face, after) for face in beside)
+        folded = any(cosine(normal(face, places), normal(neighbour, places)) < fold for neighbour in beside)
+        if cosine(neighbour, opposite) < fold and not folded:
             return False
     return True
 
@@ -107,9 +109,9 @@ def test_a_collapse_keeps_the_topology_and_spoils_no_face(limits):
             middle = (places[i] + places[j]) / 2 + random.normal(0, 0.02, 3)
             place = places[i] if locked[i] else places[j] if locked[j] else middle
             given = surface.corner, surface.opposite, surface.start, locked, places, mark, last, h
-            found = may(*given, *place, *limits)
-            assert found == allowed(faces, places, i, j, locked, place, *limits), (seed, h)
-            answers.append(found)
+            answer = may(*given, *place, *limits)
+            assert answer == allowed(faces, places, i, j, locked, place, *limits), (seed, h)
+            answers.append(answer)
     assert 0.1 < np.mean(answers) < 0.9
 
 
@@ -122,9 +124,9 @@ def test_no_edge_of_a_tetrahedron_or_beside_a_vertex_of_three_faces_collapses(ap
     locked, mark, last = np.ones(5, dtype=bool), np.zeros(5, dtype=np.int32), np.zeros(1, dtype=np.int64)
     for h in range(len(surface.corner)):  # nothing moves: only the topology speaks
         given = surface.corner, surface.opposite, surface.start, locked, surface.position, mark, last, h
-        found = interpreted(collapse.may_collapse)(*given, 0.0, 0.0, 0.0, 0.01, 0.0, -2.0, np.inf)
+        answer = interpreted(collapse.may_collapse)(*given, 0.0, 0.0, 0.0, 0.01, 0.0, -2.0, np.inf)
         ends = source[surface.corner[[h, surface.opposite[h]]]]
-        assert found == (apex == 4 and max(ends) > 2)  # an apex may go down to the other three
+        assert answer == (apex == 4 and max(ends) > 2)  # an apex may go down to the other three
 
 
 def test_buckets_halve_each_doubling_of_the_cost():
@@ -152,14 +154,14 @@ def plane_sums(mesh, weight, place, vertices):
 def test_the_cost_of_a_collapse_is_the_least_sum_of_squared_distances_to_the_planes_of_both_ends():
     mesh, random = rough_ball(3), np.random.default_rng(4)
     weight = random.uniform(0.5, 2, len(mesh.vertices))
-    found = np.zeros((len(mesh.vertices), 10))
-    interpreted(quadrics._add_planes)(mesh.vertices, mesh.faces.ravel(), weight, found)
+    quadric = np.zeros((len(mesh.vertices), 10))
+    interpreted(quadrics._add_planes)(mesh.vertices, mesh.faces.ravel(), weight, quadric)
     for a, b in mesh.faces[:, :2]:
-        error, *place = interpreted(quadrics.best_place)(found, mesh.vertices, a, b)
+        error, *place = interpreted(quadrics.best_place)(quadric, mesh.vertices, a, b)
         assert error == pytest.approx(plane_sums(mesh, weight, np.array(place), (a, b)), abs=1e-12)
-        assert error == pytest.approx(interpreted(quadrics.error_at)(found, a, b, *place), abs=1e-12)
+        assert error == pytest.approx(interpreted(quadrics.error_at)(quadric, a, b, *place), abs=1e-12)
         middle, length = mesh.vertices[[a, b]].mean(axis=0), np.linalg.norm(mesh.vertices[a] - mesh.vertices[b])
-        q = found[a] + found[b]
+        q = quadric[a] + quadric[b]
         best = -np.linalg.solve(q[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]], q[6:9])
         within = np.linalg.norm(best - middle) <= 2 * length
         assert place == pytest.approx(best if within else middle, abs=1e-9)
@@ -210,7 +212,7 @@ def test_the_fit_moves_each_vertex_by_the_pull_of_the_targets_merged_into_it():
     for owner, point, size in targets[:: len(targets) // samples]:
         owner = {5: 20, 9: 20}.get(owner, owner)
         around = [np.roll(face, -int(np.flatnonzero(face == owner)[0])) for face in faces if owner in face]
-        parts, face = min(((*nearest_of(start[face], point), face) for face in around), key=lambda one: one[0])[1:]
+        parts, face = min(((*nearest_of(start[face], point), face) for face in around), key=lambda entry: entry[0])[1:]
         n = normal(face, start)
         off = (point - start[owner]) @ n / (n @ n) * n
         for v, part in zip(face, parts, strict=True):
@@ -248,5 +250,5 @@ def test_edges_collapse_in_the_order_of_their_cost_until_the_faces_are_few_enoug
     alive = surface.corner >= 0
     assert left == target == alive.sum() / 3 and len(costs) == (320 - target) / 2
     assert set(range(3)) <= set(surface.corner[alive].tolist())  # locked vertices stay
-    own, least_of_all = np.array(costs).T
-    assert (own <= 1.5 * least_of_all + 1e-12).mean() > 0.9  # one bucket: others were refused before
+    paid, least_of_all = np.array(costs).T
+    assert (paid <= 1.5 * least_of_all + 1e-12).mean() > 0.9  # one bucket: others were refused before

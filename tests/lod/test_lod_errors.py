@@ -22,8 +22,8 @@ def square(height=0.0, side=1.0):
 
 
 def test_parallel_planes_are_their_distance_apart():
-    found = metro(square(), square(0.25), 500)
-    assert found == pytest.approx(dict.fromkeys(("mean", "rms", "max"), 0.25 / np.sqrt(2)), rel=1e-12)
+    errors = metro(square(), square(0.25), 500)
+    assert errors == pytest.approx(dict.fromkeys(("mean", "rms", "max"), 0.25 / np.sqrt(2)), rel=1e-12)
 
 
 def test_larger_of_both_directions_counts():
@@ -50,10 +50,10 @@ def test_agrees_with_pymeshlab_within_sampling_error():
                 maxdist=pymeshlab.PercentageValue(50),
             )
         )  # fmt: skip
-    found = metro(SPHERE, simple, 20_000)
+    errors = metro(SPHERE, simple, 20_000)
     for ours, name in (("mean", "mean"), ("rms", "RMS")):
-        assert found[ours] * SPHERE.diagonal == pytest.approx(max(t[name] for t in theirs), rel=0.02)
-    assert found["max"] * SPHERE.diagonal >= 0.95 * max(t["max"] for t in theirs)
+        assert errors[ours] * SPHERE.diagonal == pytest.approx(max(t[name] for t in theirs), rel=0.02)
+    assert errors["max"] * SPHERE.diagonal >= 0.95 * max(t["max"] for t in theirs)
 
 
 def test_samples_are_even_by_area():
@@ -91,12 +91,12 @@ def test_distances_agree_with_point_cloud_utils_and_weights_name_the_nearest_pla
     points = spread * mesh.vertices[np.arange(300) % len(mesh.vertices)] + 0.02 * noise
     expected, _, _ = point_cloud_utils.closest_points_on_mesh(points, mesh.vertices, mesh.faces)
     surface = SurfaceIndex(mesh)
-    found, faces = surface.nearest(points)
-    assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    distances, faces = surface.nearest(points)
+    assert distances == pytest.approx(expected, rel=1e-9, abs=1e-12)
     weights = surface.weights(points, faces)  # of the corners of the face that is named
     assert weights.min() >= 0 and weights.sum(axis=1) == pytest.approx(np.ones(300))
     place = np.einsum("ij,ijk->ik", weights, mesh.vertices[mesh.faces[faces]])
-    assert np.linalg.norm(points - place, axis=1) == pytest.approx(found, rel=1e-6, abs=1e-9)
+    assert np.linalg.norm(points - place, axis=1) == pytest.approx(distances, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("height", [1e-2, 1e-8, 1e-13, 0.0])
@@ -108,8 +108,8 @@ def test_needles_are_as_far_as_their_sides_at_most_their_height_less(height, foo
     places = np.stack([along.ravel(), np.zeros(36), up.ravel()], axis=1)
     low, high = min(foot, 0), max(foot, 1)
     expected = np.hypot(places[:, 0] - places[:, 0].clip(low, high), places[:, 2])
-    found, _ = SurfaceIndex(Mesh(corners, [[0, 1, 2]])).nearest(places @ turn + 0.1)
-    assert np.abs(found - expected).max() <= height + 1e-12
+    distances, _ = SurfaceIndex(Mesh(corners, [[0, 1, 2]])).nearest(places @ turn + 0.1)
+    assert np.abs(distances - expected).max() <= height + 1e-12
 
 
 @pytest.mark.slow
@@ -127,9 +127,9 @@ def test_long_slanted_faces_do_not_fill_the_grid():
 
 def test_vertex_errors_are_distances_at_the_vertices():
     grown = Mesh(1.1 * SPHERE.vertices, SPHERE.faces)
-    found = vertex_errors(SPHERE, grown)
-    assert found.shape == (len(grown.vertices),)
-    assert found == pytest.approx(np.full(len(found), 0.05), rel=0.01)
+    errors = vertex_errors(SPHERE, grown)
+    assert errors.shape == (len(grown.vertices),)
+    assert errors == pytest.approx(np.full(len(errors), 0.05), rel=0.01)
     assert vertex_errors(grown, SPHERE).max() <= 0.05
     assert vertex_errors(SPHERE, SPHERE).max() < 1e-15
 
@@ -147,12 +147,12 @@ def test_concentric_boxes_have_the_known_errors():
     # From the inner box every point is 0.1 from the outer; an outer point over an edge or corner is farther.
     box = trimesh.creation.box((1, 1, 1))
     inner, outer = Mesh(box.vertices, box.faces), Mesh(1.2 * box.vertices, box.faces)
-    found = metro(inner, outer, 20_000)
+    errors = metro(inner, outer, 20_000)
     over = np.clip(np.abs((np.arange(1000) + 0.5) / 1000 * 1.2 - 0.6) - 0.5, 0, None)
     squares = 0.01 + over[:, None] ** 2 + over**2
-    assert found["mean"] == pytest.approx(np.sqrt(squares).mean() / np.sqrt(3), rel=2e-3)
-    assert found["rms"] == pytest.approx(np.sqrt(squares.mean()) / np.sqrt(3), rel=2e-3)
-    assert found["max"] == pytest.approx(0.1, rel=1e-9)
+    assert errors["mean"] == pytest.approx(np.sqrt(squares).mean() / np.sqrt(3), rel=2e-3)
+    assert errors["rms"] == pytest.approx(np.sqrt(squares.mean()) / np.sqrt(3), rel=2e-3)
+    assert errors["max"] == pytest.approx(0.1, rel=1e-9)
 
 
 UPPER = (SPHERE.vertices[:, 2] > 0.25).astype(float)
@@ -167,9 +167,9 @@ def dented(side):
 
 
 def test_equal_saliency_is_metro_and_the_seed_decides():
-    found = surface_errors(SPHERE, dented(1), {"salient": np.full(len(UPPER), 7.0)}, 2000, seed=3)
+    errors = surface_errors(SPHERE, dented(1), {"salient": np.full(len(UPPER), 7.0)}, 2000, seed=3)
     known = metro(SPHERE, dented(1), 2000, seed=3)
-    assert found.pop("salient") == pytest.approx(known["mean"], rel=1e-12) and found == known
+    assert errors.pop("salient") == pytest.approx(known["mean"], rel=1e-12) and errors == known
     assert known != metro(SPHERE, dented(1), 2000, seed=4)
     assert max(surface_errors(SPHERE, SPHERE, {"salient": UPPER}, 1000).values()) < 1e-15
 

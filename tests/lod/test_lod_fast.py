@@ -32,34 +32,34 @@ def test_islands_of_frozen_faces_close_together_all_survive():
     mesh = bumpy()
     keep = np.random.default_rng(1).choice(len(mesh.vertices), 40, replace=False)
     frozen = frozen_faces(mesh, keep, 2)
-    found = collapse(mesh, int(frozen.sum()) + 700, frozen)
+    simple = collapse(mesh, int(frozen.sum()) + 700, frozen)
     assert rows(Mesh(mesh.vertices, mesh.faces[frozen])) <= {np.roll(f.reshape(3, 3), k, axis=0).tobytes()
-        for f in map(np.frombuffer, rows(found)) for k in range(3)}  # fmt: skip
-    assert topology(found.faces) == topology(mesh.faces)
+        for f in map(np.frombuffer, rows(simple)) for k in range(3)}  # fmt: skip
+    assert topology(simple.faces) == topology(mesh.faces)
 
 
 def test_the_fit_leaves_flat_faces_and_edges_of_a_box_where_they_are():
     mesh = subdivided_box()
     for faces in (800, 60):
-        found = collapse(mesh, faces, nothing(mesh))
-        assert metro(mesh, found, 2000)["max"] < 1e-5 and faults(found).degenerate == 0
+        simple = collapse(mesh, faces, nothing(mesh))
+        assert metro(mesh, simple, 2000)["max"] < 1e-5 and faults(simple).degenerate == 0
 
 
 def test_a_plate_folded_onto_itself_can_be_simplified():
     # Pairs of faces that are folded already, as where a lid lies on a pot, must not stop the collapses around them.
     mesh = subdivided_box(4)
     flat = Mesh(mesh.vertices * [1, 1, 1e-9], mesh.faces)
-    found = collapse(flat, 600, nothing(flat))
-    assert metro(flat, found, 2000)["mean"] < 1e-4
-    assert faults(found).folded <= faults(flat).folded
+    simple = collapse(flat, 600, nothing(flat))
+    assert metro(flat, simple, 2000)["mean"] < 1e-4
+    assert faults(simple).folded <= faults(flat).folded
 
 
 def fan(surface, vertex):
     """The half-edges that leave a vertex, found from the one that is named as its first."""
-    found = [int(surface.start[vertex])]
-    while (h := int(surface.opposite[before.py_func(found[-1])])) >= 0 and h != found[0]:
-        found.append(h)
-    return found
+    leaving = [int(surface.start[vertex])]
+    while (h := int(surface.opposite[before.py_func(leaving[-1])])) >= 0 and h != leaving[0]:
+        leaving.append(h)
+    return leaving
 
 
 def test_the_whole_fan_of_a_vertex_is_found_after_any_collapses():
@@ -81,8 +81,8 @@ def attempts(monkeypatch, *results):
 
     def attempt(*arguments):
         calls.append(arguments)
-        found = results[min(len(calls), len(results)) - 1]
-        return found, len(found.faces)
+        answer = results[min(len(calls), len(results)) - 1]
+        return answer, len(answer.faces)
 
     monkeypatch.setattr(fast, "_attempt", attempt)
     return calls
@@ -126,58 +126,60 @@ def rippled():
 
 def test_blocks_join_again_without_a_crack(small):
     mesh = rippled()
-    found, _, _ = blocks.thinned(mesh, 0.1, nothing(mesh), None)
-    assert len(found.faces) < 0.7 * len(mesh.faces) and found.watertight
-    assert topology(found.faces) == topology(mesh.faces) and faults(found) == faults(mesh)
+    thin, _, _ = blocks.thinned(mesh, 0.1, nothing(mesh), None)
+    assert len(thin.faces) < 0.7 * len(mesh.faces) and thin.watertight
+    assert topology(thin.faces) == topology(mesh.faces) and faults(thin) == faults(mesh)
 
 
 def test_what_nothing_is_taken_from_comes_back_itself(small):
     mesh = rippled()
-    found, frozen, weights = blocks.thinned(mesh, 1.0, nothing(mesh), np.arange(len(mesh.vertices)) + 1.0)
+    thin, frozen, weights = blocks.thinned(mesh, 1.0, nothing(mesh), np.arange(len(mesh.vertices)) + 1.0)
     ids = (weights - 1).astype(int)
-    assert found.vertices == pytest.approx(mesh.vertices[ids], abs=1e-12) and not frozen.any()
-    assert sorted(ids[found.faces].tolist()) == sorted(mesh.faces.tolist())
+    assert thin.vertices == pytest.approx(mesh.vertices[ids], abs=1e-12) and not frozen.any()
+    assert sorted(ids[thin.faces].tolist()) == sorted(mesh.faces.tolist())
 
 
 def test_the_result_is_as_good_as_of_the_whole(small):
     mesh = rippled()
-    whole, found = collapse(mesh, 500, nothing(mesh)), blocks.collapse(mesh, 500, nothing(mesh))
-    assert len(found.faces) == len(whole.faces) == 500 and faults(found) == faults(mesh)
-    assert metro(mesh, found)["mean"] < 1.15 * metro(mesh, whole)["mean"]
+    whole, joined = collapse(mesh, 500, nothing(mesh)), blocks.collapse(mesh, 500, nothing(mesh))
+    assert len(joined.faces) == len(whole.faces) == 500 and faults(joined) == faults(mesh)
+    assert metro(mesh, joined)["mean"] < 1.15 * metro(mesh, whole)["mean"]
 
 
 def test_frozen_faces_and_the_boundary_stay(small):
     mesh = sheet(60, height=0.05)
     frozen = nothing(mesh)
     frozen[1000:1040] = True
-    found, still, _ = blocks.thinned(mesh, 0.1, frozen, None)
-    here, there = found.vertices[found.faces[still]], mesh.vertices[mesh.faces[frozen]]
-    assert sorted(map(bytes, here)) == sorted(map(bytes, there))
+    thin, still, _ = blocks.thinned(mesh, 0.1, frozen, None)
+    corners, expected = thin.vertices[thin.faces[still]], mesh.vertices[mesh.faces[frozen]]
+    assert sorted(map(bytes, corners)) == sorted(map(bytes, expected))
     final = simplify(mesh, 900, [1800], 2)
     rim = (np.abs(mesh.vertices[:, :2] - 0.5) == 0.5).any(axis=1)
     assert set(map(bytes, mesh.vertices[rim | mesh.rings([1800], 2)])) <= set(map(bytes, final.vertices))
 
 
 def test_copies_at_one_place_stay_apart(small):
-    one = sheet(40)
-    two = Mesh(np.r_[one.vertices, one.vertices], np.r_[one.faces, one.faces + len(one.vertices)])
-    found, _, _ = blocks.thinned(two, 0.1, nothing(two), None)
-    assert topology(found.faces) == topology(two.faces) and topology(found.faces).components == 2
+    layer = sheet(40)
+    two = Mesh(np.r_[layer.vertices, layer.vertices], np.r_[layer.faces, layer.faces + len(layer.vertices)])
+    thin, _, _ = blocks.thinned(two, 0.1, nothing(two), None)
+    assert topology(thin.faces) == topology(two.faces) and topology(thin.faces).components == 2
 
 
 def test_the_number_of_cores_changes_nothing(small, monkeypatch):
-    mesh, found = rippled(), []
+    mesh, meshes = rippled(), []
     for cores in (1, 3):
         monkeypatch.setattr(blocks, "cpu_count", lambda cores=cores: cores)
-        found.append(simplify(mesh, 500, weights=np.linspace(0, 1, len(mesh.vertices))))
-    assert found[0].vertices.tobytes() == found[1].vertices.tobytes() and np.array_equal(found[0].faces, found[1].faces)
+        meshes.append(simplify(mesh, 500, weights=np.linspace(0, 1, len(mesh.vertices))))
+    assert meshes[0].vertices.tobytes() == meshes[1].vertices.tobytes() and np.array_equal(
+        meshes[0].faces, meshes[1].faces
+    )
 
 
 def test_weights_reach_the_blocks(small):
     mesh = rippled()
     left = mesh.vertices[:, 0] < 0
-    found, _, _ = blocks.thinned(mesh, 0.1, nothing(mesh), np.where(left, 31.0, 1.0))
-    off = vertex_errors(found, mesh)
+    thin, _, _ = blocks.thinned(mesh, 0.1, nothing(mesh), np.where(left, 31.0, 1.0))
+    off = vertex_errors(thin, mesh)
     assert off[left].mean() < 0.8 * off[~left].mean()
 
 

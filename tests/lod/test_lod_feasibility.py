@@ -98,17 +98,17 @@ def test_the_count_that_an_infeasible_target_names_can_be_had(make, keep, shrink
     mesh = make()
     with pytest.raises(InfeasibleTarget) as caught:
         simplify(mesh, 2, keep, 2, shrink=shrink)
-    found = simplify(mesh, caught.value.smallest, keep, 2, shrink=shrink)
-    assert len(found.faces) <= caught.value.smallest
-    assert topology(found.faces) == topology(mesh.faces)
-    assert not faults(found).added(faults(mesh))
+    simple = simplify(mesh, caught.value.smallest, keep, 2, shrink=shrink)
+    assert len(simple.faces) <= caught.value.smallest
+    assert topology(simple.faces) == topology(mesh.faces)
+    assert not faults(simple).added(faults(mesh))
 
 
 def test_neighbourhoods_shrink_until_the_backend_gives_in(monkeypatch):
-    mesh, keep, asked = Mesh(SPHERE.vertices, SPHERE.faces), np.arange(0, 640, 80), []
+    mesh, keep, requests = Mesh(SPHERE.vertices, SPHERE.faces), np.arange(0, 640, 80), []
 
     def stubborn(mesh, faces, frozen, weights):
-        asked.append(int(frozen.sum()))
+        requests.append(int(frozen.sum()))
         if frozen.sum() > 40:
             raise InfeasibleTarget(faces, faces + 50, int(frozen.sum()))
         return mesh
@@ -116,25 +116,27 @@ def test_neighbourhoods_shrink_until_the_backend_gives_in(monkeypatch):
     monkeypatch.setitem(BACKENDS, "fast", stubborn)
     assert np.array_equal(simplify(mesh, 900, keep, 2, shrink=True).vertices, mesh.vertices)
     assert (
-        asked == sorted(asked, reverse=True) and asked[0] == frozen_faces(mesh, keep, 2).sum() and 0 < asked[-1] <= 40
+        requests == sorted(requests, reverse=True)
+        and requests[0] == frozen_faces(mesh, keep, 2).sum()
+        and 0 < requests[-1] <= 40
     )
 
 
 def test_the_smallest_count_is_searched_for_once_for_all_refused_targets(monkeypatch):
-    mesh, asked = Mesh(SPHERE.vertices, SPHERE.faces), []
+    mesh, requests = Mesh(SPHERE.vertices, SPHERE.faces), []
 
     def stubborn(mesh, faces, frozen, weights):
-        asked.append((faces, int(frozen.sum())))
+        requests.append((faces, int(frozen.sum())))
         if faces < 200 + frozen.sum():
             raise InfeasibleTarget(faces, max(faces + 10, 180), int(frozen.sum()))
         return Mesh(mesh.vertices, mesh.faces[: faces - 5])
 
     monkeypatch.setitem(BACKENDS, "fast", stubborn)
     for target, keep, calls, smallest in ((100, [], 4, 195), (120, [], 1, 195), (100, [0], 5, 205)):
-        asked.clear()
+        requests.clear()
         with pytest.raises(InfeasibleTarget) as caught:
             simplify(mesh, target, keep, 1)
-        assert (len(asked), caught.value.smallest) == (calls, smallest)
+        assert (len(requests), caught.value.smallest) == (calls, smallest)
 
 
 def test_meshes_out_of_range_are_named():

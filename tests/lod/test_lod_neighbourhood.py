@@ -57,8 +57,8 @@ def test_area_takes_as_many_rings_as_fit():
 def test_points_of_one_region_share_its_area():
     saliency = disc(6)
     alone = neighbourhoods(EVEN, [MIDDLE], "area", saliency)
-    both = neighbourhoods(EVEN, [MIDDLE, MIDDLE + 2], "area", saliency)
-    assert both[0] == both[1] < alone[0]
+    pair = neighbourhoods(EVEN, [MIDDLE, MIDDLE + 2], "area", saliency)
+    assert pair[0] == pair[1] < alone[0]
 
 
 def test_outside_all_regions_and_where_there_is_none_a_point_keeps_one_ring():

@@ -18,15 +18,15 @@ SMALL = (60, 80)
 
 def test_errors_grow_as_faces_go_from_none():
     assert perceptual(RING, RING, FOUR[:1], SMALL) == {"ssim": 0.0, "dlap": 0.0, "dnor": 0.0}
-    one, other = (perceptual(RING, simplify(RING, faces), FOUR[:1], SMALL) for faces in (800, 100))
-    assert all(0 < one[name] < other[name] for name in ("ssim", "dlap", "dnor"))
+    first, other = (perceptual(RING, simplify(RING, faces), FOUR[:1], SMALL) for faces in (800, 100))
+    assert all(0 < first[name] < other[name] for name in ("ssim", "dlap", "dnor"))
 
 
 def test_errors_are_means_over_the_views():
     reference, other = (take_pictures(mesh, FOUR[:2], SMALL) for mesh in (RING, simplify(RING, 300)))
     alone = [picture_errors(reference[[k]], other[[k]]) for k in range(2)]
-    both = picture_errors(reference, other)
-    assert both == pytest.approx({name: (alone[0][name] + alone[1][name]) / 2 for name in both}, rel=1e-12)
+    errors = picture_errors(reference, other)
+    assert errors == pytest.approx({name: (alone[0][name] + alone[1][name]) / 2 for name in errors}, rel=1e-12)
     assert alone[0]["ssim"] == ssim_error(reference[0], other[0]) > 0
 
 
@@ -110,8 +110,8 @@ def test_distances_are_those_of_plenoptic(case):
 
 
 def test_distances_are_a_symmetric_zero_for_equal_pictures():
-    one, other = pair("disc", 60, 80)
-    assert not distances(one, one).any()
-    assert (distances(one, other) == distances(other, one)).all() and (distances(one, other) > 0).all()
+    first, other = pair("disc", 60, 80)
+    assert not distances(first, first).any()
+    assert (distances(first, other) == distances(other, first)).all() and (distances(first, other) > 0).all()
     smallest = distances(np.zeros((11, 12)), np.eye(11, 12) * 255)
     assert (smallest > 0).all() and np.isfinite(smallest).all()

@@ -19,12 +19,12 @@ from .conftest import ball, sheet, together, torus
 
 def as_triangles(mesh, faces=slice(None)):
     """The set of faces as coordinates, first corner the smallest, so that windings are compared too."""
-    found = set()
+    triangles = set()
     for triangle in mesh.vertices[mesh.faces[faces]].tolist():
         corners = [tuple(corner) for corner in triangle]
         turn = corners.index(min(corners))
-        found.add(tuple(corners[turn:] + corners[:turn]))
-    return found
+        triangles.add(tuple(corners[turn:] + corners[:turn]))
+    return triangles
 
 
 @pytest.mark.parametrize("mesh", [ball(), torus(), sheet(39, height=0.1)], ids=["ball", "torus", "sheet"])
@@ -50,8 +50,10 @@ def test_many_nonmanifold_vertices_do_not_hold_the_surface_up():
         if not inner.adjacency[[vertex]][:, pinched].nnz:
             pinched.append(vertex)
     outer = Mesh(inner.vertices * 1.2, inner.faces)
-    both = together(inner, outer)
-    pair = Mesh(both.vertices, np.where(np.isin(both.faces, np.add(pinched, 642)), both.faces - 642, both.faces))
+    nested = together(inner, outer)
+    pair = Mesh(
+        nested.vertices, np.where(np.isin(nested.faces, np.add(pinched, 642)), nested.faces - 642, nested.faces)
+    )
     simple = simplify(pair, 250)
     assert len(simple.faces) == 250
     assert topology(simple.faces) == topology(pair.faces)

@@ -56,27 +56,27 @@ def cell(rows, method, target):
 
 def test_a_feasible_cell_has_its_mesh_and_all_metrics(rows):
     folder, rows = rows
-    found = cell(rows, "glance", "50%")
-    assert set(found) >= {"faces", "metro_mean", "metro_rms", "metro_max", "ssim_error", "salient_error"}
+    metrics = cell(rows, "glance", "50%")
+    assert set(metrics) >= {"faces", "metro_mean", "metro_rms", "metro_max", "ssim_error", "salient_error"}
     mesh = read_mesh(folder / "ball" / "glance_50pct.npz")
-    assert len(mesh.faces) == found["faces"]["value"] == found["ssim_error"]["faces"] <= 640
-    assert all(row["value"] > 0 and row["seconds"] > 0 and row["points"] == 2 for row in found.values())
-    assert all((row["kept"], row["rings"], row["shrunk"]) == (2, 3.0, False) for row in found.values())
+    assert len(mesh.faces) == metrics["faces"]["value"] == metrics["ssim_error"]["faces"] <= 640
+    assert all(row["value"] > 0 and row["seconds"] > 0 and row["points"] == 2 for row in metrics.values())
+    assert all((row["kept"], row["rings"], row["shrunk"]) == (2, 3.0, False) for row in metrics.values())
 
 
 def test_shrinking_makes_it_feasible_and_says_what_is_kept(subject, tmp_path):
-    found = cell(measure_cells(subject, "glance", tmp_path, SHRINKING, 0), "glance", "10%")["faces"]
-    assert found["value"] <= 128 < found["smallest_feasible"] and not found["infeasible"] and found["note"] == ""
-    assert found["shrunk"] and found["points"] == 2
+    row = cell(measure_cells(subject, "glance", tmp_path, SHRINKING, 0), "glance", "10%")["faces"]
+    assert row["value"] <= 128 < row["smallest_feasible"] and not row["infeasible"] and row["note"] == ""
+    assert row["shrunk"] and row["points"] == 2
     rings = shrunk_rings(subject.mesh, 128, subject.points["glance"])
-    assert (found["kept"], found["rings"]) == ((rings >= 0).sum(), rings[rings >= 0].mean())
+    assert (row["kept"], row["rings"]) == ((rings >= 0).sum(), rings[rings >= 0].mean())
 
 
 def test_the_soft_variant_keeps_no_point_and_needs_no_room(rows):
-    found = cell(rows[1], "glance-soft", "10%")
-    assert (found["faces"]["points"], found["faces"]["kept"], found["faces"]["rings"]) == (0, 0, None)
-    assert found["faces"]["value"] == 128
-    assert found["salient_error"]["value"] < cell(rows[1], "qem", "10%")["salient_error"]["value"]
+    metrics = cell(rows[1], "glance-soft", "10%")
+    assert (metrics["faces"]["points"], metrics["faces"]["kept"], metrics["faces"]["rings"]) == (0, 0, None)
+    assert metrics["faces"]["value"] == 128
+    assert metrics["salient_error"]["value"] < cell(rows[1], "qem", "10%")["salient_error"]["value"]
 
 
 def test_equal_kept_sets_are_simplified_once(tmp_path, monkeypatch):
@@ -98,16 +98,16 @@ def test_qslim_is_without_the_fit_whoever_simplifies_the_others_and_is_measured_
     settings = dataclasses.replace(SETTINGS, targets=["50%", "10%"], backend="fast")
     rows = [row for method in ("qem", "qslim") for row in measure_cells(subject, method, tmp_path, settings, 0)]
     assert len(calls) == 3  # at half of the faces nothing is fitted
-    found = read_mesh(tmp_path / "ball" / "qslim_10pct.npz")
-    assert np.array_equal(found.vertices, simplify(subject.mesh, 128, backend="qslim").vertices)
+    mesh = read_mesh(tmp_path / "ball" / "qslim_10pct.npz")
+    assert np.array_equal(mesh.vertices, simplify(subject.mesh, 128, backend="qslim").vertices)
     fitted, plain = (cell(rows, method, "10%")["metro_mean"]["value"] for method in ("qem", "qslim"))
     assert fitted < 0.9 * plain
 
 
 def test_gaze_counts_the_errors_of_the_side_that_people_looked_at():
     subject = new_subject()
-    looked = spread_on_surface(subject.mesh, (subject.mesh.vertices[:, 0] > 0.4).astype(float), 0.025)
-    subject = dataclasses.replace(subject, gaze=looked)
+    gaze = spread_on_surface(subject.mesh, (subject.mesh.vertices[:, 0] > 0.4).astype(float), 0.025)
+    subject = dataclasses.replace(subject, gaze=gaze)
 
     def errors(side, subject=subject):
         """Of the ball, flattened on one side of the x axis."""
@@ -134,10 +134,10 @@ def workspace(make_workspace):
         settings |= {"objects": [], "classes": {}}
         workspace = make_workspace({"lod": dataclasses.asdict(FEW), "meshes": settings})
         write_mesh(workspace.data / "meshes/ball.npz", subject.mesh)
-        found = {
+        detections = {
             name: Detection(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()
         }
-        write_points(workspace.data / "salient_points/ball.npz", found)
+        write_points(workspace.data / "salient_points/ball.npz", detections)
         density = 0.6 + subject.mesh.vertices[:, 0]
         write_arrays(workspace.data / "weights/ground_truth/ball.npz", density=density)
         return workspace
@@ -173,9 +173,9 @@ def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
 
 def test_an_infeasible_cell_says_so_and_names_the_smallest_count(rows):
     folder, rows = rows
-    found = cell(rows, "glance", "10%")["faces"]
-    assert found["value"] is None and found["infeasible"]
-    assert found["smallest_feasible"] > 128 and str(found["smallest_feasible"]) in found["note"]
+    row = cell(rows, "glance", "10%")["faces"]
+    assert row["value"] is None and row["infeasible"]
+    assert row["smallest_feasible"] > 128 and str(row["smallest_feasible"]) in row["note"]
     assert not (folder / "ball" / "glance_10pct.npz").exists()
 
 
@@ -208,11 +208,11 @@ def test_summary_compares_only_cells_that_all_methods_reach():
             rows.append(row(method, target, "faces", value and 100, value is None))
             if value is not None:
                 rows += [row(method, target, "metro_mean", value), row(method, target, "ssim_error", value / 10)]
-    found = summarise(rows)
-    assert (found["metro_mean_qem"], found["metro_mean_itti"], found["paired_cells"]) == (1.0, 2.0, 1)
-    assert found["metro_mean_svm"] is None  # no mesh at all: it leaves the others their pairs
-    assert (found["share_infeasible"], found["infeasible_itti"], found["meshes"]) == (0.25, 0.5, 3)
-    assert (found["share_shrunk"], found["shrunk_itti"], found["shrunk_qem"]) == (0.5, 1.0, 0.0)
+    summary = summarise(rows)
+    assert (summary["metro_mean_qem"], summary["metro_mean_itti"], summary["paired_cells"]) == (1.0, 2.0, 1)
+    assert summary["metro_mean_svm"] is None  # no mesh at all: it leaves the others their pairs
+    assert (summary["share_infeasible"], summary["infeasible_itti"], summary["meshes"]) == (0.25, 0.5, 3)
+    assert (summary["share_shrunk"], summary["shrunk_itti"], summary["shrunk_qem"]) == (0.5, 1.0, 0.0)
 
 
 @pytest.mark.parametrize(

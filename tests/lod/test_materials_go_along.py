@@ -57,13 +57,13 @@ def tree_of(path):
 def pictures(path, material):
     """{name: bytes} of the pictures that a material of a GLB uses."""
     tree, binary = tree_of(path)
-    found = {}
+    contents = {}
     for name, use in (material | material["pbrMetallicRoughness"]).items():
         if isinstance(use, dict) and "index" in use:
             view = tree["bufferViews"][tree["images"][tree["textures"][use["index"]]["source"]]["bufferView"]]
             start = view.get("byteOffset", 0)
-            found[name] = binary[start : start + view["byteLength"]]
-    return found
+            contents[name] = binary[start : start + view["byteLength"]]
+    return contents
 
 
 def rewritten(path, change):
@@ -91,24 +91,24 @@ def simplified(tmp_path, capsys):
 
 
 def test_materials_and_their_pictures_go_from_glb_to_glb(simplified, tmp_path):
-    out, said = simplified("out.glb")
+    out, messages = simplified("out.glb")
     paths = tmp_path / "art.glb", out
-    before, after = ({one["name"]: one for one in tree_of(path)[0]["materials"]} for path in paths)
-    assert set(after) == {"varnish", "metal"} and "dropped" not in said
+    before, after = ({entry["name"]: entry for entry in tree_of(path)[0]["materials"]} for path in paths)
+    assert set(after) == {"varnish", "metal"} and "dropped" not in messages
     for name in after:
         plain = {key for key, value in before[name].items() if not isinstance(value, dict)}
         assert {key: after[name][key] for key in plain} == {key: before[name][key] for key in plain}
     ours = after["varnish"]["pbrMetallicRoughness"]
     assert (ours["roughnessFactor"], ours["metallicFactor"]) == (0.4, 0.9)
     assert after["metal"]["pbrMetallicRoughness"]["baseColorFactor"] == [0, 0, 1, 1]
-    old, new = (pictures(path, one["varnish"]) for path, one in zip(paths, (before, after), strict=True))
+    old, new = (pictures(path, entry["varnish"]) for path, entry in zip(paths, (before, after), strict=True))
     assert set(new) == {"normalTexture", "metallicRoughnessTexture", "baseColorTexture"}
     assert all(new[name] == old[name] for name in ("normalTexture", "metallicRoughnessTexture"))
 
 
 def named(tree, name):
     """The one material of a GLB with this name."""
-    (material,) = (each for each in tree["materials"] if each["name"] == name)
+    (material,) = (entry for entry in tree["materials"] if entry["name"] == name)
     return material
 
 
@@ -122,11 +122,11 @@ def test_what_cannot_be_carried_is_said_and_a_picture_on_other_coordinates_is_le
         tree["samplers"] = [{"magFilter": 9728, "wrapS": 33071}]  # the nearest pixel, and no repetition
         tree["textures"][varnish["normalTexture"]["index"]]["sampler"] = 0
 
-    out, said = simplified("out.glb", change)
-    assert "dropped from art.glb" in said
+    out, messages = simplified("out.glb", change)
+    assert "dropped from art.glb" in messages
     lost = ("KHR_materials_clearcoat", "normalTexture.scale", "animations", "occlusionTexture.texCoord")
     lost += ("normalTexture.wrapS", "normalTexture.magFilter")
-    assert all(name in said for name in lost)
+    assert all(name in messages for name in lost)
     varnish = named(tree_of(out)[0], "varnish")
     assert "occlusionTexture" not in varnish and "normalTexture" in varnish
 
@@ -167,8 +167,8 @@ def test_what_is_malformed_says_nothing(tmp_path, wrong):
 
 @pytest.mark.parametrize("out", ["out.obj", "out.ply"])
 def test_a_format_with_less_says_what_it_drops(simplified, out):
-    path, said = simplified(out)
-    assert "dropped: " in said and "normalTexture" in said and "roughnessFactor" in said
+    path, messages = simplified(out)
+    assert "dropped: " in messages and "normalTexture" in messages and "roughnessFactor" in messages
     assert load(path).texture is not None or load(path).colors is not None
 
 
@@ -184,15 +184,15 @@ def test_no_picture_beside_that_of_colour_is_decoded_for_reading_and_writing(tmp
     mesh = load(tmp_path / "art.glb")
     write_any(tmp_path / "again.glb", mesh)
     assert set(decoded) == {"PNG"}
-    found = {each["name"]: each for each in load(tmp_path / "again.glb").texture.materials}
-    assert all(set(each) <= set(found[each["name"]]) for each in mesh.texture.materials)
+    again = {material["name"]: material for material in load(tmp_path / "again.glb").texture.materials}
+    assert all(set(material) <= set(again[material["name"]]) for material in mesh.texture.materials)
 
 
 def test_materials_of_a_scene_of_trimesh_go_to_trimesh():
     back = to_trimesh(as_mesh(art()))
-    found = {part.visual.material.name: part.visual.material for part in back.geometry.values()}
-    assert found["varnish"].roughnessFactor == 0.4 and found["varnish"].alphaMode == "BLEND"
-    assert np.asarray(found["varnish"].normalTexture)[0, 0] == pytest.approx([128, 128, 255], abs=2)
+    materials = {part.visual.material.name: part.visual.material for part in back.geometry.values()}
+    assert materials["varnish"].roughnessFactor == 0.4 and materials["varnish"].alphaMode == "BLEND"
+    assert np.asarray(materials["varnish"].normalTexture)[0, 0] == pytest.approx([128, 128, 255], abs=2)
 
 
 def test_a_material_without_a_colour_keeps_the_rest_and_gives_no_colours(tmp_path):
@@ -212,11 +212,11 @@ def test_a_picture_of_one_pixel_stays_a_picture(tmp_path):
     part = ball(0, baseColorTexture=Image.new("RGB", (1, 1), (200, 30, 30)))
     (tmp_path / "red.glb").write_bytes(trimesh.Scene({"red": part}).export(file_type="glb"))
     write_any(tmp_path / "again.glb", load(tmp_path / "red.glb"))
-    found = load(tmp_path / "again.glb").texture
-    assert found.images[0].ravel().tolist() == [200, 30, 30, 255] and "baseColorTexture" in found.materials[0]
+    texture = load(tmp_path / "again.glb").texture
+    assert texture.images[0].ravel().tolist() == [200, 30, 30, 255] and "baseColorTexture" in texture.materials[0]
 
 
 def test_meshes_with_other_materials_differ():
-    one, other = art(), art()
+    first, other = art(), art()
     other.geometry["metal"].visual.material.roughnessFactor = 0.3
-    assert as_mesh(one) == as_mesh(art()) and as_mesh(one) != as_mesh(other)
+    assert as_mesh(first) == as_mesh(art()) and as_mesh(first) != as_mesh(other)

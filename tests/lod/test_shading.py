@@ -67,8 +67,8 @@ def test_a_glb_has_normals_and_is_the_same_mesh_again(tmp_path, named):
     write_any(tmp_path / "box.glb", box, named)
     content = (tmp_path / "box.glb").read_bytes()
     tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
-    primitives = [one["attributes"] for mesh in tree["meshes"] for one in mesh["primitives"]]
-    assert len(primitives) == (2 if named else 1) and all("NORMAL" in one for one in primitives)
+    primitives = [part["attributes"] for mesh in tree["meshes"] for part in mesh["primitives"]]
+    assert len(primitives) == (2 if named else 1) and all("NORMAL" in part for part in primitives)
     again = load(tmp_path / "box.glb")
     assert len(again.vertices) == 8 and np.isclose(again.face_areas.sum(), 6)
 

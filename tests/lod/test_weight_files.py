@@ -86,8 +86,8 @@ def test_the_files_say_which_axis_points_up(ball, tmp_path, up):
     rows = re.search(r"points = \[\((.*)\)\]", text)[1].split("), (")
     vertices = np.array([row.split(", ") for row in rows], dtype=float)
     stated = re.search('upAxis = "(.)"', text)[1].lower()
-    found = rotate_to_z_up(Mesh(vertices, mesh.faces, up=stated)).vertices
-    np.testing.assert_allclose(found[:, 2], rotate_to_z_up(mesh).vertices[:, 2], atol=1e-6)
+    turned = rotate_to_z_up(Mesh(vertices, mesh.faces, up=stated)).vertices
+    np.testing.assert_allclose(turned[:, 2], rotate_to_z_up(mesh).vertices[:, 2], atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -115,8 +115,8 @@ def test_truth_points_ignore_vertex_order_scale_and_unit_even_with_ties():
     order, rounding = draw.permutation(642), 1 + 1e-13 * draw.random(642)
     points, weights = gaze_peaks(BALL, density, radius=0.2)
     moved = Mesh(80 * BALL.vertices[order], np.argsort(order)[BALL.faces])
-    found, shares = gaze_peaks(moved, 1e-7 * (density * rounding)[order], radius=0.2)
-    assert len(points) == 3 and set(order[found]) == set(points)
+    ids, shares = gaze_peaks(moved, 1e-7 * (density * rounding)[order], radius=0.2)
+    assert len(points) == 3 and set(order[ids]) == set(points)
     assert shares == pytest.approx(weights)
 
 

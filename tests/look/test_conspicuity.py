@@ -64,9 +64,9 @@ def test_maps_are_the_same_when_object_and_camera_turn_together_in_any_order_and
     turn = trimesh.transformations.euler_matrix(0, 0, np.radians(77))[:3, :3]
     order = rng.permutation(len(mesh.vertices))
     turned = Mesh((mesh.vertices @ turn.T)[order], rng.permutation(np.argsort(order)[mesh.faces])[:, ::-1])
-    there = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE, "raster"))
+    maps = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE, "raster"))
     for channel, values in bumpy_maps.items():
-        assert np.abs(values - there[channel]).max() < 0.03, channel
+        assert np.abs(values - maps[channel]).max() < 0.03, channel
 
 
 @pytest.mark.parametrize("name", ODD)
@@ -92,9 +92,9 @@ def test_tiny_and_empty_views_give_finite_maps(size):
 @pytest.mark.parametrize("name", ["spectral_residual", "fine_grained"])
 def test_a_rival_sees_the_image_as_rendered_and_nothing_in_one_grey_value(name, box_view):
     white = dataclasses.replace(box_view, rgb=np.where(box_view.mask[..., None], box_view.rgb, np.uint8(255)))
-    here, there = (conspicuity(BOX, view, [name])[name] for view in (box_view, white))
-    assert np.abs(here - there).max() > 0.1
-    np.testing.assert_array_equal(here, conspicuity(BOX, box_view, [name], filled=False)[name])
+    original, whitened = (conspicuity(BOX, view, [name])[name] for view in (box_view, white))
+    assert np.abs(original - whitened).max() > 0.1
+    np.testing.assert_array_equal(original, conspicuity(BOX, box_view, [name], filled=False)[name])
     flat = dataclasses.replace(box_view, rgb=np.full_like(box_view.rgb, 90))
     assert not conspicuity(BOX, flat, [name])[name].any()
 

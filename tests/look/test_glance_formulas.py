@@ -79,8 +79,8 @@ def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, de
         for step in (1, 6)
     )
     around = np.linalg.matrix_power(dense, 18) @ np.abs(coarse)
-    for found, wanted in zip(relief(few), (fine, np.abs(fine - coarse), around), strict=True):
-        assert found == pytest.approx(wanted, abs=1e-12)
+    for values, wanted in zip(relief(few), (fine, np.abs(fine - coarse), around), strict=True):
+        assert values == pytest.approx(wanted, abs=1e-12)
     # on a rough surface the mean of this and of how far the point lies below the planes of its neighbours
     below = ((few.points[None] - few.points[:, None]) * few.normals).sum(axis=2)
     fine, coarse = (
@@ -88,8 +88,8 @@ def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, de
         for step, out in ((1, fine), (6, coarse))
     )
     around = np.linalg.matrix_power(dense, 18) @ np.abs(coarse)
-    for found, wanted in zip(relief(replace(few, rough=True)), (fine, np.abs(fine - coarse), around), strict=True):
-        assert found == pytest.approx(wanted, abs=1e-12)
+    for values, wanted in zip(relief(replace(few, rough=True)), (fine, np.abs(fine - coarse), around), strict=True):
+        assert values == pytest.approx(wanted, abs=1e-12)
 
 
 @pytest.mark.slow
@@ -105,14 +105,14 @@ def test_fullness_is_the_surface_in_a_gaussian_over_a_disc():
 
 def directions():
     """(112, 3): seven rings of sixteen, every other one turned by half a step."""
-    found = []
+    vectors = []
     for ring in range(7):
         height = 1 - (2 * ring + 1) / 7
         for k in range(16):
             turn = 2 * np.pi * (k + 0.5 * (ring % 2)) / 16
             across = np.sqrt(1 - height**2)
-            found.append((across * np.cos(turn), across * np.sin(turn), height))
-    return np.array(found)
+            vectors.append((across * np.cos(turn), across * np.sin(turn), height))
+    return np.array(vectors)
 
 
 def looked_at(samples):
@@ -140,8 +140,8 @@ def looked_at(samples):
 @pytest.mark.slow
 def test_visibility_is_that_of_pictures_drawn_point_by_point(few, monkeypatch):
     monkeypatch.setattr(cells, "_seen", interpreted(cells._seen))  # which minds the bounds of a picture
-    for found, wanted in zip(visibility(few), looked_at(few), strict=True):
-        assert found == pytest.approx(wanted, abs=1e-9)
+    for values, wanted in zip(visibility(few), looked_at(few), strict=True):
+        assert values == pytest.approx(wanted, abs=1e-9)
 
 
 def test_a_mirror_plane_counts_by_the_correlation_of_both_halves(few):
@@ -176,13 +176,15 @@ def test_a_mirror_plane_counts_by_the_correlation_of_both_halves(few):
 
 def test_each_feature_is_its_formula():
     samples = samples_of_mesh(as_mesh(bean()), 3000)
-    found, (seen, side, above, below) = features(samples), visibility(samples)
+    columns, (seen, side, above, below) = features(samples), visibility(samples)
     local = sized(samples)
     height, distance, normals = local[:, 2], np.linalg.norm(local, axis=1), samples.normals @ samples.axes.T
     rank = np.array([samples.shares @ ((height < h) + (height == h) / 2) for h in height])
-    assert found["rank"] == pytest.approx(rank, abs=0.02) and found["rank"] == pytest.approx(rank, abs=0.006, rel=0.1)
+    assert columns["rank"] == pytest.approx(rank, abs=0.02) and columns["rank"] == pytest.approx(
+        rank, abs=0.006, rel=0.1
+    )
     wanted = {
-        "middle": np.sin(np.pi * found["rank"]), "upward": normals[:, 2], "upward_high": height * normals[:, 2],
+        "middle": np.sin(np.pi * columns["rank"]), "upward": normals[:, 2], "upward_high": height * normals[:, 2],
         "seen": seen, "above": above, "above_high": above * height, "below": below,
         "log_below": np.log(below + 0.02), "log_side": np.log(side + 0.01),
         "distance": distance, "distance_squared": (local**2).sum(axis=1),
@@ -191,9 +193,9 @@ def test_each_feature_is_its_formula():
     names = dict(zip(("convexity", "detail", "relief"), relief(samples), strict=True))
     names |= dict(zip(("off_plane", "on_plane"), symmetry(samples), strict=True))
     names |= {f"fullness_{radius}": fullness(samples, radius) for radius in (0.12, 0.24)}
-    assert {"rank", *wanted, *names} == set(found) and list(found) == list(FEATURES) == list(GLANCES["glance"])
+    assert {"rank", *wanted, *names} == set(columns) and list(columns) == list(FEATURES) == list(GLANCES["glance"])
     for name, values in (wanted | names).items():
-        assert found[name] == pytest.approx(values, abs=1e-12), name
+        assert columns[name] == pytest.approx(values, abs=1e-12), name
 
 
 @pytest.mark.slow
@@ -240,10 +242,10 @@ def test_a_value_between_points_is_the_mean_of_ten_by_distance_area_and_side(few
     places = few.points[:40] + 0.3 * few.spacing * unit(np.random.default_rng(0).normal(size=(40, 3)))
     normals = unit(few.normals[:40] + 0.5 * np.random.default_rng(1).normal(size=(40, 3)))
     ids, weights = few.interpolation(places, normals)
-    for place, normal, found, parts in zip(places, normals, ids, weights, strict=True):
+    for place, normal, nearest, parts in zip(places, normals, ids, weights, strict=True):
         away = np.linalg.norm(few.points - place, axis=1)
         near = np.argsort(away)[:10]
-        assert found.tolist() == near.tolist()
+        assert nearest.tolist() == near.tolist()
         facing = np.maximum(few.normals[near] @ normal + 0.3, 0.01)
         wanted = facing * few.areas[near] * np.exp(-((away[near] / (0.75 * few.spacing)) ** 2))
         assert parts == pytest.approx(wanted / wanted.sum(), abs=1e-12)
@@ -259,7 +261,7 @@ def rough(few):
 
 def test_a_rough_point_moves_onto_the_paraboloid_of_its_neighbours(few):
     samples = rough(few)
-    found, start = denoised(samples), unit(samples.average @ unit(samples.average @ samples.normals))
+    smooth, start = denoised(samples), unit(samples.average @ unit(samples.average @ samples.normals))
     checked = 0
     for k in range(0, len(samples.points), 4):
         away = np.linalg.norm(samples.points - samples.points[k], axis=1) / samples.spacing
@@ -275,7 +277,7 @@ def test_a_rough_point_moves_onto_the_paraboloid_of_its_neighbours(few):
         held_back = abs(step) > 1.9 or max(abs(along), abs(aside)) > 0.6
         if not held_back and (weight > 0.1).sum() >= 15:
             checked += 1
-            assert found.points[k] == pytest.approx(samples.points[k] + step * samples.spacing * start[k], abs=1e-4)
-            assert found.normals[k] == pytest.approx(unit((start[k] - along * right - aside * up)[None])[0], abs=1e-3)
-    assert checked > 60 and found.areas is samples.areas
-    assert np.linalg.norm(found.normals, axis=1) == pytest.approx(1)
+            assert smooth.points[k] == pytest.approx(samples.points[k] + step * samples.spacing * start[k], abs=1e-4)
+            assert smooth.normals[k] == pytest.approx(unit((start[k] - along * right - aside * up)[None])[0], abs=1e-3)
+    assert checked > 60 and smooth.areas is samples.areas
+    assert np.linalg.norm(smooth.normals, axis=1) == pytest.approx(1)

@@ -48,10 +48,10 @@ def at_samples(samples, positions, amounts):
 @pytest.mark.slow
 @pytest.mark.skipif(not (SHARED / "gaze_clouds.zip").exists(), reason="../shared/data is not there")
 def test_the_published_weights_are_those_that_gaze_taught():
-    looked = [*on_meshes(), *on_clouds()]
-    features = [standardised(samples) for samples, _ in looked]
-    amounts = [one for _, one in looked]
+    subjects = [*on_meshes(), *on_clouds()]
+    features = [standardised(samples) for samples, _ in subjects]
+    amounts = [entry for _, entry in subjects]
     for method, published in GLANCES.items():
-        kept = [np.stack([one[name] for name in published], axis=1) for one in features]
-        found = fit_fixations(kept, amounts, [samples.areas for samples, _ in looked])
-        assert found == pytest.approx(list(published.values()), abs=0.002), method
+        kept = [np.stack([entry[name] for name in published], axis=1) for entry in features]
+        weights = fit_fixations(kept, amounts, [samples.areas for samples, _ in subjects])
+        assert weights == pytest.approx(list(published.values()), abs=0.002), method

@@ -78,10 +78,10 @@ def test_a_map_that_hardly_varies_is_not_scaled_up(monkeypatch):
     samples = samples_of_mesh(mesh)
     faint = np.linspace(0, 0.01, len(samples.points))[:, None] + np.zeros(len(MAPS))
     monkeypatch.setattr(glance, "maps_on_surface", lambda mesh, samples: faint)
-    found = glance.standardised_maps(mesh, samples)
-    assert list(found) == list(MAPS)
-    assert np.ptp(found[MAPS[0]]) == pytest.approx(0.02 / glance.DEVIATION)
-    assert samples.shares @ found[MAPS[0]] == pytest.approx(0, abs=1e-12)
+    maps = glance.standardised_maps(mesh, samples)
+    assert list(maps) == list(MAPS)
+    assert np.ptp(maps[MAPS[0]]) == pytest.approx(0.02 / glance.DEVIATION)
+    assert samples.shares @ maps[MAPS[0]] == pytest.approx(0, abs=1e-12)
 
 
 @pytest.mark.slow

@@ -63,8 +63,8 @@ def bumpy():
 @pytest.mark.slow
 def test_a_purpose_chooses_the_method(bumpy):
     assert (find_points(bumpy, 5, purpose="touch") == find_points(bumpy, "touch", 5)).all()
-    looked = find_points(bumpy, "glance", 5)
-    assert (find_points(bumpy, 5, purpose="look") == looked).all() and (find_points(bumpy, 5) == looked).all()
+    points = find_points(bumpy, "glance", 5)
+    assert (find_points(bumpy, 5, purpose="look") == points).all() and (find_points(bumpy, 5) == points).all()
     with pytest.raises(ValueError, match="unknown purpose 'lick': choose one of look, touch$"):
         find_points(bumpy, 5, purpose="lick")
     with pytest.raises(ValueError, match="'touch' chooses the method: leave out method 'itti'"):

@@ -54,8 +54,8 @@ def test_samples_are_even_and_joined_to_their_neighbours(long):
     assert near.max() <= (apart + np.eye(60)).min()  # farthest first: none is farther from all than two from each other
     assert np.array_equal(some.owner[some.ids], np.arange(60))
     assert abs(some.graph.nnz / 60 - 6) < 0.5 and (some.graph != some.graph.T).nnz == 0  # a triangulation's mean degree
-    every = samples(mesh, 9999)
-    assert np.array_equal(every.owner, np.arange(len(mesh.vertices))) and every.graph.nnz == mesh.adjacency.nnz
+    whole = samples(mesh, 9999)
+    assert np.array_equal(whole.owner, np.arange(len(mesh.vertices))) and whole.graph.nnz == mesh.adjacency.nnz
     some = samples(mesh, 200)
     spread = some.spread(mesh, mesh.vertices[some.ids, 0])
     assert np.abs(spread - mesh.vertices[:, 0]).max() < 0.15 and np.corrcoef(spread, mesh.vertices[:, 0])[0, 1] > 0.99
@@ -107,9 +107,9 @@ def test_each_piece_keeps_its_own_heat():
     n, values = len(ball.vertices), []
     for distance in (5, 5000):
         vertices = np.concatenate([ball.vertices * [1, 1, 3], small.vertices + [distance, 0, 0]])
-        both = Mesh(vertices, np.concatenate([ball.faces, small.faces + n]))
-        values.append(heat_kernel.saliency(both))
-        assert set(np.abs(both.vertices[heat_kernel.points(both, heat_kernel.saliency(both)), 2]).round(1)) == {3.0}
+        pair = Mesh(vertices, np.concatenate([ball.faces, small.faces + n]))
+        values.append(heat_kernel.saliency(pair))
+        assert set(np.abs(pair.vertices[heat_kernel.points(pair, heat_kernel.saliency(pair)), 2]).round(1)) == {3.0}
     assert np.allclose(*values, atol=1e-4) and np.allclose(values[0][n:], 1, atol=1e-4)
     assert np.average(values[0][:n]) == pytest.approx(1, abs=0.3) and values[0][:n].max() > 1.15
 
@@ -186,8 +186,8 @@ def test_a_ball_has_no_limbs_a_long_body_two_and_each_part_its_own(monkeypatch):
     body = Mesh(ball.vertices * [3, 1, 1], ball.faces)
     assert not len(limb_ends(ball)) and not leifman.saliency(ball).any()
     assert np.allclose(np.abs(limb_ends(body)), [[0.5, 0, 0]] * 2, atol=0.03)
-    both = Mesh(np.r_[body.vertices, ball.vertices + [0, 5, 0]], np.r_[ball.faces, ball.faces + len(ball.vertices)])
-    ends = limb_ends(both)
+    pair = Mesh(np.r_[body.vertices, ball.vertices + [0, 5, 0]], np.r_[ball.faces, ball.faces + len(ball.vertices)])
+    ends = limb_ends(pair)
     assert len(ends) == 2 and np.ptp(ends[:, 0]) > 10 * np.ptp(ends[:, 1])
     monkeypatch.setattr(leifman, "FLOOR", 9)  # nothing is distinct
     values, along = leifman.saliency(body), np.abs(ball.vertices[:, 0])

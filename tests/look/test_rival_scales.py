@@ -68,8 +68,8 @@ def test_pieces_are_short_and_keep_the_area():
 def test_an_average_of_one_value_is_that_value_and_of_a_sphere_lies_below_it():
     """Within 2 sigma of the Gaussian a sphere of radius 1 sinks by the mean of distance^2 / 2 along the normal."""
     sigma, mesh = 0.1, ball_mesh(5)
-    ones = gaussian_average(MESH, surface_elements(MESH, np.ones((len(MESH.vertices), 1))), sigma)
-    np.testing.assert_allclose(ones, 1)
+    averages = gaussian_average(MESH, surface_elements(MESH, np.ones((len(MESH.vertices), 1))), sigma)
+    np.testing.assert_allclose(averages, 1)
     means = gaussian_average(mesh, surface_elements(mesh, mesh.vertices), sigma)
     sunk = 1 - np.einsum("ij,ij->i", means, mesh.vertices)
     mean_square = 2 * sigma**2 * (1 - 2 * np.exp(-2) / (1 - np.exp(-2)))  # of a Gaussian in the plane, cut at 2 sigma
@@ -164,8 +164,8 @@ def test_corners_of_two_sizes_are_found_each_at_its_own_scale(monkeypatch):
     assert ((directions[points[:2]] @ np.transpose(TOPS)).max(axis=0) > np.cos(0.05)).all()
     best = responses[:, points].max(axis=0)
     assert (np.abs(responses[:, points] - best) < 1e-12).any(axis=1).sum() > 1
-    every = np.unique(np.concatenate([corners.ring_maxima(mesh, response, 1) for response in responses]))
-    assert len(points) < 0.7 * len(every)  # a peak that is higher at the next scale is none
+    peaks = np.unique(np.concatenate([corners.ring_maxima(mesh, response, 1) for response in responses]))
+    assert len(points) < 0.7 * len(peaks)  # a peak that is higher at the next scale is none
     tops = (directions @ np.transpose(TOPS)).argmax(axis=0)
     together, single = corners.saliency(mesh)[tops], []
     for scale in corners.SCALES[[0, -1]]:

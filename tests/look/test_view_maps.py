@@ -42,8 +42,8 @@ def test_saliency_fades_with_the_distance_from_what_is_seen(ball):
 def test_a_piece_that_nobody_sees_is_not_salient(ball):
     inner = trimesh.creation.icosphere(subdivisions=1, radius=0.1)
     n = len(ball.vertices)
-    both = Mesh(np.r_[ball.vertices, inner.vertices], np.r_[ball.faces, inner.faces + n])
-    sight = constant(both)
+    pair = Mesh(np.r_[ball.vertices, inner.vertices], np.r_[ball.faces, inner.faces + n])
+    sight = constant(pair)
     values = sight.vertex_saliency(sight.maps["edge"])
     assert values[:n].min() > 0.98
     assert not values[n:].any()
@@ -52,9 +52,9 @@ def test_a_piece_that_nobody_sees_is_not_salient(ball):
 
 def test_a_piece_that_is_seen_along_its_surface_alone_is_smoothed(ball):
     far = ball.vertices + 3
-    both = Mesh(np.r_[ball.vertices, far], np.r_[ball.faces, ball.faces + len(far)])
+    pair = Mesh(np.r_[ball.vertices, far], np.r_[ball.faces, ball.faces + len(far)])
     confidence = np.repeat([1.0, 1e-20], len(far))
-    smooth = smoother(both, confidence)(np.ones(2 * len(far)))
+    smooth = smoother(pair, confidence)(np.ones(2 * len(far)))
     np.testing.assert_allclose(smooth[: len(far)], 1)
     np.testing.assert_allclose(smooth[len(far) :], 0, atol=1e-9)
 

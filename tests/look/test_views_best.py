@@ -43,15 +43,15 @@ def test_things_in_a_row_hide_each_other_along_it_alone_whatever_their_size_and_
 
 
 def test_the_added_view_stands_between_the_hiding_one_and_the_next(row):
-    asked = Counter()
+    calls = Counter()
 
     def level(view):
-        asked[view] += 1
+        calls[view] += 1
         return 10.0 * (view in PERPENDICULAR_SETS[9]) + 1.0 * (view in BETWEEN[9])
 
     assert {view.name for view in PERPENDICULAR_SETS[9]} == {"az90_el0", "az0_el90", "az270_el0", "az0_el-90"}
     assert best_viewpoints(row, level) == [*PERPENDICULAR_SETS[9], Viewpoint(90, 45), Viewpoint(270, -45)]
-    assert set(CANDIDATES) < set(asked) and set(asked.values()) == {1}
+    assert set(CANDIDATES) < set(calls) and set(calls.values()) == {1}
 
 
 def test_added_views_count_in_the_average(row):

@@ -32,8 +32,8 @@ def square(back=0.0, half=0.25, outwards=True, colour=None):
 
 def lit(colour, cosine, material):
     """Blinn's model under a head light, whose half vector is the view axis."""
-    own = colour * (material.ambient + material.diffuse * cosine)
-    return np.minimum(own + 255 * material.specular * cosine**material.shininess, 255)
+    matte = colour * (material.ambient + material.diffuse * cosine)
+    return np.minimum(matte + 255 * material.specular * cosine**material.shininess, 255)
 
 
 def test_sphere_has_the_depth_the_limb_the_brightness_and_the_highlight_of_a_sphere(shapes, renderer):
@@ -79,8 +79,8 @@ def test_the_order_of_vertices_does_not_matter(shapes, renderer):
     new = np.random.default_rng(0).permutation(len(mesh.vertices))
     old = np.argsort(new)
     shuffled = Mesh(mesh.vertices[old], new[mesh.faces], mesh.colors[old])
-    here, there = (render(each, Viewpoint(0, 30), SIZE, renderer, material=SHINY) for each in (mesh, shuffled))
-    assert (here.face == there.face).all() and (here.rgb == there.rgb).all()
+    drawn, again = (render(variant, Viewpoint(0, 30), SIZE, renderer, material=SHINY) for variant in (mesh, shuffled))
+    assert (drawn.face == again.face).all() and (drawn.rgb == again.rgb).all()
 
 
 @pytest.mark.parametrize(("background", "level"), [("black", 0), ("grey", 128), ("white", 255)])
@@ -120,7 +120,7 @@ def test_no_faces_and_one_triangle_are_views_too(renderer):
 )
 def test_renderers_agree(shapes, name, viewpoint, material):
     rays, drawn = (
-        render(shapes[name], viewpoint, (300, 400), which, material=material) for which in ("raster", "pyrender")
+        render(shapes[name], viewpoint, (300, 400), method, material=material) for method in ("raster", "pyrender")
     )
     footprint = 1 / pixels_per_unit(300)
     on = rays.mask & drawn.mask

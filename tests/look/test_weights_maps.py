@@ -44,8 +44,8 @@ def test_equally_bright_pixels_count_alike_wherever_they_stand():
     flat = view_distances({"flat": np.zeros(SHAPE)}, [2.0, 20.0], [3.0, 9.0])["flat"]
     assert flat == pytest.approx(cdist(np.argwhere(np.ones(SHAPE)), [[2, 3], [20, 9]]).mean())
     values = np.round(np.random.default_rng(2).random(SHAPE), 1)
-    here = view_distances({"edge": values}, [4, 20], [7, 30])["edge"]
-    assert here == pytest.approx(view_distances({"edge": values[::-1, ::-1]}, [25, 9], [32, 9])["edge"])
+    distance = view_distances({"edge": values}, [4, 20], [7, 30])["edge"]
+    assert distance == pytest.approx(view_distances({"edge": values[::-1, ::-1]}, [25, 9], [32, 9])["edge"])
 
 
 @pytest.mark.parametrize(

@@ -180,4 +180,4 @@ def test_non_manifold_faces_stay_and_duplicate_and_degenerate_ones_go_with_a_not
     path.write_bytes(off(TRIANGLE, [(0, 1, 2), (1, 2, 0), (0, 0, 1), (2, 1, 0)]))
     mesh, notes = clean(load(path))
     assert len(mesh.faces) == 1  # the face seen from the back goes: all of the surface was doubled
-    assert notes == [f"1 {what} faces removed" for what in ("degenerate", "duplicate", "back-to-back")]
+    assert notes == [f"1 {flaw} faces removed" for flaw in ("degenerate", "duplicate", "back-to-back")]

@@ -160,9 +160,9 @@ def test_a_damaged_file_is_refused_by_name(name, content, reason, tmp_path):
 def test_a_mesh_without_faces_says_that_it_is_read_as_a_cloud(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pymeshlab", None)
     words = "has no faces, so it is read as a point cloud: a point cloud"
-    for count, kind, said in ((3, MeshError, f"{words} of 3 points"), (len(BALL), MissingExtra, f"{words} is made")):
+    for count, kind, reason in ((3, MeshError, f"{words} of 3 points"), (len(BALL), MissingExtra, f"{words} is made")):
         (tmp_path / "a.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in BALL[:count].tolist()))
-        with pytest.raises(kind, match=f"a.obj: {said}"):
+        with pytest.raises(kind, match=f"a.obj: {reason}"):
             load(tmp_path / "a.obj")
 
 

@@ -17,8 +17,8 @@ from haptic_glance.touch.press import as_shown
 @pytest.fixture
 def ball():
     """A ball of 320 faces."""
-    found = trimesh.creation.icosphere(2)
-    return Mesh(found.vertices, found.faces)
+    sphere = trimesh.creation.icosphere(2)
+    return Mesh(sphere.vertices, sphere.faces)
 
 
 def doubled(mesh):
@@ -26,10 +26,10 @@ def doubled(mesh):
 
 
 def test_a_surface_that_was_doubled_loses_one_of_its_sides(ball):
-    found, notes = clean(doubled(ball))
-    assert len(found.faces) == len(ball.faces) and "320 back-to-back faces removed" in notes[0]
-    assert found.face_crosses.sum(axis=0) == pytest.approx(0, abs=1e-9)
-    assert (np.einsum("ij,ij->i", found.face_normals, found.vertices[found.faces].mean(axis=1)) > 0).all()
+    cleaned, notes = clean(doubled(ball))
+    assert len(cleaned.faces) == len(ball.faces) and "320 back-to-back faces removed" in notes[0]
+    assert cleaned.face_crosses.sum(axis=0) == pytest.approx(0, abs=1e-9)
+    assert (np.einsum("ij,ij->i", cleaned.face_normals, cleaned.vertices[cleaned.faces].mean(axis=1)) > 0).all()
 
 
 def test_a_thin_sheet_on_a_body_keeps_both_sides(ball):
@@ -91,6 +91,6 @@ def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
     for name, mesh in (("good", ball), ("far", back)):
         trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(tmp_path / f"{name}.ply")
     files = [tmp_path / name for name in ("broken.stl", "good.ply", "far.ply", "missing.ply")]
-    found, notes = gather(files, None, None, False, None)
-    assert "good" in found and [note.partition(":")[0] for note in notes] == ["broken.stl", "missing.ply"]
-    assert press(found["good"], 0).shape == (16, 16)
+    meshes, notes = gather(files, None, None, False, None)
+    assert "good" in meshes and [note.partition(":")[0] for note in notes] == ["broken.stl", "missing.ply"]
+    assert press(meshes["good"], 0).shape == (16, 16)

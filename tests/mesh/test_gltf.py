@@ -85,11 +85,11 @@ PLACES = {"embedded": embedded, "quoted": quoted}
 @pytest.mark.parametrize("where", ["beside", *PLACES])
 def test_it_is_read_as_the_glb_of_the_same_scene(glb, write, beside, where):
     path = write(PLACES.get(where, beside))
-    found, wanted = load(path), parse(glb, ".glb")
-    assert np.array_equal(found.vertices, wanted.vertices) and np.array_equal(found.faces, wanted.faces)
-    assert found.up == wanted.up == "y"
-    for one, other in zip(found.texture.images, wanted.texture.images, strict=True):
-        assert np.array_equal(np.asarray(one), np.asarray(other))
+    mesh, wanted = load(path), parse(glb, ".glb")
+    assert np.array_equal(mesh.vertices, wanted.vertices) and np.array_equal(mesh.faces, wanted.faces)
+    assert mesh.up == wanted.up == "y"
+    for image, other in zip(mesh.texture.images, wanted.texture.images, strict=True):
+        assert np.array_equal(np.asarray(image), np.asarray(other))
     made = as_glb(path)
     starts = [
         view["byteOffset"] % 4

@@ -59,8 +59,8 @@ def test_an_open_part_without_a_majority_looks_away_from_its_middle(seed):
     mesh = bowl()
     turned = np.random.default_rng(seed).random(len(mesh.faces)) < 0.5
     faces = np.where(turned[:, None], mesh.faces[:, ::-1], mesh.faces)
-    found = orient(Mesh(mesh.vertices, faces))[0]
-    assert np.einsum("ij,ij->i", found.face_normals, mesh.face_normals).min() > 0.99
+    oriented = orient(Mesh(mesh.vertices, faces))[0]
+    assert np.einsum("ij,ij->i", oriented.face_normals, mesh.face_normals).min() > 0.99
 
 
 def test_an_open_part_with_a_majority_stays_on_its_side():
@@ -68,8 +68,8 @@ def test_an_open_part_with_a_majority_stays_on_its_side():
     mesh = bowl()
     faces = mesh.faces[:, ::-1].copy()
     faces[:9] = faces[:9, ::-1]
-    found = orient(Mesh(mesh.vertices, faces))[0]
-    assert np.einsum("ij,ij->i", found.face_normals, mesh.face_normals).max() < -0.99
+    oriented = orient(Mesh(mesh.vertices, faces))[0]
+    assert np.einsum("ij,ij->i", oriented.face_normals, mesh.face_normals).max() < -0.99
 
 
 def test_a_cavity_keeps_facing_inwards():

@@ -208,8 +208,8 @@ def test_an_object_that_stands_has_its_axis_and_a_sure_one(name, up):
 
 
 def log_odds(mesh):
-    found = features(mesh)
-    return sum(weight * (found["z"][name] - found["y"][name]) for name, weight in WEIGHTS.items())
+    by_axis = features(mesh)
+    return sum(weight * (by_axis["z"][name] - by_axis["y"][name]) for name, weight in WEIGHTS.items())
 
 
 def changes(shape):
@@ -228,8 +228,8 @@ def changes(shape):
 @pytest.mark.slow
 def test_the_choice_belongs_to_the_surface_not_to_its_triangles(name):
     expected = log_odds(laid(OBJECTS[name]))
-    for what, vertices, faces, tolerance in changes(OBJECTS[name]):
-        assert log_odds(Mesh(vertices, faces)) == pytest.approx(expected, abs=tolerance), what
+    for change, vertices, faces, tolerance in changes(OBJECTS[name]):
+        assert log_odds(Mesh(vertices, faces)) == pytest.approx(expected, abs=tolerance), change
 
 
 @pytest.mark.parametrize("angle", [20, 45])
@@ -238,9 +238,9 @@ def test_the_features_of_an_axis_do_not_change_as_the_object_turns_about_it(name
     shape = OBJECTS[name].copy()
     expected = features(laid(shape))["z"]
     shape.apply_transform(rotation_matrix(np.radians(angle), [0, 0, 1]))
-    found = features(laid(shape))["z"]
-    gap = sum(weight * (found[feature] - expected[feature]) for feature, weight in WEIGHTS.items())
-    assert abs(gap) < 0.35 and set(found) == set(WEIGHTS)
+    turned = features(laid(shape))["z"]
+    gap = sum(weight * (turned[feature] - expected[feature]) for feature, weight in WEIGHTS.items())
+    assert abs(gap) < 0.35 and set(turned) == set(WEIGHTS)
 
 
 SHAPELESS = {
@@ -277,12 +277,12 @@ def test_a_folder_of_the_pipeline_has_what_the_setting_a_file_or_the_shape_says(
     trimesh.Trimesh(lying.vertices, lying.faces, process=False).export(tmp_path / "plain.stl")
     write_any(tmp_path / "stated.ply", Mesh(lying.vertices, lying.faces, up="-y"))
     items = SOURCES["folder"](SimpleNamespace(folder=str(tmp_path), objects=[], up=setting, unit="m"))
-    found = {item.name: prepare_mesh(item) for item in items}
+    prepared = {item.name: prepare_mesh(item) for item in items}
     expected = {"plain": "y", "stated": "-y"} if setting == "auto" else {"plain": "x", "stated": "x"}
-    assert {name: row["up"] for name, (_, row) in found.items()} == expected
+    assert {name: row["up"] for name, (_, row) in prepared.items()} == expected
     if setting == "auto":
-        own = normalise(rotate_to_z_up(load(tmp_path / "plain.stl"))).vertices
-        assert np.ptp(found["plain"][0].vertices, axis=0) == pytest.approx(np.ptp(own, axis=0))
+        upright = normalise(rotate_to_z_up(load(tmp_path / "plain.stl"))).vertices
+        assert np.ptp(prepared["plain"][0].vertices, axis=0) == pytest.approx(np.ptp(upright, axis=0))
 
 
 @pytest.mark.slow

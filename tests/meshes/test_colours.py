@@ -172,9 +172,9 @@ def test_the_colours_of_an_offs_faces_are_said_not_to_be_read(item):
 
 
 def test_the_palette_goes_by_the_name_and_tells_objects_apart():
-    found = {name: tuple(coloured(Mesh(CORNERS, FACES), name, "palette").colors[0]) for name in HOUSEHOLD}
-    assert found["hammer"] == BRICK  # the same on every machine
-    assert len(set(found.values())) > 15
+    colours = {name: tuple(coloured(Mesh(CORNERS, FACES), name, "palette").colors[0]) for name in HOUSEHOLD}
+    assert colours["hammer"] == BRICK  # the same on every machine
+    assert len(set(colours.values())) > 15
 
 
 def test_colours_survive_repair_and_any_order_of_vertices_and_faces(item):
@@ -241,8 +241,8 @@ def test_the_stage_names_the_mesh_without_colours_and_goes_on(run, capsys):
 def test_another_picture_is_another_mesh(run, tmp_path):
     run(colours="own")
     Image.fromarray(PICTURE[:, ::-1]).save(tmp_path / "mine" / "paint.png")
-    found = colours_at_corners(read_mesh(run(colours="own") / "it.npz"))
-    assert (found == [GREEN, RED, GOLD, BLUE]).all()
+    corners = colours_at_corners(read_mesh(run(colours="own") / "it.npz"))
+    assert (corners == [GREEN, RED, GOLD, BLUE]).all()
 
 
 def test_an_unknown_choice_is_named_with_the_known_ones(run):

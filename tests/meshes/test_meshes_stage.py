@@ -124,5 +124,5 @@ def test_an_empty_class_and_an_object_of_two_classes_are_refused():
 
 def test_classes_are_read_in_their_order_and_names_stay_texts(tmp_path):
     write_text(tmp_path / "classes.csv", "class,object\nvase,urn\nanimal,dog\nanimal,61\nvase,jar\n")
-    found = read_classes(tmp_path)
-    assert found == CLASSES and list(found) == ["vase", "animal"]
+    classes = read_classes(tmp_path)
+    assert classes == CLASSES and list(classes) == ["vase", "animal"]

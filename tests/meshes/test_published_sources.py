@@ -55,9 +55,9 @@ def test_a_zip_and_its_folder_give_the_same_readable_items(archives, source, nam
     with zipfile.ZipFile(archives / f"{source}.zip") as archive:
         archive.extractall(archives / source)
     for place in (archives / f"{source}.zip", archives / source):
-        found = items(source, place)
-        assert [item.name for item in found] == names and {item.up for item in found} == {up}
-        mesh = parse(found[0].content(), found[0].suffix)
+        files = items(source, place)
+        assert [item.name for item in files] == names and {item.up for item in files} == {up}
+        mesh = parse(files[0].content(), files[0].suffix)
         assert (mesh.faces == BALL.faces).all()
         np.testing.assert_allclose(mesh.vertices * (3 if source == "interest_points" else 1), BALL.vertices, atol=1e-7)
 

@@ -50,7 +50,7 @@ def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0, seed=0):
     if not bottom:
         flat = (vertices[faces][:, :, 2].max(axis=1) < 0.05) & (SHAPES[shape].face_normals[:, 2] < -0.5)
         faces = faces[~flat]
-    own = np.ones(len(faces), dtype=bool)
+    mask = np.ones(len(faces), dtype=bool)
     if table:
         half = table * np.abs(vertices[:, :2]).max()
         x, y = np.meshgrid(np.linspace(-half, half, CELLS), np.linspace(-half, half, CELLS))
@@ -59,15 +59,15 @@ def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0, seed=0):
         squares = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
         faces = np.concatenate([faces, squares + len(vertices)])
         vertices = np.concatenate([vertices, np.stack([x.ravel(), y.ravel(), np.zeros(CELLS**2)], axis=1)])
-        own = np.r_[own, np.zeros(len(squares), dtype=bool)]
+        mask = np.r_[mask, np.zeros(len(squares), dtype=bool)]
     diagonal = np.linalg.norm(np.ptp(vertices, axis=0))
     for _ in range(holes):
         middle = vertices[faces].mean(axis=1)
         whole = np.linalg.norm(middle - middle[draw.integers(len(faces))], axis=1) > 0.04 * diagonal
-        faces, own = faces[whole], own[whole]
+        faces, mask = faces[whole], mask[whole]
     vertices = vertices + draw.normal(size=vertices.shape) * noise * diagonal
     turn = Rotation.random(random_state=seed).as_matrix()
-    return Mesh(vertices @ turn.T * 30 + draw.normal(size=3) * 100, faces), own
+    return Mesh(vertices @ turn.T * 30 + draw.normal(size=3) * 100, faces), mask
 
 
 def shares(mesh, own, left):
@@ -81,9 +81,9 @@ def shares(mesh, own, left):
 @pytest.mark.parametrize(("shape", "bottom"), [("blob", True), ("box", False), ("lying", True), ("goblet", False)])
 @pytest.mark.slow
 def test_a_smooth_scan_loses_its_table_and_nothing_else(shape, bottom):
-    mesh, own = scan(shape, bottom=bottom)
+    mesh, mask = scan(shape, bottom=bottom)
     left = remove_plane(mesh)
-    kept, table = shares(mesh, own, left)
+    kept, table = shares(mesh, mask, left)
     assert kept > 0.995 and table == 0 and remove_plane(left) is left
 
 
@@ -92,14 +92,14 @@ def test_a_smooth_scan_loses_its_table_and_nothing_else(shape, bottom):
     ("shape", "noise", "least"), [("blob", 0.002, 0.95), ("box", 0.005, 0.9), ("lying", 0.005, 0.9)]
 )
 def test_a_rough_scan_with_holes_and_no_bottom_keeps_nine_tenths_and_more(shape, noise, least):
-    mesh, own = scan(shape, noise, holes=6, bottom=False)
-    kept, table = shares(mesh, own, remove_plane(mesh))
+    mesh, mask = scan(shape, noise, holes=6, bottom=False)
+    kept, table = shares(mesh, mask, remove_plane(mesh))
     assert kept > least and table < 0.01
 
 
 def test_a_foot_thinner_than_the_noise_goes_with_the_table_and_the_rest_stays():
-    mesh, own = scan("goblet", 0.005, holes=6, bottom=False)
-    kept, table = shares(mesh, own, remove_plane(mesh))
+    mesh, mask = scan("goblet", 0.005, holes=6, bottom=False)
+    kept, table = shares(mesh, mask, remove_plane(mesh))
     assert 0.75 < kept < 0.9 and table < 0.01
 
 
@@ -114,8 +114,8 @@ def test_a_scan_without_a_table_comes_back_as_it_is(shape, noise, bottom):
 
 
 def test_a_bare_table_and_one_hardly_larger_than_the_object_come_back_as_they_are():
-    mesh, own = scan("box")
-    table = Mesh(mesh.vertices, mesh.faces[~own])
+    mesh, mask = scan("box")
+    table = Mesh(mesh.vertices, mesh.faces[~mask])
     assert remove_plane(table) is table
     mesh, _ = scan("box", bottom=False, table=1.05)  # taken for the base of the object
     assert remove_plane(mesh) is mesh
@@ -133,15 +133,15 @@ def test_a_plane_through_slivers_alone_is_no_table():
 
 
 def test_what_is_left_keeps_its_order_colours_and_texture():
-    mesh, own = scan("blob")
+    mesh, mask = scan("blob")
     colors = np.arange(3 * len(mesh.vertices)).reshape(-1, 3) % 256
     uv = np.random.default_rng(0).random((len(mesh.faces), 3, 2))
     texture = Texture(uv, np.zeros(len(mesh.faces)), (np.zeros((1, 1, 4)),))
     left = remove_plane(Mesh(mesh.vertices, mesh.faces, colors, texture))
-    assert len(left.faces) == own.sum()
-    np.testing.assert_array_equal(left.vertices[left.faces], mesh.vertices[mesh.faces[own]])
-    np.testing.assert_array_equal(left.colors[left.faces], (colors[mesh.faces[own]] % 256).astype(np.uint8))
-    np.testing.assert_array_equal(left.texture.uv, uv[own])
+    assert len(left.faces) == mask.sum()
+    np.testing.assert_array_equal(left.vertices[left.faces], mesh.vertices[mesh.faces[mask]])
+    np.testing.assert_array_equal(left.colors[left.faces], (colors[mesh.faces[mask]] % 256).astype(np.uint8))
+    np.testing.assert_array_equal(left.texture.uv, uv[mask])
     assert len(np.unique(left.faces)) == len(left.vertices)
 
 
@@ -162,17 +162,17 @@ def test_a_mesh_without_surface_is_named_and_a_single_face_comes_back():
     for faces in (np.zeros((0, 3), dtype=int), np.array([[0, 0, 1]])):
         with pytest.raises(ValueError, match="no surface"):
             remove_plane(Mesh(np.eye(3), faces))
-    one = Mesh(np.eye(3), np.array([[0, 1, 2]]))
-    assert remove_plane(one) is one
+    triangle = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+    assert remove_plane(triangle) is triangle
 
 
 def test_the_stage_takes_the_table_out_on_request_and_says_so():
-    mesh, own = scan("box", bottom=False)
+    mesh, mask = scan("box", bottom=False)
     content = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type="ply")
     item = MeshFile("box", "box.ply", ".ply", lambda: content, "z", "m", "unknown")
     assert prepare_mesh(item)[1]["faces"] == len(mesh.faces)
     _, row = prepare_mesh(item, remove_table=True)
-    assert row["faces"] == own.sum() and f"plane removed with {(~own).sum()} faces" in row["repairs"]
+    assert row["faces"] == mask.sum() and f"plane removed with {(~mask).sum()} faces" in row["repairs"]
 
 
 SOLIDS = {
@@ -191,8 +191,8 @@ def test_nearest_points_of_a_surface_are_those_of_point_cloud_utils(name):
     faces, weights = generator.integers(len(mesh.faces), size=500), generator.dirichlet([2, 2, 2], 500)
     places = np.einsum("ij,ijk->ik", weights, mesh.vertices[mesh.faces[faces]])
     points = places + 1e-3 * generator.random((500, 1)) * mesh.face_normals[faces]
-    distances, found, corners = closest(mesh, points)
-    ours = np.einsum("ij,ijk->ik", corners, mesh.vertices[mesh.faces[found]])
+    distances, hits, corners = closest(mesh, points)
+    ours = np.einsum("ij,ijk->ik", corners, mesh.vertices[mesh.faces[hits]])
     far, face, weights = other.closest_points_on_mesh(points, mesh.vertices, mesh.faces)
     theirs = np.einsum("ij,ijk->ik", weights, mesh.vertices[mesh.faces[face]])
     assert np.abs(ours - theirs).max() < 1e-12 and np.abs(distances - far).max() < 1e-12

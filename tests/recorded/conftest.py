@@ -11,12 +11,12 @@ from stages.classification.recorded import ELECTRODES, PALMS, Grasps
 
 def touches(classes=7, count=12, noise=0.2, seed=0):
     """{class: (count, 16, 16)}: a bar at a place of its own, with noise."""
-    random, found = np.random.default_rng(seed), {}
+    random, images = np.random.default_rng(seed), {}
     for k in range(classes):
         bar = np.zeros((16, 16))
         bar[2 * k : 2 * k + 2] = 1
-        found["abcdefghij"[k]] = np.clip(bar + noise * random.random((count, 16, 16)), 0, 1)
-    return found
+        images["abcdefghij"[k]] = np.clip(bar + noise * random.random((count, 16, 16)), 0, 1)
+    return images
 
 
 def grasps(shift=0.0):

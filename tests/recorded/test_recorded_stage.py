@@ -33,9 +33,9 @@ def test_biotac_grasps(make_workspace, recordings, tmp_path, monkeypatch):
     (tmp_path / "archive").mkdir()
     for palm in PALMS:
         for test in (False, True):
-            own = (grasps.palms == palm) & (grasps.test == test)
-            table = pd.DataFrame(grasps.electrodes[own], columns=ELECTRODES)
-            table = table.assign(object=grasps.objects[own], slipped=grasps.slipped[own].astype(int))
+            mask = (grasps.palms == palm) & (grasps.test == test)
+            table = pd.DataFrame(grasps.electrodes[mask], columns=ELECTRODES)
+            table = table.assign(object=grasps.objects[mask], slipped=grasps.slipped[mask].astype(int))
             table.to_csv(tmp_path / f"archive/bts3v2_palm_{palm}{'_test' if test else ''}.csv", index=False)
     workspace = make_workspace(settings("biotac_grasps", tmp_path / "archive"))
     run(workspace)

@@ -59,20 +59,21 @@ def test_the_test_part_changes_neither_the_choice_nor_what_is_measured_within_tr
         np.where(touches.test[:, None, None, None], 0, touches.values), *list(vars(touches).values())[1:]
     )
     first, second = (
-        pd.DataFrame(process(("objects", method), tmp_path, {"objects": one}, 1, 0)) for one in (touches, other)
+        pd.DataFrame(process(("objects", method), tmp_path, {"objects": recording}, 1, 0))
+        for recording in (touches, other)
     )
     timed = first["metric"].isin(["milliseconds", "training_seconds"])
     within = first["part"] == "training"
     assert first[within & ~timed].equals(second[within & ~timed])
-    asked = (first["part"] == "test") & (first["metric"] == "accuracy")
-    assert set(first.loc[asked, "item"]) == set(touches.labels) and set(first.loc[asked, "count"]) == {2}
+    tested = (first["part"] == "test") & (first["metric"] == "accuracy")
+    assert set(first.loc[tested, "item"]) == set(touches.labels) and set(first.loc[tested, "count"]) == {2}
 
 
 def test_less_is_heard_or_felt_and_less_is_known(monkeypatch, tmp_path):
     monkeypatch.setattr(binned_module, "BINS", (12,))
     rows = pd.DataFrame(process(("objects", "discriminant"), tmp_path, {"objects": series()}, 1, 0))
-    asked = rows[(rows["part"] == "test") & (rows["metric"] == "accuracy")]
-    assert asked["value"].mean() > 0.9 and set(asked["train"]) == {24} and set(asked["test"]) == {8}
+    tested = rows[(rows["part"] == "test") & (rows["metric"] == "accuracy")]
+    assert tested["value"].mean() > 0.9 and set(tested["train"]) == {24} and set(tested["test"]) == {8}
     plain = rows[(rows["part"] == "training") & (rows["metric"] == "accuracy")]
     heard = plain[plain["disturbance"].isna() & (plain["cells"] == 39)].groupby("heard")["value"].mean()
     assert heard.index.tolist() == [0.1, 0.25, 0.5, 1.0] and heard[1.0] > 0.9 > heard[0.5] > heard[0.1]

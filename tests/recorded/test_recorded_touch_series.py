@@ -28,16 +28,16 @@ def events(tmp_path):
 def test_events_are_read_in_order_with_the_publishers_parts_from_a_folder_or_a_zip_file(events, tmp_path_factory):
     touches = read_touch_events(events)
     assert touches["objects"].values.shape == (10, 39, 2, 50) and touches["containers"].values.shape == (10, 39, 2, 65)
-    one = touches["objects"]
-    assert one.labels.tolist() == ["00", "01"] * 5 and one.test.tolist() == [False] * 6 + [True] * 4
-    assert one.names[[0, 6]].tolist() == ["train 0", "test 0"] and one.values.dtype == np.uint8
-    assert np.array_equal(one.values[7], np.load(events / "Ev-Objects/test/sample_1_label_1.npy"))
+    objects = touches["objects"]
+    assert objects.labels.tolist() == ["00", "01"] * 5 and objects.test.tolist() == [False] * 6 + [True] * 4
+    assert objects.names[[0, 6]].tolist() == ["train 0", "test 0"] and objects.values.dtype == np.uint8
+    assert np.array_equal(objects.values[7], np.load(events / "Ev-Objects/test/sample_1_label_1.npy"))
     archive = tmp_path_factory.mktemp("zip") / "events.zip"
     with zipfile.ZipFile(archive, "w") as file:
         for path in sorted(events.rglob("*.npy"), reverse=True):
             file.write(path, path.relative_to(events))
     zipped = read_touch_events(archive)["objects"]
-    assert np.array_equal(one.values, zipped.values) and np.array_equal(one.labels, zipped.labels)
+    assert np.array_equal(objects.values, zipped.values) and np.array_equal(objects.labels, zipped.labels)
 
 
 TOUCH = "Ev-Objects/train/sample_2_label_0.npy"
@@ -53,9 +53,9 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_touch_that_is_not_one_is_named_with_the_remedy(fault, events):
-    harm, said = FAULTS[fault]
+    harm, message = FAULTS[fault]
     harm(events / TOUCH)
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         read_touch_events(events)
 
 
@@ -76,10 +76,10 @@ def grasps(tmp_path):
 
 
 def test_grasps_are_the_rise_of_pressure_with_the_publishers_list(grasps):
-    found = read_grasp_series(grasps)["grasps"]
-    assert found.values.shape == (4, 486, 1, 294) and found.labels.tolist() == ["BALL", "BALL", "WOOD", "WOOD"]
-    assert found.test.tolist() == [True, False, True, False]
-    assert found.values[..., -1].sum(axis=(1, 2)).tolist() == [2, 3, 4, 5] and not found.values[..., :100].any()
+    series = read_grasp_series(grasps)["grasps"]
+    assert series.values.shape == (4, 486, 1, 294) and series.labels.tolist() == ["BALL", "BALL", "WOOD", "WOOD"]
+    assert series.test.tolist() == [True, False, True, False]
+    assert series.values[..., -1].sum(axis=(1, 2)).tolist() == [2, 3, 4, 5] and not series.values[..., :100].any()
 
 
 def test_a_list_that_names_what_is_not_there_and_no_list_are_said(grasps):
@@ -104,11 +104,11 @@ def test_fewer_taxels_are_spread_from_the_middle_to_the_ends():
 def test_the_published_archives(archive, read):
     if not (DATA / f"{archive}.zip").exists():
         pytest.skip(f"{archive}.zip is not beside the project")
-    found = {
-        name: (*one.values.shape, len(set(one.labels)), int(one.test.sum()))
-        for name, one in read(DATA / f"{archive}.zip").items()
+    shapes = {
+        name: (*series.values.shape, len(set(series.labels)), int(series.test.sum()))
+        for name, series in read(DATA / f"{archive}.zip").items()
     }
-    assert found in (
+    assert shapes in (
         {"objects": (720, 39, 2, 250, 36, 144), "containers": (300, 39, 2, 325, 20, 60)},
         {"grasps": (51, 486, 1, 294, 5, 5)},
     )

@@ -82,8 +82,8 @@ def test_grey_is_red_and_colours_stay():
 
 def train(mode, split="random", network="mobilenet_v2", kept=(), **changes):
     """{(item, metric): value} of one training."""
-    one = Trial(network, "random", mode, (Run("tiny", split, 0),))
-    rows = process(one, None, {"tiny": recording(kept=kept)}, small(**changes), seed=0)
+    training = Trial(network, "random", mode, (Run("tiny", split, 0),))
+    rows = process(training, None, {"tiny": recording(kept=kept)}, small(**changes), seed=0)
     return {(row.get("item", ""), row["metric"]): row["value"] for row in rows}
 
 
@@ -112,9 +112,12 @@ def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone()
     networks = {"mobilenet_v2": ["frozen", "finetuned"]}
     settings = small(networks=networks, weights=["imagenet", "random"], repetitions={"frozen": 2, "finetuned": 2})
     planned = trials({"a": recording(splits=("random", "blocks")), "b": recording()}, settings)
-    shared = [[{run.repetition for run in one.runs} for one in planned if len(one.runs) == size] for size in (6, 3)]
+    shared = [
+        [{run.repetition for run in training.runs} for training in planned if len(training.runs) == size]
+        for size in (6, 3)
+    ]
     assert shared == [[{0, 1}], [{0}, {1}]]  # an untrained network is drawn for each repetition
-    assert len(planned) == 3 + 12 and len({one.name for one in planned}) == len(planned)
+    assert len(planned) == 3 + 12 and len({training.name for training in planned}) == len(planned)
 
 
 @pytest.mark.slow
@@ -122,15 +125,15 @@ def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     computed, frozen_features = [], trial.frozen_features
     monkeypatch.setattr(trial, "frozen_features", lambda *given: computed.append(1) or frozen_features(*given))
     turned = replace(recording().touches, images=recording().touches.images[:, ::-1, ::-1])
-    both = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
-    one = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in both))
-    features = trial.frozen_features_by_data(one, both, small(), seed=0)
+    recordings = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
+    training = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in recordings))
+    features = trial.frozen_features_by_data(training, recordings, small(), seed=0)
     assert len(computed) == 2 and features["tiny"][0] is features["same"][0]
-    alone = trial.frozen_features_by_data(replace(one, runs=one.runs[2:]), both, small(), seed=0)
+    alone = trial.frozen_features_by_data(replace(training, runs=training.runs[2:]), recordings, small(), seed=0)
     assert torch.equal(features["other"][0], alone["other"][0])
     assert not torch.equal(features["other"][0], features["tiny"][0])
-    second = replace(one, runs=(one.runs[2]._replace(repetition=1),))
-    drawn = trial.frozen_features_by_data(second, both, small(), seed=0)["other"][0]
+    second = replace(training, runs=(training.runs[2]._replace(repetition=1),))
+    drawn = trial.frozen_features_by_data(second, recordings, small(), seed=0)["other"][0]
     assert not torch.equal(alone["other"][0], drawn)
 
 
@@ -174,7 +177,7 @@ def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, 
 
 def test_a_training_to_convergence_learns_from_fewer_touches_and_stops_by_itself():
     settings = small(passes=["printed", "converged"], patience=3, most_epochs=60)
-    planned = {one.name: one for one in trials({"toy": recording()}, settings)}
+    planned = {training.name: training for training in trials({"toy": recording()}, settings)}
     name = "alexnet-random-frozen-toy-random-0"
     assert list(planned) == [name, f"{name}-converged"]
     rows = pd.DataFrame(process(planned[f"{name}-converged"], None, {"toy": recording()}, settings, 0))
@@ -187,8 +190,8 @@ def test_a_training_to_convergence_learns_from_fewer_touches_and_stops_by_itself
 
 def test_a_training_that_diverges_is_a_row_with_a_note_and_the_others_run():
     settings = small(rates={"frozen": [1e38], "finetuned": [0.001]}, passes=["printed", "converged"])
-    for one in trials({"toy": recording()}, settings):
-        rows = process(one, None, {"toy": recording()}, settings, 0)
+    for training in trials({"toy": recording()}, settings):
+        rows = process(training, None, {"toy": recording()}, settings, 0)
         assert [row["value"] for row in rows] == [None] and "diverged" in rows[0]["note"]
     assert stage.summary(rows) == {}
 
@@ -217,8 +220,8 @@ def test_neighbours_of_grasps_are_those_of_the_stage_recorded(monkeypatch, tmp_p
     monkeypatch.setattr(data, "read_grasps", lambda path: grasps)
     ours = pd.DataFrame(neighbour_rows("biotac_grasps", tmp_path, 1, seed=0))
     same = pd.DataFrame(grasp_rows(Model("knn", None), tmp_path, grasps, 1, 0)).query("scaled == 'training'")
-    slips, own = same.query("split == 'test_objects' and palm == 'all'"), ours[ours["data"] == "grasps_slip"]
-    assert own[["value", "item"]].values[:-1].tolist() == slips[["value", "item"]].values.tolist()
-    assert own["value"].iloc[-1] == pytest.approx(np.average(slips["value"], weights=slips["count"]))
+    slips, our_slips = same.query("split == 'test_objects' and palm == 'all'"), ours[ours["data"] == "grasps_slip"]
+    assert our_slips[["value", "item"]].values[:-1].tolist() == slips[["value", "item"]].values.tolist()
+    assert our_slips["value"].iloc[-1] == pytest.approx(np.average(slips["value"], weights=slips["count"]))
     recognised = same.loc[same["task"] == "recognition", "value"].tolist()
     assert ours.loc[ours["data"] == "grasps_object", "value"].tolist() == recognised

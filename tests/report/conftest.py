@@ -109,9 +109,9 @@ def write_set(root, name, count):
 
 def left_out(frame, note, **where):
     """The frame without the rows of `where`; in their place one row with the reason and no more."""
-    gone = np.logical_and.reduce([frame[column] == value for column, value in where.items()])
+    mask = np.logical_and.reduce([frame[column] == value for column, value in where.items()])
     row = {"dataset": "test", **where, "value": np.nan, "note": note, "seed": 0}
-    return pd.concat([frame[~gone], pd.DataFrame([row])], ignore_index=True)
+    return pd.concat([frame[~mask], pd.DataFrame([row])], ignore_index=True)
 
 
 def judged(offsets=None):
@@ -134,14 +134,14 @@ def judged(offsets=None):
 
 def learned_weights(count=6):
     """A table of learned weights, and the values of each object that they are the means of: (frame, (count, 9))."""
-    own, rows = np.random.default_rng(1).random((count, len(CHANNELS))), []
+    values, rows = np.random.default_rng(1).random((count, len(CHANNELS))), []
     for method in ("guided_ssim", "guided_ed", "guided_ssim_object"):
         for fold in range(-1, count):
-            mean = np.delete(own, fold, axis=0).mean(axis=0) if fold >= 0 else own.mean(axis=0)
+            mean = np.delete(values, fold, axis=0).mean(axis=0) if fold >= 0 else values.mean(axis=0)
             left_out = "abcdef"[fold] if fold >= 0 else ""
             rows += [(method, channel, value, left_out) for channel, value in zip(CHANNELS, mean, strict=True)]
     rows += [("glance", "rank", 0.3, fold) for fold in ("", *"abcdef"[:count])]
-    return pd.DataFrame(rows, columns=["method", "channel", "weight", "left_out"]), own
+    return pd.DataFrame(rows, columns=["method", "channel", "weight", "left_out"]), values
 
 
 def svm_accuracies():
@@ -174,8 +174,8 @@ def views_seen():
     shares = {("ball", "greedy"): [0.5, 0.9, 1.0], ("cube", "greedy"): [0.6, 1.0], ("ball", "four"): [0.3, 0.5]}
     rows = [
         {"item": name, "method": method, "metric": "seen_share", "views": k, "value": share, "seconds": 7.0}
-        for (name, method), found in shares.items()
-        for k, share in enumerate(found, start=1)
+        for (name, method), curve in shares.items()
+        for k, share in enumerate(curve, start=1)
     ]
     rows += [{"item": name, "method": "exact", "metric": "fewest_views", "value": 3} for name in OBJECTS]
     rows += [{"item": name, "method": "raster", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS]
@@ -220,8 +220,12 @@ def _write_sight(root, name):
     rows = random.random((200, len(CHANNELS)))
     model = fit_svm(rows, rows[:, 0] > 0.5, seed=0)
     write_models(root / f"data/test/weights/svm/{name}.npz", {"object": [model], "without": [model]})
-    found = {"points": np.array([3, 50, 100]), "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
-    arrays = {f"{method}.{key}": values for method in FOUND for key, values in found.items()}
+    detection = {
+        "points": np.array([3, 50, 100]),
+        "strong": np.int64(2),
+        "saliency": np.linspace(0, 1, len(mesh.vertices)),
+    }
+    arrays = {f"{method}.{key}": values for method in FOUND for key, values in detection.items()}
     write_arrays(root / f"data/test/salient_points/{name}.npz", **arrays)
 
 
@@ -241,8 +245,8 @@ def make_root(root):
     for name in OBJECTS:
         write_mesh(root / "data/test/meshes" / f"{name}.npz", mesh)
         points = np.array([3, 50, 100])
-        found = {"points": points, "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
-        arrays = {f"glance.{key}": value for key, value in found.items()}
+        detection = {"points": points, "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
+        arrays = {f"glance.{key}": value for key, value in detection.items()}
         write_arrays(root / "data/test/salient_points" / f"{name}.npz", **arrays)
         write_mesh(root / "data/test/lod" / name / "qem_50pct.npz", ball(8))
     write_measurements(root, "classification", classification())
@@ -317,11 +321,11 @@ def results(root):
 @pytest.fixture(scope="module")
 def browser():
     playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright: it drives the browser")
-    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
-    if not found:
+    program = next((path for path in map(shutil.which, BROWSERS) if path), None)
+    if not program:
         pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
     with playwright.sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=found, args=SOFTWARE_GL)
+        opened = driver.chromium.launch(executable_path=program, args=SOFTWARE_GL)
         yield opened
         opened.close()
 

@@ -17,7 +17,7 @@ def only(frame, **where):
 
 def verdicts(claims, results, *keys):
     """The judged claims by key: those of these keys, or all."""
-    return judge([one for one in claims if not keys or one.key in keys], results).set_index("key")
+    return judge([claim for claim in claims if not keys or claim.key in keys], results).set_index("key")
 
 
 def has_ink(figure):

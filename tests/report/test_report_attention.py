@@ -104,11 +104,11 @@ def test_marks_are_said_to_be_no_human_gaze_and_need_ground_truth(marked, small)
 
 
 def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
-    _, own = small.learned_weights()
+    _, values = small.learned_weights()
     frame = table_of("table_3_1", seen).frame.set_index(["dataset", "method", "channel"])
     thesis = seen.thesis("table_3_1_channel_weights").set_index("channel")
     row = frame.loc[("gaze", "guided_ssim", "color")]
-    assert row[["mean", "low", "high"]].tolist() == pytest.approx(interval(own[:, 0]), abs=1e-5)
+    assert row[["mean", "low", "high"]].tolist() == pytest.approx(interval(values[:, 0]), abs=1e-5)
     assert row["thesis"] == thesis.loc["color", "ssim"]
     assert frame.loc[("gaze", "guided_ed", "edge"), "thesis"] == thesis.loc["edge", "one_minus_ed"]
     assert np.isnan(frame.loc[("gaze", "guided_ssim_object", "color"), "thesis"])
@@ -116,16 +116,20 @@ def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
 
 @pytest.mark.parametrize(("channel", "word"), [("color", "supported"), ("edge", "contradicted")])
 def test_a_channel_has_the_least_weight_where_each_object_says_so(measure, channel, word):
-    own = {"color": np.array([0.1, 0.12, 0.09, 0.11]), "edge": np.array([0.5, 0.7, 0.6, 0.4]), "dkl": np.full(4, 0.45)}
+    weights = {
+        "color": np.array([0.1, 0.12, 0.09, 0.11]),
+        "edge": np.array([0.5, 0.7, 0.6, 0.4]),
+        "dkl": np.full(4, 0.45),
+    }
     rows = [
         {"item": item, "channel": name, "value": values.mean() if item is None else np.delete(values, item).mean()}
-        for name, values in own.items() for item in (None, 0, 1, 2, 3)
+        for name, values in weights.items() for item in (None, 0, 1, 2, 3)
     ]  # fmt: skip
     results = measure("weights", pd.DataFrame(rows).assign(method="guided_ssim", metric="weight"), SECTION_3_2)
-    claim = next(one for one in CLAIMS if one.key == "colour_least_ssim")
-    found = judge([replace(claim, first={"channel": channel})], results).iloc[0]
-    lowest = {"color": own["dkl"], "edge": own["color"]}[channel]
-    assert found["verdict"] == word and found["effect"] == pytest.approx(float((lowest - own[channel]).mean()))
+    claim = next(entry for entry in CLAIMS if entry.key == "colour_least_ssim")
+    row = judge([replace(claim, first={"channel": channel})], results).iloc[0]
+    lowest = {"color": weights["dkl"], "edge": weights["color"]}[channel]
+    assert row["verdict"] == word and row["effect"] == pytest.approx(float((lowest - weights[channel]).mean()))
 
 
 def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(seen, measure):
@@ -218,10 +222,10 @@ VERDICTS = {
 
 
 def test_claims_on_gaze_follow_from_the_rows(seen):
-    found = verdicts(CLAIMS, seen, *VERDICTS)
-    assert found["verdict"].to_dict() == VERDICTS
-    assert found.loc["svm_per_object", "effect"] == pytest.approx(4)  # in the thesis's way
-    assert found.loc["svm_per_object_unseen", "tested_on"].startswith("not run")  # no whole object left out
+    judged = verdicts(CLAIMS, seen, *VERDICTS)
+    assert judged["verdict"].to_dict() == VERDICTS
+    assert judged.loc["svm_per_object", "effect"] == pytest.approx(4)  # in the thesis's way
+    assert judged.loc["svm_per_object_unseen", "tested_on"].startswith("not run")  # no whole object left out
 
 
 def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root, small):
@@ -250,7 +254,7 @@ def test_nested_choices_stand_beside_those_made_once(measure):
     lines = table_of("attention_nested", results).text
     assert lines["flattered by, NSS"].str[:5].tolist() == ["+0.10"]
     assert lines["features"].tolist() == ["1 to 2 (once: 3)"] and set(lines["in every choice"]) == {"rank"}
-    claims = [one for one in attention.CLAIMS if one.key.startswith("gaze_choices")]
+    claims = [claim for claim in attention.CLAIMS if claim.key.startswith("gaze_choices")]
     assert judge(claims, results).set_index("key")["verdict"].tolist() == ["supported"]
     with pytest.raises(NotRun):
         table_of("attention_nested", measure("attention_checks", rows.head(1).assign(method="equal")))

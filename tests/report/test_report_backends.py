@@ -68,10 +68,10 @@ def test_a_refusal_or_a_miss_is_counted_and_takes_its_cell_from_all(bench, outco
     rows = benched()
     cell = (rows["mesh"] == "m1") & (rows["kept_points"] == points) & (rows["share"] == 0.1)
     rows.loc[cell, "ratio"] *= 100  # a cell that would change every mean
-    gone = cell & (rows["backend"] == "poor")
+    failed = cell & (rows["backend"] == "poor")
     if outcome == "refused":
-        rows.loc[gone, ["seconds", "ratio", "error_ratio", "metro_mean", "ssim_error"]] = np.nan
-    rows.loc[gone, "outcome"] = outcome
+        rows.loc[failed, ["seconds", "ratio", "error_ratio", "metro_mean", "ssim_error"]] = np.nan
+    rows.loc[failed, "outcome"] = outcome
     built = table(bench(rows))
     frame = built.frame.set_index(["backend", "with_points"])
     assert frame.loc[("poor", points > 0), ["tried", outcome, "cells"]].tolist() == [10, 1, 9]
@@ -121,8 +121,8 @@ def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(ben
     missed = (rows["mesh"] == "m1") & (rows["backend"] == "meshoptimizer")
     rows.loc[missed, ["seconds", "metro_mean"]] *= 100
     rows.loc[missed, "outcome"] = "missed"
-    said = [note for note in table(bench(rows)).notes if "meshoptimizer's" in note]
-    assert len(said) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in said)
+    notes = [note for note in table(bench(rows)).notes if "meshoptimizer's" in note]
+    assert len(notes) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in notes)
 
 
 def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, measure):
@@ -130,10 +130,15 @@ def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, measure):
     row = {"outcome": "reached", "bar": 1}
     rows = [row | {"mesh": mesh, "share": share, "method": "fast_weights", "salient_ratio": ratio}
             for mesh, share, ratio in cells]  # fmt: skip
-    rows += [found | {"method": "meshoptimizer", "salient_ratio": 1.3} for found in rows]
+    rows += [entry | {"method": "meshoptimizer", "salient_ratio": 1.3} for entry in rows]
     results = measure("bench/salient_simplification", pd.DataFrame(rows), results=bench(benched()))
-    said = [note for note in table(results).notes if "gaze" in note]
-    assert len(said) == 1 and "2 meshes" in said[0] and "has 0.707" in said[0] and "0.71 at 10%, 0.71 at 50%" in said[0]
+    notes = [note for note in table(results).notes if "gaze" in note]
+    assert (
+        len(notes) == 1
+        and "2 meshes" in notes[0]
+        and "has 0.707" in notes[0]
+        and "0.71 at 10%, 0.71 at 50%" in notes[0]
+    )
 
 
 @pytest.mark.parametrize("power", [0.8, 1.4])

@@ -33,8 +33,8 @@ def benched(ours=4000.0, tacto=True):
         for method, error in ERRORS.items():
             if tacto or method in ("ours", "trimesh_embree"):
                 row = {"what": "error", "mesh": shape, "source": "analytic", "faces": 9, "cells": 31, "pitch": 0.01}
-                own = error * (0.5 if shape == "plane" else 1)
-                rows.append(row | {"touches": 1, "method": method, "value": 1.0, "to_mesh": own, "note": ""})
+                to_mesh = error * (0.5 if shape == "plane" else 1)
+                rows.append(row | {"touches": 1, "method": method, "value": 1.0, "to_mesh": to_mesh, "note": ""})
     return pd.DataFrame(rows)
 
 

@@ -86,8 +86,8 @@ def test_beyond_chance_takes_off_the_guessing_of_the_objects_that_the_group_held
 
 def test_pairs_match_by_repetition_not_by_row(values):
     columns = {"item": list("abba"), "method": ["x", "x", "y", "y"], "value": [3, 5, 1, 2]}
-    found = differences(values(**columns), claim(first={"method": "x"}, second={"method": "y"}))
-    assert found.to_dict() == {"a": 1, "b": 4}
+    gaps = differences(values(**columns), claim(first={"method": "x"}, second={"method": "y"}))
+    assert gaps.to_dict() == {"a": 1, "b": 4}
 
 
 @pytest.mark.parametrize(("where", "note", "key", "said"), [
@@ -105,30 +105,30 @@ def test_rows_that_were_left_out_hand_on_their_note(measure, small, where, note,
 
 def test_several_values_are_averaged_where_all_were_measured(values):
     columns = {"item": list("aaabbb"), "method": ["one", "two", "base"] * 2, "value": [1, 3, 1, np.nan, 5, 1]}
-    found = differences(values(**columns), claim(first={"method": ("one", "two")}, second={"method": "base"}))
-    assert found.to_dict() == {"a": 1.0}
+    gaps = differences(values(**columns), claim(first={"method": ("one", "two")}, second={"method": "base"}))
+    assert gaps.to_dict() == {"a": 1.0}
 
 
 def test_best_and_worst_rival_are_picked_by_their_means_and_never_the_other_side(values):
     columns = {"item": list("aaaabbbb"), "method": ["mine", "low", "high", "seen"] * 2}
     results = values(**columns, value=[9, 1, 3, 8, 9, 2, 5, 8])
-    mine = {"method": "mine"}
+    side = {"method": "mine"}
     but = ("se*",)
-    assert differences(results, claim(first=mine, second={"method": highest_of(but=but)})).tolist() == [6, 4]
-    assert differences(results, claim(first=mine, second={"method": lowest_of()})).tolist() == [8, 7]
-    assert differences(results, claim(first=mine, second={"method": highest_of("low")})).tolist() == [8, 7]
+    assert differences(results, claim(first=side, second={"method": highest_of(but=but)})).tolist() == [6, 4]
+    assert differences(results, claim(first=side, second={"method": lowest_of()})).tolist() == [8, 7]
+    assert differences(results, claim(first=side, second={"method": highest_of("low")})).tolist() == [8, 7]
     with pytest.raises(NotRun, match="no other method than mine"):
-        differences(results, claim(first=mine, second={"method": highest_of("absent")}))
+        differences(results, claim(first=side, second={"method": highest_of("absent")}))
 
 
 def test_differences_within_a_unit_are_relative_and_averaged_or_contrasted(values):
     columns = {"item": list("aaaa"), "target": ["1", "1", "2", "2"], "method": ["x", "y"] * 2, "value": [3, 1, 0, 0]}
     sides = {"first": {"method": "x"}, "second": {"method": "y"}}
     results = values(**columns)
-    found = differences(results, claim(**sides, within=("target",), relative=True))
-    assert found.to_dict() == {"a": 0.5}  # 2 / 2 at the first target, 0 where both are zero
-    one = claim(**sides, contrast=({"target": "1"}, {"target": "2"}), scale=100, margin=1)
-    assert differences(results, one).tolist() == [201]  # the scale comes before the margin
+    gaps = differences(results, claim(**sides, within=("target",), relative=True))
+    assert gaps.to_dict() == {"a": 0.5}  # 2 / 2 at the first target, 0 where both are zero
+    contrast = claim(**sides, contrast=({"target": "1"}, {"target": "2"}), scale=100, margin=1)
+    assert differences(results, contrast).tolist() == [201]  # the scale comes before the margin
 
 
 def test_one_side_may_count_by_its_mean_or_be_of_another_set(measure, values):
@@ -157,29 +157,29 @@ def test_equal_differences_are_open_and_say_why(values):
 
 
 def test_words_are_written_from_the_fields(root, results, small):
-    said = "test, kNN, six objects, test part drawn at random, all imprints, our glance minus blind touch, "
-    said += "five draws"
-    one = next(claim for claim in CLAIMS if claim.key == "glance_over_blind_ours")
-    other = replace(one, where=one.where | {"classifier": "deep_learning"}, note="so")
-    assert judge([one, other], results)["tested_on"].tolist() == [said, said.replace("kNN", "deep learning") + ", so"]
+    text = "test, kNN, six objects, test part drawn at random, all imprints, our glance minus blind touch, "
+    text += "five draws"
+    entry = next(claim for claim in CLAIMS if claim.key == "glance_over_blind_ours")
+    other = replace(entry, where=entry.where | {"classifier": "deep_learning"}, note="so")
+    assert judge([entry, other], results)["tested_on"].tolist() == [text, text.replace("kNN", "deep learning") + ", so"]
     assert of(results, "knn_best_ours")["tested_on"].endswith("kNN minus the highest of the others")
     small.write_set(root, "six", 4)
-    assert of(results, one.key)["tested_on"] == said.replace("six objects", "4 objects (group six)")
+    assert of(results, entry.key)["tested_on"] == text.replace("six objects", "4 objects (group six)")
 
 
 def frame_of(words, **columns):
     """A frame of `judge` with these verdicts, each of a primary claim."""
-    found = {"verdict": words, "section": "T3.1", "claim": "Sentence.", "pairs": 5, "of": ""}
-    return pd.DataFrame(found | {"holds": ""} | columns)
+    fields = {"verdict": words, "section": "T3.1", "claim": "Sentence.", "pairs": 5, "of": ""}
+    return pd.DataFrame(fields | {"holds": ""} | columns)
 
 
 def test_verdicts_are_counted_with_those_that_hold_among_so_many():
     words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["mixed"] * 2 + ["open"] * 45
-    said = counted(frame_of(words, holds=["yes"] * 33 + ["no"] * 7 + [""] * 52))
+    text = counted(frame_of(words, holds=["yes"] * 33 + ["no"] * 7 + [""] * 52))
     words = "30 supported, 10 contradicted, 5 no difference, 2 mixed, 45 open"
-    assert said.startswith(f"Sentences of the thesis (92): {words}. Sentences of this project (0): none.")
-    assert f"that test a sentence elsewhere (92): {words}." in said
-    assert "Of the 40 that are supported or contradicted, 33 hold" in said
+    assert text.startswith(f"Sentences of the thesis (92): {words}. Sentences of this project (0): none.")
+    assert f"that test a sentence elsewhere (92): {words}." in text
+    assert "Of the 40 that are supported or contradicted, 33 hold" in text
 
 
 def spread_about(mean, seed=0, count=12, spread=1.0):
@@ -225,8 +225,8 @@ def test_the_printed_set_judges_the_thesis_and_the_others_show_whether_it_carrie
     row = pooled(results, "one", "two", "more", section="T9")
     assert (row["verdict"], row["units"], row["pairs"]) == ("supported", 12, 12)
     assert row["carries"].startswith("mixed") and row["by_set"].count("(12)") == 3 and row["tested_on"] == "one"
-    both = pooled(results, "one", "two", "more", section="T9", printed=2)
-    assert both["verdict"] == "mixed" and both["units"] == 24
+    two_sets = pooled(results, "one", "two", "more", section="T9", printed=2)
+    assert two_sets["verdict"] == "mixed" and two_sets["units"] == 24
     assert pooled(results, "absent", "one", section="T9")["verdict"] == "supported"  # as printed it was not run
     assert pooled(results, "absent", "one", section="T9")["tested_on"] == "one; not measured on absent"
     assert pooled(results, "absent", "one", "two", section="T9")["units"] == 12  # of the first that was measured
@@ -241,8 +241,8 @@ def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_ro
     table = judge(claims, results)
     assert table["of"].tolist() == ["", "a", "", "a"]
     assert sentences(table)["verdict"].tolist() == ["supported", "contradicted"]
-    said = "Sentences of the thesis (1): 1 supported. Sentences of this project (1): 1 contradicted. Verdicts, with 2"
-    assert counted(table).startswith(said)
+    text = "Sentences of the thesis (1): 1 supported. Sentences of this project (1): 1 contradicted. Verdicts, with 2"
+    assert counted(table).startswith(text)
 
 
 @pytest.mark.parametrize(("words", "word"), [
@@ -259,9 +259,9 @@ def test_a_verdict_holds_in_each_reading_or_depends_on_the_reading(words, word):
 def test_readings_are_judged_by_their_own_rows_and_told(values):
     numbers = [*spread_about(2.0), *spread_about(-2.0)]
     results = values(item=[*range(12)] * 2, way=["a"] * 12 + ["b"] * 12, value=numbers)
-    one = claim(second=0.0, where={"way": "a"}, readings=(reading("the other way", where={"way": "b"}),
+    entry = claim(second=0.0, where={"way": "a"}, readings=(reading("the other way", where={"way": "b"}),
                                                           reading("absent", where={"way": "c"})))  # fmt: skip
-    row = judge([one], results).iloc[0]
+    row = judge([entry], results).iloc[0]
     assert row["verdict"] == "depends on the reading" and row["effect"] == pytest.approx(2.0)
     assert row["readings"].startswith("as written: supported +2.00 [") and row["readings"].count(";") == 1
     assert "the other way: contradicted -2.00 [" in row["readings"] and row["holds"] == ""
@@ -288,16 +288,16 @@ def test_a_reading_that_the_printed_set_does_not_have_is_not_judged_by_another_s
         path = results.workspace.root / f"reports/measurements/{name}/test.csv.gz"
         pd.read_csv(path).assign(**rows).to_csv(path, index=False)
     other = reading("the other way", where={"way": "b"})
-    one = claim(second=0.0, dataset=("one", "two"), printed=1, where={"way": "a"}, readings=(other,))
-    row = judge([one], type(results)(results.workspace, results.settings)).iloc[0]
+    entry = claim(second=0.0, dataset=("one", "two"), printed=1, where={"way": "a"}, readings=(other,))
+    row = judge([entry], type(results)(results.workspace, results.settings)).iloc[0]
     assert row["verdict"] == "open" and "supported" not in str(row["readings"])
 
 
 def test_methods_give_way_to_others_on_all_sets_but_the_first():
     sides = {"first": {"method": ("x", "z")}, "second": {"method": highest_of("x")}}
-    one = claim(dataset=("a", "b"), elsewhere={"x": "y"}, **sides)
-    assert one.on("a").first == {"method": ("x", "z")}
-    assert one.on("b").first == {"method": ("y", "z")} and one.on("b").second == {"method": highest_of("y")}
+    entry = claim(dataset=("a", "b"), elsewhere={"x": "y"}, **sides)
+    assert entry.on("a").first == {"method": ("x", "z")}
+    assert entry.on("b").first == {"method": ("y", "z")} and entry.on("b").second == {"method": highest_of("y")}
 
 
 def test_copies_of_a_shape_count_once(values):
@@ -320,8 +320,8 @@ def test_an_open_claim_says_why_and_how_many_units_would_decide_it(sets_of_rows,
 
 @pytest.mark.parametrize(("counts", "few"), [((4, 4), True), ((4, 12), False), ((12, 4), False)])
 def test_sets_are_few_units_where_the_largest_has_five_or_fewer(sets_of_rows, counts, few):
-    one, two = (spread_about(0.2, seed, count) for seed, count in enumerate(counts))
-    row = pooled(sets_of_rows(one=one, two=two), "one", "two")
+    first, second = (spread_about(0.2, seed, count) for seed, count in enumerate(counts))
+    row = pooled(sets_of_rows(one=first, two=second), "one", "two")
     assert row["verdict"] == "open" and (row["cause"] == "5 units or fewer a set") == few
 
 
@@ -339,8 +339,8 @@ def test_where_sets_differ_more_sets_are_needed(sets_of_rows):
 
 def test_no_two_sets_of_a_claim_share_an_object():
     alike = [{"household", SECTION_3_1, None}, {"gaze", "gaze_3_2", "gaze_on_black"}, {"princeton", "princeton_3_1"}]
-    for one in CLAIMS:
-        assert all(len(same & set(one.sets)) < 2 for same in alike), one.key
+    for entry in CLAIMS:
+        assert all(len(same & set(entry.sets)) < 2 for same in alike), entry.key
 
 
 @pytest.mark.slow
@@ -351,11 +351,11 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
     write_claims(table, pairs, root / "reports")
     claims = pd.read_csv(root / "reports/claims.csv")
     stored = pd.read_csv(root / "reports/claims/differences.csv.gz", dtype={"pair": str})
-    found = {key: part["difference"] for key, part in stored[stored["judged"]].groupby("key", sort=False)}
-    assert set(found) == set(claims.loc[claims["pairs"] > 0, "key"]) and len(found) > 5
+    by_key = {key: part["difference"] for key, part in stored[stored["judged"]].groupby("key", sort=False)}
+    assert set(by_key) == set(claims.loc[claims["pairs"] > 0, "key"]) and len(by_key) > 5
     for row in claims[claims["pairs"] > 0].itertuples():
-        mean, low, high = interval(found[row.key], row.shared)
-        assert len(found[row.key]) == row.pairs and verdict(low, high, row.unit) == row.verdict
+        mean, low, high = interval(by_key[row.key], row.shared)
+        assert len(by_key[row.key]) == row.pairs and verdict(low, high, row.unit) == row.verdict
         assert (mean, low, high) == pytest.approx((row.effect, row.low, row.high), rel=1e-5, nan_ok=True)
 
 
@@ -368,10 +368,10 @@ def test_a_process_that_imported_no_topic_loads_the_statistic_of_a_claim(values,
 
 def test_a_reading_on_sets_of_its_own_is_judged_by_their_rows_alone(sets_of_rows):
     results = sets_of_rows(one=spread_about(2.0), two=spread_about(-2.0), more=spread_about(2.0))
-    absent, there = (reading("elsewhere", dataset=(name, "two")) for name in ("absent", "more"))
+    absent, present = (reading("elsewhere", dataset=(name, "two")) for name in ("absent", "more"))
     row = pooled(results, "one", "two", section="T9", readings=(absent,))
     assert row["verdict"] == "supported" and pd.isna(row["readings"])
-    row = pooled(results, "one", "two", section="T9", readings=(there,))
+    row = pooled(results, "one", "two", section="T9", readings=(present,))
     assert row["verdict"] == "supported" and "elsewhere: supported +2" in row["readings"]
 
 

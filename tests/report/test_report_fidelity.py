@@ -23,13 +23,13 @@ TWINS = {name for topic in TOPICS for kind in KINDS.values() for name in getattr
 
 def numbers(kind):
     """The numbers of one kind that column `thesis` names: `T figures 3.23 to 3.26` names four."""
-    found = set()
+    labels = set()
     for text in FRAME["thesis"]:
         for part in re.findall(rf"{kind}s? ((?:\d\.\d+(?:, | and | to )?)+)", text):
             for first, last in re.findall(r"(\d\.\d+)(?: to (\d\.\d+))?", part):
                 chapter, start = first.split(".")
-                found |= {f"{chapter}.{k}" for k in range(int(start), int((last or first).split(".")[1]) + 1)}
-    return found
+                labels |= {f"{chapter}.{k}" for k in range(int(start), int((last or first).split(".")[1]) + 1)}
+    return labels
 
 
 def test_every_formula_table_and_figure_of_the_thesis_has_a_row():

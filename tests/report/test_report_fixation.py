@@ -45,7 +45,7 @@ def rows(dataset="gaze", count=6, resnet=0.0, **means):
 
     resnet: what ResNet50 gains in PCC, and how much nearer its centres lie.
     """
-    random, found = np.random.default_rng(0), []
+    random, entries = np.random.default_rng(0), []
     known = {(method, task): mean - 0.3 * method.endswith("-random") for method in NETWORKS
              for task, mean in TASKS.items()} | OTHERS  # fmt: skip
     known |= {(method, task): mean for method in NETWORKS for task, mean in means.items()}
@@ -55,26 +55,26 @@ def rows(dataset="gaze", count=6, resnet=0.0, **means):
             gain = resnet if method == "resnet50-last_block" else 0.0
             value = mean + gain + level + 0.002 * random.normal()
             for view in range(3):
-                found.append(row | {"view": view, "metric": "pcc", "value": value + 0.1 * (view - 1)})
-                found.append(row | {"view": view, "metric": "pcc_masked", "value": value + 0.2})
+                entries.append(row | {"view": view, "metric": "pcc", "value": value + 0.1 * (view - 1)})
+                entries.append(row | {"view": view, "metric": "pcc_masked", "value": value + 0.2})
                 if task in DISTANCES:
                     far = DISTANCES[task] - gain + 0.1 * (level + 0.2) + 0.0002 * random.normal()
-                    found.append(row | {"view": view, "metric": "distance", "value": far})
-                    found.append(row | {"view": view, "metric": "distance_mean", "value": 2 * far})
+                    entries.append(row | {"view": view, "metric": "distance", "value": far})
+                    entries.append(row | {"view": view, "metric": "distance_mean", "value": 2 * far})
             for metric, whole in {"pcc": 0.9, "nss": 2 * value, "auc": 0.5 + value / 4}.items():
-                found.append(row | {"view": ALL_VIEWS, "metric": metric, "value": whole})
-        found += [one for method in NETWORKS for one in of_network(name, method, level)]
-    found += [one for method in NETWORKS for one in taught(method)]
-    return pd.DataFrame(found).assign(dataset=dataset, seed=0)
+                entries.append(row | {"view": ALL_VIEWS, "metric": metric, "value": whole})
+        entries += [entry for method in NETWORKS for entry in of_network(name, method, level)]
+    entries += [entry for method in NETWORKS for entry in taught(method)]
+    return pd.DataFrame(entries).assign(dataset=dataset, seed=0)
 
 
 def of_network(name, method, level):
     """Rows of what an object cost, and how alike its maps are."""
     row = {"item": name, "method": method, "view": ALL_VIEWS}
     yield row | {"view": None, "metric": "views", "value": 29, "seconds": 1.0}
-    for k, (one, other) in enumerate(combinations(["level_1", "level_2", "convexity"], 2)):
+    for k, (first, second) in enumerate(combinations(["level_1", "level_2", "convexity"], 2)):
         value = ALIKE.get(method, 0.4) + 0.1 * level + 0.1 * (k - 1)
-        yield row | {"task": f"{one}~{other}", "metric": "pcc_tasks", "value": value}
+        yield row | {"task": f"{first}~{second}", "metric": "pcc_tasks", "value": value}
 
 
 def taught(method):
@@ -124,8 +124,8 @@ def test_views_are_those_of_the_stage():
 
 def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze):
     frame = gaze.rows("fixation", "gaze")
-    found = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
-    assert found["a"] == pytest.approx(0.4 - 0.2, abs=0.01)  # 0.9, of all views in one, is not among them
+    scores = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
+    assert scores["a"] == pytest.approx(0.4 - 0.2, abs=0.01)  # 0.9, of all views in one, is not among them
     assert _fixation.scores(frame, "nss")["vgg16-frozen", "ewigc"]["a"] == pytest.approx(0.4, abs=0.02)
     numbers = frame[frame["view"] != ALL_VIEWS].assign(view=lambda row: row["view"].astype(float))  # without the word
     pd.testing.assert_frame_equal(_fixation.scores(numbers, "pcc"), _fixation.scores(frame, "pcc"))
@@ -177,10 +177,10 @@ VERDICTS = {
 
 
 def test_claims_say_what_the_rows_hold(gaze):
-    found = verdicts(topic.CLAIMS, gaze, *VERDICTS)
-    assert found["verdict"].to_dict() == {key: word for key, (word, _) in VERDICTS.items()}
-    assert found["effect"].to_dict() == pytest.approx({key: size for key, (_, size) in VERDICTS.items()}, rel=0.05)
-    assert (found["pairs"] == 6).all()
+    judged = verdicts(topic.CLAIMS, gaze, *VERDICTS)
+    assert judged["verdict"].to_dict() == {key: word for key, (word, _) in VERDICTS.items()}
+    assert judged["effect"].to_dict() == pytest.approx({key: size for key, (_, size) in VERDICTS.items()}, rel=0.05)
+    assert (judged["pairs"] == 6).all()
     alike = next(claim for claim in topic.CLAIMS if claim.key == "resnet_more_alike")
     assert differences(gaze, replace(alike, checked=False)).to_numpy() == pytest.approx(np.full(6, 0.2))
 
@@ -188,10 +188,10 @@ def test_claims_say_what_the_rows_hold(gaze):
 def test_claims_turn_with_the_rows_and_name_what_was_not_run(gaze, written):
     results = written(rows(resnet=-0.05, average=0.38))
     for key, effect in (("over_vgg", -0.05), ("nearer_than_vgg", -10), ("nearer_than_vgg_least", -5)):
-        found = one(results, f"resnet_{key}")
-        told = re.search(r"as written: not testable \+?([-\d.]+)", found["readings"])  # VGG16's layers are random
-        assert float(told[1]) == pytest.approx(effect, rel=0.1)
-        assert found["effect"] == pytest.approx(0, abs=abs(effect) / 10)  # by frozen filters
+        row = one(results, f"resnet_{key}")
+        match = re.search(r"as written: not testable \+?([-\d.]+)", row["readings"])  # VGG16's layers are random
+        assert float(match[1]) == pytest.approx(effect, rel=0.1)
+        assert row["effect"] == pytest.approx(0, abs=abs(effect) / 10)  # by frozen filters
     assert one(results, "entropy_over_average")["verdict"] == "supported"
     assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
 
@@ -201,8 +201,8 @@ def test_the_network_with_the_lowest_accuracy_is_beside_the_least_of_the_thesis(
     taught = frame["metric"].eq("accuracy")
     frame.loc[taught, "value"] = np.where(frame[taught]["method"] == "vgg16-last_block", 0.97, 0.99)
     frame.loc[taught & (frame["task"] == "level_2"), "value"] += 0.01
-    found = one(written(frame), "test_accuracy")
-    assert found["effect"] == pytest.approx(1.5) and found["pairs"] == 2
+    row = one(written(frame), "test_accuracy")
+    assert row["effect"] == pytest.approx(1.5) and row["pairs"] == 2
 
 
 @pytest.mark.parametrize(("key", "share"), [("median", 100 / 3), ("upper_quartile", -100 / 6)])
@@ -214,9 +214,9 @@ def test_a_quartile_is_lower_where_more_views_lie_below_that_of_both(written, ke
               "value": value + 0.001 * number * (value == 0.1)}
              for number in range(8) for (method, task), values in of_views.items()
              for view, value in zip((0, 1, 2, ALL_VIEWS), (*values, 9), strict=True)]  # fmt: skip
-    claim = next(one for one in topic.CLAIMS if one.key == f"ewigc_{key}_nearer_resnet50")
-    found = differences(written(pd.DataFrame(frame), "gaze"), claim)
-    assert found.to_numpy() == pytest.approx(np.full(8, share))  # a tie counts half
+    claim = next(entry for entry in topic.CLAIMS if entry.key == f"ewigc_{key}_nearer_resnet50")
+    gaps = differences(written(pd.DataFrame(frame), "gaze"), claim)
+    assert gaps.to_numpy() == pytest.approx(np.full(8, share))  # a tie counts half
 
 
 SAID = {
@@ -292,7 +292,7 @@ def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looke
 
 def test_a_network_is_drawn_as_it_was_taught_most():
     methods = "a_b-random", "a_b-frozen", "a_b-last_block", "c-random", "d-frozen"
-    arrays = dict.fromkeys(f"{one}.maps" for one in methods)
+    arrays = dict.fromkeys(f"{method}.maps" for method in methods)
     assert maps._networks(arrays, "maps") == ["a_b-last_block", "d-frozen"]
     assert maps._taught(["d-frozen"]) and not maps._taught(["a_b-last_block", "d-frozen"])
 
@@ -300,9 +300,9 @@ def test_a_network_is_drawn_as_it_was_taught_most():
 def test_a_map_is_drawn_where_it_is_high():
     cam = np.zeros((7, 7), dtype=np.float16)
     cam[1, 5] = 3
-    found = maps.large(cam[None], "mobilenet_v2-frozen")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
+    picture = maps.large(cam[None], "mobilenet_v2-frozen")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
     place = (60, 300)
-    assert np.unravel_index(found.argmax(), found.shape) == pytest.approx(place, abs=3) and found.max() > 0.98
+    assert np.unravel_index(picture.argmax(), picture.shape) == pytest.approx(place, abs=3) and picture.max() > 0.98
     assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2-frozen").any()
 
 
@@ -320,10 +320,10 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     content = drawn.paths[0].read_bytes()
     (bare / "data/gaze/fixation").rmdir()
     kept = figure(name, results)
-    for one in (drawn, kept):
-        assert one.title == "Figure 3.34: fused attention on the surface, on meshes with human gaze"
-        assert one.alt == "Meshes of gaze, coloured from dark (low) to yellow (high): marks."
-        assert one.caption.startswith("EWIGC_L4: the highest") and one.caption.endswith("98 % quantile.")
+    for picture in (drawn, kept):
+        assert picture.title == "Figure 3.34: fused attention on the surface, on meshes with human gaze"
+        assert picture.alt == "Meshes of gaze, coloured from dark (low) to yellow (high): marks."
+        assert picture.caption.startswith("EWIGC_L4: the highest") and picture.caption.endswith("98 % quantile.")
     assert [path.name for path in kept.paths] == ["figure_3_34_gaze.png", "figure_3_34_gaze.json"]
     assert kept.paths == drawn.paths and kept.paths[0].read_bytes() == content
     kept.paths[0].unlink()

@@ -24,7 +24,7 @@ def rows(repetitions=3, both=0.05, small=-0.003):
 
     small: what weights of 8 bits gain.
     """
-    random, found = np.random.default_rng(0), []
+    random, entries = np.random.default_rng(0), []
     for split in ("random", "objects"):
         for number in range(repetitions):
             base = {"data": "hybrid", "weights": "imagenet", "mode": FIRST, "split": split}
@@ -33,12 +33,12 @@ def rows(repetitions=3, both=0.05, small=-0.003):
                 value = level + 0.003 * random.normal()
                 for name in (sense, *SIZES):
                     gain = small + 0.0005 * number if name == "hybrid_int8" else 0.0
-                    found.append(base | {"method": name, "sense": sense, "metric": "accuracy", "value": value + gain})
-                found.append(base | {"method": sense, "sense": sense, "metric": "size_bytes", "value": 8.5e6})
-                found.append(base | {"method": "hybrid", "sense": sense, "metric": "max_difference", "value": 2e-6})
+                    entries.append(base | {"method": name, "sense": sense, "metric": "accuracy", "value": value + gain})
+                entries.append(base | {"method": sense, "sense": sense, "metric": "size_bytes", "value": 8.5e6})
+                entries.append(base | {"method": "hybrid", "sense": sense, "metric": "max_difference", "value": 2e-6})
             for name, size in SIZES.items():
-                found.append(base | {"method": name, "metric": "size_bytes", "value": size})
-                found.append(base | {"method": name, "metric": "size_ratio", "value": 17e6 / size})
+                entries.append(base | {"method": name, "metric": "size_bytes", "value": size})
+                entries.append(base | {"method": name, "metric": "size_ratio", "value": 17e6 / size})
             for damage, severity, loss in (
                 ("none", 0.0, 0.0),
                 ("picture_darkness", 0.7, 0.2),
@@ -48,23 +48,23 @@ def rows(repetitions=3, both=0.05, small=-0.003):
                     value = 0.6 if way in ("touch", "sum_mean") else 0.9 - loss
                     value = max(value, 0.6) + both if way == "fusion_entropy" else value
                     value += 0.003 * random.normal()
-                    found.append(base | {"method": way, "sense": "both", "metric": "accuracy", "value": value}
+                    entries.append(base | {"method": way, "sense": "both", "metric": "accuracy", "value": value}
                                  | {"perturbation": damage, "severity": severity})  # fmt: skip
     for number in range(repetitions):
-        one = {"data": "imprints128", "method": "mobilenet_v2", "weights": "imagenet"}
-        one |= {"mode": "frozen", "split": "random", "repetition": number}
-        found += [one | {"metric": "accuracy", "value": 0.5}, one | {"metric": "chance", "value": 0.125}]
-    found += [row | {"metric": "train_accuracy", "value": 1.0} for row in found if row["metric"] == "accuracy"]
-    return pd.DataFrame(found).assign(note=None, seconds=10.0, dataset="furniture", seed=0)
+        touch = {"data": "imprints128", "method": "mobilenet_v2", "weights": "imagenet"}
+        touch |= {"mode": "frozen", "split": "random", "repetition": number}
+        entries += [touch | {"metric": "accuracy", "value": 0.5}, touch | {"metric": "chance", "value": 0.125}]
+    entries += [row | {"metric": "train_accuracy", "value": 1.0} for row in entries if row["metric"] == "accuracy"]
+    return pd.DataFrame(entries).assign(note=None, seconds=10.0, dataset="furniture", seed=0)
 
 
 def longer(frame, lost=0.1):
     """Rows of a network that shares more layers, trained once: a smaller file that is right less often."""
-    one = frame[(frame["data"] == "hybrid") & (frame["repetition"] == 0)].assign(mode=LONGER)
-    one.loc[one["metric"] == "accuracy", "value"] -= lost
-    one.loc[one["metric"] == "size_ratio", "value"] *= 1.68 / (17 / 11.9)
-    one.loc[one["method"].isin(SIZES) & (one["metric"] == "size_bytes"), "value"] *= 17 / 11.9 / 1.68
-    return one
+    part = frame[(frame["data"] == "hybrid") & (frame["repetition"] == 0)].assign(mode=LONGER)
+    part.loc[part["metric"] == "accuracy", "value"] -= lost
+    part.loc[part["metric"] == "size_ratio", "value"] *= 1.68 / (17 / 11.9)
+    part.loc[part["method"].isin(SIZES) & (part["metric"] == "size_bytes"), "value"] *= 17 / 11.9 / 1.68
+    return part
 
 
 @pytest.fixture(scope="module")
@@ -121,8 +121,8 @@ def test_a_longer_middle_is_held_against_the_first_on_the_same_items(stitched, t
     made = table("section_5_5", two_middles)
     pd.testing.assert_frame_equal(made.frame[made.frame["shared_layers"] == FIRST], stitched.frame)
     frame = made.frame.set_index(["shared_layers", "network", "split"])
-    found = frame.loc[(LONGER, "hybrid", "objects")]
-    assert found["touch_gain"] == pytest.approx(-10) and found["size_ratio"] == pytest.approx(1.68, rel=1e-4)
+    row = frame.loc[(LONGER, "hybrid", "objects")]
+    assert row["touch_gain"] == pytest.approx(-10) and row["size_ratio"] == pytest.approx(1.68, rel=1e-4)
     assert frame.loc[(FIRST, "hybrid", "objects"), "touch_gain"] == 0
     line = made.shown.set_index(["shared layers", "network"]).loc[(LONGER, "hybrid")]
     assert line["gain by touch, unseen objects, points"] == "-10.0" and "·" not in line["by touch, unseen objects, %"]
@@ -131,17 +131,17 @@ def test_a_longer_middle_is_held_against_the_first_on_the_same_items(stitched, t
 
 
 def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(measure):
-    own = rows()
-    without = own[own["data"] != "hybrid"].assign(dataset="test")  # the first set has none, and hides none
+    ours = rows()
+    without = ours[ours["data"] != "hybrid"].assign(dataset="test")  # the first set has none, and hides none
     theirs = rows(both=-0.5).assign(dataset="princeton_six")
-    frame = table("section_5_5", measure("transfer", pd.concat([own, without, theirs]))).frame
+    frame = table("section_5_5", measure("transfer", pd.concat([ours, without, theirs]))).frame
     assert list(frame["objects"].unique()) == [f"furniture, {LOOKED}", f"psb, the thesis's 6 classes, {LOOKED}"]
-    own, theirs = (
+    ours, theirs = (
         frame[(frame["objects"] == name) & (frame["network"] == "hybrid") & (frame["split"] == "objects")].iloc[0]
         for name in frame["objects"].unique()
     )
-    assert theirs["touch"] == own["touch"]
-    narrower = (theirs["touch_high"] - theirs["touch_low"]) / (own["touch_high"] - own["touch_low"])
+    assert theirs["touch"] == ours["touch"]
+    narrower = (theirs["touch_high"] - theirs["touch_low"]) / (ours["touch_high"] - ours["touch_low"])
     assert narrower == pytest.approx(np.sqrt((1 + 3 / 4) / (1 + 3 / 2)))  # one object of five, not of three
 
 
@@ -158,8 +158,8 @@ def test_confusions_of_each_split_and_sense_are_in_per_cent(run):
     made = build_one(hybrid, "figures", "figure_5_6", run)
     assert has_ink(made)
     assert "2 classes (car, vase)" in made.alt and "items at random, unseen objects in rows" in made.alt
-    found = [[text.get_text() for text in axes.texts] for axes in made.drawing.axes]
-    assert found == 4 * [["80", "20", "20", "80"]]
+    cells = [[text.get_text() for text in axes.texts] for axes in made.drawing.axes]
+    assert cells == 4 * [["80", "20", "20", "80"]]
 
 
 def test_a_network_breaks_where_half_of_its_lead_is_lost(run):
@@ -179,29 +179,29 @@ def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert verdicts(run, *EVERY)["verdict"].to_dict() == dict.fromkeys(EVERY, "supported")
     frame = rows(both=-0.5, small=-0.03)
     frame.loc[(frame["split"] == "objects") & (frame["sense"] == "touch"), "value"] += 0.9
-    found = verdicts(measure("transfer", frame), *EVERY)
-    assert found.loc["both_over_better_random", "verdict"] == "contradicted"
-    assert found.loc["both_over_better_objects", "verdict"] == "contradicted"
-    assert found.loc["eight_bits_touch_random", "verdict"] == "contradicted"  # one point may be lost, and no more
-    assert found.loc["eight_bits_touch_random", "effect"] == pytest.approx(-3 + 0.05 + 1, abs=1e-6)
-    assert found.loc["sight_over_touch_random", "verdict"] == "supported"
-    assert found.loc["sight_over_touch_objects", "verdict"] == "contradicted"
+    judged = verdicts(measure("transfer", frame), *EVERY)
+    assert judged.loc["both_over_better_random", "verdict"] == "contradicted"
+    assert judged.loc["both_over_better_objects", "verdict"] == "contradicted"
+    assert judged.loc["eight_bits_touch_random", "verdict"] == "contradicted"  # one point may be lost, and no more
+    assert judged.loc["eight_bits_touch_random", "effect"] == pytest.approx(-3 + 0.05 + 1, abs=1e-6)
+    assert judged.loc["sight_over_touch_random", "verdict"] == "supported"
+    assert judged.loc["sight_over_touch_objects", "verdict"] == "contradicted"
 
 
 def test_new_objects_stand_below_the_table_and_in_the_claims(measure):
     """A head that knows 30 % of eight new objects after one touch and 50 % after five, ten points over the others."""
-    random, found = np.random.default_rng(0), []
+    random, entries = np.random.default_rng(0), []
     for name, worse in (("hybrid_head", 0.0), ("imagenet_head", 0.1), ("hybrid_nearest", 0.1)):
         for count, share in ((1, 0.3), (2, 0.4), (5, 0.5), (10, 0.5)):
             about = {"data": "hybrid", "method": name, "split": "objects", "repetition": 0, "severity": count}
             about |= {"perturbation": "new_object", "metric": NEW_OBJECTS, "seconds": 0.1 * count}
             values = share - worse + 0.02 * random.normal(size=8)
-            found += [about | {"item": f"o{k}", "value": value} for k, value in enumerate(values)]
+            entries += [about | {"item": f"o{k}", "value": value} for k, value in enumerate(values)]
     chance = {"data": "hybrid", "method": "chance", "metric": NEW_OBJECTS, "value": 1 / 8}
     frame = rows()
     worse = (frame["method"] == "hybrid") & (frame["metric"] == "accuracy") & (frame["sense"] == "touch")
     frame.loc[worse, "value"] -= 0.03
-    results = measure("transfer", pd.concat([frame, pd.DataFrame([*found, chance])]), "furniture")
+    results = measure("transfer", pd.concat([frame, pd.DataFrame([*entries, chance])]), "furniture")
     notes = " ".join(table("section_5_5", results).notes)
     assert "a new head on the hybrid's features: " in notes and "0.10 to 1 s an object on one core" in notes
     assert "8 new objects, guessing 12.5 %" in notes and "accuracy by 3.00 points at most." in notes

@@ -42,8 +42,8 @@ def test_a_bar_through_a_point_within_the_axes_is_its_interval_and_that_of_anoth
     axes.plot([2, 100], [7, 0.6], "o")  # outside of the axes, as is what is not a number
     axes.plot([2], [np.nan], "o")
     axes.set(xlim=(0, 4), ylim=(0, 1))
-    found = texts(drawing)
-    assert len(found) == 2 and found[0].endswith("0.500 [0.400, 0.700]") and found[1].endswith("0.600")
+    labels = texts(drawing)
+    assert len(labels) == 2 and labels[0].endswith("0.500 [0.400, 0.700]") and labels[1].endswith("0.600")
 
 
 @pytest.mark.parametrize("draw", [
@@ -124,10 +124,10 @@ def test_every_series_keeps_its_exact_colour_and_words_stay_words(drawing):
 
 
 def test_every_mark_can_be_hovered_where_it_is_drawn(drawing):
-    text, found = vector(drawing, "chart", "alt")
+    text, labels = vector(drawing, "chart", "alt")
     hits = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)"', text)
     drawn = re.findall(r'<use [^>]*x="([\d.]+)" y="([\d.]+)"[^>]*0072b2', text)
-    assert len(hits) == len(found) == 2 * len(CYCLE)
+    assert len(hits) == len(labels) == 2 * len(CYCLE)
     hits, drawn = (np.array(places, dtype=float) for places in (hits, drawn))
     for place in drawn[:2]:  # of the first series, whose third is in the legend
         assert np.abs(hits - place).max(axis=1).min() < 0.1
@@ -138,15 +138,15 @@ def test_two_charts_on_a_page_share_no_id_and_equal_charts_give_equal_bytes(draw
     assert texts[0] == texts[2] and "metadata" not in texts[0] and "xml" not in texts[0]  # no date
     ids = [set(re.findall(r' id="([^"]+)"', text)) for text in texts]
     assert ids[0] and not ids[0] & ids[1]
-    for text, own in zip(texts, ids, strict=True):
-        assert set(re.findall(r'(?:href="|url\()#([^")]+)', text)) == own
+    for text, expected in zip(texts, ids, strict=True):
+        assert set(re.findall(r'(?:href="|url\()#([^")]+)', text)) == expected
 
 
 def test_too_many_marks_are_left_to_the_table(drawing):
     for k in range(MOST_PATHS // 100 + 1):
         drawing.axes[0].plot(np.linspace(0, 1, 100), np.full(100, 1 + k / 10), "o")
-    text, found = vector(drawing, "chart", "alt")
-    assert len(found) > MOST_PATHS and "<circle" not in text
+    text, labels = vector(drawing, "chart", "alt")
+    assert len(labels) > MOST_PATHS and "<circle" not in text
 
 
 def test_a_drawing_with_a_picture_is_no_chart(drawing):

@@ -75,9 +75,9 @@ def without(rows, value=np.nan, **where):
 
 
 def test_only_cells_where_nothing_shrank_when_asked_for_the_whole(plain):
-    every = paired_cells(plain, ["metro_mean"], ["itti", "corners"])
+    cells = paired_cells(plain, ["metro_mean"], ["itti", "corners"])
     whole = paired_cells(plain, ["metro_mean"], ["itti", "corners"], whole=True)
-    assert set(every["target"]) == set(TARGETS)
+    assert set(cells["target"]) == set(TARGETS)
     assert set(whole["target"]) == {"25%", "3000"}
     assert set(paired_cells(plain, ["metro_mean"], ["itti"], whole=True)["target"]) == set(TARGETS)
 
@@ -120,8 +120,8 @@ def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(plain, run)
     assert not table("table_3_2", plain).frame["nothing_shrunk"].any()
     rows = measured()
     rows.loc[(rows["method"] == "svm") & (rows["item"] == "a"), "shrunk"] = True
-    found = table("table_3_2", run(rows)).frame.groupby("nothing_shrunk")["objects"].max()
-    assert found.to_dict() == {False: 4, True: 3}
+    counts = table("table_3_2", run(rows)).frame.groupby("nothing_shrunk")["objects"].max()
+    assert counts.to_dict() == {False: 4, True: 3}
 
 
 def test_every_detector_has_all_errors_in_the_thesis_order(plain):
@@ -163,21 +163,21 @@ def test_difference_is_relative_and_a_group_is_the_mean_of_those_that_were_run_o
 
 def test_gap_and_spread_grow_at_few_faces(plain, run):
     results, at = plain, {"where": ERROR, "contrast": FEW_MINUS_MANY}
-    there, back = {"method": "corners"}, {"method": "itti"}
-    assert (stated(results, "difference", first=there, second=back, **at) > 0).all()
-    assert (stated(results, "difference", first=back, second=there, **at) < 0).all()
+    corners, itti = {"method": "corners"}, {"method": "itti"}
+    assert (stated(results, "difference", first=corners, second=itti, **at) > 0).all()
+    assert (stated(results, "difference", first=itti, second=corners, **at) < 0).all()
     assert (stated(results, "spread", first={"method": tuple(POINTS)}, **at) > 0).all()
     rows = measured()
     with pytest.raises(NotRun, match="target 3000 is not among"):
-        stated(run(rows[rows["target"] != "3000"]), "difference", first=there, second=back, **at)
+        stated(run(rows[rows["target"] != "3000"]), "difference", first=corners, second=itti, **at)
 
 
 def test_error_falls_with_faces(plain, run):
     rows, fields = measured(), {"where": ERROR, "first": {"method": "itti"}}
     assert (stated(plain, "falls_with_faces", **fields) > 0).all()
     single = (rows["item"] == "a") & (rows["target"] != "1500")
-    found = stated(run(rows[~single]), "falls_with_faces", **fields)
-    assert list(found.index) == ["b", "c", "d"]  # with one count nothing can fall
+    falls = stated(run(rows[~single]), "falls_with_faces", **fields)
+    assert list(falls.index) == ["b", "c", "d"]  # with one count nothing can fall
     with pytest.raises(NotRun, match="two face counts"):
         stated(run(rows[rows["target"] == "1500"]), "falls_with_faces", **fields)
 
@@ -196,8 +196,8 @@ def test_equivalence_holds_within_the_margin_and_fails_beyond_it(plain):
     assert high < 0
     _, _, high = interval(room(plain, 0.2, ("guided_ed", "corners"), "guided_ssim"))
     assert high < 0  # the farthest of them decides
-    there, back = (room(plain, 1e-4, (a,), b) for a, b in (("itti", "svm"), ("svm", "itti")))
-    assert there.to_numpy() == pytest.approx(back.to_numpy())
+    forward, back = (room(plain, 1e-4, (a,), b) for a, b in (("itti", "svm"), ("svm", "itti")))
+    assert forward.to_numpy() == pytest.approx(back.to_numpy())
 
 
 def test_ranks_agree_where_the_error_grows_with_the_points(plain, run):
@@ -222,11 +222,13 @@ def with_people():
 @pytest.mark.parametrize("own", [True, False])
 def test_where_people_look_is_judged_and_shown_on_the_meshes_with_gaze(run, own):
     results = run(with_people()) if own else run(measured(), with_people())
-    claims = [one for one in CLAIMS if one.key in ("glance_keep_gaze", "glance_keep_salient")]
-    found = judge(claims, results).set_index("key")
-    assert found.loc["glance_keep_gaze", "verdict"] == "supported"
-    assert found.loc["glance_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
-    assert found.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
+    claims = [entry for entry in CLAIMS if entry.key in ("glance_keep_gaze", "glance_keep_salient")]
+    judged = judge(claims, results).set_index("key")
+    assert judged.loc["glance_keep_gaze", "verdict"] == "supported"
+    assert judged.loc["glance_keep_gaze", "tested_on"].startswith(
+        "meshes with human gaze, error weighted by human gaze"
+    )
+    assert judged.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
     shown = table("lod_detectors", results).shown
     assert ("error where people look, %" + ("" if own else ", meshes with human gaze")) in shown
     assert ("error where people look, %" in table("table_3_1_5_combinations", results).shown) == own
@@ -238,10 +240,10 @@ def simplified(measure, small):
     results = measure("lod", measured())
     root, mesh = results.data / "test", small.ball()
     counts = {"a": {}, "b": {"corners": 60, "VisAttCurvSymCon": 14}}
-    for name, own in counts.items():
+    for name, strong in counts.items():
         write_mesh(root / f"meshes/{name}.npz", mesh)
         arrays = {f"{method}.points": np.arange(60) for method in POINTS}
-        arrays |= {f"{method}.strong": np.int64(own.get(method, 3)) for method in POINTS}
+        arrays |= {f"{method}.strong": np.int64(strong.get(method, 3)) for method in POINTS}
         write_arrays(root / f"salient_points/{name}.npz", **arrays)
         for method in ["qem", *POINTS, *WAYS]:
             write_mesh(root / f"lod/{name}/{method}_3000.npz", small.ball(9))
@@ -268,10 +270,10 @@ def test_boxes_hold_the_objects_without_error(run):
     drawing = made.drawing
     methods = [method for method in BOXES if method in set(rows["method"])]
     for axes, (metric, target) in zip(drawing.axes, panels, strict=True):
-        here = rows[(rows["metric"] == metric) & (rows["target"] == target)].set_index("method")["value"]
+        by_method = rows[(rows["metric"] == metric) & (rows["target"] == target)].set_index("method")["value"]
         whiskers = np.array(axes.collections[0].get_segments())[:, :, 0]
         for method, ends in zip(methods, whiskers, strict=True):
-            values = 100 * np.maximum(here[method], 1e-3 * here["qem"].median())
+            values = 100 * np.maximum(by_method[method], 1e-3 * by_method["qem"].median())
             assert len(values) == 4 and (values > 0).all()
             assert tuple(ends) == pytest.approx(tuple(np.quantile(values, [0.05, 0.95])), rel=1e-4)
 
@@ -282,8 +284,8 @@ def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
     more = rows[rows["target"] == "25%"].assign(target="50%", value=lambda half: half["value"] / 2)
     monkeypatch.setattr(levels, "attention_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
     chart = build_one(meshes, "tradeoff", "simplification", run(pd.concat([rows, more])))
-    found = pd.read_csv(chart.paths[1]).set_index(["metric", "target", "method"])
-    plain = found.xs("qem", level="method")
+    costs = pd.read_csv(chart.paths[1]).set_index(["metric", "target", "method"])
+    plain = costs.xs("qem", level="method")
     assert plain["on_front"].all() and (plain["cost_ratio"] == 1).all() and len(plain) == 6
-    assert found.loc[("metro_mean", "25%", "itti"), "cost_ratio"] == pytest.approx(10)
-    assert not found.drop(index="qem", level="method")["on_front"].any()
+    assert costs.loc[("metro_mean", "25%", "itti"), "cost_ratio"] == pytest.approx(10)
+    assert not costs.drop(index="qem", level="method")["on_front"].any()

@@ -109,7 +109,7 @@ def test_old_results_go_and_those_of_others_and_of_sets_that_are_off_stay(run):
     assert not (run.root / "reports" / OLD).exists() and not (run.root / "reports" / OLD_PAGE).exists()
     assert (run.root / "reports" / OTHERS).exists() and len(run.pages) > 3
     apart = re.findall(r"<p>Not part of this run: (.*?)\.</p>", " ".join(run.pages.values()))
-    assert any("elsewhere" in found for found in apart)
+    assert any("elsewhere" in text for text in apart)
 
 
 def test_pages_ask_nothing_of_the_network_and_are_accessible(run):
@@ -144,16 +144,16 @@ def test_links_lead_to_files_and_places_and_every_page_to_every_other(run):
 def test_the_front_page_carries_the_meshes(run):
     front = run.pages[run.root / "reports/index.html"]
     data = json.loads(re.search(r'id="mesh-data">(.*?)</script>', front, re.DOTALL)[1].replace("<\\/", "</"))
-    assert [one["name"] for one in data["objects"]] == ["ball", "cube"]
+    assert [entry["name"] for entry in data["objects"]] == ["ball", "cube"]
     assert list(data["objects"][0]["ladders"]) == ["qem"]
 
 
 def test_verdicts_are_counted_beside_the_claims(run):
-    said = re.search(r"Sentences of the thesis .*rate of 5 %\.", (run.root / "reports/claims.md").read_text())[0]
+    text = re.search(r"Sentences of the thesis .*rate of 5 %\.", (run.root / "reports/claims.md").read_text())[0]
     claims = pd.read_csv(run.root / "reports/claims.csv")
     supported = (claims["verdict"] == "supported").sum()
-    assert f"that test a sentence elsewhere ({len(claims)}): {supported} supported" in said
-    assert f"<p>{said}</p>" in run.pages[run.root / "reports/site/claims.html"]
+    assert f"that test a sentence elsewhere ({len(claims)}): {supported} supported" in text
+    assert f"<p>{text}</p>" in run.pages[run.root / "reports/site/claims.html"]
 
 
 def readable(html):
@@ -191,9 +191,9 @@ def test_no_published_table_shows_raw_names():
 
 def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     write_report(small.results(bare))
-    said = capsys.readouterr().out
+    printed = capsys.readouterr().out
     start = "report: not run, no measurements of classification"
-    lines = [line for line in said.splitlines() if line.startswith(start)]
+    lines = [line for line in printed.splitlines() if line.startswith(start)]
     assert len(lines) == 1 and "`dvc repro classification`: tables/table_4_1, " in lines[0]
     text = (bare / "reports/index.html").read_text()
     assert "<p>not run: no data/SET/salient_points" in text and "no data/SET/meshes" in text
@@ -234,8 +234,8 @@ def test_equal_runs_give_equal_bytes_with_any_number_of_workers(own, small):
 def axe():
     """The file of axe-core, or None."""
     places = [os.environ.get("NODE_PATH"), "node_modules", str(Path.home() / "node_modules")]
-    found = (Path(place) / "axe-core/axe.min.js" for place in places if place)
-    return next((path for path in found if path.exists()), None)
+    files = (Path(place) / "axe-core/axe.min.js" for place in places if place)
+    return next((path for path in files if path.exists()), None)
 
 
 def test_claims_filter_and_open_to_their_pairs(tab, run):
@@ -248,20 +248,20 @@ def test_claims_filter_and_open_to_their_pairs(tab, run):
     tab.get_by_label("Verdict").select_option("supported")
     assert shown.count() == (claims["verdict"] == "supported").sum() > 0
     tab.get_by_label("Chapter").select_option("ours")
-    both = claims[(claims["verdict"] == "supported") & (claims["section"] == "ours")]
-    assert shown.count() == len(both) > 0
-    assert f"{len(both)} of {len(claims)} claims" in tab.locator("#found").inner_text()
+    selected = claims[(claims["verdict"] == "supported") & (claims["section"] == "ours")]
+    assert shown.count() == len(selected) > 0
+    assert f"{len(selected)} of {len(claims)} claims" in tab.locator("#found").inner_text()
     once = claims[claims["of"].isna() & claims["section"].str.startswith("T3") & (claims["verdict"] == "open")]
     row = tab.locator("#claims tbody tr", has_text="chapter 3").first
     row.get_by_role("link", name=str(len(once)), exact=True).last.click()
     tab.wait_for_function(f"document.getElementById('found').innerText.startsWith('{len(once)} of')")
     assert shown.count() == len(once) > 0
-    key = both["key"].iloc[0]
+    key = selected["key"].iloc[0]
     tab.goto("about:blank")
     tab.goto(f"{(site / 'site/claims.html').as_uri()}#{key}")
     assert tab.locator(f"#{key} tbody tr").count() == (differences["key"] == key).sum() > 0
-    said = tab.locator(f"#{key} dl").inner_text()
-    assert "dvc repro" in said and f"python -m stages.claim {key}" in said
+    details = tab.locator(f"#{key} dl").inner_text()
+    assert "dvc repro" in details and f"python -m stages.claim {key}" in details
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
@@ -274,24 +274,24 @@ def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, run, width
         assert tab.evaluate("document.documentElement.scrollWidth") <= width, path.name
         tab.evaluate(REPEATED)
         tab.evaluate(axe().read_text(encoding="utf-8"))
-        found = tab.evaluate("axe.run()")["violations"]
-        bad = [(one["id"], one["nodes"][0]["html"]) for one in found if one["impact"] in SERIOUS]
+        violations = tab.evaluate("axe.run()")["violations"]
+        bad = [(entry["id"], entry["nodes"][0]["html"]) for entry in violations if entry["impact"] in SERIOUS]
         tab.close()
         assert not bad, path.name
 
 
 def test_the_command_of_a_claim_switches_its_stage_on(small, compose_once):
     results, switched = small.results(ROOT), {}
-    asked = {(claim.stage, tuple(sets_read(claim, results))) for claim in CLAIMS}
-    assert len(asked) > 10
-    for stage, sets in sorted(asked):
-        said = command(ROOT / "conf", stage, sets)
-        steps = re.findall(r"python -m stages\.compose ?'?([^' ]*)'? && dvc repro ([^&]+)", said)
-        found = {override: {*repeated.split()} - {"report"} for override, repeated in steps}
-        assert set().union(*found.values()) == {f"{stage}@{name}" for name in sets}, (stage, sets)
-        for override, names in found.items():
+    needs = {(claim.stage, tuple(sets_read(claim, results))) for claim in CLAIMS}
+    assert len(needs) > 10
+    for stage, sets in sorted(needs):
+        text = command(ROOT / "conf", stage, sets)
+        steps = re.findall(r"python -m stages\.compose ?'?([^' ]*)'? && dvc repro ([^&]+)", text)
+        targets = {override: {*repeated.split()} - {"report"} for override, repeated in steps}
+        assert set().union(*targets.values()) == {f"{stage}@{name}" for name in sets}, (stage, sets)
+        for override, names in targets.items():
             switched.setdefault(override, set()).update(names)
-    kinds = [next(one for one in switched if one.startswith(start)) for start in ("experiment=", "sets=")]
+    kinds = [next(option for option in switched if option.startswith(start)) for start in ("experiment=", "sets=")]
     for override in ["", *kinds]:
         graph = compose([override] if override else [])["graph"]
         assert all(name.partition("@")[2] in graph[name.partition("@")[0]] for name in switched[override]), override

@@ -56,10 +56,10 @@ EQUAL = (1.0, 1.0)  # seconds: with noise either of two choices is cheaper half 
 ])  # fmt: skip
 def test_a_choice_is_on_the_front_where_resamples_agree(accuracy, spread, options, words):
     frame = choices(accuracy, spread, options.pop("seconds", (1.0, 2.0)))
-    found = placed(frame, "seconds", "mean", **options)
-    assert found["on_front"].tolist() == words
+    front = placed(frame, "seconds", "mean", **options)
+    assert front["on_front"].tolist() == words
     if accuracy[1] == 0.51:
-        assert found["front_share"].iloc[1] == pytest.approx(0.56, abs=0.05)  # half, and a little for the 0.01
+        assert front["front_share"].iloc[1] == pytest.approx(0.56, abs=0.05)  # half, and a little for the 0.01
 
 
 def test_units_drawn_together_tell_a_small_gain_from_chance():
@@ -137,8 +137,8 @@ def test_names_cover_neither_each_other_nor_a_point_nor_the_edge():
     figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     boxes = [Text.get_window_extent(text, renderer) for text in written]
-    for one, other in combinations(boxes, 2):
-        assert not one.overlaps(other)
+    for first, second in combinations(boxes, 2):
+        assert not first.overlaps(second)
     for box in boxes:
         assert not any(box.contains(*spot) for spot in axes.transData.transform(points))
         assert axes.get_window_extent().count_contains(box.corners()) == 4

@@ -16,9 +16,9 @@ def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_lef
     mesh, values = Mesh(0.3 * ball.vertices, ball.faces), np.random.default_rng(0).random(len(ball.vertices))
     wide = Mesh(np.vstack([mesh.vertices, [[0.4] * 3, [-0.4] * 3]]), mesh.faces)  # rays all round
     for given in ({}, {"values": values}, {"wires": True}, {"viewpoint": Viewpoint(20, 50)}, {"smoothing": 1}, {}):
-        found = picture(mesh, rows=60, **given)
+        pixels = picture(mesh, rows=60, **given)
         for other in (wide, Mesh(mesh.vertices, mesh.faces)):
-            assert np.array_equal(found, picture(other, rows=60, **given)), given
+            assert np.array_equal(pixels, picture(other, rows=60, **given)), given
 
 
 def test_picture_is_white_off_the_object_only(small):
@@ -50,8 +50,8 @@ def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
 def test_colours_of_the_error_are_those_of_the_distance(small):
     inner = small.ball()
     inner = type(inner)(0.9 * inner.vertices, inner.faces)
-    found = pictures.errors(small.ball(24), inner)
-    assert found.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
+    distances = pictures.errors(small.ball(24), inner)
+    assert distances.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
 
 
 @pytest.fixture
@@ -66,22 +66,22 @@ def ends(mesh):
 
 def test_points_lie_dense_where_they_are_and_their_number_does_not_matter(mesh):
     top, bottom = ends(mesh)
-    found = density(mesh, np.array([top]))
-    assert found.argmax() == top and found[bottom] == 0 and found.mean() == pytest.approx(1)
-    assert density(mesh, np.array([top, top])) == pytest.approx(found)
+    densities = density(mesh, np.array([top]))
+    assert densities.argmax() == top and densities[bottom] == 0 and densities.mean() == pytest.approx(1)
+    assert density(mesh, np.array([top, top])) == pytest.approx(densities)
     assert not density(mesh, np.array([], dtype=int)).any()
 
 
 def test_a_method_has_more_where_the_others_have_fewer(mesh):
     top, bottom = ends(mesh)
     points = {"up": np.array([top]), "down": np.array([bottom]), "none": np.array([], dtype=int)}
-    found = against_the_mean(mesh, points)
-    assert set(found) == {"up", "down"}
-    assert found["up"][top] > 0.9 and found["up"][bottom] < 0.1 and found["down"] == pytest.approx(1 - found["up"])
-    assert found["up"][np.abs(mesh.vertices[:, 2]) < 0.01] == pytest.approx(0.5)
+    shares = against_the_mean(mesh, points)
+    assert set(shares) == {"up", "down"}
+    assert shares["up"][top] > 0.9 and shares["up"][bottom] < 0.1 and shares["down"] == pytest.approx(1 - shares["up"])
+    assert shares["up"][np.abs(mesh.vertices[:, 2]) < 0.01] == pytest.approx(0.5)
 
 
 def test_faces_lie_dense_where_they_are_small():
     vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [-1, 0, 0], [0, -1, 0], [-1, -1, 0.0]])
-    found = faces_an_area(Mesh(vertices, np.array([[0, 1, 2], [0, 3, 4], [3, 5, 4]])))
-    assert found[1] < 0.5 < found[5]
+    densities = faces_an_area(Mesh(vertices, np.array([[0, 1, 2], [0, 3, 4], [3, 5, 4]])))
+    assert densities[1] < 0.5 < densities[5]

@@ -134,8 +134,8 @@ def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
         text = " ".join(text.split())
         if not all((REPORTS / f"{name}.csv").exists() for name, _, _ in PLACE.findall(text)):
             continue  # a table is still to be written
-        said, sources = filled(text, REPORTS)
-        assert not typed(text) and not re.search(r"\{|\}|\bnan\b|_", said), said
+        prose, sources = filled(text, REPORTS)
+        assert not typed(text) and not re.search(r"\{|\}|\bnan\b|_", prose), prose
         assert all(name in MADE or name == CLAIMS or name.startswith("bench/") for name, _ in sources)
 
 

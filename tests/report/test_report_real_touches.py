@@ -81,10 +81,14 @@ def transferred(help=0.1):
                     rows.append(common | {"training": "real", "value": mean})
                 for kind in ("array", "resting_skin"):
                     for aligned in (False, True):
-                        said = {"training": "both" if touches else "simulated", "simulation": kind, "aligned": aligned}
-                        rows.append(common | said | {"value": mean + help + 0.001 * random.normal()})
+                        fields = {
+                            "training": "both" if touches else "simulated",
+                            "simulation": kind,
+                            "aligned": aligned,
+                        }
+                        rows.append(common | fields | {"value": mean + help + 0.001 * random.normal()})
                         if not touches:
-                            rows.append(common | said | {"group": "ball", "value": 0.5 + 0.1 * aligned})
+                            rows.append(common | fields | {"group": "ball", "value": 0.5 + 0.1 * aligned})
     return pd.DataFrame(rows)
 
 
@@ -108,14 +112,14 @@ def event_rows(levels=EVENTS):
 
 def grasp_rows():
     """Twenty grasps, of which the discriminant knows all but one and kNN every other; of the list all and none."""
-    found = []
+    rows = []
     for method, k in product(("discriminant", "knn"), range(20)):
         right = float(k > 0 if method == "discriminant" else k % 2)
         row = {"dataset": "schunk", "group": "grasps", "method": method, "item": f"cup/{k}", "metric": "accuracy"}
-        found.append(row | {"part": "training", "split": "objects", "value": right})
+        rows.append(row | {"part": "training", "split": "objects", "value": right})
         if k < 5:
-            found.append(row | {"part": "test", "split": "objects", "value": float(method == "discriminant")})
-    return pd.DataFrame(found)
+            rows.append(row | {"part": "test", "split": "objects", "value": float(method == "discriminant")})
+    return pd.DataFrame(rows)
 
 
 @pytest.fixture(scope="module")
@@ -184,15 +188,15 @@ def test_simulation_is_compared_by_the_number_of_real_touches(every):
 
 @pytest.mark.slow
 def test_selection_simulation_and_the_best_classifier_are_judged_on_real_touches(every, measure):
-    found = verdicts(CLAIMS, every)
-    assert found.loc["simulation_helps_5", "verdict"] == "supported"
+    judged = verdicts(CLAIMS, every)
+    assert judged.loc["simulation_helps_5", "verdict"] == "supported"
     worse = measure("simulated_to_real", transferred(-0.1), "pressure_images")
     worse = verdicts(CLAIMS, worse, "simulation_helps_5").iloc[0]
     assert worse["verdict"] == "contradicted" and worse["effect"] == pytest.approx(-10, abs=0.5)
-    assert found.loc["real_selection_six_alike", "effect"] == pytest.approx(5, abs=0.3)
-    assert found.loc["real_selection_training", "verdict"] == "contradicted"
-    assert found.loc["real_knn_best_all", "effect"] == pytest.approx(5, abs=0.5)
-    assert found.loc["real_blocked", "verdict"] == "supported"
+    assert judged.loc["real_selection_six_alike", "effect"] == pytest.approx(5, abs=0.3)
+    assert judged.loc["real_selection_training", "verdict"] == "contradicted"
+    assert judged.loc["real_knn_best_all", "effect"] == pytest.approx(5, abs=0.5)
+    assert judged.loc["real_blocked", "verdict"] == "supported"
 
 
 def test_methods_stand_beside_the_published_ones_with_what_they_take(every):
@@ -223,7 +227,7 @@ def test_grasps_are_counted_one_by_one(every):
 
 
 def test_claims_on_events_turn_with_the_rows(every, measure):
-    events = [one for one in SERIES if one.dataset == "touch_events"]
+    events = [claim for claim in SERIES if claim.dataset == "touch_events"]
     words = verdicts(events, every)["verdict"]
     assert words["events_discriminant_over_network_objects"] == "supported"
     assert words["events_linear_svm_over_network_containers"] == "supported"

@@ -66,8 +66,8 @@ def _trained(said, level, random, repetitions):
 
 def majority():
     """Rows of the recorded grasps: what the commonest answer gets right, of each object kept for the test."""
-    said = {"task": "slip", "split": "test_objects", "palm": "all", "scaled": "training", "metric": "accuracy"}
-    rows = [said | {"classifier": "majority", "item": name, "value": 0.4 - 0.1 * k} for k, name in enumerate(OBJECTS)]
+    fields = {"task": "slip", "split": "test_objects", "palm": "all", "scaled": "training", "metric": "accuracy"}
+    rows = [fields | {"classifier": "majority", "item": name, "value": 0.4 - 0.1 * k} for k, name in enumerate(OBJECTS)]
     others = [{"palm": "side"}, {"task": "recognition"}, {"scaled": "own"}, {"classifier": "knn"}]
     return pd.DataFrame([*rows, *(rows[0] | other | {"value": 1.0} for other in others)])
 
@@ -104,22 +104,22 @@ def line(table, data="pressure", split="random", method="mobilenet_v2", weights=
 
 @pytest.mark.parametrize(("data", "split"), SETTINGS.values())
 def test_gains_are_paired_so_that_hard_splits_and_objects_cancel(table, data, split):
-    found = line(table, data, split)
-    assert found["over_features"] == pytest.approx(0.1, abs=0.003)
-    assert found["over_random"] == pytest.approx(0.4, abs=0.003)
-    assert found["over_random_low"] > 0.39 and found["over_random_high"] < 0.41
-    assert found["high"] - found["low"] > 0.1  # the accuracies themselves differ from split to split
+    row = line(table, data, split)
+    assert row["over_features"] == pytest.approx(0.1, abs=0.003)
+    assert row["over_random"] == pytest.approx(0.4, abs=0.003)
+    assert row["over_random_low"] > 0.39 and row["over_random_high"] < 0.41
+    assert row["high"] - row["low"] > 0.1  # the accuracies themselves differ from split to split
     assert np.isnan(line(table, data, split, weights="random")["over_random"])  # over itself
-    assert found["values"] == found["over_features_pairs"] == (len(OBJECTS) if split == "test_objects" else 3)
+    assert row["values"] == row["over_features_pairs"] == (len(OBJECTS) if split == "test_objects" else 3)
     assert line(table, mode="finetuned")["over_random"] == pytest.approx(0.3, abs=0.003)
 
 
 def test_gains_run_over_the_splits_that_both_have(measured):
     frame = touches(settings=PRESSURE, repetitions=4)
     short = (frame["weights"] == "random") & (frame["repetition"] > 1)
-    found = line(real_networks(measured(frame[~short])))
-    assert (found["values"], found["over_features_pairs"], found["over_random_pairs"]) == (4, 4, 2)
-    assert found["over_random"] == pytest.approx(0.4, abs=0.003)
+    row = line(real_networks(measured(frame[~short])))
+    assert (row["values"], row["over_features_pairs"], row["over_random_pairs"]) == (4, 4, 2)
+    assert row["over_random"] == pytest.approx(0.4, abs=0.003)
 
 
 @pytest.mark.parametrize(
@@ -128,17 +128,17 @@ def test_gains_run_over_the_splits_that_both_have(measured):
 )
 def test_intervals_are_widened_for_repeated_splits_and_not_for_objects(table, data, split, unit, shared):
     frame = touches()
-    mine = frame[(frame["data"] == data) & (frame["split"] == split) & (frame["method"] == "features_knn")]
-    mine = mine[mine["item"].notna() == (unit == "item")]
-    mean, low, high = interval(mine.groupby(unit)["value"].mean(), shared)
-    found = line(table, data, split, "features_knn", "", "")
-    assert (found["accuracy"], found["low"], found["high"]) == pytest.approx((mean, low, high))
+    subset = frame[(frame["data"] == data) & (frame["split"] == split) & (frame["method"] == "features_knn")]
+    subset = subset[subset["item"].notna() == (unit == "item")]
+    mean, low, high = interval(subset.groupby(unit)["value"].mean(), shared)
+    row = line(table, data, split, "features_knn", "", "")
+    assert (row["accuracy"], row["low"], row["high"]) == pytest.approx((mean, low, high))
 
 
 def test_a_network_is_compared_at_its_own_size_and_mode(measured):
     frame = touches(settings=PRESSURE)
-    mine = frame[(frame["method"] == "mobilenet_v2") & (frame["mode"] == "frozen") & (frame["weights"] == "imagenet")]
-    larger = mine.assign(size=224, value=mine["value"] + 0.1)
+    subset = frame[(frame["method"] == "mobilenet_v2") & (frame["mode"] == "frozen") & (frame["weights"] == "imagenet")]
+    larger = subset.assign(size=224, value=subset["value"] + 0.1)
     shown = real_networks(measured(pd.concat([frame, larger]))).shown
     shown = only(shown, data="pressure array, 22 objects", split="touches at random", filters="frozen, 224 px")
     assert shown["over random weights"] == "–" and shown["over features and kNN"].startswith("+20")
@@ -175,8 +175,8 @@ WORDS = {
 @pytest.mark.slow
 def test_claims_say_what_the_rows_hold_in_every_setting(judged):
     for key, word in WORDS.items():
-        mine = judged[judged.index.str.startswith(f"recorded_{key}")]
-        assert len(mine) in (2, len(SETTINGS)) and set(mine["verdict"]) == {word}, key
+        subset = judged[judged.index.str.startswith(f"recorded_{key}")]
+        assert len(subset) in (2, len(SETTINGS)) and set(subset["verdict"]) == {word}, key
 
 
 @pytest.mark.parametrize(("key", "effect", "over"), [
@@ -186,9 +186,9 @@ def test_claims_say_what_the_rows_hold_in_every_setting(judged):
     ("seen_over_random_networks_pressure_random", 100 * (0.4 + 0.15 + 0.45) / 3, "networks"),
 ])  # fmt: skip
 def test_effects_are_points_over_repetitions_objects_or_networks(judged, key, effect, over):
-    found = judged.loc[f"recorded_{key}"]
-    assert found["effect"] == pytest.approx(effect, abs=0.3) and found["over"] == over
-    assert found["pairs"] == {"repetitions": 3, "objects": len(OBJECTS), "networks": 3}[over]
+    row = judged.loc[f"recorded_{key}"]
+    assert row["effect"] == pytest.approx(effect, abs=0.3) and row["over"] == over
+    assert row["pairs"] == {"repetitions": 3, "objects": len(OBJECTS), "networks": 3}[over]
 
 
 @pytest.mark.parametrize(("best", "word"), [(0.65, "supported"), (0.75, "contradicted")])
@@ -198,21 +198,21 @@ def test_the_best_classifier_of_any_scaling_is_the_rival_of_frozen_filters(measu
              "repetition": number, "metric": "accuracy", "value": (level if group == "all" else 0.9) - 0.05 * number}
             for (name, scaling), level in ways.items() for group in ("all", "six") for number in range(3)]  # fmt: skip
     results = measure("recorded", pd.DataFrame(rows), "pressure_images", measured(touches(settings=PRESSURE)))
-    found = judge(results, "recorded_frozen_over_features_pressure_random").iloc[0]
-    assert found["verdict"] == word and found["effect"] == pytest.approx(100 * (0.7 - best), abs=0.3)
+    row = judge(results, "recorded_frozen_over_features_pressure_random").iloc[0]
+    assert row["verdict"] == word and row["effect"] == pytest.approx(100 * (0.7 - best), abs=0.3)
 
 
 @pytest.mark.parametrize(("instant", "word"), [(0.1, "supported"), (0.6, "contradicted")])
 def test_one_reading_is_held_against_guessing_and_against_the_series(measured, instant, word):
-    said = {"method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "size": 96, "pretrained": "complete"}
+    fields = {"method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "size": 96, "pretrained": "complete"}
     rows, random = [], np.random.default_rng(0)
     for (data, level), split in product({"schunk": 0.4, "schunk_coarse": instant}.items(), ("random", "objects")):
-        rows += _trained(said | {"data": data, "split": split}, level, random, 4)
+        rows += _trained(fields | {"data": data, "split": split}, level, random, 4)
     keys = [f"recorded_{key}_hand_{split}" for key in ("instant_by_guessing", "series_over_instant")
             for split in ("random", "grasps")]  # fmt: skip
-    found = judge(measured(pd.DataFrame(rows, columns=COLUMNS)), *keys)
-    assert found["verdict"].tolist() == [word] * 4 and found["pairs"].tolist() == [4] * 4
-    series = found[found.index.str.contains("series")]
+    frame = judge(measured(pd.DataFrame(rows, columns=COLUMNS)), *keys)
+    assert frame["verdict"].tolist() == [word] * 4 and frame["pairs"].tolist() == [4] * 4
+    series = frame[frame.index.str.contains("series")]
     assert series["effect"].to_numpy() == pytest.approx(100 * (0.4 - instant), abs=0.3)
 
 
@@ -220,10 +220,10 @@ def test_a_claim_names_the_training_or_the_rival_that_it_lacks(measured):
     levels = {way: level for way, level in LEVELS.items() if way[0] == "resnet50"}
     levels |= {way: level for way, level in LEVELS.items() if way[0] == "mobilenet_v2" and way[2] == "frozen"}
     keys = ("recorded_tuned_over_frozen_pressure_random", "recorded_frozen_over_features_pressure_random")
-    told = judge(measured(touches(levels, PRESSURE)), *keys)
-    lacking = told.loc[keys[0]]
+    frame = judge(measured(touches(levels, PRESSURE)), *keys)
+    lacking = frame.loc[keys[0]]
     assert lacking["tested_on"] == "not run: mode finetuned is not among those that recorded_networks measured"
-    assert lacking["verdict"] == "open" and "no measurements of recorded" in told.loc[keys[1], "tested_on"]
+    assert lacking["verdict"] == "open" and "no measurements of recorded" in frame.loc[keys[1], "tested_on"]
     alone = {way: level for way, level in levels.items() if way[0] == "resnet50"}
     alone = judge(measured(touches(alone, PRESSURE)), "recorded_resnet_best_pressure_random").iloc[0]
     assert alone["verdict"] == "open" and "no other method than resnet50" in alone["tested_on"]

@@ -30,16 +30,16 @@ KNOWN = {kind: read_json(path) for kind in KINDS if (path := ROOT / "reports" / 
 
 def disagreement(row, known):
     """The disagreement of a row of the table of the thesis with the record of its twin; empty text for none."""
-    found = [part["items"][row.twin]["sets"] for part in known.values() if row.twin in part["items"]]
-    if not found:
+    twin_sets = [part["items"][row.twin]["sets"] for part in known.values() if row.twin in part["items"]]
+    if not twin_sets:
         return f"{row.twin} has no record"
-    if any(row.sets in sets for sets in found):
+    if any(row.sets in sets for sets in twin_sets):
         return ""
-    return f"{row.thesis}: the row says {row.sets}, {row.twin} shows {', '.join(dict.fromkeys(sum(found, [])))}"
+    return f"{row.thesis}: the row says {row.sets}, {row.twin} shows {', '.join(dict.fromkeys(sum(twin_sets, [])))}"
 
 
 def test_the_row_of_the_thesis_names_a_set_that_its_twin_shows():
-    assert TWINNED and [found for row in TWINNED if (found := disagreement(row, KNOWN))] == []
+    assert TWINNED and [text for row in TWINNED if (text := disagreement(row, KNOWN))] == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -50,8 +50,8 @@ def test_each_published_file_has_a_record(kind):
 
 def test_the_provenance_is_that_of_the_rows_that_are_committed():
     provenance = read_json(ROOT / "reports" / PROVENANCE_FILE)
-    items = [one for known in KNOWN.values() for one in known["items"].values()]
-    assert provenance["files"].keys() == {name for one in items for name in one.get("files", ())}
+    items = [entry for known in KNOWN.values() for entry in known["items"].values()]
+    assert provenance["files"].keys() == {name for entry in items for name in entry.get("files", ())}
     assert {"python", "numpy", "dvc", "torch"} <= provenance["packages"].keys()
     for name, known in provenance["files"].items():
         dataset, _, stage = name.partition("/")
@@ -76,8 +76,8 @@ def test_a_record_tells_sets_methods_objects_sizes_and_rows(rows):
     results = rows()
     results.rows("lod", "test", method="a")
     item = Table(pd.DataFrame({"x": [1, 2]}), sets=["test"])
-    found = record_of(item, results, "tables")
-    assert found == {"sets": ["test"], "files": ["test/lod"], "rows": 2, "objects": 2, "methods": ["a"],
+    record = record_of(item, results, "tables")
+    assert record == {"sets": ["test"], "files": ["test/lod"], "rows": 2, "objects": 2, "methods": ["a"],
                      "sizes": {"target": ["25%"]}}  # fmt: skip
     assert record_of(Table(pd.DataFrame({"method": ["b"]})), results, "tables")["methods"] == ["b"]
 
@@ -105,9 +105,9 @@ def test_a_figure_of_an_earlier_run_keeps_its_record(rows):
     kept = '{"items": {"figure_1": {"sets": ["old"], "methods": ["m"]}}}'
     (results.reports / "figures" / FILE).write_text(kept)
     drawing = plt.figure()
-    found = record_of(Figure(drawing, name="figure_1", sets=["test"]), results, "figures")
+    record = record_of(Figure(drawing, name="figure_1", sets=["test"]), results, "figures")
     plt.close(drawing)
-    assert found == {"drawn": "in an earlier run", "sets": ["test"], "methods": ["m"]}
+    assert record == {"drawn": "in an earlier run", "sets": ["test"], "methods": ["m"]}
 
 
 @pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
@@ -186,8 +186,8 @@ def test_rows_of_earlier_code_that_were_measured_again_and_agree_are_not_older(r
     item.record = record_of(item, results, "tables")
     assert ("older" in item.record) == older
     write_records({"tables": Built([item])}, results, tmp_path)
-    said = read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("rechecked", "")
-    assert said.startswith(f"{outcome.get('close', 5)} of 5 compared rows, of 3 in all,") != ("sha256" in outcome)
+    text = read_json(tmp_path / PROVENANCE_FILE)["files"]["test/lod"].get("rechecked", "")
+    assert text.startswith(f"{outcome.get('close', 5)} of 5 compared rows, of 3 in all,") != ("sha256" in outcome)
 
 
 PROTOCOL = "household_3_1"

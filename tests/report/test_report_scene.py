@@ -25,8 +25,8 @@ def scene(name, saved=0.4, held=1.0, **changes):
         limited = {"method": method, "matched": "limit", "note": "limit of 600 faces"}
         rows += [limited | {"metric": "faces", "value": 500}, limited | {"metric": "error", "value": error}]
     for rival in ("uniform", "uniform_size"):
-        found = {"method": "ours", "matched": "error", "metric": f"saved_{rival}", "value": saved}
-        rows.append(found | {"low": saved - 0.1, "high": saved + 0.1})
+        saving = {"method": "ours", "matched": "error", "metric": f"saved_{rival}", "value": saved}
+        rows.append(saving | {"low": saved - 0.1, "high": saved + 0.1})
         spread = {"method": "ours", "matched": "displacement", "metric": f"saved_{rival}"}
         rows.append(spread | {"value": 0.07, "low": -0.1, "high": 0.2})
     common = {"scene": name, "kind": "pixels", "tolerance": 1.0, "objects": 8, "shapes": 5, "frames": 24}
@@ -46,14 +46,14 @@ def table(measure):
 
 def test_every_scene_has_a_line_a_way(table):
     made = table(scene("shelf"), scene("hall", saved=0.29), scene("hall", kind="ssim", tolerance=0.05))
-    found, notes = made.shown, made.notes
+    shown, notes = made.shown, made.notes
     assert "8 objects (5 different), 24 frames" in notes[0]
     assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:2]] == [2, 2]
     assert notes[0].count("saves 40 [30, 50] % at an equal mean error") == 2
     assert notes[1].count("saves 29 [19, 39] % at an equal mean error") == 2
-    assert len(found) == 3 * len(scenes.WAYS)
-    assert found["tolerance"].unique().tolist() == ["1 pixel", "0.05 1 − SSIM"]
-    lines = found[found["scene"] == "shelf"].set_index("levels chosen by")
+    assert len(shown) == 3 * len(scenes.WAYS)
+    assert shown["tolerance"].unique().tolist() == ["1 pixel", "0.05 1 − SSIM"]
+    lines = shown[shown["scene"] == "shelf"].set_index("levels chosen by")
     assert lines.loc["uniform levels by distance", "faces that ours saves, %"] == "40 [30, 50]"
     assert lines.loc["ours", "faces a frame"] == "1,000" and lines.loc["ours", "frames within, %"] == "100"
     assert lines.loc["ours, limited", "frame error, mean"] == "1.50"
@@ -66,13 +66,13 @@ ABSENT = {"scene": "shelf", "kind": "pixels", "tolerance": 1.0, "method": "netwo
 
 def test_both_tables_say_why_there_is_no_network(measure, table):
     rows = [row for row in scene("shelf") if row["method"] != "network"]
-    found = table([*rows, ABSENT], scene("hall"))
-    assert found.notes[0].endswith(" The thesis's network: no object to learn from.")
-    assert "no object" not in "".join(found.notes[1:]) and "network" not in set(found.frame["method"][:6])
+    built = table([*rows, ABSENT], scene("hall"))
+    assert built.notes[0].endswith(" The thesis's network: no object to learn from.")
+    assert "no object" not in "".join(built.notes[1:]) and "network" not in set(built.frame["method"][:6])
     common = {"dataset": "test", "frame": "all", "factor": 1.0, "item": None, "seconds": 1.0, "note": None}
     staged = pd.DataFrame([common | row for row in (*scene("shelf"), ABSENT)]).rename(columns={"scene": "group"})
-    found = build_one(topic, "tables", "scene", measure("scene", staged))
-    assert "the thesis's network: no object to learn from." in found.notes
+    built = build_one(topic, "tables", "scene", measure("scene", staged))
+    assert "the thesis's network: no object to learn from." in built.notes
 
 
 BY_KEY = {claim.key: claim for claim in CLAIMS}
@@ -82,13 +82,13 @@ def rows_of(group, faces):
     """Rows of a scene; faces: {(method, matched): faces}."""
     common = {"dataset": "household_scenes", "group": group, "frame": "all", "factor": 1.0, "item": None, "seed": 0}
     common |= {"kind": "pixels", "tolerance": 1.0, "note": None}
-    found = []
+    rows = []
     for (method, matched), count in faces.items():
         values = {"faces": count, "displacement_mean": 0.2, "error": 0.9, "held": 1.0, "switches_per_object": 3.0}
         values |= {"step_worst": 1.0, "planning_ms": 20.0}
-        found += [common | {"method": method, "matched": matched or None, "metric": name, "value": value}
+        rows += [common | {"method": method, "matched": matched or None, "metric": name, "value": value}
                   for name, value in values.items()]  # fmt: skip
-    return found
+    return rows
 
 
 @pytest.fixture
@@ -144,10 +144,10 @@ def test_the_time_of_drawing_stands_beside_the_faces(measure, measured):
     shown = table.shown.set_index("levels chosen by")["drawing time / full"]
     assert shown["ours"].startswith("0.26 [") and shown["full models"] == "–"
     assert any("llvmpipe, a software rasteriser" in note for note in table.notes)
-    said = planning(results)  # 40 ms times 0.3 - 0.25 are saved by 20 ms of planning
-    assert said in table.notes and "costs 20 ms a frame, and drawing them is 2.0 ms faster" in said
-    assert "beforehand costs 20 ms, and drawing these levels is 1.0 ms faster" in said
-    assert "renders nothing costs 20 ms and saves -20 [" in said
+    text = planning(results)  # 40 ms times 0.3 - 0.25 are saved by 20 ms of planning
+    assert text in table.notes and "costs 20 ms a frame, and drawing them is 2.0 ms faster" in text
+    assert "beforehand costs 20 ms, and drawing these levels is 1.0 ms faster" in text
+    assert "renders nothing costs 20 ms and saves -20 [" in text
 
 
 @pytest.fixture
@@ -174,5 +174,5 @@ def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
     ]  # fmt: skip
     assert "9 household objects" in table.notes[0] and "74" in table.notes[2]
     build_one(topic, "figures", "faces_by_task", needs)
-    found = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
-    assert found["verdict"].tolist() == ["supported", "supported"] and (found["pairs"] == 9).all()
+    judged = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
+    assert judged["verdict"].tolist() == ["supported", "supported"] and (judged["pairs"] == 9).all()

@@ -20,10 +20,10 @@ def pressed():
             common = {"dataset": "furniture", "method": "glance", "cells": cells, "pitch": pitch, "touches": 60}
             seconds = 1e-4 * cells / 16 * (6 if pitch == 0.002 else 1)
             rows.append(common | {"metric": "seconds_a_touch", "value": seconds, "seconds": 1.0})
-            for k, one in enumerate(np.repeat(["chair", "vase", "lamp", "sofa"], 2)):
+            for k, label in enumerate(np.repeat(["chair", "vase", "lamp", "sofa"], 2)):
                 for name, better in (("knn", 0.05), ("svm", 0.0)):
                     value = 0.4 + 0.1 * (cells == 32) + 0.1 * (pitch > 0.002) + better + 0.01 * random.normal()
-                    row = {"classifier": name, "group": one, "item": f"o{k}", "fold": k % 2, "metric": "accuracy"}
+                    row = {"classifier": name, "group": label, "item": f"o{k}", "fold": k % 2, "metric": "accuracy"}
                     row |= {"seconds": 0.1}
                     rows.append(common | row | {"split": "objects", "value": value})
                     rows.append(common | row | {"split": "random", "value": value + 0.2 + 0.01 * random.normal()})
@@ -90,7 +90,7 @@ def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(measure)
     several = [rows.assign(**kind, value=rows["value"] + more) for kind, more in kinds]
     results = measure("sensor_size", pd.concat([*several, pressed()]), arrays.HANDS[0])
     shown = build_one(sensor, "tables", "figure_4_11", results).shown
-    said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
-    assert set(said) < set(shown["cells"])
-    found = verdicts(arrays.CLAIMS, results, "wide_hand_over_coarse").iloc[0]
-    assert found["effect"] == pytest.approx(20, abs=0.5)
+    labels = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
+    assert set(labels) < set(shown["cells"])
+    row = verdicts(arrays.CLAIMS, results, "wide_hand_over_coarse").iloc[0]
+    assert row["effect"] == pytest.approx(20, abs=0.5)

@@ -20,7 +20,7 @@ SECONDS = {"cnn": 60.0, "cnn_images": 58.0, "cnn_normals": 2.0}
 
 def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), dataset="furniture"):
     """Rows whose truth is known: guided is better by a margin, unseen objects are harder, smaller films are worse."""
-    random, found = np.random.default_rng(0), []
+    random, entries = np.random.default_rng(0), []
     films = [(25, 32, 0.0), (13, 32, -0.05), (25, 16, -0.01)]
     for method, gain in (("random", 0.0), ("thesis_ssim", guided), ("glance", guided)):
         for frames, cells, loss in films if method == "thesis_ssim" else films[:1]:
@@ -30,14 +30,14 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), datase
                     common |= {"frames": frames, "cells": cells, "classes": len(CLASSES), "sequences": 900}
                     level = mean + gain + loss + (unseen if split == "objects" else 0.0)
                     for number in range(folds):
-                        each = level + 0.005 * random.normal(size=len(CLASSES))
+                        by_class = level + 0.005 * random.normal(size=len(CLASSES))
                         seconds = SECONDS.get(name, 5.0) * frames / 25
-                        one = common | {"repetition": number, "training": 0, "metric": "accuracy", "group": None}
-                        found.append(one | {"value": each.mean(), "seconds": seconds})
+                        entry = common | {"repetition": number, "training": 0, "metric": "accuracy", "group": None}
+                        entries.append(entry | {"value": by_class.mean(), "seconds": seconds})
                         if split == "objects":
-                            found += [one | {"metric": "accuracy_object", "group": label, "value": value}
-                                      for label, value in zip(CLASSES, each, strict=True)]  # fmt: skip
-    return pd.DataFrame(found).assign(seed=0, note=None)
+                            entries += [entry | {"metric": "accuracy_object", "group": label, "value": value}
+                                      for label, value in zip(CLASSES, by_class, strict=True)]  # fmt: skip
+    return pd.DataFrame(entries).assign(seed=0, note=None)
 
 
 @pytest.fixture(scope="module")
@@ -84,8 +84,8 @@ def test_passes_and_known_training_sequences_are_said_of_the_sets_that_measured_
     ]
     trained += [row | {"frames": 13, "value": 7} for row in trained]  # nothing is said of the smaller sequences
     results = measure("sequences", pd.concat([rows(), pd.DataFrame(trained).assign(dataset="furniture")]))
-    said = " ".join(table_4_9(results).notes)
-    assert "furniture 50 of the 3D network (100 %), 88 of the 1D network (96 %)" in said
+    notes = " ".join(table_4_9(results).notes)
+    assert "furniture 50 of the 3D network (100 %), 88 of the 1D network (96 %)" in notes
 
 
 @pytest.mark.slow
@@ -118,16 +118,16 @@ judged = partial(verdicts, sequences.CLAIMS)
 
 @pytest.mark.slow
 def test_claims_that_hold_are_supported(measure):
-    found = judged(everywhere(measure, rows()))
-    words = found["verdict"].to_dict()
+    table = judged(everywhere(measure, rows()))
+    words = table["verdict"].to_dict()
     for key in ("contours_map_helps_random", "contours_map_helps_unseen"):
         assert words.pop(key) == words.pop(f"{key}_more") == "contradicted"
     assert set(words.values()) == {"supported"}
-    assert found.loc["contours_guided_unseen", ["pairs", "units"]].tolist() == [9, 3]  # as printed
-    assert found.loc["contours_guided_unseen_more", ["pairs", "units"]].tolist() == [18, 6]  # of two sets
-    assert found.loc["contours_cnn_best_unseen", "effect"] == pytest.approx(20, abs=1)  # over those with the map
-    assert "without the map, too: supported +14" in found.loc["contours_cnn_best_unseen", "readings"]
-    assert found.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
+    assert table.loc["contours_guided_unseen", ["pairs", "units"]].tolist() == [9, 3]  # as printed
+    assert table.loc["contours_guided_unseen_more", ["pairs", "units"]].tolist() == [18, 6]  # of two sets
+    assert table.loc["contours_cnn_best_unseen", "effect"] == pytest.approx(20, abs=1)  # over those with the map
+    assert "without the map, too: supported +14" in table.loc["contours_cnn_best_unseen", "readings"]
+    assert table.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
 
 
 def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is_another_reading(measure):

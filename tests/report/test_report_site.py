@@ -143,8 +143,10 @@ def of_claim(one, effect=10.0, low=5.0, high=15.0):
 def test_findings_are_claims_of_their_topics_with_the_stored_verdicts_and_two_of_them_fail():
     of_topic = {claim.key: topic.__name__.rpartition(".")[2] for topic in TOPICS for claim in topic.CLAIMS}
     stored = pd.read_csv(REPORTS / "claims.csv").set_index("key")["verdict"]
-    assert [(of_topic[one.key], stored[one.key]) for one in FINDINGS] == [(one.topic, one.verdict) for one in FINDINGS]
-    assert sum(one.verdict != "supported" for one in FINDINGS) >= 2
+    assert [(of_topic[finding.key], stored[finding.key]) for finding in FINDINGS] == [
+        (finding.topic, finding.verdict) for finding in FINDINGS
+    ]
+    assert sum(finding.verdict != "supported" for finding in FINDINGS) >= 2
 
 
 def test_a_card_has_its_figure_its_chart_and_its_pairs():
@@ -157,7 +159,9 @@ def test_a_card_has_its_figure_its_chart_and_its_pairs():
 def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
     text = findings_html(*of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
     assert FINDINGS[0].title not in text and "The sentence. (open)" in text
-    kept = next(one for one in FINDINGS if one.shown == "times:")  # whose ends are ordered after they are turned
+    kept = next(
+        finding for finding in FINDINGS if finding.shown == "times:"
+    )  # whose ends are ordered after they are turned
     assert "3.00 [1.00, 4.00]" in findings_html(*of_claim(kept, -100.0, -120.0, 0.0))
     assert findings_html(pd.DataFrame(columns=["key", "low", "verdict"]), pd.DataFrame()) == ""
 
@@ -170,8 +174,8 @@ def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
         assert source in names or (source == OF_CLAIMS and where in keys)
         return source
 
-    found = questions(REPORTS, link)
-    assert len(found) == ASKED
-    assert all(re.search(r"\d", answer) and "{" not in answer for _, answer, _ in found)
-    assert questions_html(found).count("<h3>") == ASKED
+    answers = questions(REPORTS, link)
+    assert len(answers) == ASKED
+    assert all(re.search(r"\d", answer) and "{" not in answer for _, answer, _ in answers)
+    assert questions_html(answers).count("<h3>") == ASKED
     assert questions(tmp_path, link) == [] and questions_html([]) == ""  # without measurements

@@ -131,10 +131,10 @@ def test_grid_keeps_the_order_of_the_cells_and_says_what_is_absent():
 
 
 def test_blocks_hold_one_number_a_cell_and_each_printed_figure_once():
-    both = pd.concat([cells().assign(of="one"), cells().assign(of="two")])
+    frame = pd.concat([cells().assign(of="one"), cells().assign(of="two")])
     down = ["of", "sampling"]
     shown = grid(
-        blocks(both, down, "classifier", {"thesis": lambda of: "printed"}), down, "classifier", printed="printed"
+        blocks(frame, down, "classifier", {"thesis": lambda of: "printed"}), down, "classifier", printed="printed"
     )
     assert shown["of"].tolist() == ["one", "one", "two", "two", "printed", "printed"]
     assert shown["knn"].tolist()[-2:] == ["55", "30"] and shown["svm"].tolist()[-2:] == ["–", "–"]
@@ -144,9 +144,9 @@ def test_blocks_hold_one_number_a_cell_and_each_printed_figure_once():
 def test_means_cut_the_interval_at_what_is_possible():
     values = [1.0, 1.0, 0.7, 0.98, 0.2, 0.0]
     frame = pd.DataFrame({"method": ["x"] * 3 + ["y"] * 3, "value": values, "seconds": [9.0, 1.0, 1.0] * 2})
-    one, other = means(frame, ["method"], top=1.0)
-    assert one["method"] == "x" and one["high"] == 1.0 and one["seconds"] == 1.0 and one["values"] == 3
-    assert other["low"] == 0.0
+    first, second = means(frame, ["method"], top=1.0)
+    assert first["method"] == "x" and first["high"] == 1.0 and first["seconds"] == 1.0 and first["values"] == 3
+    assert second["low"] == 0.0
 
 
 SHOWN = pd.DataFrame({

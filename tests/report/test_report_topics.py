@@ -17,7 +17,7 @@ def test_a_topic_without_measurements_names_what_is_missing_of_each_item(topic, 
     for kind, items in KINDS.items():
         missing = build_all(kind, empty, [topic]).not_run
         assert set(missing) == set(getattr(topic, items)) - UNMEASURED
-        assert all(re.search(REMEDY, said) for said in missing.values()), missing
+        assert all(re.search(REMEDY, reason) for reason in missing.values()), missing
 
 
 def test_every_claim_has_its_own_key_and_is_open_without_measurements(empty):
@@ -28,6 +28,6 @@ def test_every_claim_has_its_own_key_and_is_open_without_measurements(empty):
 
 
 def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(empty):
-    for one in CLAIMS:
-        said = words_on(one, empty, [name for name in one.sets if name] or ["household"])
-        assert not re.search(r", ?,|  |,$|minus$", said), (one.key, said)
+    for claim in CLAIMS:
+        text = words_on(claim, empty, [name for name in claim.sets if name] or ["household"])
+        assert not re.search(r", ?,|  |,$|minus$", text), (claim.key, text)

@@ -25,7 +25,7 @@ SHARES = {"random": 0.6, "itti": 0.5}
 
 def rows(best="VisAttAll", dataset=PRINTED):
     """Accuracies as in GLANCE at every sampling, with the least noise; shares as in SHARES, 0.3 at the best."""
-    random, found = np.random.default_rng(0), []
+    random, entries = np.random.default_rng(0), []
     for objects in ("six", "four"):
         for method, share in (SHARES | {best: 0.3}).items():
             common = {"group": objects, "method": method, "note": None}
@@ -36,30 +36,30 @@ def rows(best="VisAttAll", dataset=PRINTED):
                         row |= {"imprints": 360, "seconds": 0.01, "scaling": "training"}
                         value = min(accuracy + 0.002 * random.normal(), 1.0)
                         right = row | {"metric": "accuracy"}
-                        found += [right | {"split": "random", "value": value}]
+                        entries += [right | {"split": "random", "value": value}]
                         regions = right | {"split": "regions"}
                         if variant in ("plain", "selected"):
-                            found += [regions | {"value": value - 0.2}]
-                            found += [row | {"metric": "recall", "split": "random", "value": value - 0.01}]
+                            entries += [regions | {"value": value - 0.2}]
+                            entries += [row | {"metric": "recall", "split": "random", "value": value - 0.01}]
                         else:
-                            found += [regions | {"value": value - 0.1}]
+                            entries += [regions | {"value": value - 0.1}]
                         if variant == "plain":
-                            found += [regions | {"variant": "plain_side", "value": value - 0.1}]
+                            entries += [regions | {"variant": "plain_side", "value": value - 0.1}]
             for variant in ("plain", "first_15"):
                 for k, of in enumerate((None, "cup", "duck", "hand")):
-                    found.append(common | {"variant": variant, "item": of, "metric": "similar_share", "imprints": 60})
-                    found[-1]["value"] = share + 0.1 * k * share + (0 if variant == "plain" else 0.1)
+                    entries.append(common | {"variant": variant, "item": of, "metric": "similar_share", "imprints": 60})
+                    entries[-1]["value"] = share + 0.1 * k * share + (0 if variant == "plain" else 0.1)
             for variant in ("plain", "image_features", "wavelet_features"):
-                found.append(common | {"variant": variant, "metric": "features", "value": 41, "seconds": 0.02})
-    return pd.DataFrame(found).assign(dataset=dataset, seed=0)
+                entries.append(common | {"variant": variant, "metric": "features", "value": 41, "seconds": 0.02})
+    return pd.DataFrame(entries).assign(dataset=dataset, seed=0)
 
 
 def drawn(dataset):
     """The same rows as if each repetition were a random set of objects, with the shares of each."""
-    found, numbers = rows(dataset=dataset), range(1, 7)
-    shares = found[found["repetition"].isna()]
-    each = [shares.assign(set=number, value=shares["value"] * (1 + 0.01 * number)) for number in numbers]
-    return pd.concat([found.dropna(subset=["repetition"]).assign(set=lambda row: row["repetition"] + 1), *each])
+    frame, numbers = rows(dataset=dataset), range(1, 7)
+    shares = frame[frame["repetition"].isna()]
+    sets = [shares.assign(set=number, value=shares["value"] * (1 + 0.01 * number)) for number in numbers]
+    return pd.concat([frame.dropna(subset=["repetition"]).assign(set=lambda row: row["repetition"] + 1), *sets])
 
 
 @pytest.fixture(scope="module")
@@ -70,11 +70,11 @@ def glance(measure):
 
 def scaled(scaling, gain):
     """The same rows by another scaling, with all five classifiers, the SVM dead where the gain is 0."""
-    found = drawn(SETS_4_2[0]).dropna(subset=["classifier"])
-    knn = found[found["classifier"] == "knn"]
+    frame = drawn(SETS_4_2[0]).dropna(subset=["classifier"])
+    knn = frame[frame["classifier"] == "knn"]
     others = [knn.assign(classifier=name, value=knn["value"] * (name != "svm" or gain > 0))
               for name in ("svm", "decision_tree")]  # fmt: skip
-    return pd.concat([found, *others]).assign(scaling=scaling)
+    return pd.concat([frame, *others]).assign(scaling=scaling)
 
 
 table = partial(build_one, touch, "tables")
@@ -174,9 +174,9 @@ VERDICTS = {
 
 @pytest.mark.slow
 def test_claims_follow_the_measurements(glance):
-    found = verdicts(claims.CLAIMS, glance, *VERDICTS)
-    assert found["verdict"].to_dict() == VERDICTS
-    assert found.loc["more_touches", "effect"] == pytest.approx(39, abs=1)
+    judged = verdicts(claims.CLAIMS, glance, *VERDICTS)
+    assert judged["verdict"].to_dict() == VERDICTS
+    assert judged.loc["more_touches", "effect"] == pytest.approx(39, abs=1)
 
 
 @pytest.mark.slow

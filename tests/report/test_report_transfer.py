@@ -40,40 +40,46 @@ SPLITS = "furniture, touches at random, 80 px, 5 splits, %"
 
 def rows(dataset="furniture", turned=False, **levels):
     """Five trainings of each setting. levels: others for modes; turned: what was better by a margin is worse by it."""
-    random, found = np.random.default_rng(0), []
+    random, entries = np.random.default_rng(0), []
     common = {"dataset": dataset, "method": "mobilenet_v2", "size": 80, "touches": 20, "seed": 0, "passes": "printed"}
     for (data, weights, mode), level in LEVELS.items():
         level = levels.get(mode, level)
         for split in ("random", "objects"):
             for number in range(5):
-                one = common | {"data": data, "weights": weights, "mode": mode, "split": split, "repetition": number}
-                one |= {"pretrained": "complete", "seconds": 10.0 if mode == "frozen" else 60.0}
+                setting = common | {
+                    "data": data,
+                    "weights": weights,
+                    "mode": mode,
+                    "split": split,
+                    "repetition": number,
+                }
+                setting |= {"pretrained": "complete", "seconds": 10.0 if mode == "frozen" else 60.0}
                 value = (1 - level if turned else level) + 0.002 * random.normal()
                 values = {"accuracy": value, "chance": 1 / 6, "train_accuracy": 1.0}
-                found += [one | {"metric": metric, "value": value} for metric, value in values.items()]
+                entries += [setting | {"metric": metric, "value": value} for metric, value in values.items()]
     changed = common | {"data": FINE, "weights": "imagenet", "mode": "finetuned", "split": "random"}
     for number in range(5):
         about = changed | {"repetition": number}
         for depth, (layer, part) in enumerate(LAYERS.items()):
             change = {"layer": layer, "part": part, "value": 0.1 ** (4 - depth if turned else depth)}
-            found.append(about | {"metric": "layer_weight_change"} | change)
-        found.append(about | {"metric": "weight_change", "value": 0.01 * (number + 1)})
-    return pd.DataFrame(found).assign(note=None)
+            entries.append(about | {"metric": "layer_weight_change"} | change)
+        entries.append(about | {"metric": "weight_change", "value": 0.01 * (number + 1)})
+    return pd.DataFrame(entries).assign(note=None)
 
 
 def converged(dataset="furniture", repetitions=3):
     """Trainings until nothing improves, at random: fine-tuning ends at 95 %, having learned all; frozen at 70 %."""
-    found = []
+    entries = []
     for mode, mean in (("finetuned", 0.95), ("frozen", 0.7)):
         for number in range(repetitions):
             about = {"data": FINE, "method": "mobilenet_v2", "weights": "imagenet", "mode": mode}
             about |= {"dataset": dataset, "split": "random", "repetition": number, "pretrained": "complete"}
             values = {"accuracy": mean + 0.01 * number, "train_accuracy": mean + 0.04, "epochs": 30 + number}
-            found += [about | {"metric": key, "value": value, "seconds": 9.0} for key, value in values.items()]
+            entries += [about | {"metric": key, "value": value, "seconds": 9.0} for key, value in values.items()]
             curves = {"curve_train_accuracy": mean, "curve_validation_accuracy": mean - 0.1}
             steps = [(metric, epoch, value) for metric, value in curves.items() for epoch in range(1, 31)]
-            found += [about | {"metric": m, "epoch": k, "value": v * (1 - 0.5**k)} for m, k, v in steps]
-    return pd.DataFrame(found).assign(size=80, touches=20, seed=0, note=None, passes="converged")
+            entries += [about | {"metric": m, "epoch": k, "value": v * (1 - 0.5**k)} for m, k, v in steps]
+    return pd.DataFrame(entries).assign(size=80, touches=20, seed=0, note=None, passes="converged")
 
 
 @pytest.fixture(scope="module")
@@ -92,12 +98,12 @@ def printed(run):
 
 
 def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(printed):
-    found = only(printed.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
-    assert found["accuracy"] == pytest.approx(0.5, abs=0.01) and found["thesis"] == 0.4381
-    assert found["above_chance"] == pytest.approx(found["accuracy"] - 1 / 6, abs=1e-6)
+    row = only(printed.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+    assert row["accuracy"] == pytest.approx(0.5, abs=0.01) and row["thesis"] == 0.4381
+    assert row["above_chance"] == pytest.approx(row["accuracy"] - 1 / 6, abs=1e-6)
     line = only(printed.shown, network="MobileNetV2", filters="frozen", passes=TEN, **{"starts from": "ImageNet"})
-    said, _, interval = line[SPLITS].partition(" ")
-    assert float(said) == pytest.approx(100 * found["accuracy"], abs=0.06) and interval[0] == "["
+    mean, _, interval = line[SPLITS].partition(" ")
+    assert float(mean) == pytest.approx(100 * row["accuracy"], abs=0.06) and interval[0] == "["
     assert line["thesis, %"] == "43.8"
     assert printed.shown.loc[printed.best_rows, "network"].tolist() == ["MobileNetV2"]
     line = only(printed.shown, network="ResNet50", filters="frozen", passes=TEN)
@@ -119,19 +125,19 @@ def test_a_note_says_what_the_networks_of_a_column_saw(measure, name):
 
 def test_table_5_3_holds_the_coarse_array_alone(run):
     coarse = table("table_5_3", run).frame
-    found = only(coarse, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
-    assert found["accuracy"] == pytest.approx(0.2, abs=0.01) and found["thesis"] == 0.2048
+    row = only(coarse, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+    assert row["accuracy"] == pytest.approx(0.2, abs=0.01) and row["thesis"] == 0.2048
 
 
 def test_trainings_until_nothing_improves_stand_below_those_of_the_printed_passes(printed):
-    found = only(printed.frame, network="mobilenet_v2", weights="imagenet", mode="finetuned", split="random")
-    assert found["accuracy"] == pytest.approx(0.8, abs=0.01) and found["converged"] == pytest.approx(0.96)
-    assert found["converged_training"] == pytest.approx(0.99) and found["converged_epochs"] == 31
-    assert found["training"] == 1 and found["converged_values"] == 3
-    mine = printed.shown[printed.shown["network"] == "MobileNetV2"]
-    mine = mine[(mine["starts from"] == "ImageNet") & (mine["filters"] == "fine-tuned")].set_index("passes")
-    assert list(mine.index) == [TEN, "until nothing improves"]
-    assert mine[SPLITS].iloc[1].startswith("96") and list(mine["training touches, %"]) == ["100.0", "99.0"]
+    row = only(printed.frame, network="mobilenet_v2", weights="imagenet", mode="finetuned", split="random")
+    assert row["accuracy"] == pytest.approx(0.8, abs=0.01) and row["converged"] == pytest.approx(0.96)
+    assert row["converged_training"] == pytest.approx(0.99) and row["converged_epochs"] == 31
+    assert row["training"] == 1 and row["converged_values"] == 3
+    lines = printed.shown[printed.shown["network"] == "MobileNetV2"]
+    lines = lines[(lines["starts from"] == "ImageNet") & (lines["filters"] == "fine-tuned")].set_index("passes")
+    assert list(lines.index) == [TEN, "until nothing improves"]
+    assert lines[SPLITS].iloc[1].startswith("96") and list(lines["training touches, %"]) == ["100.0", "99.0"]
     counts = printed.shown["network"].value_counts()
     assert counts["VGG16"] == 2 and counts["MobileNetV2"] == 6  # a network without any training is named one time
 
@@ -140,21 +146,21 @@ def test_trainings_at_the_printed_rate_are_rows_of_their_own_and_a_reading_of_th
     late = converged().assign(passes="printed_rate")
     results = measure("transfer", pd.concat([rows(), late[late["epoch"].isna()]]))
     shown = table("table_5_4", results).shown
-    mine = shown[shown["network"] == "MobileNetV2"].set_index(["starts from", "filters", "passes"])[SPLITS]
-    assert mine["ImageNet", "frozen", "10, at the printed rate"].startswith("71")
+    lines = shown[shown["network"] == "MobileNetV2"].set_index(["starts from", "filters", "passes"])[SPLITS]
+    assert lines["ImageNet", "frozen", "10, at the printed rate"].startswith("71")
     assert "until nothing improves" not in set(shown["passes"])
     objects = late.assign(split="objects", method="alexnet")
     alone = table("table_5_4", measure("transfer", pd.concat([rows(), objects[objects["epoch"].isna()]]))).shown
     assert set(alone[alone["passes"] == "10, at the printed rate"]["training touches, %"]) == {"–"}
-    claim = next(one for one in transfer.CLAIMS if one.key == "tuned_over_frozen_random")
+    claim = next(entry for entry in transfer.CLAIMS if entry.key == "tuned_over_frozen_random")
     assert claim.readings[-1].changes == {"where": {"passes": "printed_rate"}}
 
 
 def test_table_5_6_has_frozen_layers_by_the_thesis_s_numbers(run):
     made = table("table_5_6", run)
     names = ("1:134", "none", "1:150")
-    found = {name: only(made.frame, frozen_layers=name, split="random")["accuracy"] for name in names}
-    assert found == pytest.approx({"1:134": 0.7, "none": 0.8, "1:150": np.nan}, abs=0.01, nan_ok=True)
+    accuracies = {name: only(made.frame, frozen_layers=name, split="random")["accuracy"] for name in names}
+    assert accuracies == pytest.approx({"1:134": 0.7, "none": 0.8, "1:150": np.nan}, abs=0.01, nan_ok=True)
     shown = made.shown.set_index(["frozen layers", "passes"])
     late = shown.xs("until nothing improves", level="passes")[SPLITS]
     assert late["none"].startswith("96.0") and late["18:139"] == "not run" and "1:150" not in late
@@ -165,7 +171,7 @@ def test_passes_are_not_mixed_in_gains_and_claims(run):
     gain = only(gains, split="random", data=FINE, passes="printed")
     assert gain["mean"] == pytest.approx(30, abs=1) and gain["low"] < gain["mean"] < gain["high"]
     assert only(gains, split="random", data=FINE, passes="converged")["mean"] == pytest.approx(25)
-    claim = next(one for one in transfer.CLAIMS if one.key == "tuned_over_frozen_random").on("furniture")
+    claim = next(entry for entry in transfer.CLAIMS if entry.key == "tuned_over_frozen_random").on("furniture")
     assert differences(run, claim).mean() == pytest.approx(30, abs=1)
     late = replace(claim, checked=False, where={**claim.where, "passes": "converged"})
     assert differences(run, late).mean() == pytest.approx(25)
@@ -197,18 +203,18 @@ def test_chart_costs_are_the_time_of_a_picture_of_about_the_size_that_the_networ
 
 @pytest.mark.slow
 def test_sets_that_contradict_each_other_are_mixed_and_each_is_told(measure):
-    both = measure("transfer", pd.concat([rows(), rows("princeton_six", turned=True)]))
-    found = words(both)
-    keys = {key.removesuffix("_psb").rpartition("_")[0] for key in found.index}
-    assert keys == KEYS and found["section"].str.startswith("T5.").all()
-    early = found.index.str.endswith("_psb")
-    assert (found["pairs"] == 5).all() and (found.loc[early, "carries"] == "").all()
-    assert found["tested_on"].str.startswith("psb, the thesis's 6 classes").all()
+    results = measure("transfer", pd.concat([rows(), rows("princeton_six", turned=True)]))
+    judged = words(results)
+    keys = {key.removesuffix("_psb").rpartition("_")[0] for key in judged.index}
+    assert keys == KEYS and judged["section"].str.startswith("T5.").all()
+    early = judged.index.str.endswith("_psb")
+    assert (judged["pairs"] == 5).all() and (judged.loc[early, "carries"] == "").all()
+    assert judged["tested_on"].str.startswith("psb, the thesis's 6 classes").all()
     for split in ("random", "objects"):
-        row = found.loc[f"tuned_over_frozen_{split}"]
+        row = judged.loc[f"tuned_over_frozen_{split}"]
         assert row["verdict"] == "contradicted" and row["carries"].startswith("mixed")
         assert re.match(r"psb, the thesis's 6 classes -(29|30)\S* .*; furniture \+(29|30)", row["by_set"])
-    assert both.rows("transfer")["dataset"].unique() == ["furniture"]
+    assert results.rows("transfer")["dataset"].unique() == ["furniture"]
 
 
 @pytest.mark.slow
@@ -219,11 +225,11 @@ def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure)
     where = {"objects": "princeton_six", "network": "resnet50", "mode": "frozen", "weights": "imagenet"}
     beside = only(table("table_5_4", results).frame, split="objects", **where)
     assert beside["accuracy"] == pytest.approx(0.9, abs=0.01) and beside["values"] == 5
-    found = words(results)
-    changed = found.index == "earlier_change_more"  # equal differences show no spread
-    assert set(found.loc[~changed, "verdict"]) == {"supported"}
-    assert found.loc[changed, "effect"].item() == 1 and (found["by_set"] == "").all()
-    gain = found.loc["tuned_over_frozen_objects"]
+    judged = words(results)
+    changed = judged.index == "earlier_change_more"  # equal differences show no spread
+    assert set(judged.loc[~changed, "verdict"]) == {"supported"}
+    assert judged.loc[changed, "effect"].item() == 1 and (judged["by_set"] == "").all()
+    gain = judged.loc["tuned_over_frozen_objects"]
     drawn = figure_5_3.gains(_transfer.everywhere(results)["princeton_six"])
     drawn = only(drawn, network="mobilenet_v2", split="objects", data=FINE)
     assert list(drawn[["mean", "low", "high"]]) == pytest.approx([gain["effect"], gain["low"], gain["high"]])
@@ -241,21 +247,21 @@ def test_one_object_of_five_says_more_than_one_of_three():
     assert _transfer.shared("objects") == 1 / 2 and _transfer.shared("objects", "princeton_six") == 1 / 4
     assert _transfer.shared("random", "princeton_six") == shared_by("random")
     frames = (rows(source) for source in ("furniture", "princeton_six"))
-    one = (frame[(frame["metric"] == "accuracy") & (frame["mode"] == "1:134")] for frame in frames)
-    width = [cell["high"] - cell["low"] for cell in (_transfer.accuracy(frame, "objects") for frame in one)]
+    parts = (frame[(frame["metric"] == "accuracy") & (frame["mode"] == "1:134")] for frame in frames)
+    width = [cell["high"] - cell["low"] for cell in (_transfer.accuracy(frame, "objects") for frame in parts)]
     assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
 
 
 @pytest.mark.parametrize(("table", "figure"), [("table_5_1", "83.0"), ("table_5_5", "85.2")])
 def test_a_data_set_that_is_not_at_hand_is_named(measure, table, figure):
     """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""
-    one = {"dataset": "pressure_images", "data": "pressure", "item": None, "split": "random", "metric": "accuracy"}
+    fields = {"dataset": "pressure_images", "data": "pressure", "item": None, "split": "random", "metric": "accuracy"}
     seen = {"method": "mobilenet_v2", "weights": "imagenet", "pretrained": "complete", "mode": "frozen", "size": 96}
-    found = [one | seen | {"repetition": k, "value": 0.9 + 0.01 * k} for k in range(3)]
-    found.append(one | {"method": "features_knn", "repetition": 0, "value": 0.6})
+    entries = [fields | seen | {"repetition": k, "value": 0.9 + 0.01 * k} for k in range(3)]
+    entries.append(fields | {"method": "features_knn", "repetition": 0, "value": 0.6})
     missing = {"dataset": "vt60", "data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen"}
-    found.append(missing | {"metric": "accuracy", "note": "not run: data set not at hand"})
-    made = build_one(recorded_topic, "tables", table, measure("recorded_networks", pd.DataFrame(found)))
+    entries.append(missing | {"metric": "accuracy", "note": "not run: data set not at hand"})
+    made = build_one(recorded_topic, "tables", table, measure("recorded_networks", pd.DataFrame(entries)))
     line = only(made.shown, network="AlexNet")
     assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
     assert "Not run" in made.notes[0]
@@ -264,15 +270,17 @@ def test_a_data_set_that_is_not_at_hand_is_named(measure, table, figure):
 def test_the_coarse_array_is_told_one_change_at_a_time(measure):
     base = {"cells": 16, "weights": "imagenet", "size": 80, "chance": 0.125, "metric": "accuracy"}
     levels = {"rate_of_table_5_3": 0.2, "plain": 0.6}
-    found = [base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)]
-    shown = table("coarse_imprints", measure("coarse_imprints", pd.DataFrame(found), "furniture")).shown
+    entries = [
+        base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)
+    ]
+    shown = table("coarse_imprints", measure("coarse_imprints", pd.DataFrame(entries), "furniture")).shown
     assert list(shown["what differs"]) == [tables.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
     assert shown["accuracy, %"][0].startswith("61.0 [")
 
 
 @pytest.mark.slow
 def test_the_smallest_network_that_is_enough_is_named(measure):
-    found = [
+    entries = [
         {"data": "pressure", "item": None, "method": name, "weights": "imagenet", "mode": "frozen", "split": "blocks"}
         | {"pretrained": "complete", "size": 96, "repetition": k, "metric": "accuracy", "value": level + 0.001 * k}
         for name, level in (("mobilenet_v2", 0.9), ("vgg16", 0.91), ("alexnet", 0.7)) for k in range(3)
@@ -281,7 +289,7 @@ def test_the_smallest_network_that_is_enough_is_named(measure):
     costs = [
         {"network": n, "size": 96, "parameters": s, "operations": s, "milliseconds": 1.0} for n, s in sizes.items()
     ]
-    results = measure("recorded_networks", pd.DataFrame(found), "pressure_images")
+    results = measure("recorded_networks", pd.DataFrame(entries), "pressure_images")
     results = measure("bench/networks", pd.DataFrame(costs), results=results)
     made = build_one(recorded_topic, "tradeoff", "network_sizes", results)
     assert "best on average is MobileNetV2." in made.caption

@@ -50,9 +50,9 @@ QEM = unit("a", "qem", **PLAIN) + unit("a", "qslim", **PLAIN)
 
 def cause(method, **fields):
     """The cause for which one unit beside plain QEM is invalid, None for a valid one."""
-    found = invalid_units(pd.DataFrame(QEM + unit("a", method, **fields)))
-    assert set(found.index) <= {("a", method, fields.get("target", "1500"))}
-    return found.get(("a", method, "1500"))
+    reasons = invalid_units(pd.DataFrame(QEM + unit("a", method, **fields)))
+    assert set(reasons.index) <= {("a", method, fields.get("target", "1500"))}
+    return reasons.get(("a", method, "1500"))
 
 
 @pytest.mark.parametrize(("method", "fields", "word"), [
@@ -70,8 +70,8 @@ def test_a_unit_without_points_or_rings_or_with_the_mesh_of_plain_is_invalid(met
 
 def test_a_unit_is_compared_with_plain_of_its_object_and_needs_a_mesh():
     other = unit("b", "qem", **PLAIN | {"errors": (0.5, 0.6)}) + unit("b", "itti", errors=(0.1, 0.15))
-    gone = unit("a", "SymRad", points=0, rings=np.nan, errors=(np.nan, np.nan))
-    rows = pd.DataFrame(QEM + other + gone)
+    missing = unit("a", "SymRad", points=0, rings=np.nan, errors=(np.nan, np.nan))
+    rows = pd.DataFrame(QEM + other + missing)
     rows.loc[rows["method"] == "SymRad", "value"] = np.nan
     assert not len(invalid_units(rows))
 
@@ -95,14 +95,14 @@ def test_the_numbers_of_points_and_rings(made):
     causes = invalid_units(made)
     assert causes.index.names == UNIT and causes.index.is_unique
     assert causes.value_counts().to_dict() == {NO_POINT: 6, NO_RING: 2}
-    found = tables.counted(made).set_index(["method", "target"])
-    assert list(dict.fromkeys(found.index.get_level_values("method"))) == ["harris", "itti", "SymRad"]
-    assert found.loc[("SymRad", "1500")].to_dict() == {
+    counts = tables.counted(made).set_index(["method", "target"])
+    assert list(dict.fromkeys(counts.index.get_level_values("method"))) == ["harris", "itti", "SymRad"]
+    assert counts.loc[("SymRad", "1500")].to_dict() == {
         "objects": 4, "points": 0.0, "rings": 3.0, "without_points": 0.75, "three_rings": 0.25, "as_plain": 0.75,
     }  # fmt: skip
-    assert found.loc[("harris", "1500"), ["points", "rings", "three_rings", "as_plain"]].tolist() == [100, 0.75, 0, 0]
-    assert found.loc[("harris", "3000"), "rings"] == 2.5
-    assert found.loc[("itti", "1500"), ["points", "rings", "three_rings"]].tolist() == [21.5, 3, 0.75]
+    assert counts.loc[("harris", "1500"), ["points", "rings", "three_rings", "as_plain"]].tolist() == [100, 0.75, 0, 0]
+    assert counts.loc[("harris", "3000"), "rings"] == 2.5
+    assert counts.loc[("itti", "1500"), ["points", "rings", "three_rings"]].tolist() == [21.5, 3, 0.75]
 
 
 def test_the_table_shows_the_printed_set_and_holds_all(made, measure):
@@ -148,16 +148,16 @@ def test_an_object_keeps_its_valid_target(measure):
     assert differences(results, replace(OVER, checked=False))["o00"] > 40
     rows = results.rows("lod", method="x").assign(method="y", points=9, value=2.0)
     rows.loc[rows["item"] == "o01", "points"] = 0
-    both = replace(OVER, first={"method": ("x", "y")})  # whose mean needs each of them
-    assert "o01" not in differences(measure("lod", pd.concat([results.rows("lod"), rows])), both)
+    claim = replace(OVER, first={"method": ("x", "y")})  # whose mean needs each of them
+    assert "o01" not in differences(measure("lod", pd.concat([results.rows("lod"), rows])), claim)
 
 
 def test_more_than_a_fifth_cannot_be_tested_unless_the_claim_is_about_all_rows(measure):
     results = measure("lod", simplified(without_points=5))
-    row, every = (judge([one], results).iloc[0] for one in (OVER, replace(OVER, checked=False)))
+    row, unchecked = (judge([claim], results).iloc[0] for claim in (OVER, replace(OVER, checked=False)))
     assert row["verdict"] == "not testable" and row["holds"] == "" and row["effect"] > 10  # of all pairs
     assert row["validity"] == f"test: 5 of 24 pairs invalid: {NO_POINT} (5)"
-    assert every["verdict"] != "not testable" and every["validity"] == "" and every["pairs"] == COUNT
+    assert unchecked["verdict"] != "not testable" and unchecked["validity"] == "" and unchecked["pairs"] == COUNT
 
 
 def test_two_sides_with_the_same_mesh_are_no_evidence(measure):
@@ -167,10 +167,10 @@ def test_two_sides_with_the_same_mesh_are_no_evidence(measure):
     zero = rows.assign(value=rows["value"].where(rows["item"] != "o01", 0.0))  # two exact meshes
     other.loc[other["item"] == "o01", "value"] = 0.0
     exact = pd.concat([zero.assign(value=zero["value"] + 9 * (zero["method"] == "qem")), other])
-    results, one = measure("lod", exact), replace(OVER, second={"method": "y"})
-    row = judge([one], results).iloc[0]
+    results, claim = measure("lod", exact), replace(OVER, second={"method": "y"})
+    row = judge([claim], results).iloc[0]
     assert row["validity"] == f"test: 2 of 24 pairs invalid: {SAME} (2)" and row["units"] == COUNT - 1
-    assert differences(results, one)["o01"] == 0
+    assert differences(results, claim)["o01"] == 0
     same_as_plain = replace(OVER, first={"method": "y"}, second={"method": "qem"})
     results = measure("lod", pd.concat([rows, other.assign(value=1.0)]))
     assert judge([same_as_plain], results)["verdict"].iloc[0] == "not testable"
@@ -236,8 +236,8 @@ def test_attention_of_vgg_alone_is_refused_but_not_its_accuracy_or_a_mean_with_a
     rows = pd.DataFrame({"dataset": "test", "metric": ["pcc", "accuracy", "pcc"], "value": 0.5})
     rows["method"] = ["vgg16-last_block", "vgg16-last_block", "resnet50-last_block"]
     results = measure("fixation", rows)
-    alone, both, accuracy = {"metric": "pcc", "method": "vgg16-last_block"}, {"metric": "pcc"}, {"metric": "accuracy"}
-    for where, words in ((alone, [FROM_RANDOM]), (both, ["", ""]), (accuracy, [""])):
+    alone, mixed, accuracy = {"metric": "pcc", "method": "vgg16-last_block"}, {"metric": "pcc"}, {"metric": "accuracy"}
+    for where, words in ((alone, [FROM_RANDOM]), (mixed, ["", ""]), (accuracy, [""])):
         assert causes(results, "fixation", "test", results.rows("fixation", **where)).tolist() == words
 
 
@@ -250,11 +250,11 @@ def test_an_svm_worse_than_calling_all_background_refuses_its_kind_of_pixels_als
             for (area, training), value in kinds.items()
             for k in range(4 if training == "one_per_object" else 1)]  # fmt: skip
     results = measure("weights", pd.DataFrame(rows), "gaze")
-    own = Claim(key="own", section="T3.2.3", sentence="One each.", stage="weights", dataset="gaze", over=("item",),
+    claim = Claim(key="own", section="T3.2.3", sentence="One each.", stage="weights", dataset="gaze", over=("item",),
                 where={"metric": "accuracy", "area": "image"}, first={"training": "one_per_object"},
                 second={"training": "one_for_all"}, mean_of="second")  # fmt: skip
-    on_object = replace(own, key="object", where={"metric": "accuracy", "area": "object"})
-    table = judge([own, on_object], results).set_index("key")
+    on_object = replace(claim, key="object", where={"metric": "accuracy", "area": "object"})
+    table = judge([claim, on_object], results).set_index("key")
     assert table["verdict"].to_dict() == {"own": "not testable", "object": "supported"}
     assert table.loc["own", "validity"] == f"meshes with human gaze: 4 of 4 pairs invalid: {GUESSING} (4)"
     assert table.loc["object", "effect"] == pytest.approx(10.15)
@@ -266,6 +266,6 @@ def test_a_network_of_contours_is_valid_once_it_knows_its_training_part_or_has_s
     networks = rows[rows["classifier"] != "knn"]
     learned = networks.assign(metric="train_accuracy", value=[1.0, 0.5, 1.0] + [1.0, 0.9, 1.0] + [0.9, 1.0, 0.9])
     settled = networks[networks["classifier"] != "cnn"].assign(metric="settled", value=[0, 0] + [0, 1] + [0, 0])
-    found = causes_in(measure("sequences", pd.concat([rows, learned, settled])), "sequences")
-    assert found == ["", UNTRAINED, UNTRAINED, ""] + [""] * 4 + [UNTRAINED, "", UNTRAINED, ""]
+    reasons = causes_in(measure("sequences", pd.concat([rows, learned, settled])), "sequences")
+    assert reasons == ["", UNTRAINED, UNTRAINED, ""] + [""] * 4 + [UNTRAINED, "", UNTRAINED, ""]
     assert set(causes_in(measure("sequences", rows), "sequences")) == {""}  # a run of the printed size says neither

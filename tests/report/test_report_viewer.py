@@ -60,11 +60,11 @@ def test_packed_mesh_reads_back(small):
 
 def test_ordering_keeps_the_surface_and_leaves_unused_vertices_out(small):
     mesh = small.ball()
-    found, ids = ordered(mesh)
-    assert np.array_equal(found.vertices, mesh.vertices[ids])
+    reordered, ids = ordered(mesh)
+    assert np.array_equal(reordered.vertices, mesh.vertices[ids])
     corners = lambda m: sorted(map(tuple, np.sort(m.vertices[m.faces].round(9), axis=1).reshape(-1, 9)))  # noqa: E731
-    assert corners(found) == corners(mesh)
-    assert found.face_areas.sum() == pytest.approx(mesh.face_areas.sum())
+    assert corners(reordered) == corners(mesh)
+    assert reordered.face_areas.sum() == pytest.approx(mesh.face_areas.sum())
     extra = type(mesh)(np.vstack([[[0, 0, 0]], mesh.vertices]), mesh.faces + 1)
     assert 0 not in ordered(extra)[1]
 
@@ -73,7 +73,7 @@ def test_objects_that_do_not_fit_are_named(results, small):
     size = len(pack_viewer(results)["objects"][0]["store"]) / 1000
     tight = small.results(results.data.parent, viewer_kilobytes=int(1.5 * size))
     packed = pack_viewer(tight)
-    assert [one["name"] for one in packed["objects"]] == ["ball"]
+    assert [entry["name"] for entry in packed["objects"]] == ["ball"]
     assert packed["left_out"] == ["cube"]
 
 
@@ -159,10 +159,10 @@ def opened(browser, results, tmp_path, width):
     main = front.substitute(dict.fromkeys(front.get_identifiers(), "") | parts)
     (tmp_path / "page.html").write_text(page([], "", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
     tab = browser.new_page(viewport={"width": width, "height": 900})
-    found = Page(tab)
+    viewer = Page(tab)
     tab.goto((tmp_path / "page.html").as_uri())
     tab.wait_for_function("document.getElementById('level').max > 0")
-    yield found
+    yield viewer
     tab.close()
 
 
@@ -201,10 +201,10 @@ def test_slider_leads_from_the_original_to_more_and_more_error(shown):
 
 @pytest.mark.slow
 def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
-    for found in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, WIDE):
-        assert found.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
-        found.slide(1)
-        assert found.caption().startswith("simplified: 120 faces (23 %)")
+    for viewer in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, WIDE):
+        assert viewer.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
+        viewer.slide(1)
+        assert viewer.caption().startswith("simplified: 120 faces (23 %)")
 
 
 @pytest.mark.slow

@@ -92,8 +92,8 @@ def test_strong_points_come_first_and_more_points_change_none_of_them_and_keep_a
     assert (more.points[: more.strong] == strong.points).all()
     places = ball.vertices[more.points]
     assert np.linalg.norm(places[:, None] - places[None], axis=2)[np.triu_indices(60, 1)].min() > 0.1
-    both, _ = find_all(ball, sight, ["random", "itti"], Options(), 30)
-    assert both["random"].strong == both["itti"].strong < 30  # random has as many as the first method
+    detections, _ = find_all(ball, sight, ["random", "itti"], Options(), 30)
+    assert detections["random"].strong == detections["itti"].strong < 30  # random has as many as the first method
 
 
 def test_maps_without_a_signal_have_no_strong_points_but_honour_a_count(ball):
@@ -104,15 +104,15 @@ def test_maps_without_a_signal_have_no_strong_points_but_honour_a_count(ball):
 
 
 def test_weights_decide_between_channels_and_merged_methods_hold_the_points_of_their_parts(ball, make_maps):
-    here, there = np.array([0.5, 0, 0]), np.array([0, 0.5, 0])
-    maps = make_maps(ball, here) | make_maps(ball, there, channels=("curvature",))
+    on_x, on_y = np.array([0.5, 0, 0]), np.array([0, 0.5, 0])
+    maps = make_maps(ball, on_x) | make_maps(ball, on_y, channels=("curvature",))
     sight = ViewMaps(ball, TWELVE, maps)
-    for winner, place in (("edge", here), ("curvature", there)):
+    for winner, place in (("edge", on_x), ("curvature", on_y)):
         options = weighted(dict.fromkeys(weights("equal"), 0.01) | {winner: 1.0})
         first = METHODS["thesis_ssim"].find(ball, sight, options, 1).points[0]
         assert np.linalg.norm(ball.vertices[first] - place) < 0.05
     places = ball.vertices[METHODS["VisAttCurvP"].find(ball, sight, Options()).points]
-    for place in (here, there):
+    for place in (on_x, on_y):
         assert min(np.linalg.norm(places - place, axis=1)) < 0.05
     pair = [METHODS[method].saliency(ball, sight, Options()) for method in ("VisAttCurvP", "VisAtt")]
     assert (pair[0] == pair[1]).all()
@@ -140,13 +140,13 @@ def test_coincident_and_equally_salient_vertices_do_not_hold_up_a_count_or_go_by
 def test_points_do_not_depend_on_the_order_of_the_vertices(selection, ball, spot, make_maps):
     other, old = shuffled(ball)
     options, maps = Options(selection=selection), make_maps(ball, spot)
-    here, there = (
+    before, after = (
         find_all(mesh, ViewMaps(mesh, TWELVE, maps), ["thesis_ssim", "random"], options, 60)[0]
         for mesh in (ball, other)
     )
     for method in ("thesis_ssim", "random"):
-        assert (here[method].points == old[there[method].points]).all()
-    assert np.allclose(here["thesis_ssim"].saliency[old], there["thesis_ssim"].saliency, atol=1e-5)
+        assert (before[method].points == old[after[method].points]).all()
+    assert np.allclose(before["thesis_ssim"].saliency[old], after["thesis_ssim"].saliency, atol=1e-5)
 
 
 @pytest.mark.slow

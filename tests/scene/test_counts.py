@@ -51,8 +51,8 @@ def test_lookup_is_exact_on_and_between_points_of_a_power_law():
 
 def test_lookup_never_asks_for_more_faces_at_a_larger_error_nor_trusts_a_lucky_mesh():
     curve = Curve("a", "itti", 3, 5000, [400, 800, 1500, 3000], [1e-3, 1.2e-3, 2e-4, 3e-5])
-    found = curve.faces_needed(np.geomspace(1e-9, 1, 500))
-    assert (np.diff(found) <= 0).all() and found[0] == 5000 and found[-1] == 400
+    faces = curve.faces_needed(np.geomspace(1e-9, 1, 500))
+    assert (np.diff(faces) <= 0).all() and faces[0] == 5000 and faces[-1] == 400
     assert Curve("a", "itti", 3, 5000, [400, 800, 1500], [1e-4, 3e-4, 1e-4]).faces_needed(2e-4) > 800
 
 
@@ -61,16 +61,16 @@ def test_curves_are_read_one_an_object_and_method():
             ("a", "qem", 0, 50, "metro_mean", 0.1), ("a", "qem", 0, 50, "metro_max", 9.0),
             ("a", "itti", 3, None, "faces", None)]  # fmt: skip
     frame = pd.DataFrame(rows, columns=["item", "method", "points", "faces", "metric", "value"])
-    found = read_curves(frame, {"a": 100})
-    assert [(c.method, c.points, c.faces.tolist()) for c in found] == [("itti", 3, [50, 80]), ("qem", 0, [50])]
+    per_method = read_curves(frame, {"a": 100})
+    assert [(c.method, c.points, c.faces.tolist()) for c in per_method] == [("itti", 3, [50, 80]), ("qem", 0, [50])]
 
 
 @pytest.mark.parametrize("kind, off", [("linear", 0.01), ("network", 0.12)])
 def test_a_common_law_is_learned(kind, off):
     model, points = fit_counts(curves(), COMBINATIONS, kind, 0), dict.fromkeys(COMBINATIONS, 4)
     error, distance = np.array([5e-4, 2e-3, 1e-2]), np.array([1.5, 6.0, 20.0])
-    found = model.faces_needed(error * FOCAL / distance, distance, 5000, points)
-    assert np.log(found / right(error, 5000)) == pytest.approx(0, abs=off)
+    faces = model.faces_needed(error * FOCAL / distance, distance, 5000, points)
+    assert np.log(faces / right(error, 5000)) == pytest.approx(0, abs=off)
     assert 4 <= model.faces_needed(1e6, 30, 5000, points) <= 5000 and model.faces_needed(1e-6, 1, 5000, points) <= 5000
 
 
@@ -79,8 +79,8 @@ def test_the_count_is_the_average_over_the_combinations():
     fine = [law(f"o{k}", 2000 + 500 * k, k, "itti") for k in range(8)]
     question = (1.0, 2.0, 4000, {"itti": 3, "VisAttCon": 5})
     alone = [fit_counts(fine + coarse, [name], "linear", 0).faces_needed(*question) for name in ("itti", "VisAttCon")]
-    both = fit_counts(fine + coarse, ["itti", "VisAttCon"], "linear", 0).faces_needed(*question)
-    assert alone[0] > 2 * alone[1] and both == pytest.approx(np.mean(alone), abs=1)
+    average = fit_counts(fine + coarse, ["itti", "VisAttCon"], "linear", 0).faces_needed(*question)
+    assert alone[0] > 2 * alone[1] and average == pytest.approx(np.mean(alone), abs=1)
 
 
 def test_equal_seeds_give_equal_networks_in_any_order_of_calls():

@@ -13,15 +13,15 @@ from stages.report.topics import build_one
 
 def rows():
     """Every model under every condition; the n-th model wastes n tenths more."""
-    found = []
+    entries = []
     for number, method in enumerate(table.MODELS, start=1):
         for condition in table.CONDITIONS:
             for metric in table.METRICS:
                 cell = {"method": method, "condition": condition, "setting": None, "metric": metric, "cases": 9}
-                found.append(cell | {"value": 1 + number / 10, "low": 1.05, "high": 1.6, "objects": 7})
+                entries.append(cell | {"value": 1 + number / 10, "low": 1.05, "high": 1.6, "objects": 7})
         for metric in ("fit", "ask"):
-            found.append({"method": method, "condition": "cost", "metric": metric, "value": number, "seconds": 1})
-    return pd.DataFrame(found).assign(dataset="test", item="all", note="")
+            entries.append({"method": method, "condition": "cost", "metric": metric, "value": number, "seconds": 1})
+    return pd.DataFrame(entries).assign(dataset="test", item="all", note="")
 
 
 @pytest.fixture

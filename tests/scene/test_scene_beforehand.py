@@ -20,10 +20,10 @@ def ball(radius, subdivisions=4):
 @pytest.mark.slow
 def test_two_balls_are_apart_by_the_difference_of_their_radii_in_both_pictures():
     radius = 0.4
-    found = profile([ball(0.5), ball(radius, 3)], rows=100)
+    lookup = profile([ball(0.5), ball(radius, 3)], rows=100)
     wanted = np.pi * (0.5 - radius) * (0.5**2 + radius**2)
-    assert found.sums[:, 0].tolist() == [0] * len(found.directions)
-    assert found.sums[:, 1] == pytest.approx(wanted, rel=0.08)  # the coarser ball lies inside its sphere
+    assert lookup.sums[:, 0].tolist() == [0] * len(lookup.directions)
+    assert lookup.sums[:, 1] == pytest.approx(wanted, rel=0.08)  # the coarser ball lies inside its sphere
 
 
 def test_directions_are_spread_evenly():
@@ -42,9 +42,9 @@ def alone(make_scene, frames_of, chains):
 
 @pytest.mark.slow
 def test_a_look_up_foretells_what_frames_show(alone):
-    frames, own, (sums,), profiles = alone
+    frames, chains, (sums,), profiles = alone
     for price in (0.01, 0.1, 1.0):
-        ahead, known = by_profiles(frames, own, profiles, price), by_sums(frames, own, [sums], price)
+        ahead, known = by_profiles(frames, chains, profiles, price), by_sums(frames, chains, [sums], price)
         assert np.abs(ahead.levels - known.levels).max() <= 1
         cost = [plan.faces[:, 0] + price * sums[range(len(sums)), plan.levels[:, 0]] for plan in (ahead, known)]
         assert (cost[0] <= 1.1 * cost[1]).all()
@@ -54,12 +54,12 @@ def test_no_plan_with_as_few_faces_has_less_displacement(alone):
     frames, (chain,), (sums,), _ = alone
     few = slice(2, 8)  # six levels in five frames: 7,776 plans
     faces = np.array([level.faces for level in chain])[few]
-    every = np.array(list(product(range(len(faces)), repeat=len(sums))))
-    counts, moved = faces[every].sum(axis=1), sums[:, few][range(len(sums)), every].sum(axis=1)
+    plans = np.array(list(product(range(len(faces)), repeat=len(sums))))
+    counts, moved = faces[plans].sum(axis=1), sums[:, few][range(len(sums)), plans].sum(axis=1)
     for price in (0.02, 0.1, 0.5):
         levels = by_sums(frames, (chain[few],), [sums[:, few]], price).levels[:, 0]
-        own = faces[levels].sum(), sums[:, few][range(len(sums)), levels].sum()
-        assert not ((counts <= own[0]) & (moved < own[1] - 1e-9)).any()
+        totals = faces[levels].sum(), sums[:, few][range(len(sums)), levels].sum()
+        assert not ((counts <= totals[0]) & (moved < totals[1] - 1e-9)).any()
 
 
 def test_the_price_decides_between_all_faces_and_the_fewest(alone):
@@ -78,11 +78,11 @@ def test_a_dent_matters_where_it_faces_the_camera(make_scene, turn, level):
     scene = make_scene([Placed("ball", (0.0, 0.0, 0.0), turn, 0.25)], frames=1)  # the camera is at y = -4 m
     frames = Frames(scene, {"ball": full.mesh}, [full])
     flat = Level(Mesh(dented, full.mesh.faces), {})
-    own = profile((full, flat))
-    facing = own.directions[own.sums[:, 1].argmax()]
+    lookup = profile((full, flat))
+    facing = lookup.directions[lookup.sums[:, 1].argmax()]
     assert facing[0] > 0.8
-    price = 2 * (len(full.mesh.faces) - len(chain[1].mesh.faces)) / _moved(frames, own)
-    assert by_profiles(frames, (chain,), [own], price).levels.item() == level
+    price = 2 * (len(full.mesh.faces) - len(chain[1].mesh.faces)) / _moved(frames, lookup)
+    assert by_profiles(frames, (chain,), [lookup], price).levels.item() == level
 
 
 def _moved(frames, own):

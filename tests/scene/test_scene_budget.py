@@ -40,9 +40,9 @@ def test_the_perceptual_tolerance_holds_for_what_another_partly_hides(meshes, ch
     """The outline of the one in front is what breaks the other's picture: finer levels of the latter do not help."""
     objects = (Placed("one", (0, 0, 0), 0.0, 0.5), Placed("two", (aside, 0.6, 0.1), 0.0, 0.2))
     scene = make_scene(objects=objects, frames=3, tolerance=0.05, kind="ssim")
-    found = budget(meshes, scene, chains=chains)
-    assert 0 < found.errors.max() <= 0.05
-    assert found.faces[:, 1].max() < len(meshes["two"].faces) / 2
+    planned = budget(meshes, scene, chains=chains)
+    assert 0 < planned.errors.max() <= 0.05
+    assert planned.faces[:, 1].max() < len(meshes["two"].faces) / 2
 
 
 def test_a_limit_below_the_smallest_total_names_it(meshes, chains, make_scene):
@@ -54,23 +54,23 @@ def test_a_limit_below_the_smallest_total_names_it(meshes, chains, make_scene):
 
 def test_what_is_out_of_view_costs_nothing(meshes, chains, make_scene):
     objects = (Placed("one", (0, 0, 0), 0.0, 0.25), Placed("one", (0, -9.0, 0), 0.0, 0.25))
-    found = budget(meshes, make_scene(objects=objects), chains=chains)
-    assert (found.faces[:, 0] > 0).all() and (found.faces[:, 1] == 0).all()
+    planned = budget(meshes, make_scene(objects=objects), chains=chains)
+    assert (planned.faces[:, 0] > 0).all() and (planned.faces[:, 1] == 0).all()
 
 
 def test_what_leaves_the_view_close_to_the_eye_does_not_need_all_its_faces(meshes, chains, make_scene):
     """Its box reaches behind the camera, so that its distance says nothing of what is seen of it."""
     scene = make_scene(objects=(Placed("one", (0.42, -1.1, 0.2), 0.0, 0.4),))
-    found = budget(meshes, scene, chains=chains)
-    behind = [camera.project(found.frames.poses[0].corners())[2].min() < 0.1 for camera in scene.cameras]
-    assert behind[-1] and found.frames.in_view[-1, 0]
-    assert found.errors.max() <= 1 and found.faces[-1, 0] < 0.5 * len(meshes["one"].faces)
+    planned = budget(meshes, scene, chains=chains)
+    behind = [camera.project(planned.frames.poses[0].corners())[2].min() < 0.1 for camera in scene.cameras]
+    assert behind[-1] and planned.frames.in_view[-1, 0]
+    assert planned.errors.max() <= 1 and planned.faces[-1, 0] < 0.5 * len(meshes["one"].faces)
 
 
 def test_what_is_hidden_takes_the_coarsest_level(meshes, chains, make_scene):
     objects = (Placed("one", (0, 0, 0), 0.0, 0.6), Placed("two", (0, 0.8, 0.1), 0.0, 0.1))
-    found = budget(meshes, make_scene(objects=objects), chains=chains)
-    assert (found.levels[:, 1] == len(chains["two"]) - 1).all()
+    planned = budget(meshes, make_scene(objects=objects), chains=chains)
+    assert (planned.levels[:, 1] == len(chains["two"]) - 1).all()
 
 
 def shifted(mesh, by):
@@ -82,11 +82,11 @@ def test_a_plate_moved_towards_the_eye_is_off_by_its_shift_in_pixels(make_scene)
     plate = Mesh(corners, [[0, 1, 2], [0, 2, 3]])
     scene = make_scene(objects=(Placed("plate", (0, 0, 0), 0.0, 0.4),), frames=1)
     frames = Frames(scene, {"plate": plate}, [finest(plate)])
-    found = frames.check(0, [shifted(plate, [0.0, -0.02, 0.0])])
+    checked = frames.check(0, [shifted(plate, [0.0, -0.02, 0.0])])
     depth = 4.0  # of the middle
     expected = 0.02 * 0.4 * scene.cameras[0].focal / depth
-    assert found.error == pytest.approx(expected, rel=0.05)
-    assert found.displacements.mean() == pytest.approx(expected, rel=0.05)
+    assert checked.error == pytest.approx(expected, rel=0.05)
+    assert checked.displacements.mean() == pytest.approx(expected, rel=0.05)
 
 
 def test_the_full_scene_has_no_error(frames_of, make_scene):
@@ -119,40 +119,40 @@ def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes, chai
     """Half of the faces at twice the distance: two levels of the chain that ours is chosen from."""
     scene = make_scene()
     frames = frames_of(scene)
-    own = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    found = online.uniform(frames, own, 1.0)
+    ladders = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    planned = online.uniform(frames, ladders, 1.0)
     expected = np.maximum(np.rint(2 * np.log2(frames.distance)), 0)
-    assert np.array_equal(found.levels, expected) and len(np.unique(expected)) > 2
-    assert (online.uniform(frames, own, 1e3).levels == 0).all()
-    assert (online.uniform(frames, own, 1e-3).levels == [len(chain) - 1 for chain in own]).all()
+    assert np.array_equal(planned.levels, expected) and len(np.unique(expected)) > 2
+    assert (online.uniform(frames, ladders, 1e3).levels == 0).all()
+    assert (online.uniform(frames, ladders, 1e-3).levels == [len(chain) - 1 for chain in ladders]).all()
 
 
 def test_uniform_levels_by_size_show_a_larger_copy_finer(frames_of, make_scene, chains):
     objects = (Placed("one", (-0.3, 0, 0), 0.0, 0.2), Placed("one", (0.3, 0, 0), 0.0, 0.4))
     frames = frames_of(make_scene(objects=objects))
-    own = tuple((full, *chains["one"][1:]) for full in frames.full)
-    found = online.uniform(frames, own, 2.0, by_size=True)
-    assert (found.levels[:, 1] < found.levels[:, 0]).all()
+    ladders = tuple((full, *chains["one"][1:]) for full in frames.full)
+    planned = online.uniform(frames, ladders, 2.0, by_size=True)
+    assert (planned.levels[:, 1] < planned.levels[:, 0]).all()
 
 
 def test_a_limit_shared_equally_gives_all_the_same_count(plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.6)
-    found = online.equal(plan, limit)
+    shared = online.equal(plan, limit)
     over = plan.faces.sum(axis=1) > limit
-    assert over.any() and (found.faces.sum(axis=1) <= limit).all()
-    assert np.array_equal(found.levels[~over], plan.levels[~over])
+    assert over.any() and (shared.faces.sum(axis=1) <= limit).all()
+    assert np.array_equal(shared.levels[~over], plan.levels[~over])
     counts = [[level.faces for level in chain] for chain in plan.chains]
-    for levels in found.levels[over]:
-        common = max(own[k] for own, k in zip(counts, levels, strict=True))
-        expected = [next(k for k, n in enumerate(own) if n <= common) for own in counts]
+    for levels in shared.levels[over]:
+        common = max(faces[k] for faces, k in zip(counts, levels, strict=True))
+        expected = [next(k for k, n in enumerate(faces) if n <= common) for faces in counts]
         assert levels.tolist() == expected
 
 
 def test_a_limit_holds_costs_error_and_hurts_less_than_shared_equally(meshes, chains, make_scene, plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.6)
-    found = budget(meshes, make_scene(limit=limit), chains=chains)
-    assert found.faces.sum(axis=1).max() <= limit
-    assert plan.errors.max() < found.errors.max() < online.equal(plan, limit).errors.max()
+    limited = budget(meshes, make_scene(limit=limit), chains=chains)
+    assert limited.faces.sum(axis=1).max() <= limit
+    assert plan.errors.max() < limited.errors.max() < online.equal(plan, limit).errors.max()
 
 
 def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(meshes, chains, make_scene, frames_of):
@@ -168,8 +168,8 @@ def test_what_hides_an_object_counts_nothing_for_its_structure(meshes, chains, m
     objects = (Placed("one", (0, 0, 0), 0.0, 0.6), Placed("two", (0, 0.8, 0.1), 0.0, 0.1))
     scene = make_scene(objects=objects, frames=1, kind="ssim", tolerance=0.1)
     frames = Frames(scene, meshes, [chains["one"][0], chains["two"][0]])
-    found = frames.check(0, [chains["one"][-1], chains["two"][0]]).objects
-    assert found[0] > 0.05 and found[1] == 0
+    errors = frames.check(0, [chains["one"][-1], chains["two"][0]]).objects
+    assert errors[0] > 0.05 and errors[1] == 0
     assert frames.between(0, 1, chains["two"][0], chains["two"][-1]) == 0
 
 
@@ -177,11 +177,11 @@ def test_what_hides_an_object_counts_nothing_for_its_structure(meshes, chains, m
 def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, chains):
     scene = make_scene()
     frames = frames_of(scene)
-    own = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    plan_of = lambda factor: online.uniform(frames, own, 1 / factor)  # noqa: E731
+    ladders = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    plan_of = lambda factor: online.uniform(frames, ladders, 1 / factor)  # noqa: E731
     wanted = 0.6 * plan_of(1e3).errors.mean()  # the coarsest has more
-    found = online.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
-    assert wanted <= found.errors.mean() < 1.6 * wanted
+    tuned = online.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
+    assert wanted <= tuned.errors.mean() < 1.6 * wanted
     assert online.tune(plan_of, lambda plan: plan.errors.max(), wanted, below=True).errors.max() <= wanted
 
 

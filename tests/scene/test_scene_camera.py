@@ -17,8 +17,8 @@ def test_a_ray_through_a_projected_point_meets_it(camera):
     points = np.random.default_rng(0).normal(size=(50, 3)) * 0.3
     rows, columns, depth = camera.project(points)
     along = camera.directions(rows, columns)
-    there = np.array(camera.eye) + along * (depth / (along @ camera.axes[2]))[:, None]
-    assert np.allclose(there, points, atol=1e-9)
+    hits = np.array(camera.eye) + along * (depth / (along @ camera.axes[2]))[:, None]
+    assert np.allclose(hits, points, atol=1e-9)
 
 
 def test_the_view_angle_spans_the_rows(camera):
@@ -36,9 +36,9 @@ def test_up_is_up_and_a_metre_twice_as_far_is_half_as_large(camera):
 def test_a_path_goes_through_its_keyframes_and_stays_within_them():
     eyes = [[0, -4, 1], [0, -2, 1], [0, -2, 3]]
     cameras = fly(eyes, [[0, 0, 0]] * 3, 9, 40, (10, 10))
-    found = np.array([camera.eye for camera in cameras])
-    assert np.allclose(found[[0, 4, 8]], eyes)
-    assert found[:, 1].max() <= -2 and found[:, 2].min() >= 1
+    places = np.array([camera.eye for camera in cameras])
+    assert np.allclose(places[[0, 4, 8]], eyes)
+    assert places[:, 1].max() <= -2 and places[:, 2].min() >= 1
     assert len({camera.eye for camera in fly([[0, -4, 1]], [[0, 0, 0]], 3, 40, (10, 10))}) == 1
 
 

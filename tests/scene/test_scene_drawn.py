@@ -30,7 +30,7 @@ def test_an_equal_seed_draws_an_equal_scene_and_another_seed_or_number_another()
     assert draw() == draw() == draw(boxes=dict(reversed(BOXES.items())))
     others = [draw(number=1), draw(seed=1)]
     assert all(other.objects != draw().objects and other.camera != draw().camera for other in others)
-    assert [one.name for one in (draw(), draw(number=7))] == ["random_00", "random_07"]
+    assert [scene.name for scene in (draw(), draw(number=7))] == ["random_00", "random_07"]
 
 
 @pytest.mark.parametrize("number", range(8))

@@ -54,17 +54,17 @@ def nodes(path):
 def test_a_level_comes_back_with_its_faces_places_and_colours(painted, tmp_path):
     mesh = to_gltf(painted[0].mesh, 0.2)
     write_glb(tmp_path / "a.glb", [mesh], ["a"])
-    found = trimesh.load(tmp_path / "a.glb", process=False, force="mesh")
-    assert len(found.faces) == painted[0].faces
-    assert np.allclose(found.vertices, mesh.vertices, atol=1e-6) and np.array_equal(found.faces, mesh.faces)
-    assert np.array_equal(found.visual.vertex_colors[:, :3], mesh.colors)
+    loaded = trimesh.load(tmp_path / "a.glb", process=False, force="mesh")
+    assert len(loaded.faces) == painted[0].faces
+    assert np.allclose(loaded.vertices, mesh.vertices, atol=1e-6) and np.array_equal(loaded.faces, mesh.faces)
+    assert np.array_equal(loaded.visual.vertex_colors[:, :3], mesh.colors)
 
 
 def test_up_is_y_and_sides_are_not_mirrored(chains):
     mesh = chains["two"][0].mesh
     turned = to_gltf(mesh)
     assert np.allclose(turned.vertices[:, 1], mesh.vertices[:, 2])
-    volume = [trimesh.Trimesh(each.vertices, each.faces, process=False).volume for each in (mesh, turned)]
+    volume = [trimesh.Trimesh(shape.vertices, shape.faces, process=False).volume for shape in (mesh, turned)]
     assert volume[0] == pytest.approx(volume[1]) and volume[0] > 0
 
 
@@ -97,8 +97,8 @@ def test_a_file_that_comes_back_otherwise_is_named(painted, tmp_path):
         "positions": Mesh(mesh.vertices * 1.001, mesh.faces, mesh.colors),
         "colours": Mesh(mesh.vertices, mesh.faces, mesh.colors // 2),
     }
-    for what, other in others.items():
-        with pytest.raises(ValueError, match=rf"a\.glb: a came back with other {what}"):
+    for part, other in others.items():
+        with pytest.raises(ValueError, match=rf"a\.glb: a came back with other {part}"):
             check_glb(path, [other], ["a"])
     with pytest.raises(ValueError, match=r"a\.glb came back with a in place of b"):
         check_glb(path, [mesh], ["b"])
@@ -141,7 +141,7 @@ def test_the_khronos_validator_finds_no_fault(painted, chains, meshes, make_scen
     plan = pd.DataFrame([{"place": k, "faces": 1, "level": 2, "in_view": True} for k in range(3)])
     write_scene(tmp_path / "scene.glb", scene, meshes, chains, plan)
     for path in sorted(tmp_path.glob("*.glb")):
-        done = subprocess.run(["node", "-e", VALIDATE, path], capture_output=True, text=True, check=True,
+        process = subprocess.run(["node", "-e", VALIDATE, path], capture_output=True, text=True, check=True,
                               env=os.environ | {"NODE_PATH": str(Path(validator()).resolve())})  # fmt: skip
-        issues = json.loads(done.stdout)
+        issues = json.loads(process.stdout)
         assert issues["numErrors"] == 0 and issues["numWarnings"] == 0, (path.name, issues["messages"][:3])

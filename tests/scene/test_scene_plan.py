@@ -42,9 +42,9 @@ def test_no_sequence_is_cheaper(seed, hold):
     errors[:, 0] = 0
     steps = draw.random((6, 3, 3)) * 1.4
     faces = np.tile(FACES, (6, 1)) * (1 + 0.1 * draw.random((6, 3)))
-    found = cheapest(faces, errors, steps, 1.0, hold)
-    assert all(length >= hold for _, length in runs(found)[1:-1])
-    assert cost(found, faces, errors, steps, 1.0) == pytest.approx(by_trial(faces, errors, steps, 1.0, hold))
+    sequence = cheapest(faces, errors, steps, 1.0, hold)
+    assert all(length >= hold for _, length in runs(sequence)[1:-1])
+    assert cost(sequence, faces, errors, steps, 1.0) == pytest.approx(by_trial(faces, errors, steps, 1.0, hold))
 
 
 def test_an_infinite_error_is_never_chosen_when_there_is_another():
@@ -67,12 +67,12 @@ def test_no_sharing_has_a_smaller_worst_error():
     faces = [np.array([90, 60, 40, 25, 10]) + draw.integers(5) for _ in range(3)]
     errors = [np.cumsum(draw.random(5)) for _ in range(3)]
     all_levels = list(itertools.product(range(5), repeat=3))
-    total = {levels: sum(own[k] for own, k in zip(faces, levels, strict=True)) for levels in all_levels}
-    worst = {levels: max(own[k] for own, k in zip(errors, levels, strict=True)) for levels in all_levels}
+    total = {levels: sum(by_level[k] for by_level, k in zip(faces, levels, strict=True)) for levels in all_levels}
+    worst = {levels: max(by_level[k] for by_level, k in zip(errors, levels, strict=True)) for levels in all_levels}
     for limit in (60, 100, 150, 200, 250):
-        found = tuple(share_limit([0, 0, 0], faces, errors, limit).tolist())
-        assert total[found] <= limit
-        assert worst[found] == min(worst[levels] for levels in all_levels if total[levels] <= limit)
+        shared = tuple(share_limit([0, 0, 0], faces, errors, limit).tolist())
+        assert total[shared] <= limit
+        assert worst[shared] == min(worst[levels] for levels in all_levels if total[levels] <= limit)
 
 
 PRICES = np.array([100.0, 50.0, 25.0, 12.0])
@@ -145,7 +145,7 @@ def test_a_path_cut_short_gets_the_same_beginning(moving, frames_of, rendered):
 
 @pytest.mark.slow
 def test_the_order_of_vertices_and_faces_changes_no_plan(moving, meshes, chains):
-    scene, _, own = moving
+    scene, _, ladders = moving
     mixed = {name: tuple(shuffled(level, k) for k, level in enumerate(chain)) for name, chain in chains.items()}
     full = [mixed[placed.name][0] for placed in scene.objects]
     frames = Frames(scene, {name: chain[0].mesh for name, chain in mixed.items()}, full)
@@ -153,7 +153,7 @@ def test_the_order_of_vertices_and_faces_changes_no_plan(moving, meshes, chains)
         budget(meshes, scene, chains=chains).faces, budget(meshes, scene, chains=mixed, frames=frames).faces
     )
     again = online(frames, tuple(mixed[placed.name] for placed in scene.objects))
-    assert np.array_equal(again.faces, online(moving[1], own).faces)
+    assert np.array_equal(again.faces, online(moving[1], ladders).faces)
 
 
 def shuffled(level, seed):

@@ -49,9 +49,9 @@ def root(meshes, tmp_path_factory):
     for name, mesh in {"one": bumpy(0, 3), "two": meshes["two"], "third": meshes["two"]}.items():
         write_mesh(root / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
-        found = {"glance.points": np.array([0, 5]), "glance.strong": np.int64(2), "glance.saliency": saliency}
-        found |= {"itti.points": np.array([0, 5]), "itti.strong": np.int64(2)}
-        write_arrays(root / f"salient_points/{name}.npz", **found)
+        arrays = {"glance.points": np.array([0, 5]), "glance.strong": np.int64(2), "glance.saliency": saliency}
+        arrays |= {"itti.points": np.array([0, 5]), "itti.strong": np.int64(2)}
+        write_arrays(root / f"salient_points/{name}.npz", **arrays)
     return root
 
 
@@ -119,10 +119,10 @@ def test_bad_settings_are_named(settings, change, present, reason):
 
 
 def value(rows, method, metric, matched="", factor=1.0):
-    found = [row["value"] for row in rows if (row["method"], row["metric"], row.get("matched"), row.get("factor")) ==
+    values = [row["value"] for row in rows if (row["method"], row["metric"], row.get("matched"), row.get("factor")) ==
              (method, metric, matched, factor) and row["frame"] == "all" and not row["item"]]  # fmt: skip
-    assert len(found) == 1, (method, metric, matched)
-    return found[0]
+    assert len(values) == 1, (method, metric, matched)
+    return values[0]
 
 
 def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
@@ -134,9 +134,9 @@ def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
     for method in ("online", "online_unrendered"):
         assert 0 < value(rows, method, "faces") < value(rows, "full", "faces")
         assert value(rows, method, "planning_ms") >= 0
-    found = summary(rows)
-    assert {"faces_ours", "faces_full", "held_ours", "error_uniform", "saved_uniform_error"} <= set(found)
-    assert all(np.isfinite(number) for number in found.values())
+    metrics = summary(rows)
+    assert {"faces_ours", "faces_full", "held_ours", "error_uniform", "saved_uniform_error"} <= set(metrics)
+    assert all(np.isfinite(number) for number in metrics.values())
     network = [row for row in rows if row["method"] == "network"]  # there is no curve to learn from
     assert [(row["kind"], row["tolerance"]) for row in network] == [("pixels", 1.0), ("pixels", 2.0)]
     assert all("curve.csv" in row["note"] for row in network)
@@ -203,22 +203,22 @@ def workspace(settings, root, make_workspace):
 
 
 def test_an_object_outside_the_scene_runs_the_network_again_and_nothing_else(workspace, monkeypatch):
-    ran = []
+    calls = []
     for name in ("build_lod_chain", "compare", "compare_network"):
         place = __main__ if name == "build_lod_chain" else stage_measure
         work = getattr(place, name)
-        monkeypatch.setattr(place, name, lambda *a, name=name, work=work, **k: ran.append(name) or work(*a, **k))
+        monkeypatch.setattr(place, name, lambda *a, name=name, work=work, **k: calls.append(name) or work(*a, **k))
     __main__.run(workspace)
-    assert ran == [*["build_lod_chain"] * 4, "compare", "compare_network"]
+    assert calls == [*["build_lod_chain"] * 4, "compare", "compare_network"]
     rows = read_rows(workspace.measurements / "scene.csv.gz").to_dict("records")
     assert {row["group"] for row in rows if row["condition"] != row["condition"]} == {"small"}
     assert {
         row["value"] for row in rows if (row["method"], row["metric"], row["matched"]) == ("network", "held", "held")
     }
-    ran.clear()
+    calls.clear()
     write_curve(workspace.data, "fourth")
     __main__.run(workspace)
-    assert ran == ["compare_network"]
+    assert calls == ["compare_network"]
 
 
 def test_random_scenes_are_measured_one_by_one(settings, workspace, make_workspace):

@@ -42,23 +42,23 @@ def test_a_region_is_connected_and_above_the_share():
 def test_a_disc_has_the_area_of_the_region():
     region = salient_region(BALL, SALIENCY, TOP)
     area = BALL.vertex_areas[region].sum()
-    found = disc(BALL, BOTTOM, area)
-    assert BALL.vertex_areas[found].sum() == pytest.approx(area, rel=0.02) and HEIGHT[found].max() < -0.35
+    vertices = disc(BALL, BOTTOM, area)
+    assert BALL.vertex_areas[vertices].sum() == pytest.approx(area, rel=0.02) and HEIGHT[vertices].max() < -0.35
 
 
 def test_a_region_of_one_vertex_takes_its_neighbours():
     lonely = np.zeros(len(HEIGHT))
     lonely[TOP] = 1
-    found = salient_region(BALL, lonely, TOP)
-    assert len(found) == 5 and TOP in found and (HEIGHT[found] > 0.45).all()
+    vertices = salient_region(BALL, lonely, TOP)
+    assert len(vertices) == 5 and TOP in vertices and (HEIGHT[vertices] > 0.45).all()
 
 
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_every_extent_touches_as_often_and_begins_with_the_strongest_points(extent):
     points = np.r_[TOP, BOTTOM, np.random.default_rng(0).permutation(len(HEIGHT))[:9]]
-    found = sample_vertices(BALL, SALIENCY, points, extent, np.random.default_rng(1))
-    assert found.shape == (10,) and len(set(found)) == 10
-    assert found[[0, 5]].tolist() == [TOP, BOTTOM]
+    vertices = sample_vertices(BALL, SALIENCY, points, extent, np.random.default_rng(1))
+    assert vertices.shape == (10,) and len(set(vertices)) == 10
+    assert vertices[[0, 5]].tolist() == [TOP, BOTTOM]
 
 
 def touches(level, seed, count=12, noise=0.05):
@@ -75,8 +75,8 @@ def unseen(imprints, name):
 
 @pytest.fixture(scope="module")
 def plain():
-    return {one: [touches(level, 10 * i + seed) for seed in range(3)]
-            for i, (one, level) in enumerate((("low", -1.0), ("even", 0.0), ("high", 1.0)))}  # fmt: skip
+    return {label: [touches(level, 10 * i + seed) for seed in range(3)]
+            for i, (label, level) in enumerate((("low", -1.0), ("even", 0.0), ("high", 1.0)))}  # fmt: skip
 
 
 @pytest.mark.slow
@@ -89,18 +89,18 @@ def test_every_classifier_tells_plain_classes_of_unseen_objects(plain, name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CLASSIFIERS)
 def test_noise_alone_is_told_by_chance(name):
-    noise = {one: [np.random.default_rng([i, j]).normal(size=(40, 8, 8)) for j in range(3)]
-             for i, one in enumerate("abc")}  # fmt: skip
+    noise = {label: [np.random.default_rng([i, j]).normal(size=(40, 8, 8)) for j in range(3)]
+             for i, label in enumerate("abc")}  # fmt: skip
     assert abs(np.mean([row["value"] for row in unseen(noise, name)]) - 1 / 3) < 0.12
 
 
 def test_the_tested_object_is_trained_on_in_the_random_split_alone():
     """Each object has its own level: who learned it would name it, who did not takes the nearest other class."""
     levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
-    own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
-    rows = evaluate(own, ["knn"])
-    found = {(row["group"], row["fold"]): row["value"] for row in rows if row["split"] == "objects"}
-    assert set(found.values()) <= {0.0, 1.0} and np.mean(list(found.values())) == 0.5
+    objects = {label: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for label, pair in levels.items()}
+    rows = evaluate(objects, ["knn"])
+    scores = {(row["group"], row["fold"]): row["value"] for row in rows if row["split"] == "objects"}
+    assert set(scores.values()) <= {0.0, 1.0} and np.mean(list(scores.values())) == 0.5
     assert [(row["group"], row["item"], row["value"]) for row in rows if row["split"] == "random"] == [
         ("a", 0, 1.0), ("a", 1, 1.0), ("b", 0, 1.0), ("b", 1, 1.0)
     ]  # fmt: skip
@@ -108,12 +108,12 @@ def test_the_tested_object_is_trained_on_in_the_random_split_alone():
 
 def test_a_class_with_fewer_objects_sits_out_the_later_folds_and_the_order_of_classes_does_not_matter(plain):
     uneven = plain | {"low": plain["low"][:2]}
-    one, other = (
+    first, second = (
         {(row["group"], row["fold"]): row["value"] for row in unseen(order, "knn")}
         for order in (uneven, dict(reversed(uneven.items())))
     )
-    assert one == other and len(one) == 8
-    assert sorted(key for key in one if key[0] == "low") == [("low", 0), ("low", 1)]
+    assert first == second and len(first) == 8
+    assert sorted(key for key in first if key[0] == "low") == [("low", 0), ("low", 1)]
 
 
 def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
@@ -128,15 +128,18 @@ def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
 
 
 def test_bad_input_is_named(plain):
-    found = {"a": ["a1", "a2"], "b": ["b1"], "c": ["c1", "c2", "c3"]}
-    assert list(chosen_classes(found, [])) == ["a", "c"] and list(chosen_classes(found, ["c"])) == ["c"]
+    classes = {"a": ["a1", "a2"], "b": ["b1"], "c": ["c1", "c2", "c3"]}
+    assert list(chosen_classes(classes, [])) == ["a", "c"] and list(chosen_classes(classes, ["c"])) == ["c"]
     for work, words in (
         (lambda: evaluate({"low": plain["low"]}, ["knn"]), "two classes"),
         (lambda: evaluate(plain | {"low": plain["low"][:1]}, ["knn"]), "class low has 1 object"),
         (lambda: evaluate(plain | {"low": [plain["low"][0], plain["low"][1][:0]]}, ["knn"]), "has an object without"),
-        (lambda: evaluate({name: [x[:1] for x in own] for name, own in plain.items()}, ["knn"]), "touch more often"),
+        (
+            lambda: evaluate({name: [x[:1] for x in samples] for name, samples in plain.items()}, ["knn"]),
+            "touch more often",
+        ),
         (lambda: classifier("bayes"), "unknown classifier bayes"),
-        (lambda: chosen_classes(found, ["d"]), "no d in meshes.classes"),
+        (lambda: chosen_classes(classes, ["d"]), "no d in meshes.classes"),
     ):
         with pytest.raises(ValueError, match=words):
             work()
@@ -147,9 +150,9 @@ def test_the_metrics_name_the_smallest_array():
         {"metric": "accuracy", "split": "objects", "classifier": "knn", "cells": cells, "pitch": 0.01, "value": value}
         for cells, mean in ((8, 0.5), (16, 0.9), (32, 0.91)) for value in (mean - 0.05, mean + 0.05)
     ]  # fmt: skip
-    found = summary(rows, 0.02, 0)["knn"]
-    assert found["smallest"] == {"cells": 16, "pitch": 0.01, "accuracy": 0.9, "again": 1.0}
-    assert found["arrays"]["8-0.01"]["low"] == pytest.approx(0.5 - 0.458408, abs=1e-5)
+    metrics = summary(rows, 0.02, 0)["knn"]
+    assert metrics["smallest"] == {"cells": 16, "pitch": 0.01, "accuracy": 0.9, "again": 1.0}
+    assert metrics["arrays"]["8-0.01"]["low"] == pytest.approx(0.5 - 0.458408, abs=1e-5)
 
 
 def test_the_choice_is_trusted_where_one_array_leads_and_not_where_all_are_alike():
@@ -161,12 +164,14 @@ def test_the_choice_is_trusted_where_one_array_leads_and_not_where_all_are_alike
 
 
 def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
-    done = []
-    monkeypatch.setattr(stage, "warm_up", lambda: done.append("loaded"))
-    monkeypatch.setattr(stage, "touch", lambda *_: done.append("touched") or np.random.default_rng(0).random((9, 8, 8)))
+    calls = []
+    monkeypatch.setattr(stage, "warm_up", lambda: calls.append("loaded"))
+    monkeypatch.setattr(
+        stage, "touch", lambda *_: calls.append("touched") or np.random.default_rng(0).random((9, 8, 8))
+    )
     settings = SimpleNamespace(method="glance", touches=9, classifiers=["knn"])
     stage.process("8-0.01", tmp_path, tmp_path, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, settings, 0)
-    assert done[0] == "loaded" and done.count("touched") == 4
+    assert calls[0] == "loaded" and calls.count("touched") == 4
 
 
 @pytest.mark.slow
@@ -213,7 +218,7 @@ def test_touches_of_one_sample_are_held_out_together():
     """Each sample of three touches has a mark of its own: known ones are told, so none may be on both sides."""
     random = np.random.default_rng(0)
     marks = np.repeat(20 * random.normal(size=(4, 8, 30)), 3, axis=1)
-    imprints = {one: [marks[k], marks[k + 1]] for k, one in ((0, "a"), (2, "b"))}
+    imprints = {label: [marks[k], marks[k + 1]] for k, label in ((0, "a"), (2, "b"))}
     rows = [row for row in evaluate(imprints, ["knn"], votes=3) if row["split"] == "random"]
     assert len(rows) == 4 and all(row["value"] * 2 == int(row["value"] * 2) for row in rows)
     assert np.mean([row["value"] for row in rows]) < 1

@@ -8,7 +8,7 @@ from stages.sequences.contourlet import STEPS, detail, directional_bands, direct
 SIZES = [(32, 32), (8, 8), (24, 16)]
 # Do and Vetterli 2005: quincunx and resampling matrices, and which of them follow each other.
 Q0, Q1 = np.array([[1, -1], [1, 1]]), np.array([[1, 1], [-1, 1]])
-SHEARS = [np.array(one) for one in ([[1, 1], [0, 1]], [[1, -1], [0, 1]], [[1, 0], [1, 1]], [[1, 0], [-1, 1]])]
+SHEARS = [np.array(shear) for shear in ([[1, 1], [0, 1]], [[1, -1], [0, 1]], [[1, 0], [1, 1]], [[1, 0], [-1, 1]])]
 QUINCUNXES = (Q0, Q1, Q1, Q0)
 SIGNS = (-1, 1, 1, -1)  # so that the first channel of every node has the larger slopes
 TAPS = (0.63, -0.193, 0.0972, -0.0526, 0.0272, -0.0144)  # half of the ladder's filter, Phoong et al. 1995
@@ -92,24 +92,24 @@ def coarse(image):
 
 def fine(image):
     """The coarse image interpolated."""
-    found = np.zeros(np.multiply(image.shape, 2))
-    found[::2, ::2] = image
-    return smooth(found, SEVEN)
+    enlarged = np.zeros(np.multiply(image.shape, 2))
+    enlarged[::2, ::2] = image
+    return smooth(enlarged, SEVEN)
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_pyramid_gives_the_image_back(size):
     image = noise(size, 2)
-    found = detail(image[None])[0]
-    np.testing.assert_allclose(fine(coarse(image)) + found, image, atol=1e-10)
+    details = detail(image[None])[0]
+    np.testing.assert_allclose(fine(coarse(image)) + details, image, atol=1e-10)
     # The inverse of Do and Vetterli 2003, with the dual frame.
-    np.testing.assert_allclose(fine(coarse(image) - coarse(found)) + found, image, atol=1e-10)
-    np.testing.assert_allclose(coarse(found), 0, atol=1e-10)
+    np.testing.assert_allclose(fine(coarse(image) - coarse(details)) + details, image, atol=1e-10)
+    np.testing.assert_allclose(coarse(details), 0, atol=1e-10)
 
 
 def test_sub_bands_have_as_many_coefficients_as_the_image_has_pixels_and_shift_with_it():
     images = noise((2, 32, 48), 3)
-    bands, moved = (directional_bands(one) for one in (images, np.roll(images, (8, 16), axis=(1, 2))))
+    bands, moved = (directional_bands(batch) for batch in (images, np.roll(images, (8, 16), axis=(1, 2))))
     assert bands[0].shape == (2, 8, 4, 24) and bands[1].shape == (2, 8, 16, 6)
     for shifted, band, steps in zip(moved, bands, STEPS, strict=True):
         expected = np.roll(band, (8 // steps[0], 16 // steps[1]), axis=(2, 3))
@@ -133,7 +133,7 @@ def test_constant_image_gives_zeros(image):
 
 def test_deviations_are_those_of_the_sub_bands_of_the_detail_also_in_pieces(monkeypatch):
     images = noise((3, 16, 32), 5)
-    bands = [one for half in directional_bands(detail(images)) for one in np.moveaxis(half, 1, 0)]
+    bands = [part for half in directional_bands(detail(images)) for part in np.moveaxis(half, 1, 0)]
     expected = np.transpose([band.std(axis=(1, 2)) for band in bands])
     np.testing.assert_allclose(directional_std(images), expected, rtol=1e-10)
     monkeypatch.setattr("stages.sequences.contourlet.BATCH", 2)

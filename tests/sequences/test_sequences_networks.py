@@ -89,7 +89,7 @@ def test_training_ends_when_its_loss_falls_no_more_and_says_so(films, monkeypatc
     assert not cut.settled and cut.passes == free.passes - 1
     monkeypatch.setattr("stages.sequences.networks.HALVINGS", HALVINGS + 8)
     longer = train_network(inputs, few, TRAIN, 3, last, seed=0)
-    shares = [class_probabilities(one.network, inputs, TEST) for one in (free, longer)]
+    shares = [class_probabilities(training.network, inputs, TEST) for training in (free, longer)]
     np.testing.assert_allclose(*shares, atol=0.02)  # a longer training would not have moved it
     assert longer.passes >= free.passes + 3 * 8
 
@@ -127,9 +127,11 @@ def test_statistics_of_19_series_are_those_of_scipy_on_the_coefficients_of_pywt(
     ours = named(values)
     assert len(CHANNELS) == 19 and len(FEATURES) == 228 == len(ours)
     for k, channel in ((0, "direction0"), (17, "normal_y")):
-        one = values[1, :, k]
-        bands = dict(zip(("detail3", "detail2", "detail1"), pywt.wavedec(one, "db2", "symmetric", 3)[1:], strict=True))
-        for band, numbers in {**bands, "sequence": one}.items():
+        signal = values[1, :, k]
+        bands = dict(
+            zip(("detail3", "detail2", "detail1"), pywt.wavedec(signal, "db2", "symmetric", 3)[1:], strict=True)
+        )
+        for band, numbers in {**bands, "sequence": signal}.items():
             assert ours[f"{channel}.{band}.rms"][1] == pytest.approx(np.sqrt(np.mean(numbers**2)))
             assert ours[f"{channel}.{band}.std"][1] == pytest.approx(np.std(numbers))
             assert ours[f"{channel}.{band}.skewness"][1] == pytest.approx(stats.skew(numbers))

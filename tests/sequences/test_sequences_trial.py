@@ -49,8 +49,8 @@ def contours(tmp_path, monkeypatch):
     """The folder data/toys/contours in which two classes of two objects have sequences by two strategies."""
     for level, objects in zip((20, 220), CLASSES.values(), strict=True):
         for k, name in enumerate(objects):
-            found = {strategy: sequences(level, seed=k) for strategy in ("guided", "random")}
-            write_sequences(tmp_path / "data/toys/contours" / f"{name}.npz", found)
+            strategies = {strategy: sequences(level, seed=k) for strategy in ("guided", "random")}
+            write_sequences(tmp_path / "data/toys/contours" / f"{name}.npz", strategies)
     monkeypatch.setattr("stages.sequences.classifiers.NEURONS", 30)  # quicker; few samples need no more
     return tmp_path / "data/toys/contours"
 
@@ -102,11 +102,11 @@ def test_data_know_class_and_object_and_smaller_ones_are_evenly_spread_frames_of
 
 def test_plan_holds_both_splits_and_the_smaller_sequences(contours):
     planned = plan(CLASSES, contours, SETTINGS)
-    names = [one.name for one in planned.trials]
+    names = [trial.name for trial in planned.trials]
     assert not planned.notes and len(names) == len(set(names)) == 2 * 3 * 2 + 2 + 2
     assert {"guided.random.0.networks.10x8", "random.objects.1.conventional.10x8"} <= set(names)
     assert {"guided.objects.0.conventional.5x4", "guided.objects.1.networks.9x8"} <= set(names)
-    assert all(Trial.parse(name) == one for name, one in zip(names, planned.trials, strict=True))
+    assert all(Trial.parse(name) == trial for name, trial in zip(names, planned.trials, strict=True))
 
 
 @pytest.mark.slow
@@ -161,11 +161,13 @@ def test_trials_tell_clear_classes_apart_and_the_same_way_again(contours, tmp_pa
 def test_rows_hold_every_answer_and_layer(contours, tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "CONVENTIONAL", ("knn_no_som", "svm_no_som"))
     planned = plan(CLASSES, contours, SETTINGS)
-    done = [one for one in planned.trials if one.strategy == "guided" and one.kind == "conventional"]
-    rows = [row for one in done for row in process(one.name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)]
-    counts = pd.DataFrame(confusion_rows(tmp_path, done, ["flat", "round"]))
-    each = counts.groupby(["split", "classifier"])["value"].sum()
-    assert len(each) == 2 * 2 and (each["objects"] == 40).all() and (each["random"] == 8).all()
+    selected = [trial for trial in planned.trials if trial.strategy == "guided" and trial.kind == "conventional"]
+    rows = [
+        row for trial in selected for row in process(trial.name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)
+    ]
+    counts = pd.DataFrame(confusion_rows(tmp_path, selected, ["flat", "round"]))
+    totals = counts.groupby(["split", "classifier"])["value"].sum()
+    assert len(totals) == 2 * 2 and (totals["objects"] == 40).all() and (totals["random"] == 8).all()
     tree = summary(rows, seed=0)
     assert tree["chance"] == 0.5 and tree["guided"]["objects"]["svm_no_som"]["mean"] > 0.6
     table = pd.DataFrame(layer_rows(planned.trials, 2))

@@ -70,10 +70,10 @@ def test_the_objects_of_a_class_share_its_imprints():
 def test_an_object_lies_on_the_array_at_its_true_size(monkeypatch):
     brick = mesh_of(trimesh.creation.box((0.8, 0.4, 0.05)))  # 38 x 19 mm, flat: lies on its large sides
     monkeypatch.setattr(trial, "ASIDE", 0.0)
-    found = simulate("resting", brick, 48, CELLS, 0.038, np.random.default_rng(0))
-    assert found.shape == (48, *CELLS)
+    touches = simulate("resting", brick, 48, CELLS, 0.038, np.random.default_rng(0))
+    assert touches.shape == (48, *CELLS)
     cells = 38 * 19 / PITCH**2
-    assert np.median((found > 0.5).sum(axis=(1, 2))) == pytest.approx(cells, rel=0.1)
+    assert np.median((touches > 0.5).sum(axis=(1, 2))) == pytest.approx(cells, rel=0.1)
     smaller = simulate("resting_small", brick, 48, CELLS, 0.038, np.random.default_rng(0))
     shrunk = cells * (PITCH / LARGE_PITCH) ** 2
     assert np.median((smaller > 0.5).sum(axis=(1, 2))) == pytest.approx(shrunk, rel=0.15)
@@ -83,6 +83,6 @@ def test_an_object_lies_on_the_array_at_its_true_size(monkeypatch):
 @pytest.mark.parametrize("kind", SIMULATIONS)
 def test_simulated_touches_are_pressures_and_the_same_in_every_run(kind):
     ball = mesh_of(SOLIDS["sphere"])
-    found, again = (simulate(kind, ball, 4, CELLS, 0.04, np.random.default_rng(0)) for _ in range(2))
-    assert np.array_equal(found, again) and found.min() >= 0 and found.max() <= 1
-    assert (found.max(axis=(1, 2)) > 0.25).all() and found[:, 0, 0].max() < 0.5
+    touches, again = (simulate(kind, ball, 4, CELLS, 0.04, np.random.default_rng(0)) for _ in range(2))
+    assert np.array_equal(touches, again) and touches.min() >= 0 and touches.max() <= 1
+    assert (touches.max(axis=(1, 2)) > 0.25).all() and touches[:, 0, 0].max() < 0.5

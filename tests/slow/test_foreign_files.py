@@ -94,7 +94,7 @@ def attempted(command, arguments, log):
 def faults(path, status, seconds, memory, text):
     """Names the faults of a command on a file: a crash, a passed limit, a warning, a refusal without the name."""
     last = (text.strip().splitlines() or [""])[-1]
-    found = {
+    checks = {
         f"ended by signal {status & 127}": status & 127,
         f"{seconds:.0f} s": seconds > SECONDS,
         f"{memory >> 10} MiB": memory > MEMORY,
@@ -102,7 +102,7 @@ def faults(path, status, seconds, memory, text):
         "a warning": "Warning" in text,
         f"a refusal without the file's name: {last}": status and path.name not in last,
     }
-    return [fault for fault, holds in found.items() if holds]
+    return [fault for fault, holds in checks.items() if holds]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -117,13 +117,13 @@ def warm(tmp_path_factory):
 def test_every_file_is_looked_at_and_simplified_or_refused_in_one_line(name, tmp_path):
     package, (known, held), digest = PACKAGES[name]
     files = unpacked(package, digest, tmp_path / "files")
-    looked, met = 0, []
+    count, met = 0, []
     for path in files:
         commands = {"saliency": ["--out", str(tmp_path / "look.ply")]}
         commands["simplify"] = ["--faces", "500", "--out", str(tmp_path / "small.ply")]
         for command, options in commands.items():
             outcome = attempted(command, [str(path), *options], tmp_path / "log")
-            looked += command == "saliency" and outcome[0] == 0
+            count += command == "saliency" and outcome[0] == 0
             met += [f"{command} {path.relative_to(tmp_path)}: {fault}" for fault in faults(path, *outcome)]
     assert not met, "\n".join(met)
-    assert (len(files), looked) == (known, held)
+    assert (len(files), count) == (known, held)

@@ -63,13 +63,13 @@ def seen(name):
 @pytest.mark.parametrize("name", ODD)
 def test_an_odd_mesh_has_a_defined_answer(name, method):
     mesh, sight = seen(name)
-    found = METHODS[method].find(mesh, sight, Options(name=name), COUNT)
+    detection = METHODS[method].find(mesh, sight, Options(name=name), COUNT)
     used = np.unique(mesh.faces)
-    assert found.points.dtype == np.int64 and len(set(found.points)) == len(found.points) <= COUNT
-    assert len(found.points) == min(COUNT, len(used)) and np.isin(found.points, used).all()
-    if found.saliency is not None:
-        assert found.saliency.shape == (len(mesh.vertices),) and np.isfinite(found.saliency).all()
-        assert found.saliency.min() >= 0 and found.saliency.max() <= 1
+    assert detection.points.dtype == np.int64 and len(set(detection.points)) == len(detection.points) <= COUNT
+    assert len(detection.points) == min(COUNT, len(used)) and np.isin(detection.points, used).all()
+    if detection.saliency is not None:
+        assert detection.saliency.shape == (len(mesh.vertices),) and np.isfinite(detection.saliency).all()
+        assert detection.saliency.min() >= 0 and detection.saliency.max() <= 1
 
 
 @pytest.mark.slow

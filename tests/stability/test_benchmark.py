@@ -73,11 +73,11 @@ def test_only_what_draws_has_several_draws(pear, name):
     if len(many) == 1:
         PERTURBATIONS[name].apply(mesh, severity, Refuses())
     else:
-        one, other = (each.apply(mesh, "pear", 0).mesh for each in many[:2])
-        assert one.vertices.shape != other.vertices.shape or not (
-            np.array_equal(one.vertices, other.vertices)
-            and np.array_equal(one.faces, other.faces)
-            and np.array_equal(one.colors, other.colors)
+        first, second = (case.apply(mesh, "pear", 0).mesh for case in many[:2])
+        assert first.vertices.shape != second.vertices.shape or not (
+            np.array_equal(first.vertices, second.vertices)
+            and np.array_equal(first.faces, second.faces)
+            and np.array_equal(first.colors, second.colors)
         )
 
 
@@ -86,16 +86,16 @@ def test_draws_are_averaged_and_one_that_failed_does_not_count():
         return {"method": "itti", "metric": metric, "value": value, "seconds": value, "note": None}
 
     failed = [row(None) | {"note": "no surface"}]
-    found = mean_of_draws([failed, [row(0.5), row(0.1, "chance")], [row(0.7), row(0.3, "chance")]])
-    assert [one["value"] for one in found] == pytest.approx([0.6, 0.2]) and found[0]["note"] is None
+    rows = mean_of_draws([failed, [row(0.5), row(0.1, "chance")], [row(0.7), row(0.3, "chance")]])
+    assert [entry["value"] for entry in rows] == pytest.approx([0.6, 0.2]) and rows[0]["note"] is None
     assert mean_of_draws([failed, failed]) == failed
 
 
 def test_every_object_is_in_one_set_of_a_partition_whatever_their_order():
     names = [f"object {number}" for number in range(23)]
-    found = list(partitions(names, 0))
-    assert sorted(sum(found, [])) == sorted(5 * names) and {len(group) for group in found} == {11, 12}
-    assert list(partitions(names[::-1], 0)) == found
+    groups = list(partitions(names, 0))
+    assert sorted(sum(groups, [])) == sorted(5 * names) and {len(group) for group in groups} == {11, 12}
+    assert list(partitions(names[::-1], 0)) == groups
     assert list(partitions(names[:3], 0)) and all(len(group) == 3 for group in partitions(names[:3], 0))
 
 
@@ -137,8 +137,8 @@ def test_points_are_used_on_the_object_as_it_is_and_a_pair_has_no_severity(whole
     again = rows[(rows["metric"] == "repeatability") & (rows["method"] == "harris") & (rows["item"] == "pear")]
     assert list(again["perturbation"]) == ["noise", "noise", "light", "noise+light"]
     assert again["severity"].isna().tolist() == [False, False, False, True]
-    alone, both = (again.loc[again["perturbation"] == name, "value"].iloc[0] for name in ("noise", "noise+light"))
-    assert both == pytest.approx(alone, abs=0.3)  # no light for who does not look; one draw beside the mean of two
+    alone, paired = (again.loc[again["perturbation"] == name, "value"].iloc[0] for name in ("noise", "noise+light"))
+    assert paired == pytest.approx(alone, abs=0.3)  # no light for who does not look; one draw beside the mean of two
 
 
 @pytest.mark.slow
@@ -147,5 +147,5 @@ def test_draws_of_one_are_the_rows_that_were_always_there(disturbed, settings, t
     first = dataclasses.replace(settings, methods=["harris"], perturbations=["noise"], draws=1, pairs=["noise+noise"])
     rows = process("pear", tmp_path, disturbed.root / "data/test", first, 0)
     wanted = [row for row in disturbed.rows if row["method"] == "harris" and row["perturbation"] == "noise"]
-    found = [row for row in rows if row["perturbation"] == "noise"]
-    assert [row["value"] for row in found] == [row["value"] for row in wanted]
+    noisy = [row for row in rows if row["perturbation"] == "noise"]
+    assert [row["value"] for row in noisy] == [row["value"] for row in wanted]

@@ -38,8 +38,8 @@ def broken(name):
 @pytest.mark.parametrize("name", DAMAGES)
 def test_equal_draws_give_equal_bytes_and_the_sound_mesh_stays(name):
     before = SOUND.vertices.copy(), SOUND.faces.copy()
-    one, other = broken(name), broken(name)
-    assert one.vertices.tobytes() == other.vertices.tobytes() and one.faces.tobytes() == other.faces.tobytes()
+    first, second = broken(name), broken(name)
+    assert first.vertices.tobytes() == second.vertices.tobytes() and first.faces.tobytes() == second.faces.tobytes()
     assert np.array_equal(SOUND.vertices, before[0]) and np.array_equal(SOUND.faces, before[1])
 
 
@@ -47,14 +47,14 @@ def test_equal_draws_give_equal_bytes_and_the_sound_mesh_stays(name):
 @pytest.mark.parametrize("name", COUNTS)
 def test_the_damage_is_the_one_that_the_name_says(name):
     surface = Surface(broken(name))
-    found = (
+    counts = (
         len(surface.boundary_edges),
         surface.components,
         surface.degenerate_faces,
         surface.non_manifold_edges,
         surface.non_manifold_vertices,
     )
-    for value, wanted in zip(found, COUNTS[name], strict=True):
+    for value, wanted in zip(counts, COUNTS[name], strict=True):
         assert wanted is None or value == wanted
 
 

@@ -71,8 +71,8 @@ RUINS = {
 
 @pytest.mark.parametrize("name", RUINS)
 def test_every_kind_of_ruin_is_named(name):
-    found, more = RUINS[name]
-    assert name in said(found, **more)
+    mesh, more = RUINS[name]
+    assert name in said(mesh, **more)
 
 
 def test_a_new_pinch_is_named_where_two_corners_become_one():
@@ -159,15 +159,15 @@ def test_outcomes(monkeypatch, work, outcome, note):
 
 def test_another_mesh_on_the_second_run_is_a_ruin_and_a_refusal_is_no_crash(monkeypatch):
     assert run_case(specimen("soup"), Case("4"), "pymeshlab").outcome == "refused"
-    found = iter([FEWER, Mesh(FEWER.vertices, FEWER.faces[::-1])])
-    monkeypatch.setattr(simplification, "simplify", lambda *_, **__: next(found))
+    meshes = iter([FEWER, Mesh(FEWER.vertices, FEWER.faces[::-1])])
+    monkeypatch.setattr(simplification, "simplify", lambda *_, **__: next(meshes))
     assert "second run" in run_case(specimen(), Case("50%"), "pymeshlab").note
 
 
 def test_the_smallest_count_that_a_refusal_names_is_asked_for_once():
-    found = list(run_cases(specimen("wide_holes"), "pymeshlab", [Case("4"), Case("8")]))
-    assert [case.budget for case, _ in found] == ["4", "smallest", "8"]
-    assert found[0][1].outcome == "refused" and found[1][1].asked == found[0][1].smallest > 8
+    outcomes = list(run_cases(specimen("wide_holes"), "pymeshlab", [Case("4"), Case("8")]))
+    assert [case.budget for case, _ in outcomes] == ["4", "smallest", "8"]
+    assert outcomes[0][1].outcome == "refused" and outcomes[1][1].asked == outcomes[0][1].smallest > 8
 
 
 def test_rows_say_what_was_asked_and_what_came(simplified):
@@ -182,7 +182,9 @@ def test_rows_say_what_was_asked_and_what_came(simplified):
 
 
 def test_the_gate_gets_shares_that_sum_to_one(simplified):
-    found = summarise_simplification(simplified)["pymeshlab"]
-    assert found["valid"] + found["refused"] + found["ruined"] == pytest.approx(1, abs=1e-5) and found["crashes"] == 0
-    assert found["smallest_had"] > 0.5
+    shares = summarise_simplification(simplified)["pymeshlab"]
+    assert (
+        shares["valid"] + shares["refused"] + shares["ruined"] == pytest.approx(1, abs=1e-5) and shares["crashes"] == 0
+    )
+    assert shares["smallest_had"] > 0.5
     assert summarise_simplification([{"metric": "repeatability"}]) == {}

@@ -43,9 +43,9 @@ def test_chance_is_the_covered_share_of_the_area(ball):
     """On a ball of area pi a disc of radius r covers the share r^2; the discs of far points are disjoint."""
     tolerance, few, many = 0.1, 10, 40
     spots = ball.vertices[select_far_points(ball.vertices, few)]
-    found = chance_repeatability(spots, Perturbed(ball, ball.vertices), many, np.random.default_rng(1), tolerance)
+    chance = chance_repeatability(spots, Perturbed(ball, ball.vertices), many, np.random.default_rng(1), tolerance)
     expected = (few * (1 - (1 - tolerance**2) ** many) + many * few * tolerance**2) / (few + many)
-    assert found == pytest.approx(expected, abs=0.03)
+    assert chance == pytest.approx(expected, abs=0.03)
 
 
 def test_drift_is_zero_for_the_same_map_at_another_scale_and_two_for_its_negative(ball):
@@ -104,8 +104,8 @@ def rows_of(perturbation, table):
 def test_summary_takes_means_over_objects_at_the_middle_and_says_what_never_broke():
     rows = rows_of("tilt", {"itti": [(15, 0.8), (45, 0.6), (90, 0.2)], "harris": [(15, 0.9), (45, 0.9), (90, 0.9)]})
     rows.append(rows[0] | {"item": "c", "value": None})  # left out of the mean
-    found = summarise(rows)
-    assert found["repeatability"] == {"tilt.itti": 0.6, "tilt.harris": 0.9}
-    assert found["breaking_point"] == {"tilt.itti": 56.25, "tilt.harris": None}
+    summary = summarise(rows)
+    assert summary["repeatability"] == {"tilt.itti": 0.6, "tilt.harris": 0.9}
+    assert summary["breaking_point"] == {"tilt.itti": 56.25, "tilt.harris": None}
     assert breaking_points(pd.DataFrame(rows))["tilt", "itti"][0] == 56.25
     assert [middle_severity(list(range(k))) for k in (1, 2, 3, 4)] == [0, 0, 1, 1]

@@ -24,17 +24,17 @@ def looked_at(pear):
 
 @pytest.fixture(scope="module")
 def rows(looked_at):
-    cases = [Disturbance((one,)) for one in (("winding", 1.0), ("noise", 0.001), ("tilt", 90.0))]
+    cases = [Disturbance((step,)) for step in (("winding", 1.0), ("noise", 0.001), ("tilt", 90.0))]
     return looked_at.unperturbed_rows() + [
         row for case in cases for row in looked_at.rows(case, looked_at.disturbed(case))
     ]
 
 
 def agreement(rows, perturbation, metric="nss", method="height"):
-    found = [row["value"] for row in rows if (row["method"], row["perturbation"], row["metric"])
+    values = [row["value"] for row in rows if (row["method"], row["perturbation"], row["metric"])
              == (method, perturbation, metric)]  # fmt: skip
-    assert len(found) == 1
-    return found[0]
+    assert len(values) == 1
+    return values[0]
 
 
 @pytest.mark.slow

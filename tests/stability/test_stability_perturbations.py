@@ -50,10 +50,12 @@ def pear():
 @pytest.mark.slow
 def test_the_original_stays_equal_generators_give_the_same_and_places_lie_on_it(name, pear):
     before = pear.vertices.copy(), pear.faces.copy()
-    one, other = apply(name, pear, MILD[name]), apply(name, pear, MILD[name])
-    assert np.array_equal(one.mesh.vertices, other.mesh.vertices) and np.array_equal(one.mesh.faces, other.mesh.faces)
+    first, second = apply(name, pear, MILD[name]), apply(name, pear, MILD[name])
+    assert np.array_equal(first.mesh.vertices, second.mesh.vertices) and np.array_equal(
+        first.mesh.faces, second.mesh.faces
+    )
     assert np.array_equal(pear.vertices, before[0]) and np.array_equal(pear.faces, before[1])
-    places = one.original_positions  # found along a ray from the centre, since the pear is star-shaped
+    places = first.original_positions  # found along a ray from the centre, since the pear is star-shaped
     length = np.linalg.norm(places, axis=1)
     hits = RayScene(pear).cast(np.zeros_like(places), places / length[:, None])
     tolerance = 0.03 if name in WHERE_NOT_EVEN else 1e-6
@@ -62,11 +64,11 @@ def test_the_original_stays_equal_generators_give_the_same_and_places_lie_on_it(
 
 @pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"remeshing", "background_left_in", "scan"}))
 def test_the_unharmed_severity_changes_nothing(name, pear):
-    found = apply(name, pear, PERTURBATIONS[name].unharmed)
-    assert np.allclose(found.mesh.vertices, pear.vertices) and np.array_equal(found.mesh.faces, pear.faces)
-    assert found.conditions == Conditions()
-    own = name in ("grey", "clay") and {tuple(color) for color in found.mesh.colors.tolist()} == {ORANGE, TEAL}
-    assert found.mesh.colors is None or own or (found.mesh.colors == 204).all()
+    perturbed = apply(name, pear, PERTURBATIONS[name].unharmed)
+    assert np.allclose(perturbed.mesh.vertices, pear.vertices) and np.array_equal(perturbed.mesh.faces, pear.faces)
+    assert perturbed.conditions == Conditions()
+    painted = name in ("grey", "clay") and {tuple(color) for color in perturbed.mesh.colors.tolist()} == {ORANGE, TEAL}
+    assert perturbed.mesh.colors is None or painted or (perturbed.mesh.colors == 204).all()
 
 
 @pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"scan"}))  # of which the next test speaks
@@ -99,16 +101,16 @@ def test_harsher_of_the_same_kind_goes_farther(name, pear):
 
 @pytest.mark.slow
 def test_one_depth_camera_sees_one_side(pear):
-    one, four = (apply("scan", pear, severity).mesh for severity in (360, 90))
+    single, four = (apply("scan", pear, severity).mesh for severity in (360, 90))
     total = pear.face_areas.sum()
-    assert 0.3 < one.face_areas.sum() / total < 0.6 < 0.75 < four.face_areas.sum() / total < 1.05
+    assert 0.3 < single.face_areas.sum() / total < 0.6 < 0.75 < four.face_areas.sum() / total < 1.05
     outwards = np.einsum("ij,ij->i", four.face_normals, four.vertices[four.faces].mean(axis=1))
     assert (outwards > 0).mean() > 0.99
 
 
 def test_noise_has_the_deviation_asked_for_and_tears_no_seam(pear):
-    found = apply("noise", pear, 0.01)
-    assert (found.mesh.vertices - pear.vertices).std() == pytest.approx(0.01 * pear.diagonal, rel=0.05)
+    perturbed = apply("noise", pear, 0.01)
+    assert (perturbed.mesh.vertices - pear.vertices).std() == pytest.approx(0.01 * pear.diagonal, rel=0.05)
     soup = Mesh(pear.vertices[pear.faces].reshape(-1, 3), np.arange(3 * len(pear.faces)).reshape(-1, 3))
     moved = apply("noise", soup, 0.01).mesh.vertices
     assert len(np.unique(moved, axis=0)) == len(pear.vertices)
@@ -120,23 +122,23 @@ def test_turn_keeps_heights_tilt_the_axis_vertex_order_the_surface_and_winding_t
     assert np.allclose(apply("tilt", pear, 180).mesh.vertices[:, 2], -pear.vertices[:, 2])
     for name in ("turn", "tilt"):
         assert np.linalg.det(np.linalg.lstsq(pear.vertices, apply(name, pear, 33).mesh.vertices)[0]) == pytest.approx(1)
-    found = apply("vertex_order", pear, 1.0).mesh
-    assert not np.array_equal(found.faces, pear.faces)
-    assert np.array_equal(found.vertices[found.faces], pear.vertices[pear.faces])
+    reordered = apply("vertex_order", pear, 1.0).mesh
+    assert not np.array_equal(reordered.faces, pear.faces)
+    assert np.array_equal(reordered.vertices[reordered.faces], pear.vertices[pear.faces])
     assert np.allclose(apply("winding", pear, 1.0).mesh.vertex_normals, -pear.vertex_normals)
 
 
 def test_missing_faces_are_missing_in_few_patches(pear):
-    found = apply("missing_faces", pear, 0.2)
-    assert len(found.mesh.faces) == len(pear.faces) - int(0.2 * len(pear.faces))
-    counts = found.mesh.edge_counts[1]
+    perturbed = apply("missing_faces", pear, 0.2)
+    assert len(perturbed.mesh.faces) == len(pear.faces) - int(0.2 * len(pear.faces))
+    counts = perturbed.mesh.edge_counts[1]
     assert 0 < (counts == 1).sum() < 0.1 * len(counts)  # lone faces would leave three open edges each
-    assert len(np.unique(found.mesh.faces)) == len(found.mesh.vertices)
+    assert len(np.unique(perturbed.mesh.faces)) == len(perturbed.mesh.vertices)
 
 
 def test_remeshing_makes_edges_of_the_length_asked_for(pear):
-    found = apply("remeshing", pear, 0.08).mesh
-    corners = found.vertices[found.faces]
+    remeshed = apply("remeshing", pear, 0.08).mesh
+    corners = remeshed.vertices[remeshed.faces]
     lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     assert np.median(lengths) == pytest.approx(0.08 * pear.diagonal, rel=0.2)
     assert lengths.std() / lengths.mean() < 0.3
@@ -148,9 +150,9 @@ def test_a_pattern_and_paint_have_two_colours_in_patches_over_what_was_there(pea
     ends = colors[np.stack(pear.adjacency.nonzero(), axis=1)]
     assert (ends[:, 0] == ends[:, 1]).all(axis=1).mean() > 0.7
     two = np.where(pear.vertices[:, 2:] > 0, 200, 100) * np.ones(3)
-    found = apply("paint", Mesh(pear.vertices, pear.faces, two.astype(np.uint8)), 1.0).mesh
-    assert len(np.unique(found.colors, axis=0)) == 2
-    assert found.colors[pear.vertices[:, 2] > 0].max() == 200
+    painted = apply("paint", Mesh(pear.vertices, pear.faces, two.astype(np.uint8)), 1.0).mesh
+    assert len(np.unique(painted.colors, axis=0)) == 2
+    assert painted.colors[pear.vertices[:, 2] > 0].max() == 200
 
 
 def test_grey_keeps_the_brightness_of_each_place_and_clay_none(pear):

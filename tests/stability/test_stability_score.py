@@ -32,7 +32,7 @@ def row(item, method, perturbation, severity, metric, value):
 
 def rows(objects=12, lost=None, spread=0.3):
     """Rows whose lost share varies over the objects by `spread` of itself, alike for all methods."""
-    found = []
+    entries = []
     for number in range(objects):
         more = 1 + spread * (2 * number / max(objects - 1, 1) - 1)
         for method, shares in (lost or LOST).items():
@@ -41,8 +41,8 @@ def rows(objects=12, lost=None, spread=0.3):
                 for severity in severities:
                     again = 1 - share * (1 if method == "random" else more) * (1 - CHANCE)
                     where = (f"object {number}", method, name, severity)
-                    found += [row(*where, "repeatability", again), row(*where, "chance", CHANCE)]
-    return found
+                    entries += [row(*where, "repeatability", again), row(*where, "chance", CHANCE)]
+    return entries
 
 
 def scored(found, **given):
@@ -50,12 +50,12 @@ def scored(found, **given):
 
 
 def test_the_reference_is_one_chance_scores_as_chance_and_others_are_measured_by_it():
-    found = scored(rows())
-    assert found.loc["itti", ["mce", "mce_low", "mce_high", "relative"]].tolist() == [1, 1, 1, 1]
-    assert found["mce"]["glance"] == pytest.approx(0.5) and found["mce"]["harris"] == pytest.approx(0.5 / 3)
-    assert found.loc["harris", ["surface", "pose", "picture"]].tolist() == pytest.approx([0.5, 0, 0])
-    assert found["mce"]["random"] == pytest.approx(np.mean([1 / 0.4, 1 / 0.8, 1 / 0.5]))
-    assert found["found"]["random"] == pytest.approx(0) and found["found"]["harris"] == pytest.approx(1 - 0.2 / 3)
+    frame = scored(rows())
+    assert frame.loc["itti", ["mce", "mce_low", "mce_high", "relative"]].tolist() == [1, 1, 1, 1]
+    assert frame["mce"]["glance"] == pytest.approx(0.5) and frame["mce"]["harris"] == pytest.approx(0.5 / 3)
+    assert frame.loc["harris", ["surface", "pose", "picture"]].tolist() == pytest.approx([0.5, 0, 0])
+    assert frame["mce"]["random"] == pytest.approx(np.mean([1 / 0.4, 1 / 0.8, 1 / 0.5]))
+    assert frame["found"]["random"] == pytest.approx(0) and frame["found"]["harris"] == pytest.approx(1 - 0.2 / 3)
     assert scored(rows(), reference="glance")["mce"]["itti"] == pytest.approx(2)
     # Hendrycks and Dietterich sum first: no division by zero for a shape on which the reference loses nothing.
     assert scored(rows(spread=1.0))["mce"]["glance"] == pytest.approx(0.5)
@@ -66,9 +66,9 @@ def test_the_reference_is_one_chance_scores_as_chance_and_others_are_measured_by
 
 def test_the_score_is_paired_over_the_objects():
     """Where all methods lose more on the same objects, their ratio stays; the share found again does not."""
-    found = scored(rows(spread=0.5))
-    assert found["mce_high"]["glance"] - found["mce_low"]["glance"] < 1e-9
-    assert found["found_high"]["glance"] - found["found_low"]["glance"] > 0.05
+    frame = scored(rows(spread=0.5))
+    assert frame["mce_high"]["glance"] - frame["mce_low"]["glance"] < 1e-9
+    assert frame["found_high"]["glance"] - frame["found_low"]["glance"] > 0.05
     table = pd.DataFrame(rows(spread=0.0))
     some = table["item"].isin(["object 1", "object 5"]) & (table["metric"] == "repeatability")
     table.loc[some & (table["method"] == "glance"), "value"] = 0.2
@@ -87,8 +87,8 @@ def test_severities_are_summed_before_the_ratio():
 
 def test_what_costs_the_reference_nothing_is_left_out_and_named(tmp_path):
     lost = LOST | {"itti": (0.4, 0.8, 0.0)}
-    found = scored(rows(lost=lost))
-    assert found["mce"]["glance"] == pytest.approx(0.5) and found["picture"].isna().all()
+    frame = scored(rows(lost=lost))
+    assert frame["mce"]["glance"] == pytest.approx(0.5) and frame["picture"].isna().all()
     built = build_one(stability, "tables", "stability_score", results(tmp_path, rows(lost=lost)))
     assert "Without light" in " ".join(built.notes)
     assert built.summary.startswith("The most stable method, 3D-Harris, loses 25 [")
@@ -115,12 +115,12 @@ def test_copies_of_a_shape_count_once():
 
 def test_relative_errors_are_those_beyond_the_undisturbed():
     """A method that is bad from the start and loses nothing more is as good as none: Hendrycks' relative mCE."""
-    found = []
+    entries = []
     for item in ("a", "b", "c"):
         for method, start, after in (("itti", 0.7, 0.5), ("glance", 0.9, 0.8), ("harris", 0.5, 0.5)):
-            found.append(row(item, method, "none", np.nan, "auc", start))
-            found += [row(item, method, "noise", severity, "auc", after) for severity in NOISE]
-    known = scores(of_gaze(pd.DataFrame(found))).set_index("method")
+            entries.append(row(item, method, "none", np.nan, "auc", start))
+            entries += [row(item, method, "noise", severity, "auc", after) for severity in NOISE]
+    known = scores(of_gaze(pd.DataFrame(entries))).set_index("method")
     assert known["mce"].to_dict() == pytest.approx({"itti": 1.0, "glance": 0.4, "harris": 1.0})
     assert known["relative"].to_dict() == pytest.approx({"itti": 1.0, "glance": 0.5, "harris": 0.0})
 
@@ -164,14 +164,14 @@ def test_units_are_the_objects_and_few_of_them_widen_the_interval():
 
 def pairs(both, first=0.2, second=0.3, objects=10):
     """Rows of two disturbances and of both, with a small spread over the objects."""
-    found = []
+    entries = []
     for number in range(objects):
         shares = (("noise", 0.001, first), ("noise", 0.005, 0.9), ("tilt", 15.0, second), ("noise+tilt", None, both))
         for name, severity, share in shares:
             moved = share + (0.01 * (number % 3 - 1) if name == "noise+tilt" else 0)
             where = (f"object {number}", "glance", name, severity)
-            found += [row(*where, "repeatability", 1 - moved * (1 - CHANCE)), row(*where, "chance", CHANCE)]
-    return found
+            entries += [row(*where, "repeatability", 1 - moved * (1 - CHANCE)), row(*where, "chance", CHANCE)]
+    return entries
 
 
 @pytest.mark.parametrize(("both", "word"), [(0.5, "additive"), (0.35, "milder"), (0.7, "worse")])
@@ -186,14 +186,14 @@ def test_a_pair_is_compared_with_the_sum_of_its_parts(tmp_path, both, word):
 
 def test_the_sum_of_a_pair_is_all_at_most_and_independent_losses_are_milder():
     lost = points_lost(pd.DataFrame(pairs(1.0, 0.8, 0.7)))
-    found = compared(lost, "noise+tilt", {"noise": 0.001, "tilt": 15.0})
-    assert found["beyond"] == pytest.approx(0, abs=0.01) and found["independent"] == pytest.approx(0.06, abs=0.01)
+    losses = compared(lost, "noise+tilt", {"noise": 0.001, "tilt": 15.0})
+    assert losses["beyond"] == pytest.approx(0, abs=0.01) and losses["independent"] == pytest.approx(0.06, abs=0.01)
     assert verdict(np.nan, np.nan) == "additive"
 
 
 def used(method="glance", scale=1.0, objects=8):
     """Points of the glance halve the salient error of plain simplification, disturbed ones save a tenth."""
-    found = []
+    entries = []
     for number in range(objects):
         size = 0.01 * scale * (1 + number)
         for name, severity, error, known in (
@@ -202,10 +202,10 @@ def used(method="glance", scale=1.0, objects=8):
             ("noise", 0.001, 0.9, 0.6),
         ):
             where = (f"object {number}", method, name, severity)
-            found.append(row(*where, "lod_salient", error * size * (1 + 0.01 * (number % 2))))
+            entries.append(row(*where, "lod_salient", error * size * (1 + 0.01 * (number % 2))))
             if known:
-                found.append(row(*where, "recognised", known + 0.01 * (number % 3 - 1)))
-    return found
+                entries.append(row(*where, "recognised", known + 0.01 * (number % 3 - 1)))
+    return entries
 
 
 def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path):
@@ -220,8 +220,8 @@ def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path
 
 
 def test_claims_have_their_sign(tmp_path):
-    found = [*rows(), *used()]
-    known = results(tmp_path, found)
+    entries = [*rows(), *used()]
+    known = results(tmp_path, entries)
     claims = [claim for claim in stability.CLAIMS if claim.dataset == "household_stability"]
     assert len(claims) == 5
     judged = judge([replace(claim, dataset="test") for claim in claims], known).set_index("key")

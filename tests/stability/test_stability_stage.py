@@ -13,14 +13,14 @@ from stages.weights.training import weight_table
 
 
 def value(rows, method, perturbation, severity, metric):
-    found = [
+    values = [
         row["value"]
         for row in rows
         if (row["method"], row["perturbation"], row["severity"], row["metric"])
         == (method, perturbation, severity, metric)
     ]
-    assert len(found) == 1
-    return found[0]
+    assert len(values) == 1
+    return values[0]
 
 
 def test_a_disturbance_costs_who_is_disturbed_and_as_much_as_it_is_heavy(disturbed):
@@ -48,16 +48,16 @@ def test_rows_are_complete_and_what_cannot_be_done_says_why(disturbed, settings)
     plain = [row for row in disturbed.rows if row["perturbation"] == "none"]
     assert [(row["method"], row["metric"]) for row in plain] == [(method, "points") for method in settings.methods]
     measured = {(row["perturbation"], row["severity"]) for row in disturbed.rows if row["metric"] == "chance"}
-    every = {(name, s) for name, all_of in settings.severities.items() for s in all_of}
-    assert measured == every - {("missing_faces", 1.0)}
+    expected = {(name, s) for name, all_of in settings.severities.items() for s in all_of}
+    assert measured == expected - {("missing_faces", 1.0)}
     assert all(row["seconds"] > 0 for row in disturbed.rows if row["value"] is not None)
     rows = [row for row in disturbed.rows if (row["perturbation"], row["severity"]) == ("missing_faces", 1.0)]
     assert [row["method"] for row in rows] == settings.methods
     assert all(row["value"] is None and "no surface" in row["note"] for row in rows)
-    found = summarise(disturbed.rows)
+    summary = summarise(disturbed.rows)
     keys = {f"{name}.{method}" for name in settings.severities for method in settings.methods}
-    assert set(found["repeatability"]) == set(found["breaking_point"]) == keys
-    assert found["breaking_point"]["vertex_order.itti"] is None and found["breaking_point"]["noise.itti"] > 0
+    assert set(summary["repeatability"]) == set(summary["breaking_point"]) == keys
+    assert summary["breaking_point"]["vertex_order.itti"] is None and summary["breaking_point"]["noise.itti"] > 0
 
 
 @pytest.mark.slow

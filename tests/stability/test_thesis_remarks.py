@@ -116,12 +116,12 @@ def contour_share(mesh, background):
 
 def lessons(rules, count=600):
     """For each rule an object's rows (features (count, 3), labels), the labels a little noisy."""
-    found = []
+    samples = []
     for seed, rule in enumerate(rules):
         generator = np.random.default_rng(seed)
         features = generator.random((count, 3))
-        found.append((features, rule(features) ^ (generator.random(count) < 0.05)))
-    return found
+        samples.append((features, rule(features) ^ (generator.random(count) < 0.05)))
+    return samples
 
 
 def auc(scores, labels):
@@ -133,9 +133,11 @@ def advantage(rules):
     """How much more AUC the SVM of each object has than one for all, on rows of the object that neither saw."""
     seen, fresh = lessons(rules), lessons(rules, 1200)
     fresh = [(features[600:], labels[600:]) for features, labels in fresh]
-    one = fit_svm(*(np.concatenate(part) for part in zip(*seen, strict=True)), seed=0)
-    own = [fit_svm(*lesson, seed=0) for lesson in seen]
-    return np.mean([auc(svm.predict(x), y) - auc(one.predict(x), y) for svm, (x, y) in zip(own, fresh, strict=True)])
+    common = fit_svm(*(np.concatenate(part) for part in zip(*seen, strict=True)), seed=0)
+    svms = [fit_svm(*lesson, seed=0) for lesson in seen]
+    return np.mean(
+        [auc(svm.predict(x), y) - auc(common.predict(x), y) for svm, (x, y) in zip(svms, fresh, strict=True)]
+    )
 
 
 def high(k):

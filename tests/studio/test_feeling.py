@@ -124,10 +124,10 @@ def test_contours_are_felt_at_vertices_alone(torus):
 
 def test_rays_of_a_frame_are_those_of_the_sensor(torus):
     place = at_vertex(torus, 5)
-    one = feel(torus, place, Sensor(kind=RAYS), unit=3.0)
+    felt = feel(torus, place, Sensor(kind=RAYS), unit=3.0)
     same = feel_by_rays(torus, place.positions[0], sensor_axes(place.normals)[0], (16, 16), 0.01, 3.0)
-    assert np.array_equal(one.pressed, same.pressed) and one.span == same.span
-    assert np.array_equal(one.depths, same.depths)
+    assert np.array_equal(felt.pressed, same.pressed) and felt.span == same.span
+    assert np.array_equal(felt.depths, same.depths)
 
 
 def test_the_grid_has_a_pixel_a_cell_and_says_its_units():

@@ -23,8 +23,8 @@ def ball():
 def pair():
     """Two balls with a gap between them."""
     shapes = [trimesh.creation.icosphere(subdivisions=3).apply_translation([x, 0, 0]) for x in (-1.4, 1.4)]
-    both = trimesh.util.concatenate(shapes)
-    return Specimen(Mesh(np.asarray(both.vertices), np.asarray(both.faces)), "pair")
+    balls = trimesh.util.concatenate(shapes)
+    return Specimen(Mesh(np.asarray(balls.vertices), np.asarray(balls.faces)), "pair")
 
 
 def seen_at(specimen, x, z):
@@ -71,11 +71,11 @@ def test_a_path_over_a_cliff_is_none():
 
 
 def test_a_path_needs_two_places_that_differ(ball):
-    one = seen_at(ball, 0.1, 0.0)
+    place = seen_at(ball, 0.1, 0.0)
     with pytest.raises(ValueError, match="two places"):
-        through(ball.rays, [one], 25, 0.01)
+        through(ball.rays, [place], 25, 0.01)
     with pytest.raises(ValueError, match="one and the same"):
-        through(ball.rays, [one, one], 25, 0.01)
+        through(ball.rays, [place, place], 25, 0.01)
 
 
 def test_around_is_the_contour_of_follow(ball):

@@ -57,16 +57,16 @@ def test_the_camera_becomes_a_viewpoint_that_the_network_knows():
 def test_both_senses_are_asked_and_the_surer_is_trusted(trained, sensed):
     picture, imprint = sensed
     assert picture.shape == (SIZE, SIZE, 3) and imprint.shape == (CELLS, CELLS) and np.ptp(picture) > 50
-    found = ask(trained, picture, imprint, 0.0, 0.0)
-    assert isinstance(found, Answer) and set(found.vision) == set(found.touch) == {"chair", "sofa", "table"}
-    assert sum(found.vision.values()) == pytest.approx(1, abs=1e-5)
-    surer = "vision" if max(found.vision.values()) >= max(found.touch.values()) else "touch"
-    assert found.sense == surer
+    answer = ask(trained, picture, imprint, 0.0, 0.0)
+    assert isinstance(answer, Answer) and set(answer.vision) == set(answer.touch) == {"chair", "sofa", "table"}
+    assert sum(answer.vision.values()) == pytest.approx(1, abs=1e-5)
+    surer = "vision" if max(answer.vision.values()) >= max(answer.touch.values()) else "touch"
+    assert answer.sense == surer
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("dark", "dead", "trusted"), [(1.0, 0.0, "touch"), (0.0, 1.0, "vision"), (1.0, 1.0, "")])
 def test_a_sense_that_is_dark_or_dead_is_not_trusted(trained, sensed, dark, dead, trusted):
-    found = ask(trained, *sensed, dark, dead)
-    assert found.sense == trusted
-    assert (found.vision == {}) == (dark == 1) and (found.touch == {}) == (dead == 1)
+    answer = ask(trained, *sensed, dark, dead)
+    assert answer.sense == trusted
+    assert (answer.vision == {}) == (dark == 1) and (answer.touch == {}) == (dead == 1)

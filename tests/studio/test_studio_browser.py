@@ -33,16 +33,16 @@ DROP = """(hex) => {
 
 @pytest.fixture(scope="module")
 def driver():
-    with playwright.sync_playwright() as found:
-        yield found
+    with playwright.sync_playwright() as context:
+        yield context
 
 
 @pytest.fixture(scope="module")
 def binary():
-    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
-    if not found:
+    program = next((path for path in map(shutil.which, BROWSERS) if path), None)
+    if not program:
         pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
-    return found
+    return program
 
 
 @pytest.fixture(scope="module")
@@ -140,16 +140,16 @@ class Hand:
 
         While its folder opens it moves: a pointer that went down on it may come up on another one, which is no click.
         """
-        found, places = self.page.get_by_role("button", name=button, exact=True), []
+        locator, places = self.page.get_by_role("button", name=button, exact=True), []
 
         def rests():
-            found.scroll_into_view_if_needed()
-            places.append(found.bounding_box())
+            locator.scroll_into_view_if_needed()
+            places.append(locator.bounding_box())
             return len(places) > 3 and all(place == places[-1] for place in places[-4:])
 
         assert self.until(rests)
         with self.page.expect_download(timeout=PATIENCE) as caught:
-            found.click()
+            locator.click()
         return caught.value
 
 
@@ -232,10 +232,10 @@ def test_points_are_marked_removed_and_kept_from_two_windows(window, studio):
 
 
 def test_the_page_says_when_the_server_has_ended(window, studio):
-    own = Studio(Settings(studio.settings.files))
-    hand = window(own.address)
+    server = Studio(Settings(studio.settings.files))
+    hand = window(server.address)
     hand.reads("bulges out")
-    own.stop()
+    server.stop()
     hand.reads("The studio has ended. Start it again")
 
 

@@ -14,11 +14,11 @@ from haptic_glance.studio.scene import escaped
 def test_another_reader_finds_the_same_mesh(mesh, flat):
     colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3)).astype(np.uint8)
     content = glb(mesh, colors, flat)
-    (found,) = trimesh.load(io.BytesIO(content), file_type="glb", process=False).geometry.values()
-    assert np.allclose(found.vertices, mesh.vertices, atol=1e-6) and np.array_equal(found.faces, mesh.faces)
-    assert ("vertex_normals" in found._cache.cache) is not flat
+    (solid,) = trimesh.load(io.BytesIO(content), file_type="glb", process=False).geometry.values()
+    assert np.allclose(solid.vertices, mesh.vertices, atol=1e-6) and np.array_equal(solid.faces, mesh.faces)
+    assert ("vertex_normals" in solid._cache.cache) is not flat
     if not flat:
-        assert np.allclose(found.vertex_normals, mesh.vertex_normals, atol=1e-5)
+        assert np.allclose(solid.vertex_normals, mesh.vertex_normals, atol=1e-5)
 
 
 def test_colours_come_back_under_the_displays_gamma(mesh):

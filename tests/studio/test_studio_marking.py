@@ -14,8 +14,8 @@ def marking(mesh, tmp_path):
 
 
 def stored(marking):
-    found = read_marks(marking.path)
-    return list(zip(found.annotator, found.vertex, strict=True))
+    marks = read_marks(marking.path)
+    return list(zip(marks.annotator, marks.vertex, strict=True))
 
 
 def test_marks_are_saved_with_the_places_of_their_vertices(marking):
@@ -23,9 +23,9 @@ def test_marks_are_saved_with_the_places_of_their_vertices(marking):
     for vertex in (5, 9, 5):
         ours.add(vertex)
         assert not ours.save() and ours.saved
-    found = read_marks(ours.path)
-    assert stored(ours) == [("ann", 5), ("ann", 9)] and list(found.time) == sorted(found.time)
-    assert np.allclose(found[["x", "y", "z"]], ours.mesh.vertices[[5, 9]], atol=1e-6)
+    marks = read_marks(ours.path)
+    assert stored(ours) == [("ann", 5), ("ann", 9)] and list(marks.time) == sorted(marks.time)
+    assert np.allclose(marks[["x", "y", "z"]], ours.mesh.vertices[[5, 9]], atol=1e-6)
     assert marking().marks == ours.marks
 
 
@@ -50,27 +50,27 @@ def test_removing_and_undoing(marking):
 
 
 def test_two_windows_under_one_name_lose_nothing(marking):
-    one, other = marking(), marking()
-    one.add(5)
-    one.add(6)
-    one.save()
+    first, other = marking(), marking()
+    first.add(5)
+    first.add(6)
+    first.save()
     other.add(9)
     assert other.save() and other.saved
-    assert stored(one) == [("ann", 5), ("ann", 6), ("ann", 9)]
-    one.remove(1)
-    assert one.save()
-    assert stored(one) == [("ann", 6), ("ann", 9)]
+    assert stored(first) == [("ann", 5), ("ann", 6), ("ann", 9)]
+    first.remove(1)
+    assert first.save()
+    assert stored(first) == [("ann", 6), ("ann", 9)]
 
 
 def test_one_vertex_marked_in_two_windows_is_one_mark_and_another_person_has_marks_of_their_own(marking):
-    one, other, theirs = marking(), marking(), marking("bob")
-    one.add(5)
-    one.save()
+    first, other, theirs = marking(), marking(), marking("bob")
+    first.add(5)
+    first.save()
     other.add(5)
-    assert other.save() and stored(one) == [("ann", 5)]
+    assert other.save() and stored(first) == [("ann", 5)]
     theirs.add(7)
     assert not theirs.save()
-    assert stored(one) == [("ann", 5), ("bob", 7)]
+    assert stored(first) == [("ann", 5), ("bob", 7)]
 
 
 def test_what_cannot_be_saved_stays_and_is_saved_later(marking, tmp_path):

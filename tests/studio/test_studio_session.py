@@ -44,8 +44,8 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     with ThreadPoolExecutor(4) as pool:
         looks = list(pool.map(lambda _: specimen.look("glance", 3), range(4)))
     assert all(look is looks[0] for look in looks)
-    found = detect(load(knob_file), "glance", 3)
-    assert np.array_equal(looks[0].saliency, found.saliency) and set(looks[0].vertices) == set(found.points)
+    detection = detect(load(knob_file), "glance", 3)
+    assert np.array_equal(looks[0].saliency, detection.saliency) and set(looks[0].vertices) == set(detection.points)
 
 
 @pytest.mark.parametrize("method", ["glance", "touch"])
@@ -55,8 +55,8 @@ def test_another_count_needs_no_other_look(mesh, monkeypatch, method):
     monkeypatch.setattr(METHODS[method].__class__, "_values", None)
     more = specimen.look(method, 5)
     monkeypatch.undo()
-    found = detect(mesh, method, 5)
-    assert set(more.vertices) == set(found.points) and np.array_equal(more.saliency, found.saliency)
+    detection = detect(mesh, method, 5)
+    assert set(more.vertices) == set(detection.points) and np.array_equal(more.saliency, detection.saliency)
     assert more.drawn is first.drawn
 
 
@@ -119,8 +119,8 @@ with ThreadPoolExecutor(2) as pool:
 
 @pytest.mark.slow
 def test_a_look_that_needs_pictures_may_be_asked_for_on_any_thread(knob_file):
-    done = subprocess.run([sys.executable, "-c", ON_THREADS, str(knob_file)], capture_output=True, text=True)
-    assert done.stdout.split() == ["2", "3"], done.stderr
+    process = subprocess.run([sys.executable, "-c", ON_THREADS, str(knob_file)], capture_output=True, text=True)
+    assert process.stdout.split() == ["2", "3"], process.stderr
 
 
 def test_a_click_finds_the_face_and_its_nearest_corner(mesh):
@@ -172,12 +172,12 @@ def test_meshes_of_the_pipeline_are_opened(tmp_path, mesh):
 def test_levels_have_the_faces_asked_for_and_larger_errors_with_fewer(mesh):
     specimen = Specimen(mesh, "ball")
     levels = Levels(specimen, specimen.look("glance", 3))
-    found = [levels.at(faces, SOFT, quiet) for faces in (640, 160)]
-    assert [len(level.mesh.faces) for level in found] == [640, 160]
-    assert 0 < found[0].mean < found[1].mean <= found[1].most
-    assert all(level.error.shape == level.saliency.shape == (len(level.mesh.vertices),) for level in found)
-    assert found[1].error.max() <= found[1].most * 1.01
-    assert levels.at(640, SOFT, quiet) is found[0]
+    pair = [levels.at(faces, SOFT, quiet) for faces in (640, 160)]
+    assert [len(level.mesh.faces) for level in pair] == [640, 160]
+    assert 0 < pair[0].mean < pair[1].mean <= pair[1].most
+    assert all(level.error.shape == level.saliency.shape == (len(level.mesh.vertices),) for level in pair)
+    assert pair[1].error.max() <= pair[1].most * 1.01
+    assert levels.at(640, SOFT, quiet) is pair[0]
     whole = levels.at(levels.faces, SOFT, quiet)
     assert whole.most == pytest.approx(0, abs=1e-6)
 
@@ -216,7 +216,9 @@ class Log(list):
     """What a job says when it ends."""
 
     def job(self, work):
-        return Job("x", work, lambda found: self.append(found), self.append, lambda _: self.append("end"), lambda _: 0)
+        return Job(
+            "x", work, lambda answer: self.append(answer), self.append, lambda _: self.append("end"), lambda _: 0
+        )
 
 
 def test_a_job_hands_over_its_result_or_its_error():

@@ -25,30 +25,32 @@ ROTATION = Rotation.from_euler("xyz", [0.4, -1.1, 2.0]).as_matrix()
 
 
 def test_frames_are_equally_spaced_round_a_sphere():
-    found = follow(BALL, LEVEL, frames=10, cells=CELLS)
-    assert found.length == pytest.approx(np.pi, rel=3e-3) and found.loops == 1 and found.share == pytest.approx(1)
-    angles = np.unwrap(np.arctan2(found.positions[:, 1], found.positions[:, 0]))
+    sequence = follow(BALL, LEVEL, frames=10, cells=CELLS)
+    assert (
+        sequence.length == pytest.approx(np.pi, rel=3e-3) and sequence.loops == 1 and sequence.share == pytest.approx(1)
+    )
+    angles = np.unwrap(np.arctan2(sequence.positions[:, 1], sequence.positions[:, 0]))
     assert np.allclose(angles - angles[0], np.arange(10) * np.pi / 5, atol=0.01)
-    assert np.allclose(found.positions[:, 2], 0, atol=1e-12)
-    assert np.allclose(found.normals, found.positions / 0.5, atol=0.03)
-    assert found.images.shape == (10, *CELLS) and found.images.dtype == np.float32
-    assert found.images.min() == 0 and found.images.max() == 1
-    assert found.normals.shape == found.positions.shape == (10, 3) and (found.pitches == 0.01).all()
+    assert np.allclose(sequence.positions[:, 2], 0, atol=1e-12)
+    assert np.allclose(sequence.normals, sequence.positions / 0.5, atol=0.03)
+    assert sequence.images.shape == (10, *CELLS) and sequence.images.dtype == np.float32
+    assert sequence.images.min() == 0 and sequence.images.max() == 1
+    assert sequence.normals.shape == sequence.positions.shape == (10, 3) and (sequence.pitches == 0.01).all()
 
 
 def test_it_begins_at_the_first_point_and_goes_towards_the_second():
-    found = follow(BALL, LEVEL, frames=40, cells=CELLS)
-    assert np.linalg.norm(found.positions[0] - LEVEL[1]) < 0.01
-    assert found.positions[1, 1] > 0
+    sequence = follow(BALL, LEVEL, frames=40, cells=CELLS)
+    assert np.linalg.norm(sequence.positions[0] - LEVEL[1]) < 0.01
+    assert sequence.positions[1, 1] > 0
     back = follow(BALL, LEVEL[[0, 2, 1]], frames=40, cells=CELLS)
     assert np.linalg.norm(back.positions[0] - LEVEL[2]) < 0.01
     assert np.linalg.norm(back.positions[1] - LEVEL[1]) < np.linalg.norm(back.positions[0] - LEVEL[1])
 
 
 def test_the_normal_turns_over_one_pitch_at_an_edge():
-    found = follow(BOX, UPRIGHT, frames=200, cells=CELLS, pitch=0.02)
-    away = np.linalg.norm(np.abs(found.positions[:, [0, 2]]) - [0.2, 0.1], axis=1)
-    bent = np.abs(found.normals).max(axis=1) < 1 - 1e-9
+    sequence = follow(BOX, UPRIGHT, frames=200, cells=CELLS, pitch=0.02)
+    away = np.linalg.norm(np.abs(sequence.positions[:, [0, 2]]) - [0.2, 0.1], axis=1)
+    bent = np.abs(sequence.normals).max(axis=1) < 1 - 1e-9
     assert bent.any() and (away[bent] < 0.02 + 1e-9).all() and (away[~bent] > 0.02 - 1e-9).all()
 
 
@@ -60,20 +62,20 @@ def test_beyond_the_ends_of_an_open_curve_no_normal_counts():
     half = Mesh(
         vertices, np.vstack([np.column_stack([low, low + 1, low + 41]), np.column_stack([low + 1, low + 42, low + 41])])
     )
-    found = follow(half, [[0, 0.2, 0], [0.5, 0.01, 0], [-0.5, 0.01, 0]], frames=60, cells=CELLS, pitch=0.05)
-    assert found.length == pytest.approx(np.pi / 2, rel=1e-3)
-    outward = found.positions / np.linalg.norm(found.positions, axis=1, keepdims=True)
-    off = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", found.normals, outward), -1, 1)))
+    sequence = follow(half, [[0, 0.2, 0], [0.5, 0.01, 0], [-0.5, 0.01, 0]], frames=60, cells=CELLS, pitch=0.05)
+    assert sequence.length == pytest.approx(np.pi / 2, rel=1e-3)
+    outward = sequence.positions / np.linalg.norm(sequence.positions, axis=1, keepdims=True)
+    off = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", sequence.normals, outward), -1, 1)))
     assert off.max() < 5  # half of the width, 0.025, is 2.9 degrees of the cylinder, and half of a face 2.25
 
 
 def test_the_longest_loop_is_followed_and_the_others_are_counted():
     plane = [ORIGIN, [0.5, 0, 0.0], [0, 0.5, 0.0]]
-    found = follow(RING, plane, cells=CELLS)
-    assert found.loops == 2 and found.length == pytest.approx(np.pi, rel=5e-3)
-    assert found.share == pytest.approx(0.5 / 0.7, rel=5e-3)
+    sequence = follow(RING, plane, cells=CELLS)
+    assert sequence.loops == 2 and sequence.length == pytest.approx(np.pi, rel=5e-3)
+    assert sequence.share == pytest.approx(0.5 / 0.7, rel=5e-3)
     inner = follow(RING, [ORIGIN, [0.2, 0, 0], [0, 0.2, 0]], cells=CELLS)
-    assert inner.length == pytest.approx(found.length)
+    assert inner.length == pytest.approx(sequence.length)
 
 
 def test_row_0_is_ahead_and_the_images_turn_and_scale_with_the_object():
@@ -86,21 +88,21 @@ def test_row_0_is_ahead_and_the_images_turn_and_scale_with_the_object():
 
 
 def test_images_are_those_of_the_array_held_along_the_way():
-    found = follow(RING, UPRIGHT, frames=12, cells=CELLS)
+    sequence = follow(RING, UPRIGHT, frames=12, cells=CELLS)
     across = np.cross(UPRIGHT[1], UPRIGHT[2])
     across /= np.linalg.norm(across)
-    up = np.cross(across, found.normals)
+    up = np.cross(across, sequence.normals)
     up /= np.linalg.norm(up, axis=1, keepdims=True)
-    way = np.roll(found.positions, -1, axis=0) - np.roll(found.positions, 1, axis=0)
+    way = np.roll(sequence.positions, -1, axis=0) - np.roll(sequence.positions, 1, axis=0)
     up *= np.sign(np.einsum("ij,ij->i", up, way))[:, None]
-    axes = np.stack([np.cross(up, found.normals), up, found.normals], axis=1)
-    expected = press_at(Surface(RING), found.positions, axes, CELLS, found.pitches)
-    assert np.abs(expected - found.images).mean() < 0.01
+    axes = np.stack([np.cross(up, sequence.normals), up, sequence.normals], axis=1)
+    expected = press_at(Surface(RING), sequence.positions, axes, CELLS, sequence.pitches)
+    assert np.abs(expected - sequence.images).mean() < 0.01
 
 
 def test_the_contour_is_that_of_the_sequence_in_its_direction():
-    found, loop = follow(RING, UPRIGHT, cells=CELLS), contour(RING, UPRIGHT)
-    assert loop.length == found.length
+    sequence, loop = follow(RING, UPRIGHT, cells=CELLS), contour(RING, UPRIGHT)
+    assert loop.length == sequence.length
     turn = np.cross(loop.points - loop.points.mean(axis=0), np.roll(loop.points, -1, axis=0) - loop.points)
     assert turn.sum(axis=0) @ np.cross(UPRIGHT[1], UPRIGHT[2]) > 0
 
@@ -114,10 +116,10 @@ def test_many_planes_give_what_each_gives():
     rng = np.random.default_rng(0)
     planes = np.concatenate([np.zeros((4, 1, 3)), rng.normal(size=(4, 2, 3))], axis=1)
     many = follow_many(RING, planes, frames=5, cells=CELLS)
-    for plane, found in zip(planes, many, strict=True):
+    for plane, sequence in zip(planes, many, strict=True):
         alone = follow(RING, plane, frames=5, cells=CELLS)
         for part in ("images", "normals", "positions", "pitches", "loops", "length", "share"):
-            assert np.array_equal(getattr(alone, part), getattr(found, part))
+            assert np.array_equal(getattr(alone, part), getattr(sequence, part))
 
 
 def test_many_planes_tell_each_why_it_has_no_contour():
@@ -133,9 +135,9 @@ def test_rounding_says_nothing_about_the_way_at_the_vertex_where_a_contour_begin
     planes = np.concatenate([np.zeros((40, 1, 3)), corners[pairs]], axis=1)
     order = rng.permutation(len(corners))
     other = Mesh(corners[order], np.argsort(order)[faces][rng.permutation(len(faces))])
-    found, again = (follow_many(mesh, planes, frames=3, cells=CELLS) for mesh in (Mesh(corners, faces), other))
+    sequences, again = (follow_many(mesh, planes, frames=3, cells=CELLS) for mesh in (Mesh(corners, faces), other))
     # Single cells at the outline may be hit or missed; an array that is turned differs in most.
-    unlike = [np.mean(np.abs(a.images[0] - b.images[0]) > 1e-3) for a, b in zip(found, again, strict=True)]
+    unlike = [np.mean(np.abs(a.images[0] - b.images[0]) > 1e-3) for a, b in zip(sequences, again, strict=True)]
     assert max(unlike) < 0.1
 
 
@@ -169,8 +171,8 @@ def test_broken_meshes_give_finite_sequences_or_a_reason():
     overlapping = Mesh(np.r_[BALL.vertices, BALL.vertices + 3], np.r_[BALL.faces, BALL.faces + len(BALL.vertices)])
     for mesh in (sheet, thin, triangle, inward, overlapping, Mesh(np.eye(3), np.zeros((0, 3), dtype=int))):
         planes = rng.normal(size=(6, 3, 3)) * 0.3 + mesh.vertices.mean(axis=0)
-        for found in follow_many(mesh, planes, frames=5, cells=CELLS):
-            if not isinstance(found, str):
-                parts = (found.images, found.normals, found.positions, found.pitches)
+        for sequence in follow_many(mesh, planes, frames=5, cells=CELLS):
+            if not isinstance(sequence, str):
+                parts = (sequence.images, sequence.normals, sequence.positions, sequence.pitches)
                 assert all(np.isfinite(part).all() for part in parts)
-                assert np.allclose(np.linalg.norm(found.normals, axis=1), 1)
+                assert np.allclose(np.linalg.norm(sequence.normals, axis=1), 1)

@@ -31,16 +31,16 @@ def test_distances_are_exact_and_negative_inside(shapes, name, cells):
 
 def test_cells_off_the_object_report_max_distance(shapes):
     mesh, vertex = shapes.solid(shapes.sphere, half=12)
-    found = distances(mesh, [vertex], (16, 16), 0.01)[0]
+    lengths = distances(mesh, [vertex], (16, 16), 0.01)[0]
     x, y = shapes.cell_places((16, 16), 0.01)
     off = np.maximum(abs(x), abs(y)) > 0.06
-    assert (found[off] == 0.16).all() and (found[~off] < 0.16).all()
+    assert (lengths[off] == 0.16).all() and (lengths[~off] < 0.16).all()
 
 
 def test_max_distance_bounds_the_distance_both_ways(shapes):
     mesh, vertex = shapes.solid(lambda x, y: 20 * (x * x - y * y))
-    found = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02)
-    assert found.min() == -0.02 and found.max() == 0.02
+    lengths = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02)
+    assert lengths.min() == -0.02 and lengths.max() == 0.02
 
 
 def test_turning_and_scaling_mesh_and_array_together_changes_nothing(shapes):
@@ -132,10 +132,10 @@ def by_rays(mesh, centres, axes, cells, pitch):
         return hits.distance, hits.hit & (np.einsum("ij,ij->i", scene.mesh.face_crosses[hits.face], directions) > 0)
 
     below, from_back = cast(points + lift * normals, -normals)
-    found, maybe = below - lift, np.flatnonzero(from_back)
+    lengths, maybe = below - lift, np.flatnonzero(from_back)
     above, out_of_object = cast(points[maybe] - lift * normals[maybe], normals[maybe])
-    found[maybe[out_of_object]] = lift - above[out_of_object]
-    return found.reshape(len(centres), rows, columns)
+    lengths[maybe[out_of_object]] = lift - above[out_of_object]
+    return lengths.reshape(len(centres), rows, columns)
 
 
 def shaped(name):
@@ -157,8 +157,8 @@ def compare(mesh, cells, pitch, count=20):
     vertices = vertices[touchable(mesh, vertices)][:count]
     axes, max_distance = sensor_axes(sensor_normals(mesh, vertices)), 2 * mesh.diagonal
     expected = np.clip(by_rays(mesh, mesh.vertices[vertices], axes, cells, pitch), -max_distance, max_distance)
-    found = distances_at(Surface(mesh), mesh.vertices[vertices], axes, cells, pitch, max_distance)
-    return float((np.abs(found - expected) > 1e-9).mean())
+    lengths = distances_at(Surface(mesh), mesh.vertices[vertices], axes, cells, pitch, max_distance)
+    return float((np.abs(lengths - expected) > 1e-9).mean())
 
 
 @pytest.mark.parametrize(
@@ -196,15 +196,15 @@ def test_the_order_of_the_faces_changes_no_bit():
     shuffled = Mesh(mesh.vertices, np.random.default_rng(2).permutation(mesh.faces))
     axes = sensor_axes(sensor_normals(mesh, [5, 90]))
     centres = mesh.vertices[[5, 90]]
-    one, other = (distances_at(Surface(each), centres, axes, (32, 32), 0.02) for each in (mesh, shuffled))
-    assert np.array_equal(one, other)
+    first, other = (distances_at(Surface(variant), centres, axes, (32, 32), 0.02) for variant in (mesh, shuffled))
+    assert np.array_equal(first, other)
 
 
 def test_where_one_part_stands_on_another_its_inside_is_inside_whatever_the_order_of_faces():
     low, high = (trimesh.creation.box((1, 1, 1), trimesh.transformations.translation_matrix((0, 0, z))) for z in (0, 1))
-    both = trimesh.util.concatenate([low, high])
-    for faces in (both.faces, both.faces[::-1]):
-        found = distances_at(
-            Mesh(both.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, max_distance=5.0
+    tower = trimesh.util.concatenate([low, high])
+    for faces in (tower.faces, tower.faces[::-1]):
+        lengths = distances_at(
+            Mesh(tower.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, max_distance=5.0
         )
-        assert np.allclose(found, -0.6, atol=1e-15)
+        assert np.allclose(lengths, -0.6, atol=1e-15)

@@ -59,8 +59,8 @@ def test_the_tree_is_equal(monkeypatch):
     monkeypatch.setattr(faces.ORDER, "_left", 0)
     compiled = faces.face_tree(corners, np.ones(500))
     monkeypatch.setattr(faces, "ORDER", type("", (), {"for_work": lambda *_: interpreted(faces.order_faces)})())
-    for here, there in zip(faces.face_tree(corners, np.ones(500)), compiled, strict=True):
-        np.testing.assert_array_equal(here, there)
+    for part, expected in zip(faces.face_tree(corners, np.ones(500)), compiled, strict=True):
+        np.testing.assert_array_equal(part, expected)
 
 
 LANES = 32
@@ -88,8 +88,8 @@ def test_the_box_of_a_node_just_holds_the_faces_below_it(count):
     def places(node):
         """(p, 3) the corners below a node."""
         if children[node] < 0:
-            found = blocks[-1 - children[node], : 9 * LANES].reshape(3, 3, LANES).transpose(2, 0, 1).reshape(-1, 3)
-            return found[~np.isnan(found[:, 0])]
+            corners = blocks[-1 - children[node], : 9 * LANES].reshape(3, 3, LANES).transpose(2, 0, 1).reshape(-1, 3)
+            return corners[~np.isnan(corners[:, 0])]
         return np.concatenate([places(children[node]), places(children[node] + 1)])
 
     assert len(places(0)) == 3 * count

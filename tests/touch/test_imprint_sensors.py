@@ -69,34 +69,36 @@ def test_it_rests_on_what_hangs_over_the_place_and_the_tangent_array_does_not_fe
 
 
 def test_over_a_narrow_shallow_cup_it_rests_on_the_rim_and_in_a_wide_one_on_the_floor():
-    found = distances_at(Surface(cup(0.5, 0.1)), np.zeros((1, 3)), FLAT, (14, 14), 0.05, contact="rigid")[0]
-    assert np.allclose(found[[0, -1]], 0, atol=1e-14) and np.allclose(found[3:-3, 3:-3], 0.1, atol=1e-14)
+    lengths = distances_at(Surface(cup(0.5, 0.1)), np.zeros((1, 3)), FLAT, (14, 14), 0.05, contact="rigid")[0]
+    assert np.allclose(lengths[[0, -1]], 0, atol=1e-14) and np.allclose(lengths[3:-3, 3:-3], 0.1, atol=1e-14)
     wide = distances_at(Surface(cup(0.5, 0.4)), np.zeros((1, 3)), FLAT, (8, 8), 0.05, contact="rigid")
     assert np.allclose(wide, 0, atol=1e-14)
 
 
 def test_in_a_cup_narrower_than_the_array_and_deeper_than_the_sensing_depth_it_stays_where_it_starts():
-    found = distances_at(Surface(cup(0.5, 3.0)), np.zeros((1, 3)), FLAT, (14, 14), 0.05, contact="rigid")[0]
-    assert np.allclose(found[[0, -1]], 0) and np.allclose(found[3:-3, 3:-3], 0.7)  # the floor is max_distance away
+    lengths = distances_at(Surface(cup(0.5, 3.0)), np.zeros((1, 3)), FLAT, (14, 14), 0.05, contact="rigid")[0]
+    assert np.allclose(lengths[[0, -1]], 0) and np.allclose(lengths[3:-3, 3:-3], 0.7)  # the floor is max_distance away
 
 
 def test_between_cells_the_place_itself_carries_it():
     spike = trimesh.creation.cone(0.04, 0.5, transform=trimesh.transformations.translation_matrix((0, 0, -0.5)))
     floor = boxes(((1, 1, 0.1), (0, 0, -0.45)))
     whole = trimesh.util.concatenate([spike, trimesh.Trimesh(floor.vertices, floor.faces)])
-    found = distances_at(Surface(Mesh(whole.vertices, whole.faces)), np.zeros((1, 3)), FLAT, (2, 2), 0.1, 1.0, "rigid")
-    assert np.allclose(found, 0.4, atol=1e-12)  # no cell meets the spike, whose tip is the place
+    lengths = distances_at(
+        Surface(Mesh(whole.vertices, whole.faces)), np.zeros((1, 3)), FLAT, (2, 2), 0.1, 1.0, "rigid"
+    )
+    assert np.allclose(lengths, 0.4, atol=1e-12)  # no cell meets the spike, whose tip is the place
 
 
 def test_without_contact_every_cell_reports_max_distance():
-    found = distances_at(Surface(boxes(((1, 1, 1), (0, 0, 0)))), [[9.0, 0, 0]], FLAT, (4, 4), 0.1, contact="rigid")
-    assert (found == 0.4).all()
+    lengths = distances_at(Surface(boxes(((1, 1, 1), (0, 0, 0)))), [[9.0, 0, 0]], FLAT, (4, 4), 0.1, contact="rigid")
+    assert (lengths == 0.4).all()
 
 
 def test_depth_is_limited_from_where_it_rests(shapes):
     mesh, vertex = shapes.solid(lambda x, y: 20 * (x * x - y * y))
-    found = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02, contact="rigid")
-    assert found.min() == 0 and found.max() == 0.02
+    lengths = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02, contact="rigid")
+    assert lengths.min() == 0 and lengths.max() == 0.02
 
 
 def pitches(*array):

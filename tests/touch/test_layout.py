@@ -100,9 +100,9 @@ def test_layouts_turn_with_their_axes_and_taxels_that_face_away_feel_nothing(tab
     turned, tip = Mesh(table.vertices @ turn.T, table.faces), fingertip(500)
     felt = layout_forces(table, [[0.001, 0, 0.002]], FRAME, LAYER, tip, load=1.0)
     assert np.allclose(felt, layout_forces(turned, [turn @ [0.001, 0, 0.002]], turn.T[None], LAYER, tip, load=1.0))
-    both = Layout([[0, 0, 0], [0, 0, -0.001]], [[0, 0, -1], [0, 0, 1]], [1e-6, 1e-6])
-    assert np.allclose(layout_forces(table, [[0, 0, 0.1]], FRAME, LAYER, both, load=0.1), [[0.1, 0]])
-    pressed = layout_forces(table, [[0, 0, 0.1]], FRAME, LAYER, both, depth=1e-4)
+    taxels = Layout([[0, 0, 0], [0, 0, -0.001]], [[0, 0, -1], [0, 0, 1]], [1e-6, 1e-6])
+    assert np.allclose(layout_forces(table, [[0, 0, 0.1]], FRAME, LAYER, taxels, load=0.1), [[0.1, 0]])
+    pressed = layout_forces(table, [[0, 0, 0.1]], FRAME, LAYER, taxels, depth=1e-4)
     assert np.allclose(pressed, [[LAYER.stiffness * 1e-10, 0]])
 
 

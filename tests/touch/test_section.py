@@ -38,8 +38,8 @@ def test_points_follow_each_other_within_the_face_named():
     (circle,) = section(BALL, (0.01, 0.02, 0.03), (1, 2, 3))
     assert np.abs((circle.points - [0.01, 0.02, 0.03]) @ [1, 2, 3]).max() < 1e-12 and on_edges(BALL, circle)
     after = np.roll(circle.edges, -1, axis=0)
-    for face, here, there in zip(BALL.faces[circle.faces], circle.edges, after, strict=True):
-        assert set(here) | set(there) == set(face)
+    for face, start, end in zip(BALL.faces[circle.faces], circle.edges, after, strict=True):
+        assert set(start) | set(end) == set(face)
 
 
 def test_a_torus_is_cut_in_two_loops():
@@ -82,9 +82,9 @@ def test_an_edge_of_three_faces_ends_a_line_and_one_of_four_does_not():
     corners = [[0, 0, 0], [0, 0, 1], *[[x, y, 0.5] for x, y in spokes]]
     for count, curves in ((2, 1), (3, 2), (4, 2)):
         fan = Mesh(corners, [[0, 1, 2 + i] for i in range(count)])
-        found = section(fan, (0, 0, 0.4), Z)
-        assert len(found) == curves
-        assert sum(curve.length for curve in found) == pytest.approx(0.8 * count)
+        lines = section(fan, (0, 0, 0.4), Z)
+        assert len(lines) == curves
+        assert sum(curve.length for curve in lines) == pytest.approx(0.8 * count)
 
 
 def test_neither_a_seam_of_doubled_vertices_nor_a_turned_face_ends_a_loop():
@@ -93,8 +93,8 @@ def test_neither_a_seam_of_doubled_vertices_nor_a_turned_face_ends_a_loop():
     turned[::3] = turned[::3, ::-1]
     (plain,) = section(BALL, ORIGIN, (1, 2, 3))
     for mesh in (soup, Mesh(BALL.vertices, turned)):
-        (found,) = section(mesh, ORIGIN, (1, 2, 3))
-        assert found.closed and found.length == pytest.approx(plain.length) and on_edges(mesh, found)
+        (loop,) = section(mesh, ORIGIN, (1, 2, 3))
+        assert loop.closed and loop.length == pytest.approx(plain.length) and on_edges(mesh, loop)
 
 
 def test_every_crossed_face_of_a_soup_is_walked_once_and_in_its_place():
@@ -104,13 +104,13 @@ def test_every_crossed_face_of_a_soup_is_walked_once_and_in_its_place():
         faces = rng.integers(0, 8, size=(15, 3))
         soup = Mesh(corners, faces[(np.sort(faces)[:, 1:] != np.sort(faces)[:, :-1]).all(axis=1)])
         normal = rng.integers(-1, 2, size=3) + [0, 0, 2]
-        found = section(soup, (1, 1, 1), normal)
+        curves = section(soup, (1, 1, 1), normal)
         sides = ((corners - 1) @ normal >= 0)[soup.faces].sum(axis=1)
-        walked = np.concatenate([curve.faces for curve in found]) if found else np.zeros(0, dtype=int)
+        walked = np.concatenate([curve.faces for curve in curves]) if curves else np.zeros(0, dtype=int)
         assert len(set(walked.tolist())) == len(walked) and np.isin(sides[walked], [1, 2]).all()
         left = np.setdiff1d(np.flatnonzero(np.isin(sides, [1, 2])), walked)
         assert (soup.face_areas[left] == 0).all()
-        for curve in found:
+        for curve in curves:
             assert on_edges(soup, curve) and in_order(curve) and np.isfinite(curve.points).all()
 
 
@@ -134,11 +134,11 @@ def test_agrees_with_trimesh():
     mesh = Mesh(RING.vertices * bumps, RING.faces)
     peer = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
     for normal in np.random.default_rng(0).normal(size=(5, 3)):
-        found = section(mesh, ORIGIN, normal)
+        curves = section(mesh, ORIGIN, normal)
         lines = trimesh.intersections.mesh_plane(peer, normal, ORIGIN)
         expected = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
-        assert sum(curve.length for curve in found) == pytest.approx(expected, rel=1e-5)
-        assert len(found) == len(peer.section(normal, ORIGIN).discrete)
+        assert sum(curve.length for curve in curves) == pytest.approx(expected, rel=1e-5)
+        assert len(curves) == len(peer.section(normal, ORIGIN).discrete)
 
 
 @pytest.mark.parametrize(("gap", "closed"), [(1e-4, True), (1e-2, False)])

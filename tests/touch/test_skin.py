@@ -122,8 +122,8 @@ def test_noise_differs_between_imprints_names_and_seeds():
 def test_dead_cells_are_the_same_in_every_imprint_and_frame():
     skin = Skin(dead=0.25, noise=0.1)
     felt = load(skin, np.zeros((5, 3, 8, 8)))
-    gone = dead_cells((8, 8), 0.25)
-    assert gone.sum() == 16 and (felt[..., gone] == 0).all() and (felt[..., ~gone] > 0).all()
+    dead = dead_cells((8, 8), 0.25)
+    assert dead.sum() == 16 and (felt[..., dead] == 0).all() and (felt[..., ~dead] > 0).all()
 
 
 def test_more_dead_cells_hold_the_fewer_and_other_sensors_have_others():

@@ -102,16 +102,16 @@ def test_an_array_has_its_own_pitch_and_max_distance():
 
 
 def test_an_array_larger_than_the_object_feels_what_is_there():
-    found = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (8, 8), 3.0)
-    assert (found == 24).all()
-    found = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (7, 7), 3.0)[0]
-    assert found[3, 3] == pytest.approx(0) and (np.delete(found.ravel(), 24) == 21).all()
+    lengths = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (8, 8), 3.0)
+    assert (lengths == 24).all()
+    lengths = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (7, 7), 3.0)[0]
+    assert lengths[3, 3] == pytest.approx(0) and (np.delete(lengths.ravel(), 24) == 21).all()
 
 
 def test_a_closed_object_touched_from_its_inside_is_inside_in_every_cell():
     inwards = np.diag([1.0, -1, -1])[None]  # looks up at the inner side of the top, 0.2 away; the way out is 0.8 down
-    found = distances_at(ball(), [[0, 0, 0.3]], inwards, (8, 8), 0.02, max_distance=0.4)
-    assert (found == -0.4).all()
+    lengths = distances_at(ball(), [[0, 0, 0.3]], inwards, (8, 8), 0.02, max_distance=0.4)
+    assert (lengths == -0.4).all()
 
 
 def test_an_open_object_touched_from_its_inside_is_felt_as_far_as_it_is_there():

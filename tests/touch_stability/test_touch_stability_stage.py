@@ -39,8 +39,8 @@ def run(tmp_path, make_workspace):
             {"here": Imprints(press_many(mesh, ids, (16, 16), 0.01), ids, mesh.vertices[ids], 0.01)},
         )
         saliency = np.linspace(0, 1, len(mesh.vertices))
-        found = {"glance.points": ids, "glance.strong": np.int64(2), "glance.saliency": saliency}
-        write_arrays(data / f"salient_points/{name}.npz", **found)
+        arrays = {"glance.points": ids, "glance.strong": np.int64(2), "glance.saliency": saliency}
+        write_arrays(data / f"salient_points/{name}.npz", **arrays)
         write_mesh(data / f"lod/{name}/qem_50pct.npz", mesh)
 
     def call(objects=("ball", "box"), **changes):
@@ -56,17 +56,17 @@ def run(tmp_path, make_workspace):
 @pytest.mark.slow
 def test_a_run_measures_every_severity_by_every_split(run, tmp_path):
     rows = run()
-    found = set(zip(rows["perturbation"], rows["severity"], strict=True))
-    assert found == {(CLEAN, 0.0), *((name, one) for name, levels in SEVERITIES.items() for one in levels)}
+    measured = set(zip(rows["perturbation"], rows["severity"], strict=True))
+    assert measured == {(CLEAN, 0.0), *((name, severity) for name, levels in SEVERITIES.items() for severity in levels)}
     assert set(rows["split"]) == {"random", "regions"} and rows["value"].between(0, 1).all()
     assert set(rows.loc[rows["features"] == "imprint_place", "perturbation"]) == {CLEAN, "object_turned"}
     assert (rows["chance"] == 0.5).all()
     means = rows.groupby(["perturbation", "severity"])["value"].mean()
     assert means[CLEAN, 0.0] > 0.9 and means["noise", 1.0] < 0.7
-    found = read_json(tmp_path / "reports/metrics/toys/touch_stability.json")
-    assert 0 < found["breaking_point"]["anywhere.imprint.knn.noise"] < 1
-    assert found["breaking_point"]["anywhere.imprint.knn.object_turned"] is None
-    assert found["accuracy"]["anywhere.imprint.knn"] > 0.9
+    measured = read_json(tmp_path / "reports/metrics/toys/touch_stability.json")
+    assert 0 < measured["breaking_point"]["anywhere.imprint.knn.noise"] < 1
+    assert measured["breaking_point"]["anywhere.imprint.knn.object_turned"] is None
+    assert measured["accuracy"]["anywhere.imprint.knn"] > 0.9
 
 
 @pytest.mark.slow
@@ -129,14 +129,14 @@ def test_what_is_learned_from_coarse_models_is_asked_about_clean_touches():
     """Disturbed samples that are clean ones of the other object: asked about, wrong; learned from, wrong as well."""
     truth, generator = np.repeat([0, 1], 40), np.random.default_rng(0)
     clean = 5.0 * truth[:, None] + generator.normal(size=(80, 41))
-    both = {"imprint": clean, "imprint_place": np.hstack([clean, np.zeros((80, 3))])}
+    samples = {"imprint": clean, "imprint_place": np.hstack([clean, np.zeros((80, 3))])}
 
     def swapped(perturbation, severity, features):
-        return both[features][::-1]
+        return samples[features][::-1]
 
     severities = {"noise": [1.0], "coarse_model": [1.0]}
     train, test = np.split(generator.permutation(80), [60])
-    rows = pd.DataFrame(recognition_rows(both, swapped, truth, train, test, severities, ["knn"], 0))
+    rows = pd.DataFrame(recognition_rows(samples, swapped, truth, train, test, severities, ["knn"], 0))
     means = rows[rows["features"] == "imprint"].groupby("perturbation")["value"].mean()
     assert means[CLEAN] == 1 and means["noise"] == 0 and means["coarse_model"] == 0
 

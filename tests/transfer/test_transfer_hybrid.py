@@ -97,17 +97,17 @@ def test_rows_of_a_batch_are_absent_one_by_one(hybrid, images, mixed):
 
 @pytest.mark.slow
 def test_both_at_once_see_the_sum_in_forward_and_not_in_apart(hybrid, images):
-    both, other = join_senses(images, images.flip(0)), join_senses(images, None)
-    assert torch.allclose(hybrid.separate_scores(both).vision, hybrid(other).vision, atol=1e-5)
-    assert (hybrid(both).vision - hybrid(other).vision).abs().max() > 1e-3
+    joined, other = join_senses(images, images.flip(0)), join_senses(images, None)
+    assert torch.allclose(hybrid.separate_scores(joined).vision, hybrid(other).vision, atol=1e-5)
+    assert (hybrid(joined).vision - hybrid(other).vision).abs().max() > 1e-3
 
 
 @pytest.mark.slow
 def test_prediction_is_by_the_surer_sense_after_its_temperature(hybrid, images):
-    network, both = copy.deepcopy(hybrid), join_senses(images, images.flip(0))
-    for sense, scores in enumerate(network.separate_scores(both)):
+    network, joined = copy.deepcopy(hybrid), join_senses(images, images.flip(0))
+    for sense, scores in enumerate(network.separate_scores(joined)):
         network.temperature.fill_(1e3)[sense] = 1e-3
-        answer = network.predict(both)
+        answer = network.predict(joined)
         assert answer.sense.tolist() == [sense] * 4 and answer.label.equal(scores.argmax(dim=1))
 
 

@@ -61,7 +61,7 @@ def test_every_condition_has_every_answer(run):
     _, rows = run
     answered = {(row["perturbation"], row["method"]) for row in rows if row.get("sense") == "both"}
     conditions = {"none", "picture_noise", "imprint_dead_cells", "picture_missing", "imprint_missing"}
-    assert answered == {(one, method) for one in conditions for _, method in answered}
+    assert answered == {(condition, method) for condition in conditions for _, method in answered}
     assert values(rows, perturbation="picture_missing", method="vision") == [0.0]
     alone = values(rows, perturbation="none", method="touch")
     for method in ("fusion_entropy", "fusion_product", "sum_touch"):
@@ -96,12 +96,12 @@ def test_confusion_counts_every_test_item_that_felt_something_once(run, tmp_path
 def test_an_answer_where_the_other_has_none_is_no_equality(monkeypatch, tmp_path):
     images, labels = np.zeros((2, 3, 4, 4)), np.array([0, 1])
     sense = SimpleNamespace(images=images, labels=labels, test=np.arange(2))
-    own, path = np.array([[np.nan, np.nan], [0.5, 0.25]]), tmp_path / "net.onnx"
+    answers, path = np.array([[np.nan, np.nan], [0.5, 0.25]]), tmp_path / "net.onnx"
     path.write_bytes(b"")
     monkeypatch.setattr(hybrid, "export_onnx", lambda *_: None)
-    monkeypatch.setattr(hybrid, "sense_scores", lambda *_: own)
+    monkeypatch.setattr(hybrid, "sense_scores", lambda *_: answers)
     monkeypatch.setattr(hybrid, "single_sense", lambda images, kind: images)
-    for exported, expected in ((own + 0.125, 0.125), (np.nan_to_num(own), np.inf)):
+    for exported, expected in ((answers + 0.125, 0.125), (np.nan_to_num(answers), np.inf)):
         monkeypatch.setattr(hybrid, "onnx_scores", lambda *_, answer=exported: [answer] * 2)
         rows = list(hybrid.onnx_rows(None, [sense] * 2, SimpleNamespace(size=4), path))
         assert values(rows, metric="max_difference") == [expected]
@@ -111,7 +111,7 @@ def test_every_middle_has_a_network_for_each_split_and_repetition():
     settings = SimpleNamespace(**SETTINGS)
     names = hybrid.trials(settings, MEMBERS)
     repetitions = ("random.0", "random.1", "objects.0")
-    assert names == [f"hybrid.{middle}.{one}" for middle in ("18-139", "18-147") for one in repetitions]
+    assert names == [f"hybrid.{middle}.{repetition}" for middle in ("18-139", "18-147") for repetition in repetitions]
     assert [hybrid.HybridTrial.parse(name).name for name in names] == names
     alone = {"random": CLASSES, "objects": {"cup": ["mug", "glass"]}}
     assert not any("objects" in name for name in hybrid.trials(settings, alone))

@@ -37,8 +37,8 @@ def weights(monkeypatch):
 def test_a_trials_name_is_its_file_and_gives_it_back():
     trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2)
     name = "imprints128.mobilenet_v2.imagenet.18-139.objects.2"
-    for one, expected in ((trial, name), (trial._replace(passes="converged"), f"{name}.converged")):
-        assert one.name == expected and Trial.parse(expected) == one
+    for entry, expected in ((trial, name), (trial._replace(passes="converged"), f"{name}.converged")):
+        assert entry.name == expected and Trial.parse(expected) == entry
 
 
 def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_with_a_normalisation(small, weights):
@@ -46,7 +46,7 @@ def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_w
     changes = {"weights": ["random", "random_initial"], "passes": ["printed", "converged"], "splits": {"random": 1}}
     trials = plan(CLASSES, ENOUGH, small.settings(networks=networks, coarse_cells=[], **changes)).trials
     for passes in ("printed", "converged"):
-        assert [(one.network, one.weights, one.mode) for one in trials if one.passes == passes] == [
+        assert [(entry.network, entry.weights, entry.mode) for entry in trials if entry.passes == passes] == [
             ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
             ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
         ]  # fmt: skip

@@ -38,11 +38,11 @@ def picture(path, grey=100):
 def vt60(tmp_path):
     for number in range(1, 11):
         for instance in range(1, 7):
-            here = f"{number:02d}_class{number}/0{instance}"
+            folder = f"{number:02d}_class{number}/0{instance}"
             for touch in (2, 10):
                 file = f"touch_{instance}_img_{touch}_name_class{number}_red_at_37383_-9361_23890.jpg"
-                picture(tmp_path / "touch" / here / file, grey=10 * touch)
-            picture(tmp_path / "vision" / here / f"IMG_inst_{instance}_img_27_validframeID_204.jpg")
+                picture(tmp_path / "touch" / folder / file, grey=10 * touch)
+            picture(tmp_path / "vision" / folder / f"IMG_inst_{instance}_img_27_validframeID_204.jpg")
     return tmp_path
 
 
@@ -56,20 +56,24 @@ def test_vt60_has_sixty_objects_of_ten_classes_and_touches_by_number(vt60):
 
 
 def test_vt60_names_a_picture_that_is_none_and_an_empty_folder(vt60):
-    here = vt60 / "touch/01_class1/01"
-    bad = sorted(here.iterdir())[0]
+    folder = vt60 / "touch/01_class1/01"
+    bad = sorted(folder.iterdir())[0]
     bad.write_text("no picture")
     with pytest.raises(ValueError, match=re.escape(bad.name)):
         read_vt60(vt60)
-    for file in list(here.iterdir()):
+    for file in list(folder.iterdir()):
         file.unlink()
     with pytest.raises(ValueError, match="01_class1/01 holds no picture"):
         read_vt60(vt60)
 
 
 def test_vt60_names_the_folder_that_is_missing(vt60):
-    for gone, reason in (("touch/04_class4/03", "touch/04_class4/03"), ("touch/04_class4", "04_"), ("touch", "touch")):
-        (vt60 / gone).rename(vt60 / f"elsewhere{len(gone)}")
+    for missing, reason in (
+        ("touch/04_class4/03", "touch/04_class4/03"),
+        ("touch/04_class4", "04_"),
+        ("touch", "touch"),
+    ):
+        (vt60 / missing).rename(vt60 / f"elsewhere{len(missing)}")
         with pytest.raises(ValueError, match=f"{reason}.*VT-60: touch/NN_CLASS"):
             read_vt60(vt60)
 

@@ -100,9 +100,9 @@ def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_r
 
 @pytest.mark.slow
 def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder, small):
-    one = FROZEN._replace(mode="18:139", split="objects")
-    rows = train(folder, small.settings(epochs=1, search_epochs=1), one)
-    assert read_arrays(folder / "predictions" / f"{one.name}.npz")["test"].tolist() == [*range(8), *range(16, 24)]
+    variant = FROZEN._replace(mode="18:139", split="objects")
+    rows = train(folder, small.settings(epochs=1, search_epochs=1), variant)
+    assert read_arrays(folder / "predictions" / f"{variant.name}.npz")["test"].tolist() == [*range(8), *range(16, 24)]
     changes = pd.DataFrame([row for row in rows if "layer" in row]).groupby("part")["value"].mean()
     assert changes["Conv1"] > 0 and changes["block_16"] > 0 and changes["block_2"] == changes["block_15"] == 0
     assert plain(rows)["weight_change"] == pytest.approx(np.mean([row["value"] for row in rows if "layer" in row]))
@@ -175,8 +175,8 @@ def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
 def test_a_control_with_the_statistics_it_begins_with_has_other_features(folder, small):
     touches = read_touches(folder, CLASSES, "imprints32")
     features = [
-        trial.prepare(one, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
-        for one in (FROZEN, FROZEN._replace(weights="random_initial"))
+        trial.prepare(variant, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
+        for variant in (FROZEN, FROZEN._replace(weights="random_initial"))
     ]
     assert features[0].std(dim=0).max() > 1e-3 > 1e-6 > features[1].std(dim=0).max() > 0
 

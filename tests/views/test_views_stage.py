@@ -76,7 +76,8 @@ def test_the_material_of_the_settings_is_drawn_and_one_out_of_range_is_named(wor
     stage.run(make_workspace({"views": SECTION | {"compare_sets": False, "material": shiny}}))
     stored = read_view(workspace.data / "views" / "torus" / f"{FOUR[0].name}.npz")
     drawn = [
-        render(shapes["torus"], FOUR[0], (90, 120), "raster", material=each) for each in (Material(**shiny), LAMBERT)
+        render(shapes["torus"], FOUR[0], (90, 120), "raster", material=material)
+        for material in (Material(**shiny), LAMBERT)
     ]
     assert (stored.rgb == drawn[0].rgb).all() and (stored.rgb != drawn[1].rgb).any()
     assert set(read_rows(workspace.measurements / "views.csv.gz").metric) == {"coverage"}  # sets are not compared

@@ -171,8 +171,8 @@ def test_a_point_is_a_round_region_of_the_kernels_size_in_a_map_of_any_size():
 
 def test_regions_never_add_up_and_nothing_lies_off_the_object_or_the_image():
     whole = np.ones((90, 120), dtype=bool)
-    both = gts_map([45, 45], [60, 61], whole)
-    np.testing.assert_array_equal(both, np.maximum(gts_map([45], [60], whole), gts_map([45], [61], whole)))
+    merged = gts_map([45, 45], [60, 61], whole)
+    np.testing.assert_array_equal(merged, np.maximum(gts_map([45], [60], whole), gts_map([45], [61], whole)))
     mask = np.arange(90)[:, None].repeat(120, axis=1) < 45
     values = gts_map([45, 44.6], [60, 80], mask)
     assert (values[45:] == 0).all() and values[44, 60] > 0
@@ -195,11 +195,11 @@ def visible(mesh, vertices, viewpoint):
 
 @pytest.mark.parametrize("viewpoint", [Viewpoint(37, 21), Viewpoint(200, -45, 30)])
 def test_a_convex_body_shows_the_vertices_of_the_faces_turned_to_the_camera(viewpoint):
-    rows, columns, which = visible(MESH, np.arange(len(MESH.vertices)), viewpoint)
+    rows, columns, ids = visible(MESH, np.arange(len(MESH.vertices)), viewpoint)
     facing = MESH.face_normals @ viewpoint.axes[2]
     turned, edgewise = (set(MESH.faces[chosen].ravel()) for chosen in (facing > 1e-6, facing > -1e-6))
-    assert turned <= set(which) <= edgewise
-    np.testing.assert_array_equal((rows, columns), project(MESH.vertices[which], viewpoint, (900, 1200))[:2])
+    assert turned <= set(ids) <= edgewise
+    np.testing.assert_array_equal((rows, columns), project(MESH.vertices[ids], viewpoint, (900, 1200))[:2])
     near, far = (int(pick(MESH.vertices @ viewpoint.axes[2])) for pick in (np.argmax, np.argmin))
     assert visible(MESH, [far, near, far, near], viewpoint)[2].tolist() == [1, 3]  # in the order of the question
     with pytest.raises(ValueError, match=r"0\.\.161"):
@@ -208,8 +208,8 @@ def test_a_convex_body_shows_the_vertices_of_the_faces_turned_to_the_camera(view
 
 def test_a_wall_just_before_a_point_hides_it():
     wall = np.array([(0.1, -0.3, -0.3), (0.1, 0.3, -0.3), (0.1, 0.0, 0.4)])
-    both = Mesh(np.r_[wall, wall - (1e-4, 0, 0), [(0.05, 0, 0)]], [(0, 1, 2), (3, 4, 5)])  # vertex 6 is in no face
-    inward = Mesh(both.vertices, both.faces[:, ::-1])
-    for mesh in (both, inward):
+    walls = Mesh(np.r_[wall, wall - (1e-4, 0, 0), [(0.05, 0, 0)]], [(0, 1, 2), (3, 4, 5)])  # vertex 6 is in no face
+    inward = Mesh(walls.vertices, walls.faces[:, ::-1])
+    for mesh in (walls, inward):
         assert visible(mesh, [0, 1, 2, 6], Viewpoint(0, 0))[2].tolist() == [0, 1, 2]
-    assert len(visible(both, [6], Viewpoint(180, 0))[2]) == 1
+    assert len(visible(walls, [6], Viewpoint(180, 0))[2]) == 1

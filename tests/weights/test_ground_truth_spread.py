@@ -49,10 +49,12 @@ def test_amounts_are_kept_and_never_negative(sigma):
 
 
 def test_nothing_reaches_a_separate_piece():
-    one = grid(11)
-    both = Mesh(np.r_[one.vertices, one.vertices + (0, 0, 1e-3)], np.r_[one.faces, one.faces + len(one.vertices)])
-    density = spread_on_surface(both, at(both, 60), 0.5)
-    assert (density[len(one.vertices) :] == 0).all() and (density[: len(one.vertices)] > 0).all()
+    single = grid(11)
+    pair = Mesh(
+        np.r_[single.vertices, single.vertices + (0, 0, 1e-3)], np.r_[single.faces, single.faces + len(single.vertices)]
+    )
+    density = spread_on_surface(pair, at(pair, 60), 0.5)
+    assert (density[len(single.vertices) :] == 0).all() and (density[: len(single.vertices)] > 0).all()
 
 
 def test_heat_goes_round_a_thin_fold_and_not_through_it():

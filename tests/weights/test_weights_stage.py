@@ -155,9 +155,9 @@ def test_svms_of_an_object_learn_from_its_own_pixels_or_from_all_of_the_picture(
     write_arrays(tmp_path / "made/ball.npz", **arrays)
     train_object("ball", tmp_path, tmp_path / "made", 0, trained_on)
     model = read_models(tmp_path / "svm/ball.npz", "object")[0]
-    own = arrays[f"{prefix}pixels"]
-    whole = np.abs(model.center - own.mean(axis=0)).max() < 1e-9
-    assert np.abs(model.center - own.mean(axis=0)).max() < 0.2 and whole == (trained_on == "picture")
+    pixels = arrays[f"{prefix}pixels"]
+    whole = np.abs(model.center - pixels.mean(axis=0)).max() < 1e-9
+    assert np.abs(model.center - pixels.mean(axis=0)).max() < 0.2 and whole == (trained_on == "picture")
 
 
 def test_other_pixels_are_refused(make_workspace):

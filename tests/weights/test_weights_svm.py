@@ -150,15 +150,15 @@ def test_left_out_groups_cost_nothing_where_the_rule_holds_for_all_and_groups_of
     features, labels, groups = features[:300], labels[:300].copy(), np.arange(300) % 3
     labels[groups == 2] = False
     kept = groups < 2
-    both = grouped_validated(features, labels, groups, seed=0)
-    assert both == grouped_validated(features[kept], labels[kept], groups[kept], seed=0)
+    scores = grouped_validated(features, labels, groups, seed=0)
+    assert scores == grouped_validated(features[kept], labels[kept], groups[kept], seed=0)
 
 
 def test_samples_are_balanced_a_third_and_their_own():
     maps, gts = maps_of(0), spots(0)
     features, labels = pixel_samples(maps, gts, 0, "cow 0")
-    every = pixel_samples(maps, gts, 0, "cow 0", share=1)[1]
-    assert labels.sum() == np.ceil(0.3 * every.sum()) == len(labels) / 2
+    all_labels = pixel_samples(maps, gts, 0, "cow 0", share=1)[1]
+    assert labels.sum() == np.ceil(0.3 * all_labels.sum()) == len(labels) / 2
     assert features.shape == (len(labels), 6)
     np.testing.assert_array_equal(pixel_samples(maps, gts, 0, "cow 0")[0], features)
     assert pixel_samples({"on": MASK.astype(float)}, gts, 0, "x", MASK)[0].min() >= 0.5  # of the object alone

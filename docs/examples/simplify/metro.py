@@ -25,7 +25,7 @@ for level in range(1, 5):
     print(f"{counts[-1]:6,} faces: largest {errors[-1]['max']:.6f}, sagitta of the largest face {sagitta:.6f}")
 
 for name in ("mean", "rms", "max"):
-    plt.loglog(counts, [each[name] for each in errors], marker="o", label=name)
+    plt.loglog(counts, [error[name] for error in errors], marker="o", label=name)
 plt.xlabel("faces")
 plt.ylabel("distance, share of the diagonal")
 plt.legend()

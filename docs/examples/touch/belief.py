@@ -22,7 +22,7 @@ shapes = {
 }
 
 rng = np.random.default_rng(0)
-meshes = [normalise(Mesh(each.vertices, each.faces)) for each in shapes.values()]
+meshes = [normalise(Mesh(shape.vertices, shape.faces)) for shape in shapes.values()]
 touched = [rng.choice(len(mesh.vertices), TOUCHES, replace=False) for mesh in meshes]
 imprints = np.concatenate([press_many(mesh, ids) for mesh, ids in zip(meshes, touched, strict=True)])
 places = np.concatenate([mesh.vertices[ids] for mesh, ids in zip(meshes, touched, strict=True)])
