@@ -276,3 +276,10 @@ def test_the_digest_does_not_depend_on_the_names_of_local_variables(old, new, sa
 )
 def test_names_that_others_can_see_change_the_digest(text):
     assert code_text(text) != code_text(text.replace("found", "kept"))
+
+
+@pytest.mark.parametrize("declared", ["global found", "import found", "def found(): pass"])
+def test_a_variable_is_not_taken_for_a_name_that_something_else_binds(declared):
+    text = f"def f():\n    {declared}\n    found = 1\n    kept = 2\n"
+    swapped = text.replace("kept =", "other =").replace("found =", "kept =").replace("other =", "found =")
+    assert code_text(text) != code_text(swapped)
