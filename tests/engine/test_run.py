@@ -272,6 +272,7 @@ def test_the_digest_does_not_depend_on_the_names_of_local_variables(old, new, sa
         "def f():\n    import found\n    return found\n",
         "found = 1\n",
         "class A:\n    found = 1\n",
+        "def f(found):\n    found = found + 1\n    return found\n",
     ],
 )
 def test_names_that_others_can_see_change_the_digest(text):
