@@ -169,7 +169,7 @@ def test_rows_of_earlier_code_are_named_below_their_table(rows, tmp_path, graph,
     ("outcome", "older"),
     [
         ({}, False),
-        ({"close": 4}, True),  # a row differs
+        ({"close": 4, "least": 0.8}, True),  # a row differs
         ({"code": "another"}, True),  # the code has changed since
         ({"sha256": "another"}, True),  # the rows have changed since
     ],
@@ -180,8 +180,8 @@ def test_rows_of_earlier_code_that_were_measured_again_and_agree_are_not_older(r
     sha = sha256(records.path_of(results, "test/lod"))[:DIGITS]
     write_json(results.reports / PROVENANCE_FILE, {"files": {"test/lod": {"sha256": sha, "code": "before"}}})
     write_text(results.workspace.build / "code/lod", "today")
-    known = {"test/lod": {"sha256": sha, "code": TODAY, "compared": 5, "close": 5, "only_committed": 0} | outcome}
-    write_json(results.workspace.published / "measurements" / RECHECKED, known)
+    known = {"sha256": sha, "code": TODAY, "compared": 5, "close": 5, "only_committed": 0, "least": 1.0} | outcome
+    write_json(results.workspace.published / "measurements" / RECHECKED, {"test/lod": known})
     item = Table(pd.DataFrame({"x": [1]}), name="table", sets=["test"], paths=[tmp_path / "tables/table.csv"])
     item.record = record_of(item, results, "tables")
     assert ("older" in item.record) == older
