@@ -1,5 +1,6 @@
-"""The code that a stage runs: the files that it imports, and a digest of each without comments, docstrings, types
-and the names of local variables.
+"""The files that a stage imports, and a digest of the code in each file.
+
+The digest leaves out comments, docstrings, types and the names of local variables.
 
 A name that a package only hands on is followed to the file that defines it, so that a stage depends on the few files
 behind the names that it uses, not on whole packages. Imports must therefore be free of side effects: a package whose
@@ -104,7 +105,7 @@ def number_locals(tree: ast.AST) -> None:
 def local_names(nodes: Iterable[ast.AST]) -> list[str]:
     """The names that these nodes of a function or a comprehension bind, in the order of their appearance.
 
-    Without names that an inner function binds by `def`, imports, `global` or `nonlocal`, and without parameters.
+    Parameters are left out, and names that `def`, an import, `global` or `nonlocal` binds.
     """
     bound: dict[str, None] = {}
     kept: set[str] = set()

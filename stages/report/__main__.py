@@ -144,7 +144,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
 
 
 def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame]]:
-    """(what was built of each kind, what `judged` says): the parts of each topic, built anew where they must be."""
+    """Builds the changed parts of each topic; returns {kind: its items} and the frames of `judged`."""
     keys = {name_of(topic): key_of(topic, results) for topic in TOPICS}
     jobs: dict[tuple[str, str], Callable[[], Any]] = {
         ("claims", name_of(topic)): partial(by_claim, topic.CLAIMS, results) for topic in TOPICS

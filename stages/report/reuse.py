@@ -1,4 +1,4 @@
-"""Parts of the report that an earlier run built, taken again where nothing has changed that they read.
+"""Parts of the report from an earlier run, used again while their inputs are unchanged.
 
 A part is one kind of a topic: its claims, tables, figures or charts. Its key hashes all rows of measurements, the files
 in data/ by size and time, the settings, the code behind the topic and the topic's prose. A part is built again where
@@ -28,7 +28,7 @@ BESIDE = ("topics.py", "reuse.py")  # run, too; what they import does not count:
 
 
 def key_of(topic: ModuleType, results: Results) -> str:
-    """The hash of all that the parts of a topic come from."""
+    """Hashes everything that the parts of a topic depend on."""
     own = sorted(Path(topic.__file__ or "").parent.glob("*.*"))
     files = files_behind([*(path for path in own if path.suffix == ".py"), *(HERE / name for name in COMMON)])
     files = [path for path in files if path.suffix != ".md"]  # prose of other topics
@@ -38,7 +38,7 @@ def key_of(topic: ModuleType, results: Results) -> str:
 
 
 def _inputs(results: Results) -> str:
-    """The hash of what all topics may read."""
+    """Hashes the inputs that all topics share."""
     folders = {results.reports, results.workspace.published}
     rows = [path for folder in folders for name in ("measurements", "bench") for path in _files(folder / name)]
     code = [
@@ -58,7 +58,7 @@ def _hash(*parts: object) -> str:
 
 
 def taken_again(name: str, key: str, results: Results) -> Any:
-    """What `keep` has kept of a part; None where there is nothing, the key differs, or a file is not as it was."""
+    """The part that `keep` stored; None without one, with another key, or where a file of the part has changed."""
     path = results.workspace.build / FOLDER / f"{name}.pickle"
     try:
         known_key, files, part = pickle.loads(path.read_bytes())
@@ -69,7 +69,7 @@ def taken_again(name: str, key: str, results: Results) -> Any:
 
 
 def keep(name: str, key: str, part: Any, results: Results) -> None:
-    """Keeps a part below build/, with its key and the hashes of its files."""
+    """Stores a part below build/, with its key and the hashes of its files."""
     paths = [path for item in part.items for path in item.paths] if isinstance(part, Built) else []
     content = cloudpickle.dumps((key, {path: sha256(path) for path in paths}, part))
     with whole_file(results.workspace.build / FOLDER / f"{name}.pickle") as file:

@@ -65,7 +65,7 @@ def judged(claims: Sequence[Claim], results: Results) -> tuple[pd.DataFrame, pd.
 
 
 def by_claim(claims: Sequence[Claim], results: Results) -> list[Row]:
-    """The row of each claim and the differences behind it; of a claim without measurements the reason, and no pairs."""
+    """The row of each claim with its differences; a claim without measurements has the reason and no differences."""
     return [_row(claim, results) for claim in claims]
 
 

@@ -147,7 +147,7 @@ def _directions():
 
 @kernel
 def _seen(places, normals, pictures, group, sums, depth, pixels, near):
-    """Adds to sums (4, s) the cosine between normal and direction where it sees the point, and 1 for each that does.
+    """Adds the cosine of normal and direction to sums (4, s) where the direction sees the point, and counts directions.
 
     The sums are over the directions of each of three groups; pictures (d, 3, 3) look along their third row. depth: a
     picture, as wide as it is high; pixels (s, 2), near (s,): scratch.

@@ -289,7 +289,8 @@ def _peeking(rows: pd.DataFrame) -> Iterator[str]:
         with suppress(NotRun):
             gains.append(f"{label(clean)} {signed(*interval(difference(rows, 'nss', peeked, clean)))}")
     if gains:
-        yield f"* has seen the object: learned from its own truth too. What that adds in NSS: {'; '.join(gains)}."
+        text = "* has seen the object: the method learned from the object's own truth, too. Gain in NSS: "
+        yield f"{text}{'; '.join(gains)}."
 
 
 def _and(parts: list[str]) -> str:

@@ -97,7 +97,7 @@ def in_each_metric(*args: Any, metrics: tuple[str, ...] = METRICS, of: str = "",
 def each_network(
     key: str, sentence: str, rival: Callable[[str], Pair], section: str = "ours", **more: Any
 ) -> list[Claim]:
-    """The claims for each of PRINTED and FROZEN. rival: of a method, what it is compared with."""
+    """The claims for each of PRINTED and FROZEN. rival(method): the method's rival."""
     names = {method: f"{key}_{method.partition('-')[0]}" for method in PRINTED}
     names |= {method: f"{key}_{method.replace('-', '_')}" for method in FROZEN}
     claims = []

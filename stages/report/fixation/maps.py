@@ -127,7 +127,7 @@ def _ready(results: Results, dataset: str | None) -> list[str]:
 
 
 def _networks(arrays: dict[str, np.ndarray], suffix: str) -> list[str]:
-    """The methods of which a file holds METHOD.suffix: of each network the one that was taught most; no controls."""
+    """The networks with METHOD.suffix in a file, each in its most taught form; no controls."""
     networks = dict.fromkeys(key.rpartition("-")[0] for key in arrays if key.endswith(f".{suffix}"))
     groups = ([f"{base}-{mode}" for mode in MOST_TAUGHT if f"{base}-{mode}.{suffix}" in arrays] for base in networks)
     return [methods[0] for methods in groups if methods]
