@@ -8,7 +8,8 @@ the committed one. It prints a line for each method, and keeps the outcome in re
 that the committed file does not have are counted alone. Exits with 1 where rows differ by more or were not measured
 again, and where a stage stopped before its end: the outcome is not kept then.
 
-Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`. A data set
+Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`,
+`python -m stages.recheck furniture/coarse_imprints experiment=coarse_imprints` for rows of an experiment. A data set
 that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all
 objects: --items 1000, which also compares the rows about all of them. A second run takes from its cache what has not
 changed.
@@ -18,9 +19,8 @@ import argparse
 import importlib
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -50,17 +50,20 @@ def run(argv: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m stages.recheck", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("files", nargs="+", metavar="SET/STAGE", help="rows below reports/measurements")
+    parser.add_argument(
+        "files", nargs="+", metavar="SET/STAGE", help="rows below reports/measurements; KEY=VALUE is a setting of all"
+    )
     parser.add_argument("--items", type=int, default=2, metavar="N", help="items of the stage (default: 2)")
     options = parser.parse_args(argv)
     if options.items < 1:
         raise ValueError(f"--items {options.items}: give 1 or more")
     check_clone()
     write_digests(CODE)
+    settings = [word for word in options.files if "=" in word]
     moved = 0
-    for name in options.files:
+    for name in [word for word in options.files if word not in settings]:
         try:
-            rows, ended = recheck(name, options.items)
+            rows, ended = recheck(name, options.items, settings)
         except ValueError as error:  # the other files go on
             print(f"recheck: {error}", file=sys.stderr)
             moved += 1
@@ -72,20 +75,24 @@ def run(argv: Sequence[str]) -> int:
     return 1 if moved else 0
 
 
-def recheck(name: str, items: int) -> tuple[pd.DataFrame, bool]:
+def recheck(name: str, items: int, settings: Sequence[str] = ()) -> tuple[pd.DataFrame, bool]:
     """The rows of the first items of a stage, as `compared` gives them, and whether the stage ran to its end.
 
-    name: SET/STAGE. Raises ValueError where nothing is committed, or nothing was measured again.
+    name: SET/STAGE. settings: KEY=VALUE, as stages.compose takes them. Raises ValueError where nothing is committed,
+    where these settings do not switch the stage on, and where nothing was measured again.
     """
     dataset, _, stage = name.partition("/")
     if not _file(name).is_file():
         files = sorted(path.relative_to(COMMITTED).as_posix() for path in COMMITTED.glob(f"*/*{SUFFIX}"))
         raise ValueError(f"no {_file(name)}; known: {', '.join(path.removesuffix(SUFFIX) for path in files)}")
-    workspace = prepared(dataset)
+    workspace = prepared(dataset, settings)
+    graph = workspace.params["graph"]
+    if dataset not in graph.get(stage, ()):
+        raise ValueError(f"{name}: conf/data/{dataset}.yaml leaves {stage} out; add experiment=NAME of conf/experiment")
     for earlier in chain(stage):
-        if earlier in workspace.params["graph"] and dataset in workspace.params["graph"][earlier]:
+        if dataset in graph.get(earlier, ()):
             _run(earlier, workspace)
-    few, ended = Counted(items), True
+    few, ended = Few(items), True
     with first_items(few):
         try:
             _run(stage, workspace)
@@ -102,20 +109,9 @@ def recheck(name: str, items: int) -> tuple[pd.DataFrame, bool]:
     return compared(read_rows(_file(name)), read_rows(again)), ended
 
 
-class Counted(Few):
-    """The first items of every call, and whether a call had more."""
-
-    cut = False
-
-    def of(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The first items of a call."""
-        self.cut = self.cut or len(values) > self.count
-        return super().of(values)
-
-
-def prepared(dataset: str) -> Workspace:
+def prepared(dataset: str, settings: Sequence[str] = ()) -> Workspace:
     """A workspace below FOLDER whose params.yaml switches one set on; folders of files stay where they are."""
-    values = compose([f"sets=[{dataset}]", f"out={PUBLISHED}"])
+    values = compose([*settings, f"sets=[{dataset}]", f"out={PUBLISHED}"])
     for section in values[dataset].values():
         if section.get("folder"):
             section["folder"] = str(Path(section["folder"]).expanduser().resolve())

@@ -2,6 +2,7 @@
 
 import gzip
 import shutil
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
@@ -29,7 +30,7 @@ def committed(shapes, make_workspace, tmp_path, monkeypatch):
     shutil.copyfile(workspace.measurements / target.name, target)
     (clone / "dvc.yaml").touch()
     monkeypatch.chdir(clone)
-    monkeypatch.setattr(recheck, "prepared", lambda dataset: workspace)
+    monkeypatch.setattr(recheck, "prepared", lambda dataset, settings: workspace)
     monkeypatch.setattr(recheck, "chain", lambda stage: [])
     return target
 
@@ -83,6 +84,24 @@ def test_a_stage_that_stops_is_not_kept_and_the_next_file_goes_on(committed, mon
     assert run(["toys/lod", "toys/views", "--items", "1"]) == 1
     assert "no reports/measurements/toys/lod.csv.gz; known: toys/views" in capsys.readouterr().err
     assert outcome(committed)["compared"] > 0
+
+
+def test_a_stage_of_an_experiment_is_switched_on_by_its_name(committed, tmp_path, monkeypatch, capsys):
+    given = []
+
+    def without_views(dataset, settings):
+        given.append((dataset, settings))
+        return workspace
+
+    workspace = SimpleNamespace(params={"graph": {"views": ["others"]}})
+    monkeypatch.setattr(recheck, "prepared", without_views)
+    assert run(["seed=3", "toys/views", "profile=smoke"]) == 1
+    assert given == [("toys", ["seed=3", "profile=smoke"])]
+    assert "conf/data/toys.yaml leaves views out; add experiment=NAME" in capsys.readouterr().err
+    monkeypatch.undo()
+    monkeypatch.setattr(recheck, "FOLDER", tmp_path)
+    graph = recheck.prepared("furniture", ["experiment=coarse_imprints"]).params["graph"]
+    assert graph["coarse_imprints"] == ["furniture"] and recheck.prepared("furniture").params["graph"]["contours"]
 
 
 def test_a_number_of_items_below_one_is_named(committed):

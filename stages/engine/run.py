@@ -179,13 +179,15 @@ class StageRun:
 
 @dataclass
 class Few:
-    """The first `count` items of every call of `StageRun.each`, and their rows: see stages.recheck."""
+    """The first `count` items of every call of `StageRun.each`, their rows, and whether a call had more items."""
 
     count: int
     rows: list[dict[str, Any]] = field(default_factory=list)
+    cut: bool = False
 
     def of(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
         """The first items of a call."""
+        self.cut = self.cut or len(values) > self.count
         return dict(islice(values.items(), self.count))
 
 
