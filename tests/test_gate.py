@@ -138,11 +138,11 @@ def committed(profile):
     return read_json(baseline), gate.allowed(ROOT / gate.TOLERANCES, baseline)
 
 
-def exchanged(metrics, one, other):
+def exchanged(metrics, first, second):
     """The metrics with those of two methods in each other's place."""
-    swapped, whole = dict(metrics), re.compile(rf"(?<![^._]){re.escape(one)}(?![^._])")
+    swapped, whole = dict(metrics), re.compile(rf"(?<![^._]){re.escape(first)}(?![^._])")
     for name in metrics:
-        place = whole.sub(other, name, count=1)
+        place = whole.sub(second, name, count=1)
         if place != name and place in metrics:
             swapped[name], swapped[place] = metrics[place], metrics[name]
     return swapped

@@ -75,15 +75,8 @@ def code_text(text: str) -> str:
             node.body = body or [ast.Pass()]
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             node.returns = None
-            arguments = [
-                *node.args.posonlyargs,
-                *node.args.args,
-                *node.args.kwonlyargs,
-                node.args.vararg,
-                node.args.kwarg,
-            ]
-            for argument in arguments:
-                if argument is not None:
+            for argument in ast.walk(node.args):
+                if isinstance(argument, ast.arg):
                     argument.annotation = None
     return ast.unparse(tree)
 

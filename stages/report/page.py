@@ -184,25 +184,25 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     `faces` counts those of the object itself; the full mesh has at most `viewer_faces`. A level has `error`, the
     distance of each vertex of the full mesh to it.
     """
-    original, found = results.mesh(name), results.points(name)
+    original, measured = results.mesh(name), results.points(name)
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
     place = KDTree(full.vertices)
-    methods = [method for method in METHODS if method in found] or list(found)
+    methods = [method for method in METHODS if method in measured] or list(measured)
     saliency = {
         method: (label(method), vivid(values)[nearest])
         for method, values in results.saliency(name).items()
         if method in methods
     }
     points = {
-        method: (label(method), np.asarray(place.query(original.vertices[found])[1]))
-        for method, found in results.strong_points(name).items()
+        method: (label(method), np.asarray(place.query(original.vertices[vertices])[1]))
+        for method, vertices in results.strong_points(name).items()
         if method in methods
     }
     ladders = {}
     for method in results.settings.viewer_lod_methods:
         with suppress(NotRun):
-            found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
-            levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
+            meshes = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
+            levels = apart([mesh for mesh in meshes if len(mesh.faces) <= FINEST * len(full.faces)])
             ladders[method] = (
                 label(method),
                 [Level(mesh, 100 * vertex_errors(mesh, full) / full.diagonal, len(mesh.faces)) for mesh in levels],

@@ -223,9 +223,9 @@ def comparison_rows(
         yield row(SENSES[kind], "accuracy", fusion.accuracy(separate, sense.labels[sense.test]), kind, seconds[kind])
         yield row("hybrid", "max_difference", float(np.nanmax(np.abs(separate - tested[kind]))), kind)
         yield from calibration_rows(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
-    separate = [paths / f"{name}.{kind}.npz" for kind in range(2)]
-    apart = sum(path.stat().st_size for path in separate)
-    for kind, path in enumerate(separate):
+    files = [paths / f"{name}.{kind}.npz" for kind in range(2)]
+    apart = sum(path.stat().st_size for path in files)
+    for kind, path in enumerate(files):
         yield row(SENSES[kind], "size_bytes", path.stat().st_size, kind)
         yield row(SENSES[kind], "parameters", count_parameters(networks[kind]), kind)
         path.unlink()
