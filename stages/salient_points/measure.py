@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
 from haptic_glance.base.files import read_arrays, write_arrays
@@ -45,8 +44,8 @@ def measurement_rows(
 def summary(rows: Sequence[dict]) -> dict[str, float]:
     """Means over the objects of the SUMMARISED metrics, for the gate: dict "METHOD.METRIC" -> value, six digits."""
     table = some_rows(rows, ("method", "metric", "value"), SUMMARISED).dropna()
-    means = pd.DataFrame(table.groupby(["method", "metric"])["value"].mean()).reset_index()
-    return {f"{method}.{metric}": round(float(value), 6) for method, metric, value in means.itertuples(index=False)}
+    means = table.groupby(["method", "metric"])["value"].mean()
+    return {".".join(names): round(float(value), 6) for names, value in means.items()}  # type: ignore[arg-type]  # texts
 
 
 TOLERANCES = (0.02, 0.05, 0.1)  # of the diagonal: where the errors of the points are measured

@@ -8,7 +8,6 @@ import functools
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from haptic_glance.base.files import read_mesh, write_table
 from haptic_glance.base.timing import Stopwatch
@@ -53,6 +52,8 @@ def seen_rows(name: str, mesh: Mesh) -> Rows:
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
+    import pandas as pd  # for the tables at the end; a worker needs none
+
     settings = workspace.settings(Params)
     viewpoints = viewpoint_set(settings.viewpoints)
     renderer = resolve_renderer(settings.renderer)

@@ -11,8 +11,6 @@ import functools
 import sys
 from pathlib import Path
 
-import pandas as pd
-
 from haptic_glance.base.files import read_mesh, write_arrays, write_table
 from haptic_glance.look.weights.convexity import convexity
 from stages.engine.rows import named_means
@@ -57,6 +55,8 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
+    import pandas as pd  # for one table at the end; a worker needs none
+
     settings, meshes = workspace.settings(Params), workspace.settings(MeshesParams)
     check_pixels(settings.svm)
     marks = workspace.root / "data" / "annotations"
