@@ -50,6 +50,42 @@ def calibrate(sequences: ArrayLike, truth: ArrayLike, redundancy: bool = True) -
     return Calibration(float(np.exp(optimum[0])), float(optimum[1]))
 
 
+STEPS = [
+    Calibration(weight, redundancy)
+    for weight in np.geomspace(0.02, 2.5, 15).tolist()
+    for redundancy in (0, 0.2, 0.4, 0.6, 0.8, 1)
+]
+
+
+def calibrate_to_stop(sequences: ArrayLike, truth: ArrayLike, sure: float, start: Calibration) -> Calibration:
+    """The Calibration whose belief may end the touching: the object first believed at `sure` is right that often.
+
+    A belief that is right on average at each number of touches errs more often at the touch at which it first passes
+    `sure`: errors pass it, too. Returns `start` unless chance alone would hardly let it err that often. Otherwise
+    returns the one of STEPS that holds and stops soonest; where none holds, the one that stops least.
+
+    sequences, truth: as in `calibrate`. sure: probability from 0 to 1.
+    """
+    sequences, truth = _checked(np.asarray(sequences, dtype=np.float64), np.asarray(truth))
+    log_likelihoods, touches = np.cumsum(sequences, axis=1), np.arange(1, sequences.shape[1] + 1)
+
+    def stops(calibration):
+        """(how many sequences stop, how many more of them are right than `sure` asks for, mean number of touches)."""
+        belief = np.exp(calibration.log_belief(log_likelihoods, touches))
+        passed = belief.max(axis=2) >= sure
+        first, stopped = passed.argmax(axis=1), passed.any(axis=1)
+        right = belief[np.arange(len(truth)), first].argmax(axis=1) == truth
+        mean = np.where(stopped, touches[first], len(touches)).mean()
+        return stopped.sum(), right[stopped].sum() - sure * stopped.sum(), mean
+
+    count, margin, _ = stops(start)
+    if margin >= -2 * np.sqrt(count * sure * (1 - sure)):  # two standard errors
+        return start
+    outcomes = [(step, *stops(step)) for step in STEPS]
+    sound = [outcome for outcome in outcomes if outcome[1] and outcome[2] >= 0]
+    return min(sound, key=lambda outcome: outcome[3])[0] if sound else min(outcomes, key=lambda outcome: outcome[1])[0]
+
+
 def _checked(sequences, truth):
     """The two as they are; ValueError where no touch, or no number, would calibrate a belief."""
     if sequences.ndim != 3 or 0 in sequences.shape:

@@ -102,10 +102,14 @@ class TouchUntilSure(gymnasium.Env):
         return self._observation(), reward, bool(answer), cut_off, self._info()
 
     def planned(self) -> int:
-        """The action of the planner, a baseline: the place at which the belief is expected to gain most."""
+        """The action of the planner, a baseline: the place at which the belief is expected to gain most.
+
+        Where each place is near a touched one, the first untouched place.
+        """
         if self.ended:
             raise ResetNeeded("there is no episode, or it has ended: call reset() before asking for a touch")
-        return int(self.exploration.gains().argmax())
+        gains = self.exploration.gains()
+        return int(gains.argmax() if np.isfinite(gains).any() else self.touched.argmin())
 
     def _observation(self) -> dict[str, np.ndarray]:
         touched, places = self.exploration, self.exploration.candidates

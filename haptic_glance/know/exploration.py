@@ -38,13 +38,17 @@ class Exploration:
         return self.beliefs[-1]
 
     def touch(self, place: Places) -> np.ndarray:
-        """(rows, cols) f4: the imprint at the first of the places, by which the belief is updated."""
+        """(rows, cols) f4: the imprint at the first of the places, by which the belief is updated.
+
+        A second touch of the same place feels the same, so the belief stays as it is.
+        """
         position, axes = place.positions[:1], sensor_axes(place.normals[:1])
         image = press_at(self.surface, position, axes, CELLS, PITCH)[0]
+        again = (self.positions == position).all(axis=1).any()
         self.positions = np.concatenate([self.positions, position])
         self.normals = np.concatenate([self.normals, place.normals[:1]])
         self.images = np.concatenate([self.images, image[None]])
-        self.beliefs.append(self.belief.after(image, position[0]))
+        self.beliefs.append(self.belief if again else self.belief.after(image, position[0]))
         return image
 
     @cached_property

@@ -25,7 +25,16 @@ from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals, turned
 
-from .belief import FLOOR, Calibration, calibrate, feature_kernel, log_likelihood, nearest_outcomes, place_kernel
+from .belief import (
+    FLOOR,
+    Calibration,
+    calibrate,
+    calibrate_to_stop,
+    feature_kernel,
+    log_likelihood,
+    nearest_outcomes,
+    place_kernel,
+)
 from .components import Components
 from .explore import State, by_gain
 from .features import features
@@ -43,6 +52,8 @@ class Belief:
 
     def after(self, image: np.ndarray, position: np.ndarray) -> "Belief":
         """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,)."""
+        if not np.isfinite(position).all():
+            raise ValueError(f"a touch needs a position of finite numbers, got {position}")
         evidence = self.library.log_likelihoods(np.asarray(image)[None], np.asarray(position)[None])[0]
         return Belief(self.library, self.log_likelihoods + evidence, self.touches + 1)
 
@@ -101,6 +112,7 @@ def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:
 TOUCHES = 128  # a learned object; twice as many know no more of the household objects
 CELLS, PITCH = (16, 16), 0.01  # of the array, T4.3
 ORDERS, LONGEST = 5, 20  # random orders of each object's touches, and touches of each, for the calibration
+STOPS, LAST = 400, 30  # orders of all objects together, and touches of each, for the belief at which touching ends
 BLOCK = 256  # touches compared at once, in the processor's cache
 AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three widths of `place_kernel` away
 
@@ -150,7 +162,7 @@ class Library:
         self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
         self._own = self._of_own_touches()
-        self.calibration: Calibration = self._calibrate(rng(seed, "calibration"))
+        self.calibration: Calibration = self._calibrate(seed)
 
     def belief(self) -> Belief:
         """The Belief before the first touch: all objects alike."""
@@ -211,11 +223,17 @@ class Library:
         evidence = self._log_likelihood(kernel, position[None], ids)
         return evidence.reshape(*outcomes.shape, len(self.names))
 
-    def _calibrate(self, random):
+    def _calibrate(self, seed):
         touches = self._own.reshape(len(self.names), self._each, -1)
-        order = [random.permutation(self._each)[:LONGEST] for _ in range(ORDERS * len(self.names))]
-        truth = np.repeat(np.arange(len(self.names)), ORDERS)
-        return calibrate(touches[truth[:, None], order], truth)
+
+        def sequences(orders, longest, random):
+            truth = np.repeat(np.arange(len(self.names)), orders)
+            order = np.array([random.permutation(self._each)[:longest] for _ in truth])
+            return touches[truth[:, None], order], truth
+
+        average = calibrate(*sequences(ORDERS, LONGEST, rng(seed, "calibration")))
+        orders = max(STOPS // len(self.names), ORDERS)
+        return calibrate_to_stop(*sequences(orders, LAST, rng(seed, "stops")), SURE, average)
 
 
 class _Named:
@@ -293,7 +311,7 @@ def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], 
     """
     files = sorted(path for path in Path(folder).glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
     stems = {path.stem for path in files}
-    files = [path for path in files if not _is_another_size(path.stem, stems)]
+    files = [path for path in files if path.suffix != ".npz" or not _is_another_size(path.stem, stems)]
     meshes, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
     for path, name in zip(files[:most], names_of(files), strict=False):
         try:

@@ -78,3 +78,20 @@ def test_meshes_of_any_size_are_normalised(task):
     large = {name: Mesh(5 * mesh.vertices, mesh.faces) for name, mesh in task.meshes.items()}
     other = TouchUntilSure(large)
     assert other.observation_space.contains(other.reset(seed=0)[0])
+
+
+def test_an_object_that_is_known_is_the_right_one():
+    task, answers = TouchUntilSure(), []
+    for seed in range(20):
+        task.reset(seed=seed)
+        while not task.ended:
+            *_, info = task.step(task.planned())
+        answers += [info["known"] == info["name"]] if info["known"] else []
+    assert len(answers) >= 4 and all(answers)  # six wrong ones of fifteen where the belief was right on average alone
+
+
+def test_the_planner_touches_an_untouched_place_where_each_is_near_a_touched_one(task):
+    task.reset(seed=0)
+    task.exploration.positions = task.exploration.candidates.positions
+    task.touched[:2] = 1
+    assert task.planned() == 2

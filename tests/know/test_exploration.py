@@ -14,7 +14,7 @@ from haptic_glance.know import (
     split_touches,
     stop,
 )
-from haptic_glance.know.belief import feature_kernel, log_likelihood, place_kernel
+from haptic_glance.know.belief import calibrate_to_stop, feature_kernel, log_likelihood, place_kernel
 
 PLAIN = Calibration(1.0, 0.0)
 TELLING = np.array([[0.3, 0.0], [2.0, 0.0], [0.5, 0.0]])  # log likelihoods of two objects at three places
@@ -91,6 +91,28 @@ def test_the_plain_product_is_overconfident_where_touches_share_and_the_calibrat
         assert np.allclose(belief.sum(axis=1), 1)
         gaps[redundancy] = belief.max(axis=1).mean() - (belief.argmax(axis=1) == truth[check]).mean()
     assert abs(gaps[True]) < 0.02 and gaps[False] > 0.05
+
+
+def test_a_belief_that_ends_the_touching_is_as_right_as_it_says_where_it_was_not():
+    random, truth = np.random.default_rng(0), np.repeat([0, 1], 150)
+    signs = np.where(truth == 0, 1.0, -1.0)[:, None, None] * [1.0, -1.0]
+    honest = 0.5 * signs + 0.7 * random.normal(size=(300, 20, 1)) * [1.0, -1.0]
+    assert calibrate_to_stop(honest, truth, 0.95, PLAIN) is PLAIN
+    misled = np.where((random.random(300) < 0.2)[:, None] & (np.arange(20) < 3), -6.0, 1.0)  # at first, then no more
+    sequences = honest + misled[..., None] * signs
+
+    def answers(calibration):
+        belief = np.exp(calibration.log_belief(sequences.cumsum(axis=1), np.arange(1, 21)))
+        rows, first = np.arange(300), (belief.max(axis=2) >= 0.95).argmax(axis=1)
+        named = belief[rows, first].max(axis=1) >= 0.95
+        return named.mean(), (belief[rows, first].argmax(axis=1) == truth)[named].mean()
+
+    assert answers(PLAIN)[1] < 0.85
+    named, right = answers(calibrate_to_stop(sequences, truth, 0.95, PLAIN))
+    assert named > 0.5 and right >= 0.95
+    noise = random.normal(size=(300, 20, 2))  # names no object
+    quiet = calibrate_to_stop(noise, truth, 0.95, Calibration(2.0, 0.0))
+    assert np.exp(quiet.log_belief(noise.cumsum(axis=1), np.arange(1, 21))).max() < 0.95
 
 
 @pytest.mark.parametrize("change, words", [
