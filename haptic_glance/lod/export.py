@@ -6,6 +6,7 @@ textures.
 
 import argparse
 import io
+import itertools
 import re
 import warnings
 from collections.abc import Mapping
@@ -127,12 +128,14 @@ def _converted(mesh, name, parts, carried=None) -> trimesh.Trimesh | trimesh.Sce
         return _made(mesh, np.arange(len(mesh.vertices)), mesh.faces.copy(), carried, vertex_colors=mesh.colors)
     if mesh.texture is None:
         return trimesh.Scene({part: _plain_part(mesh, ids, carried) for part, ids in (parts or {}).items()})
-    images, scene = mesh.texture.image, {}
+    images, scene, parts = mesh.texture.image, {}, parts or {}
     if not parts:
         scene = {f"{name}_{number}": (number, np.flatnonzero(images == number)) for number in np.unique(images)}
-    for part, ids in (parts or {}).items():
+    for part, ids in parts.items():
+        numbered = (f"{part}_{place}" for place in itertools.count(1))
+        free = (name for name in numbered if name not in scene and name not in parts)
         for place, number in enumerate(np.unique(images[ids])):
-            scene[f"{part}_{place}" if place else part] = number, ids[images[ids] == number]
+            scene[next(free) if place else part] = number, ids[images[ids] == number]
     materials = {
         number: _material(mesh.texture, number, carried is not None)
         for number in {number for number, _ in scene.values()}

@@ -15,8 +15,10 @@ from haptic_glance import as_mesh, to_trimesh
 from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import run
 from haptic_glance.lod.export import write_any
+from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
 from haptic_glance.mesh.materials import bake_texture, not_read
+from haptic_glance.mesh.mesh import Mesh, Texture
 
 
 def picture(colour, kind="PNG"):
@@ -139,6 +141,16 @@ def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_by
     first, second = (simplified(out, change)[0] for out in ("first.glb", "second.glb"))
     assert {node["name"] for node in tree_of(first)[0]["nodes"] if "mesh" in node} == {"art", "art_1"}
     assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.parametrize("names", [("wheel", "wheel_1"), ("wheel_1", "wheel")])
+def test_a_numbered_name_takes_no_other_part_s_place(tmp_path, names):
+    pixels = tuple(np.full((1, 1, 4), grey, np.uint8) for grey in (0, 255))
+    texture = Texture(np.zeros((4, 3, 2)), [0, 1, 0, 1], pixels)
+    mesh = Mesh(np.random.default_rng(0).random((12, 3)), np.arange(12).reshape(4, 3), None, texture)
+    write_any(tmp_path / "out.glb", mesh, dict(zip(names, np.arange(4).reshape(2, 2), strict=True)))
+    assert len(load(tmp_path / "out.glb").faces) == 4
+    assert parts_of(tmp_path / "out.glb").keys() == {"wheel", "wheel_1", "wheel_2", "wheel_1_1"}
 
 
 @pytest.mark.parametrize("plain", [0, 1])
