@@ -82,8 +82,9 @@ class Mesh:
     up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown. Functions that derive a
     mesh from another one keep its axis (`dataclasses.replace`). Stored meshes are z up.
 
-    The arrays are the mesh's own: those of the caller are copied where they can still be written to. Two meshes are
-    equal where all of this is, and equal meshes have one hash; a pickled mesh leaves what it has computed behind.
+    The arrays are the mesh's own, copies of the caller's. They are not to be edited in place, since what is computed of
+    them is kept: make a new Mesh (`dataclasses.replace`). Two meshes are equal where all of this is, and equal meshes
+    have one hash; a pickled mesh leaves what it has computed behind.
     """
 
     vertices: np.ndarray
@@ -223,11 +224,11 @@ def content_of(material: Mapping[str, Any] | None) -> list[bytes]:
 
 
 def _own(values: Any, kind: type) -> np.ndarray:
-    """A contiguous array of a type that nobody else can write to."""
-    if not isinstance(values, np.ndarray):
-        return np.array(values, dtype=kind, order="C")  # a copy: a memoryview or a tensor lends its own memory
-    array = np.ascontiguousarray(values, dtype=kind)
-    return array.copy() if np.may_share_memory(array, values) and not _frozen(values) else array
+    """A contiguous array of a type that nobody else can write to, and that can be written to itself.
+
+    A read-only array is another type for numba, which would compile all kernels again.
+    """
+    return np.array(values, dtype=kind, order="C")
 
 
 def _frozen(values: Any) -> bool:
@@ -238,12 +239,16 @@ def _frozen(values: Any) -> bool:
 
 
 def _whole(name: str, values: Any, kind: type) -> np.ndarray:
-    """As `_own`, of whole numbers; ValueError for those that the type does not hold."""
+    """As `_own`, of whole numbers, but as they are where nobody can write to them.
+
+    Raises ValueError for numbers that the type does not hold.
+    """
     array, limits = np.asarray(values), np.iinfo(kind)
     held = array.dtype == kind or not array.size or limits.min <= array.min() <= array.max() <= limits.max
     if not held or (array.dtype != kind and (array % 1 != 0).any()):
         raise ValueError(f"{name} must be whole numbers of {limits.dtype}, got {array.dtype} of others")
-    return _own(values, kind)
+    shared = array.dtype == kind and array.flags.c_contiguous and _frozen(values)
+    return array if shared else _own(values, kind)
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

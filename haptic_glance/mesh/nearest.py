@@ -33,7 +33,7 @@ class SurfaceIndex:
     def __init__(self, mesh: Mesh) -> None:
         if len(mesh.faces) == 0:
             raise ValueError("a mesh without faces has no surface to measure")
-        self.mesh = mesh
+        self.mesh = mesh = Mesh(mesh.vertices, mesh.faces)  # its own: the caller may edit the arrays of the other
         low, high = bounding_box(mesh.vertices, mesh.faces)
         self.extent = high - low
         self.diagonal = float(np.linalg.norm(self.extent))
@@ -95,10 +95,16 @@ class SurfaceIndex:
         return corner_weights(points, faces, self.mesh.vertices, self.mesh.faces)
 
 
-@lru_cache(maxsize=2)  # a reference and the mesh measured against it
+_cached_index = lru_cache(maxsize=2)(SurfaceIndex)  # a reference and the mesh measured against it
+
+
 def surface_index(mesh: Mesh) -> SurfaceIndex:
-    """The SurfaceIndex of a mesh, cached."""
-    return SurfaceIndex(mesh)
+    """The SurfaceIndex of a mesh, cached; made anew where the vertices of the mesh were edited in place."""
+    index = _cached_index(mesh)
+    if not np.array_equal(index.mesh.vertices, mesh.vertices):
+        _cached_index.cache_clear()
+        index = _cached_index(mesh)
+    return index
 
 
 def closest(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,5 +1,7 @@
 """Errors of surfaces: against shapes whose distance is known, two libraries, and damage whose place is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import point_cloud_utils
 import pymeshlab
@@ -8,6 +10,7 @@ import trimesh
 
 from haptic_glance.lod import simplify
 from haptic_glance.lod.errors import metro, salient_error, surface_errors, vertex_errors
+from haptic_glance.mesh.kernels.nearest import cell_boxes
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.nearest import SurfaceIndex
 
@@ -24,6 +27,22 @@ def square(height=0.0, side=1.0):
 def test_parallel_planes_are_their_distance_apart():
     errors = metro(square(), square(0.25), 500)
     assert errors == pytest.approx(dict.fromkeys(("mean", "rms", "max"), 0.25 / np.sqrt(2)), rel=1e-12)
+
+
+def test_vertices_edited_in_place_are_measured_where_they_are():
+    mesh, simple = replace(SPHERE), simplify(SPHERE, 200)
+    metro(mesh, simple)
+    mesh.vertices[:, 2] *= 3
+    assert metro(mesh, simple) == metro(replace(mesh), simple)
+
+
+def test_no_face_is_put_into_a_cell_outside_the_grid():
+    index = SurfaceIndex(SPHERE)
+    *_, low, cell, shape = index.grid
+    for vertices in (9 * SPHERE.vertices, 1e300 * SPHERE.vertices, np.full_like(SPHERE.vertices, np.nan)):
+        boxes, total = cell_boxes(vertices, SPHERE.faces, low, cell, shape)
+        assert boxes.min() >= 0 and (boxes < np.tile(shape, 2)).all()
+        assert total == np.prod(boxes[:, 3:] - boxes[:, :3] + 1, axis=1).sum()
 
 
 def test_larger_of_both_directions_counts():

@@ -197,8 +197,8 @@ def _fill_boxes(vertices, faces, low, per_unit, shape, boxes):
         cells = 1
         for axis in range(3):
             p, q, r = vertices[a, axis], vertices[b, axis], vertices[c, axis]
-            first = int((min(p, q, r) - low[axis]) * per_unit)
-            last = min(int((max(p, q, r) - low[axis]) * per_unit), shape[axis] - 1)
+            first = _clipped((min(p, q, r) - low[axis]) * per_unit, shape[axis])
+            last = max(_clipped((max(p, q, r) - low[axis]) * per_unit, shape[axis]), first)
             boxes[f, axis], boxes[f, axis + 3] = first, last
             cells *= last - first + 1
         total += cells
