@@ -72,18 +72,23 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     chart, jump = charts(reference)
     corners = mesh.vertices[mesh.faces]
     centres = corners.mean(axis=1)
-    under, at_centre = closest(reference, centres)
+    index = SurfaceIndex(reference)
+    under = index.nearest(centres)[1]
     inside = corners + INWARDS * (centres[:, None] - corners)
-    uv = np.empty(mesh.faces.shape + (2,))
-    for number in np.unique(chart[under]):
-        faces, sources = np.flatnonzero(chart[under] == number), np.flatnonzero(chart == number)
-        nearest, weights = closest(Mesh(reference.vertices, reference.faces[sources]), inside[faces].reshape(-1, 3))
-        at = corners[faces].reshape(-1, 3)
-        uv[faces] = _extrapolated(reference, sources[nearest], weights, at, BEYOND).reshape(-1, 3, 2)
+    nearest = np.repeat(under, 3).reshape(-1, 3)  # in charts of one face; in the others it is searched for
+    sources = _by_value(chart)
+    for number, faces in _by_value(chart[under]).items():
+        if len(sources[number]) > 1:
+            used, ids = np.unique(reference.faces[sources[number]], return_inverse=True)
+            part = SurfaceIndex(Mesh(reference.vertices[used], ids.reshape(-1, 3)))
+            nearest[faces] = sources[number][part.nearest(inside[faces].reshape(-1, 3))[1]].reshape(-1, 3)
+    nearest, at = nearest.ravel(), corners.reshape(-1, 3)
+    weights = index.weights(inside.reshape(-1, 3), nearest)
+    uv = _extrapolated(reference, nearest, weights, at, BEYOND).reshape(*mesh.faces.shape, 2)
     # A corner across a seam between two ends of one chart (the back of a cylinder) got the coordinates of the other
     # end.
-    sides = np.repeat(under, 3), np.repeat(at_centre, 3, axis=0), corners.reshape(-1, 3)
-    ahead = _extrapolated(reference, *sides, FAR).reshape(uv.shape)
+    at_centre = np.repeat(index.weights(centres, under), 3, axis=0)
+    ahead = _extrapolated(reference, np.repeat(under, 3), at_centre, at, FAR).reshape(uv.shape)
     astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[under]][:, None] / 2
     uv[astray] = ahead[astray]
     return replace(reference.texture, uv=uv, image=reference.texture.image[under])
@@ -105,9 +110,17 @@ def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     count, chart = connected_components(graph, directed=False)
     jump = np.full(count, np.inf)
     seam = ~continuous & (chart[first] == chart[second])
-    for number in np.unique(chart[first[seam]]):
-        jump[number] = np.median(length[seam & (chart[first] == number)])
+    lengths = length[seam]
+    for number, edges in _by_value(chart[first[seam]]).items():
+        jump[number] = np.median(lengths[edges])
     return chart, jump
+
+
+def _by_value(numbers):
+    """{number: ids (k,) in order} of the places of each of the numbers (n,), in one pass for all of them."""
+    order = np.argsort(numbers, kind="stable")
+    values, starts = np.unique(numbers[order], return_index=True)
+    return dict(zip(values.tolist(), np.split(order, starts)[1:], strict=True))
 
 
 def _shared_edges(mesh):

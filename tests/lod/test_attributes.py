@@ -1,9 +1,11 @@
 """Colours, texture coordinates and materials through simplification."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from haptic_glance.lod import simplify
+from haptic_glance.lod import attributes, simplify
 from haptic_glance.lod.attributes import carry, charts
 from haptic_glance.lod.borders import close_borders, cut_borders
 from haptic_glance.mesh.mesh import Mesh, Texture
@@ -72,6 +74,17 @@ def test_charts_end_at_seams_and_at_other_materials():
     assert len(np.unique(chart)) == 2 and (chart == chart[0]).sum() == (image == image[0]).sum()
     assert np.isinf(jump).all()
     assert charts(tube())[1] == pytest.approx([1])
+
+
+@pytest.mark.parametrize("together", [1, 2])
+def test_each_chart_is_searched_without_the_faces_of_all_others(together, monkeypatch):
+    mesh = painted_sheet()
+    uv = mesh.texture.uv + (10.0 * (np.arange(len(mesh.faces)) % 576 // together))[:, None, None]
+    apart = replace(mesh, texture=replace(mesh.texture, uv=uv))
+    sizes = []
+    monkeypatch.setattr(attributes, "Mesh", lambda *arrays: sizes.append(len(arrays[0])) or Mesh(*arrays))
+    carried = attributes.carry_texture(apart, bare(mesh))
+    assert np.abs(carried.uv - uv).max() < 1e-6 and max(sizes, default=0) <= 6
 
 
 def test_bad_surfaces_give_finite_coordinates():
