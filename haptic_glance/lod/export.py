@@ -36,7 +36,7 @@ FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
 PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
 COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
-SINGLE = (".glb", ".npz", ".ply", ".stl")  # the formats of single precision
+SINGLE = (".glb", ".npz", ".ply", ".stl", ".usda")  # the formats of single precision
 MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farther is seen to be elsewhere
 
 
@@ -84,7 +84,7 @@ def check_precision(path: Path, mesh: Mesh) -> None:
     if not np.isfinite(moved):
         raise ValueError(f"{path.name}: its coordinates are too large for single precision: scale it, or write .obj")
     if moved > MOST_MOVED * mesh.diagonal:
-        share, remedy = 100 * moved / mesh.diagonal, "move it to the origin, or write text (.obj, .off, .usda)"
+        share, remedy = 100 * moved / mesh.diagonal, "move it to the origin, or write text (.obj, .off)"
         warnings.warn(
             f"{path.name}: single precision moves vertices by {share:.2g} % of the diagonal: {remedy}", stacklevel=3
         )
