@@ -111,6 +111,7 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     if suffix == ".gltf":
         content, suffix = gltf.packed(content, resolver), ".glb"
     check_header(content, suffix)
+    content = gltf.in_floats(content) if suffix == ".glb" else content
     try:
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, unquote_to_bytes
 
+import numpy as np
 from trimesh.resolvers import FilePathResolver, Resolver
 
 from .headers import ABSENT, MeshError
@@ -15,13 +16,15 @@ SUFFIXES = (".glb", ".gltf")
 DATA = "data:"
 KINDS = {b"\x89PNG": "image/png", b"\xff\xd8": "image/jpeg", b"RIFF": "image/webp"}  # of a picture, by its first bytes
 ALIGNED = 4  # bytes, of the parts of a GLB
+FLOAT, INTEGERS = 5126, {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2"}  # of the components of an accessor
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 def as_glb(path: Path) -> bytes:
     """The bytes of a GLB or, as one, of a .gltf file; empty for other suffixes. Raises MeshError as `packed`."""
     suffix = path.suffix.lower()
     content = path.read_bytes() if suffix in SUFFIXES else b""
-    return packed(content, FilePathResolver(str(path))) if suffix == ".gltf" else content
+    return in_floats(packed(content, FilePathResolver(str(path))) if suffix == ".gltf" else content)
 
 
 def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
@@ -37,6 +40,41 @@ def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
         raise
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         raise MeshError(f"unreadable as GLTF ({type(error).__name__} in its JSON)") from None
+    return _joined(tree, binary)
+
+
+def in_floats(content: bytes) -> bytes:
+    """The bytes of a GLB with its normalised integers as floats (glTF 2.0, section 3.6.2.2), and texture coordinates.
+
+    The parser takes them for plain integers. What is malformed is left to it.
+    """
+    try:
+        start = 20 + int.from_bytes(content[12:16], "little")
+        tree = json.loads(content[20:start])
+        integers = [entry for entry in tree["accessors"] if entry["componentType"] in INTEGERS
+                    and "bufferView" in entry and (entry.get("normalized") or entry["type"] == "VEC2")]  # fmt: skip
+        if not integers:
+            return content
+        views, binary = tree["bufferViews"], bytearray(content[start + 8 :])
+        for entry in integers:
+            view, kind = views[entry["bufferView"]], np.dtype(INTEGERS[entry["componentType"]])
+            width = WIDTHS[entry["type"]]
+            strides = view.get("byteStride", width * kind.itemsize), kind.itemsize
+            first = view.get("byteOffset", 0) + entry.get("byteOffset", 0)
+            values = np.ndarray((entry["count"], width), kind, content, start + 8 + first, strides)
+            if entry.pop("normalized", False):
+                values = np.maximum(values / np.iinfo(kind).max, -1)
+            binary += b"\0" * (-len(binary) % ALIGNED)
+            entry |= {"bufferView": len(views), "byteOffset": 0, "componentType": FLOAT}
+            views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": 4 * values.size})
+            binary += values.astype("<f4").tobytes()
+        tree["buffers"][0]["byteLength"] = len(binary)
+        return _joined(tree, binary)
+    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
+        return content
+
+
+def _joined(tree: dict[str, Any], binary: bytearray) -> bytes:
     text = json.dumps(tree).encode()
     text += b" " * (-len(text) % ALIGNED)
     length = 12 + 8 + len(text) + 8 + len(binary)

@@ -130,6 +130,51 @@ def test_a_file_outside_of_its_folder_is_not_read(tmp_path, write, beside):
         load(path)
 
 
+SQUARE = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+UV = np.array([[0.2, 0.4], [1, 0], [0.6, 1], [0, 0.8]])
+COLOURS = np.arange(12).reshape(4, 3) * 20 + [15]
+COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "f4": 5126}
+
+
+def square(material, **attributes):
+    """The bytes of a .gltf: two faces; attributes: arrays of four vertices, normalised where they are integers."""
+    tree = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "materials": [material]}
+    tree |= {"accessors": [], "bufferViews": [], "buffers": []}
+    for array in (np.array([0, 1, 2, 0, 2, 3], "u2"), *attributes.values()):
+        flat = array.ndim == 1
+        kind = {"componentType": COMPONENTS[array.dtype.str[1:]], "type": "SCALAR" if flat else f"VEC{array.shape[1]}"}
+        kind |= {"normalized": True} if not flat and array.dtype.kind in "iu" else {}
+        tree["accessors"].append(kind | {"bufferView": len(tree["buffers"]), "count": len(array)})
+        tree["bufferViews"].append({"buffer": len(tree["buffers"]), "byteLength": array.nbytes})
+        tree["buffers"].append({"byteLength": array.nbytes, "uri": embedded("", array.tobytes())})
+    primitive = {"indices": 0, "attributes": {name: 1 + place for place, name in enumerate(attributes)}}
+    tree["meshes"] = [{"primitives": [primitive | ({"material": 0} if material else {})]}]
+    return tree
+
+
+def of_kind(values, kind):
+    """Numbers of 0..1 as a glTF stores them in a kind of component."""
+    return values.astype(kind) if kind == "f4" else np.rint(values * np.iinfo(kind).max).astype(kind)
+
+
+@pytest.mark.parametrize("kind", COMPONENTS)
+def test_normalised_integers_are_the_numbers_that_they_stand_for(kind):
+    material = {"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}
+    places = of_kind(SQUARE, kind) if kind[0] in "if" else SQUARE.astype("f4")
+    tree = square(material, POSITION=places, TEXCOORD_0=of_kind(UV, kind)) | {
+        "extensionsUsed": ["KHR_mesh_quantization"],
+        "extensionsRequired": ["KHR_mesh_quantization"],
+    }
+    mesh = parse(json.dumps(tree).encode(), ".gltf")
+    assert np.array_equal(mesh.vertices, SQUARE)
+    np.testing.assert_allclose(
+        mesh.texture.uv[0], [[u, 1 - v] for u, v in UV[:3]], atol=1 / 127 if "1" in kind else 1e-4
+    )
+    tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=of_kind(COLOURS / 255, kind))
+    found = parse(json.dumps(tree).encode(), ".gltf").colors
+    assert np.abs(found.astype(int) - COLOURS).max() <= (kind == "i1")  # 127 steps are too few for a byte
+
+
 CUT = '{"buffers": [{"uri": "data:,abc", "byteLength": 9}]}'
 PACKED = '{"extensionsRequired": ["EXT_meshopt_compression"], "buffers": [{"byteLength": 9}]}'
 
