@@ -10,7 +10,7 @@ from urllib.parse import unquote, unquote_to_bytes
 import numpy as np
 from trimesh.resolvers import FilePathResolver, Resolver
 
-from .headers import ABSENT, MeshError
+from .headers import ABSENT, MeshError, check_extensions
 
 SUFFIXES = (".glb", ".gltf")
 DATA = "data:"
@@ -84,10 +84,9 @@ def _joined(tree: dict[str, Any], binary: bytearray) -> bytes:
 
 def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytearray:
     """One buffer for all that the tree refers to; the tree refers to that buffer afterwards."""
+    check_extensions(tree)
     binary, starts = bytearray(), []
     for buffer in tree.get("buffers", []):
-        if "uri" not in buffer and (needed := tree.get("extensionsRequired")):
-            raise MeshError(f"needs {', '.join(needed)}, which is not read: export it without compression")
         data, name = _read(buffer["uri"], resolver), _name(buffer["uri"])
         if data is None:
             raise MeshError(f"refers to {name}, which is not beside it: keep both together, or export a .glb")

@@ -4,10 +4,13 @@ import io
 import json
 import re
 import struct
+from typing import Any
 
 from PIL import Image
 
 MOST_PRIMITIVES = 20_000  # of a GLB, counted at each node that shows them: the parser needs milliseconds for each
+# Extensions of a glTF that are read, or whose loss changes no shape and is named by `materials.not_read`.
+EXTENSIONS = ("KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp")
 ABSENT = "absent"  # key of a picture of a glTF that is not at hand: its name
 MAX_TEXTURE = 8192  # pixels, of a square texture
 PLY_BYTES = {b"short": 2, b"ushort": 2, b"int": 4, b"uint": 4, b"float": 4, b"double": 8}
@@ -33,10 +36,13 @@ def _glb(content):
         raise MeshError(f"truncated: {len(content)} of {length} bytes")
     try:
         tree = json.loads(content[20 : 20 + chunk])
+        check_extensions(tree)
         counts = [accessor["count"] for accessor in tree.get("accessors", [])]
         stated = max((int(count) for count in counts), default=0)
         sizes = [len(mesh["primitives"]) for mesh in tree.get("meshes", [])]
         primitives = sum(sizes[node["mesh"]] for node in tree.get("nodes", []) if "mesh" in node)
+    except MeshError:
+        raise
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
     if stated > len(content):
@@ -49,6 +55,13 @@ def _glb(content):
         )
     for picture in _colour_pictures(tree):
         _check_picture(tree, picture, content[20 + chunk + 8 :])
+
+
+def check_extensions(tree: dict[str, Any]) -> None:
+    """Raises MeshError for a glTF whose shape only an extension tells: the parser would read zeros, or nothing."""
+    needed = [name for name in map(str, tree.get("extensionsRequired") or ()) if not name.startswith(EXTENSIONS)]
+    if needed:
+        raise MeshError(f"needs {', '.join(needed)}, which is not read: export it without compression")
 
 
 def _colour_pictures(tree):

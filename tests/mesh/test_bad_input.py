@@ -58,6 +58,19 @@ REFUSED = {
 }
 
 
+def glb_of(tree, binary=b""):
+    """A GLB of a JSON tree and binary data."""
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text
+    chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary if binary else b""
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+REFUSED["draco.glb"] = glb_of({"extensionsRequired": ["KHR_draco_mesh_compression"]}), "needs KHR_draco_mesh_compress"
+
+
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", REFUSED)
 def test_bad_file_is_refused_with_its_reason(tmp_path, name):
@@ -82,16 +95,6 @@ def test_no_warning_of_numpy_comes_with_a_foreign_file(tmp_path):
     (tmp_path / "infinite.glb").write_bytes(content)
     with pytest.raises(MeshError, match="infinite.glb: .*NaN or infinite"):
         load_as_stated(tmp_path / "infinite.glb")
-
-
-def glb_of(tree, binary=b""):
-    """A GLB of a JSON tree and binary data."""
-    text = json.dumps(tree).encode()
-    text += b" " * (-len(text) % 4)
-    binary += b"\0" * (-len(binary) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text
-    chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary if binary else b""
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
 def test_a_glb_of_too_many_primitives_is_refused_at_once(tmp_path):

@@ -175,12 +175,25 @@ def test_normalised_integers_are_the_numbers_that_they_stand_for(kind):
     assert np.abs(found.astype(int) - COLOURS).max() <= (kind == "i1")  # 127 steps are too few for a byte
 
 
+@pytest.mark.parametrize("name", ["KHR_materials_unlit", "KHR_texture_transform"])
+def test_an_extension_that_changes_no_shape_is_left_out(name):
+    tree = square({}, POSITION=SQUARE.astype("f4")) | {"extensionsUsed": [name], "extensionsRequired": [name]}
+    assert len(parse(json.dumps(tree).encode(), ".gltf").faces) == 2
+
+
 CUT = '{"buffers": [{"uri": "data:,abc", "byteLength": 9}]}'
 PACKED = '{"extensionsRequired": ["EXT_meshopt_compression"], "buffers": [{"byteLength": 9}]}'
 
+DRACO = '{"extensionsRequired": ["KHR_draco_mesh_compression"], "buffers": [{"uri": "data:,abc", "byteLength": 3}]}'
+
 
 @pytest.mark.parametrize(
-    ("text", "reason"), [(CUT, "data:,abc is truncated: 3 of 9 bytes"), (PACKED, "needs EXT_meshopt_compression")]
+    ("text", "reason"),
+    [
+        (CUT, "data:,abc is truncated: 3 of 9 bytes"),
+        (PACKED, "needs EXT_meshopt_compression"),
+        (DRACO, "needs KHR_draco_mesh_compression, which is not read: export it without compression"),
+    ],
 )
 def test_a_buffer_that_is_cut_or_packed_is_refused(text, reason):
     with pytest.raises(MeshError, match=reason):
