@@ -9,7 +9,7 @@ import numpy as np
 
 from .headers import MeshError
 
-KEYWORD = re.compile(rb"\s*(?:#[^\n]*\s+)*(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s#])([ \t]+BINARY[^\n]*\n)?")
+KEYWORD = re.compile(rb"\s*(?:#[^\n]*\s+)*(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s#\d])([ \t]+BINARY[^\n]*\n)?")
 COUNTS = re.compile(rb"\s*(?:#[^\n]*\s+)*\d+[ \t]+\d+(?:[ \t]+\d+)?[ \t]*(?:#[^\n]*)?\r?\n")
 
 

@@ -30,6 +30,7 @@ VALID = {  # name: (content, faces)
     "no keyword": ("# a pencil\n4 2 0 # counts\n" + SQUARE + TRIANGLES, 2),
     "no count of edges": ("OFF\n4 2\n" + SQUARE + TRIANGLES, 2),
     "counts on the first line": ("OFF 4 2 0\n" + SQUARE + TRIANGLES, 2),
+    "counts behind the word, as ModelNet has them": ("OFF4 2 0\n" + SQUARE + TRIANGLES, 2),
     "comments": (f"# a scanner\n#OFF\nOFF # kind\n# counts\n4 2 0 # two\n{SQUARE}# faces\n{TRIANGLES}", 2),
     "blank lines": ("\nOFF\n\n4 2 0\n\n" + SQUARE.replace("\n", "\n\n") + "\n" + TRIANGLES, 2),
     "carriage returns": (("OFF\n4 2 0\n" + SQUARE + TRIANGLES).replace("\n", "\r\n"), 2),
