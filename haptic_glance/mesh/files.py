@@ -14,7 +14,7 @@ from haptic_glance.base.extras import MissingExtra, about
 
 from . import clouds, gltf
 from .axes import AUTO
-from .headers import MeshError, check_header
+from .headers import MeshError, check_header, stated_faces
 from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
 from .mesh import Mesh
 from .off import read_off
@@ -32,6 +32,7 @@ MeshLike = (
     | tuple[ArrayLike, ArrayLike]
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
+READY = {".glb": gltf.in_floats, ".stl": stated_faces}  # what the parser cannot read becomes what it can
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -111,7 +112,7 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     if suffix == ".gltf":
         content, suffix = gltf.packed(content, resolver), ".glb"
     check_header(content, suffix)
-    content = gltf.in_floats(content) if suffix == ".glb" else content
+    content = READY[suffix](content) if suffix in READY else content
     try:
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)

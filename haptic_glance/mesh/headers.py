@@ -91,8 +91,8 @@ def _check_picture(tree, picture, binary):
 
 
 def _stl(content):
-    if content.lstrip()[:5].lower() == b"solid" and b"facet" in content:
-        if b"endsolid" not in content:
+    if _in_words(content):
+        if b"endsolid" not in content.lower():
             raise MeshError("truncated: an ASCII STL without endsolid")
         return
     if len(content) < 84:
@@ -100,6 +100,15 @@ def _stl(content):
     stated, follow = struct.unpack("<I", content[80:84])[0], (len(content) - 84) // 50
     if stated > follow:
         raise MeshError(f"truncated or not an STL: the header states {stated} faces, {follow} follow")
+
+
+def stated_faces(content: bytes) -> bytes:
+    """An STL's bytes without those that some programs write behind the faces of a binary one."""
+    return content if _in_words(content) else content[: 84 + 50 * struct.unpack("<I", content[80:84])[0]]
+
+
+def _in_words(content):
+    return content.lstrip()[:5].lower() == b"solid" and b"facet" in content.lower()
 
 
 def _ply(content):
