@@ -12,7 +12,7 @@ from trimesh.resolvers import FilePathResolver, Resolver
 
 from haptic_glance.base.extras import MissingExtra, about
 
-from . import clouds, gltf
+from . import clouds, gltf, obj
 from .axes import AUTO
 from .headers import MeshError, check_header, stated_faces
 from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
@@ -32,7 +32,11 @@ MeshLike = (
     | tuple[ArrayLike, ArrayLike]
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
-READY = {".glb": gltf.in_floats, ".stl": stated_faces}  # what the parser cannot read becomes what it can
+READY = {
+    ".glb": gltf.in_floats,
+    ".stl": stated_faces,
+    ".obj": obj.plain,
+}  # what the parser cannot read becomes what it can
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 

@@ -178,6 +178,18 @@ def test_obj_with_texture_seams_keeps_one_vertex_a_line_and_polygons_become_tria
     assert load(path).face_areas.sum() == pytest.approx(1)
 
 
+@pytest.mark.parametrize(
+    "old, new", [("", "\ufeff"), (" ", "\t"), ("2 3\n", "2 3 # top\n"), ("0\n", "0 # a vertex\n"), ("f ", "# v\nf ")]
+)
+def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new):
+    text = FLAT + "v 0 0 1\nf 1 2 3\nf 1 3 4\n"
+    path = tmp_path / "edited.obj"
+    path.write_text(text.replace(old, new) if old else new + text, encoding="utf-8")
+    mesh = load_as_stated(path)
+    assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
 def test_non_manifold_faces_stay_and_duplicate_and_degenerate_ones_go_with_a_note(tmp_path):
     vertices = [(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, 0, 0)]
     path = tmp_path / "fan.off"
