@@ -146,7 +146,8 @@ def _parsed(content, suffix, resolver, every_colour):
         return clouds.surface_of(clouds.read_cloud(content, suffix))
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
-        opened = _open(content, suffix, resolver)
+        beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
+        opened = _open(content, suffix, beside)
         set_apart(opened, content)
         loaded = join_parts(opened, order, every_colour)
     else:

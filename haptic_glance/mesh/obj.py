@@ -1,9 +1,19 @@
-"""The text of OBJ files as people write it, in the form that the parser reads."""
+"""OBJ files and their materials as people write them, in the form that the parser reads."""
 
 import codecs
 import re
+from contextlib import suppress
+from pathlib import Path
+
+from trimesh.exchange.obj import parse_mtl
+from trimesh.resolvers import FilePathResolver, Resolver
 
 NUMBERED = [b"v"], [b"vt"], [b"vn"], [b"f"]  # the first words of lines of numbers
+NUMBER = r"\s+[-+]?[\d.]+(?:e[-+]?\d+)?(?=\s)"
+OPTION = re.compile(
+    rf"(?<!\S)-(?:mm(?:{NUMBER}){{2}}|[ost](?:{NUMBER}){{1,3}}|(?:blend[uv]|cc|clamp|texres|imfchan|bm|boost)\s+\S+)\s+",
+    re.I,
+)
 
 
 def plain(content: bytes) -> bytes:
@@ -16,3 +26,37 @@ def plain(content: bytes) -> bytes:
         return b"" if content[start : comment.start()].split(None, 1)[:1] in NUMBERED else comment[0]
 
     return re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content
+
+
+class Beside:
+    """Reads the files beside an OBJ, also by a name with the separators of Windows, or behind the options of a map.
+
+    `absent` names the pictures that were not there.
+    """
+
+    def __init__(self, folder: Resolver) -> None:
+        self.folder = folder
+        self.file_name = getattr(folder, "file_name", None)
+        self.absent: list[str] = []
+
+    def get(self, key: str) -> bytes:
+        plain_name = OPTION.sub("", key).replace("\\", "/")
+        for name in (key, plain_name):  # as it stands first: a file may be named so
+            with suppress(OSError, ValueError, KeyError):
+                return self.folder.get(name)
+        self.absent.append(plain_name)
+        raise FileNotFoundError(plain_name)
+
+    __getitem__ = get
+
+
+def absent_pictures(path: Path) -> list[str]:
+    """The pictures that the materials of an OBJ file name and that are not beside it; none of other files."""
+    library = re.search(rb"mtllib([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
+    beside = Beside(FilePathResolver(str(path)))
+    try:
+        text = beside.get(library[1].decode().strip()) if library else b""
+    except (OSError, ValueError):
+        return []
+    parse_mtl(text, beside)
+    return [f"picture {name}, not beside it" for name in dict.fromkeys(beside.absent)]

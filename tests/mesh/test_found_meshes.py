@@ -10,6 +10,7 @@ from PIL import Image
 from haptic_glance import Mesh, clean, find_points, load, press, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
+from haptic_glance.cli.simplify import dropped_from
 from haptic_glance.studio.mystery import gather
 from haptic_glance.touch.press import as_shown
 
@@ -83,6 +84,19 @@ def test_a_flat_place_has_little_contrast_in_a_picture():
     images = np.linspace(0, 1, 16).reshape(1, 4, 4).repeat(2, axis=0)
     shown = as_shown(images, [0.0001, 0.05], 0.01)
     assert shown[0].max() == pytest.approx(0.1) and shown[1].max() == 1
+
+
+@pytest.mark.parametrize("named", ["maps/wood 1.png", "maps\\wood 1.png", "-s 1 1.5 1 -clamp on maps/wood 1.png"])
+def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, named):
+    (tmp_path / "maps").mkdir()
+    Image.new("RGB", (2, 2), "red").save(tmp_path / "maps" / "wood 1.png")
+    (tmp_path / "a.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {named}\n")
+    path = tmp_path / "a.obj"
+    path.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
+    assert [image[0, 0].tolist() for image in load(path, up="z").texture.images] == [[255, 0, 0, 255]]
+    assert dropped_from(path) == ""
+    (tmp_path / "maps" / "wood 1.png").unlink()
+    assert dropped_from(path).endswith(": picture maps/wood 1.png, not beside it")
 
 
 def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
