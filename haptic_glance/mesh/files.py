@@ -12,7 +12,7 @@ from trimesh.resolvers import FilePathResolver, Resolver
 
 from haptic_glance.base.extras import MissingExtra, about
 
-from . import clouds, gltf, obj
+from . import clouds, gltf, obj, ply
 from .axes import AUTO
 from .headers import MeshError, check_header, stated_faces
 from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
@@ -32,11 +32,8 @@ MeshLike = (
     | tuple[ArrayLike, ArrayLike]
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
-READY = {
-    ".glb": gltf.in_floats,
-    ".stl": stated_faces,
-    ".obj": obj.plain,
-}  # what the parser cannot read becomes what it can
+# What the parser cannot read becomes what it can.
+READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.triangulated}
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -116,8 +113,8 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     if suffix == ".gltf":
         content, suffix = gltf.packed(content, resolver), ".glb"
     check_header(content, suffix)
-    content = READY[suffix](content) if suffix in READY else content
     try:
+        content = READY[suffix](content) if suffix in READY else content
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)
             mesh = _parsed(content, suffix, resolver, every_colour)

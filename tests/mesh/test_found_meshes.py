@@ -7,7 +7,7 @@ import pytest
 import trimesh
 from PIL import Image
 
-from haptic_glance import Mesh, clean, find_points, load, press, simplify
+from haptic_glance import Mesh, MeshError, clean, find_points, load, press, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
@@ -60,6 +60,28 @@ def test_strips_of_a_ply_are_faces(tmp_path, binary):
         body = "".join(f"{x} {y} {z}\n" for x, y, z in points).encode() + f"8 {' '.join(map(str, strip))}\n".encode()
     (tmp_path / "strips.ply").write_bytes(head.encode() + body)
     assert load(tmp_path / "strips.ply", up="z").faces.tolist() == [[0, 1, 2], [3, 2, 1], [2, 3, 4]]
+
+
+@pytest.mark.parametrize("order", "<>")
+def test_a_binary_ply_of_mixed_polygons_has_the_triangles_of_each(tmp_path, order):
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 2, 1)]
+    polygons = [(0, 1, 2, 3), (2, 4, 3), (0, 1, 2, 4, 3), (1, 0)]
+    head = f"ply\nformat binary_{'little' if order == '<' else 'big'}_endian 1.0\ncomment Blender\nelement vertex 5\n"
+    head += "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    head += "".join(f"property uchar {name}\n" for name in ("red", "green", "blue"))
+    head += "element face 4\nproperty short material\nproperty list ushort uint vertex_indices\nproperty uchar flag\n"
+    body = b"".join(struct.pack(f"{order}6f3B", *corner, 0, 0, 1, 9, 8, i) for i, corner in enumerate(corners))
+    body += b"".join(struct.pack(f"{order}hH{len(ids)}IB", 7, len(ids), *ids, 1) for ids in polygons)
+    tail = b"element more 1\nproperty int a\nend_header\n"
+    (tmp_path / "mixed.ply").write_bytes(head.encode() + tail + body + struct.pack(f"{order}i", 5))
+    mesh = load(tmp_path / "mixed.ply", up="z")
+    assert mesh.vertices.tolist() == np.array(corners).tolist() and mesh.colors.tolist() == [
+        [9, 8, i] for i in range(5)
+    ]
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [2, 4, 3], [0, 1, 2], [0, 2, 4], [0, 4, 3]]
+    (tmp_path / "mixed.ply").write_bytes(head.encode() + b"end_header\n" + body[:-2])
+    with pytest.raises(MeshError, match="truncated: it ends in a face"):
+        load(tmp_path / "mixed.ply")
 
 
 @pytest.mark.slow
