@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from numpy.typing import ArrayLike
+from trimesh.exchange.obj import load_obj
+from trimesh.exchange.ply import load_ply
 from trimesh.resolvers import FilePathResolver, Resolver
 
 from haptic_glance.base.extras import MissingExtra, about
@@ -15,7 +17,7 @@ from haptic_glance.base.extras import MissingExtra, about
 from . import clouds, gltf, obj, ply
 from .axes import AUTO
 from .headers import MeshError, check_header, stated_faces
-from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
+from .materials import join_parts, merge_equal_rows, obj_vertices, scale_colors, set_apart, texture_of, vertex_colors
 from .mesh import Mesh
 from .off import read_off
 from .up import UP_OF_FORMAT, stated_up
@@ -33,7 +35,8 @@ MeshLike = (
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # What the parser cannot read becomes what it can.
-READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.triangulated}
+READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
+PARSERS = {".obj": load_obj, ".ply": load_ply}  # of files whose colours may be of any kind
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -161,7 +164,16 @@ def _parsed(content, suffix, resolver, every_colour):
 
 
 def _open(content, suffix, resolver, **options):
-    return trimesh.load(io.BytesIO(content), file_type=suffix[1:], resolver=resolver, process=False, **options)
+    stream = io.BytesIO(content)
+    if suffix not in PARSERS:
+        return trimesh.load(stream, file_type=suffix[1:], resolver=resolver, process=False, **options)
+    read = PARSERS[suffix](stream, resolver=resolver, **options)
+    parts = list(read["geometry"].values()) if "geometry" in read else [read]
+    for part in parts:
+        part["process"] = False
+    scale_colors(parts)
+    scene = trimesh.load_scene(read)
+    return next(iter(scene.geometry.values())) if len(scene.geometry) == 1 else scene
 
 
 def _to_mesh(loaded, merge, every_colour):

@@ -28,6 +28,7 @@ FACTORS = (
 )  # fmt: skip
 MAPS = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
 COLOURS_OF = {"baseColorFactor", "baseColorTexture"}
+BRIGHT = 2  # a float colour above it is one of 0..255: computed ones of 0..1 may end a little above 1
 BESIDE = "beside_colour"  # in the metadata of a part
 
 
@@ -164,6 +165,21 @@ def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray |
     visual = part.visual
     kinds = ("vertex", "face") if of_faces else ("vertex",)
     return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind in kinds else None
+
+
+def scale_colors(parts: list[dict[str, Any]]) -> None:
+    """Makes bytes of the colours in arguments of Trimesh, where they are of 0..65535, or floats of 0..255.
+
+    The others, bytes and floats of 0..1, stay as they are: trimesh takes all colours for one of these.
+    """
+    for name in ("vertex_colors", "face_colors"):
+        given = [part for part in parts if part.get(name) is not None]
+        most = max((np.max(part[name], initial=0) for part in given), default=0)
+        for part in given:
+            floats = part[name].dtype.kind == "f"
+            if most > (BRIGHT if floats else 255):
+                scaled = np.nan_to_num(part[name]) * (1 if floats else 255 / 65535)
+                part[name] = np.clip(np.rint(scaled), 0, 255).astype(np.uint8)
 
 
 def _as_picture(part):

@@ -14,6 +14,14 @@ CORNERS = ("vertex_indices", "vertex_index")
 END = re.compile(rb"end_header\r?\n")
 
 
+def plain(content: bytes) -> bytes:
+    """A PLY's bytes with the usual names of colours, and `triangulated`."""
+    header, mark, body = content.partition(b"end_header")
+    if b"diffuse_red" in header and b" red" not in header:
+        content = re.sub(rb"\bdiffuse_(red|green|blue)\b", rb"\1", header) + mark + body
+    return triangulated(content)
+
+
 def triangulated(content: bytes) -> bytes:
     """A PLY's bytes; each polygon of a binary one becomes a fan of triangles about its first vertex, in their order.
 

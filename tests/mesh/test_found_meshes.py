@@ -62,6 +62,34 @@ def test_strips_of_a_ply_are_faces(tmp_path, binary):
     assert load(tmp_path / "strips.ply", up="z").faces.tolist() == [[0, 1, 2], [3, 2, 1], [2, 3, 4]]
 
 
+COLOURS = {  # the kind of a property: (its prefix, what stands for a colour)
+    "uchar": ("", [200, 128, 1]),
+    "float": ("", [200.0, 128.0, 1.0]),
+    "double": ("", [200 / 255, 128 / 255, 1 / 255]),
+    "ushort": ("", [200 * 257, 128 * 257, 257]),
+    "uint8": ("diffuse_", [200, 128, 1]),
+}
+
+
+@pytest.mark.parametrize("kind", COLOURS)
+def test_colours_of_a_ply_are_bytes_however_it_states_them(tmp_path, kind):
+    prefix, colour = COLOURS[kind]
+    head = "ply\nformat ascii 1.0\nelement vertex 3\n" + "".join(f"property float {axis}\n" for axis in "xyz")
+    head += "".join(f"property {kind} {prefix}{name}\n" for name in ("red", "green", "blue"))
+    head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = "".join(f"{x} {y} 0 {' '.join(map(str, colour))}\n" for x, y in ((0, 0), (1, 0), (0, 1)))
+    (tmp_path / "a.ply").write_text(head + rows + "3 0 1 2\n")
+    assert load(tmp_path / "a.ply", up="z").colors.tolist() == [[200, 128, 1]] * 3
+
+
+@pytest.mark.parametrize("colour", ["200 128 0", "0.7843 0.50196 0"])
+@pytest.mark.parametrize("material", ["", "usemtl a\n"])
+def test_colours_of_an_obj_are_bytes_however_it_states_them(tmp_path, colour, material):
+    rows = "".join(f"v {x} {y} 0 {colour}\n" for x, y in ((0, 0), (1, 0), (0, 1)))
+    (tmp_path / "a.obj").write_text(rows + material + "f 1 2 3\n")
+    assert load(tmp_path / "a.obj", up="z").colors.tolist() == [[200, 128, 0]] * 3
+
+
 @pytest.mark.parametrize("order", "<>")
 def test_a_binary_ply_of_mixed_polygons_has_the_triangles_of_each(tmp_path, order):
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 2, 1)]
