@@ -140,7 +140,7 @@ def join_parts(
     vertices take; None numbers them by first appearance. every_colour: the texture has the colours per vertex, too, of
     parts that stand beside others with materials, or that have a plain material.
     """
-    parts = loaded.dump() if isinstance(loaded, trimesh.Scene) else [loaded]
+    parts = _placed(loaded) if isinstance(loaded, trimesh.Scene) else [loaded]
     parts = [part for part in parts if isinstance(part, trimesh.Trimesh) and len(part.faces)]
     if not parts:
         return None
@@ -158,6 +158,21 @@ def join_parts(
             return Mesh(order, first[ids[len(order) :]][faces], None, texture)
     first, ids = merge_equal_rows(vertices if colors is None else np.column_stack([vertices, colors]))
     return Mesh(vertices[first], ids[faces], None if colors is None else colors[first], texture)
+
+
+def _placed(scene):
+    """The meshes of a Scene at their places, as its `dump` has them, which copies the picture of each."""
+    parts = []
+    for transform, name in map(scene.graph.get, scene.graph.nodes_geometry):
+        source = scene.geometry[name]
+        if isinstance(source, trimesh.Trimesh):
+            textured = isinstance(source.visual, TextureVisuals)
+            part = source.copy(include_visual=not textured)
+            if textured:
+                part.visual = TextureVisuals(source.visual.uv, source.visual.material)
+                part.vertex_attributes.update(source.vertex_attributes)
+            parts.append(part.apply_transform(transform))
+    return parts
 
 
 def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray | None:
@@ -217,12 +232,14 @@ def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
         for part, material in zip(parts, properties, strict=True)
     ):
         return None
-    images = [_image(part) for part in parts]
+    known = {}
+    images = [_image(part, known) for part in parts]
     uv = [_corners(part) for part in parts]
     sizes = [len(part.faces) for part in parts]
     names = {}
+    contents = {place: image.tobytes() for place, image in {id(image): image for image in images}.items()}
     keys = [
-        (image.shape, image.tobytes(), *content_of(material))
+        (image.shape, contents[id(image)], *content_of(material))
         for image, material in zip(images, properties, strict=True)
     ]
     numbers = [names.setdefault(key, len(names)) for key in keys]
@@ -246,13 +263,19 @@ def _stated(part):
     return not made_up or "kd" in getattr(material, "kwargs", {})
 
 
-def _image(part):
-    """The image of a part's material, (h, w, 4) u1; one pixel for a plain colour."""
+def _image(part, known=None):
+    """The image of a part's material, (h, w, 4) u1; one pixel for a plain colour.
+
+    known: the images of pictures by their ids, so that parts that share a picture share its image.
+    """
+    known = {} if known is None else known
     material = getattr(part.visual, "material", None) if _stated(part) else None
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     if image is not None and getattr(part.visual, "uv", None) is not None:
         _check_size(image)
-        return np.asarray(image.convert("RGBA"))
+        if id(image) not in known:
+            known[id(image)] = np.asarray(image.convert("RGBA"))
+        return known[id(image)]
     color = getattr(material, "main_color", None)
     return np.asarray([204, 204, 204, 255] if color is None else color, dtype=np.uint8).reshape(1, 1, 4)
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
-from haptic_glance import Mesh, MeshError, clean, find_points, load, press, simplify
+from haptic_glance import Mesh, MeshError, as_mesh, clean, find_points, load, press, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
@@ -147,6 +149,19 @@ def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, 
     assert dropped_from(path) == ""
     (tmp_path / "maps" / "wood 1.png").unlink()
     assert dropped_from(path).endswith(": picture maps/wood 1.png, not beside it")
+
+
+def test_a_picture_that_many_nodes_share_is_decoded_once(ball, monkeypatch):
+    picture, decoded = Image.new("RGB", (4, 4), "red"), []
+    visual = TextureVisuals(ball.vertices[:, :2], material=PBRMaterial(baseColorTexture=picture))
+    part = trimesh.Trimesh(ball.vertices, ball.faces, visual=visual, process=False)
+    scene = trimesh.Scene()
+    for place in range(3):
+        scene.add_geometry(part, geom_name="ball", transform=np.diag([1, 1, 1 + place, 1]))
+    plain = Image.Image.convert
+    monkeypatch.setattr(Image.Image, "convert", lambda self, *mode: decoded.append(self) or plain(self, *mode))
+    mesh = as_mesh(scene)
+    assert len(decoded) == 1 and len(mesh.faces) == 960 and [i.shape for i in mesh.texture.images] == [(4, 4, 4)]
 
 
 def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
