@@ -103,6 +103,12 @@ def test_fullness_is_the_surface_in_a_gaussian_over_a_disc():
         assert np.abs(off).max() < 0.2 and abs(off.mean()) < 0.05
 
 
+def test_stray_faces_far_away_neither_fill_the_memory_nor_change_the_fullness_of_the_object(few):
+    points, areas = np.r_[few.points, 300 * np.eye(3)], np.r_[few.areas, [1e-12 * few.areas.sum()] * 3]
+    stray = replace(few, points=points, areas=areas)  # whose voxels would be terabytes
+    assert fullness(stray, 0.12)[:-3] == pytest.approx(fullness(few, 0.12), abs=0.02)
+
+
 def directions():
     """(112, 3): seven rings of sixteen, every other one turned by half a step."""
     vectors = []

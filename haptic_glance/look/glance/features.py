@@ -69,6 +69,8 @@ FINE, COARSE = 1, 6  # steps over the graph of the finest relief, and of a coars
 AROUND = 18  # steps over which relief is averaged: how rich in relief the neighbourhood is
 VOXELS = 48  # in a unit of length, in which the surface around a point is counted
 CUT = 3.0  # deviations at which the Gaussian of that count ends
+MOST_VOXELS = 2**24  # above which the samples farther out than CLIP, of stray faces, are counted there
+CLIP = 2.0  # units of length
 
 
 def relief(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -104,8 +106,11 @@ def fullness(samples: Samples, radius: float) -> np.ndarray:
     robust geometry processing, CAGD 2009).
     """
     deviation = radius / np.sqrt(5)
-    reach = np.ceil(np.abs(samples.local).max(axis=0) * VOXELS).astype(np.int64)
-    places, shape = samples.local * VOXELS + reach, 2 * reach + 1
+    local = samples.local
+    if np.prod(2 * VOXELS * np.abs(local).max(axis=0) + 1) > MOST_VOXELS:
+        local = local.clip(-CLIP, CLIP)
+    reach = np.ceil(np.abs(local).max(axis=0) * VOXELS).astype(np.int64)
+    places, shape = local * VOXELS + reach, 2 * reach + 1
     voxels = np.ravel_multi_index(np.rint(places).astype(np.int64).T, shape)
     amounts = np.bincount(voxels, samples.shares, minlength=shape.prod()).reshape(shape).astype(np.float32)
     around = ndimage.gaussian_filter(amounts, deviation * VOXELS, mode="constant", truncate=CUT)
