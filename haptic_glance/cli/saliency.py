@@ -93,7 +93,7 @@ def look_at(options: argparse.Namespace) -> None:
         mesh, note = upright_by(load_unnamed(options.mesh), options.mesh, options.up)
         report(options, "looking at it")
         with WallClock() as watch:
-            detection = detect(bake_texture(mesh), options.method, options.count)
+            detection = detect(mesh, options.method, options.count)
     assert detection.saliency is not None  # `check` lets no method pass that has none
     report(options, f"{len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}")
     rows = points_of(mesh, detection)

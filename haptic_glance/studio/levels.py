@@ -13,7 +13,6 @@ from haptic_glance.lod.simplify import BACKEND
 from haptic_glance.lod.task import SimplificationTask, repaired
 from haptic_glance.look.points import saliency
 from haptic_glance.mesh import rotate_to_z_up
-from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 
 from .files import as_bytes
@@ -52,7 +51,7 @@ class Levels:
         """{SOFT, HARD: the SimplificationTask}."""
         mesh, _ = repaired(self.specimen.given)
         same = len(mesh.vertices) == len(self.specimen.given.vertices)
-        values = self.looked.saliency if same else saliency(bake_texture(mesh), self.looked.method)
+        values = self.looked.saliency if same else saliency(mesh, self.looked.method)
         places = np.array([row[2:5] for row in self.looked.points]).reshape(-1, 3)
         points = np.unique(KDTree(mesh.vertices).query(places)[1]).astype(np.int64)
         none = np.zeros(0, dtype=np.int64)

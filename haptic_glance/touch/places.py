@@ -10,7 +10,6 @@ from haptic_glance.look.points import find_points
 from haptic_glance.mesh import clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import to_z_up
 from haptic_glance.mesh.files import load_unnamed
-from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius
 from haptic_glance.mesh.up import upright_by
@@ -84,7 +83,7 @@ class UserMesh:
         return Places(np.array(vertices), np.concatenate(positions), np.concatenate(normals))
 
     def _selected(self, method, count, seed):
-        vertices = find_points(bake_texture(self.source), method, count, seed=seed, name=self.name)
+        vertices = find_points(self.source, method, count, seed=seed, name=self.name)
         placed, vertices = len(vertices), vertices[touchable(self.mesh, vertices)]
         note = f"{len(vertices)} of {count} places: the mesh has no more" if placed < count else ""
         note = f"{len(vertices)} of {count} places: the others have no normal" if len(vertices) < placed else note

@@ -10,6 +10,7 @@ from scipy.spatial import KDTree
 
 from haptic_glance.mesh import MeshError, clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import Axis
+from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import orient
 
@@ -159,6 +160,7 @@ def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, places: KDTr
 
 def _prepared(mesh, up):
     """The mesh as the detectors take it; one that cannot be repaired is only turned outwards."""
+    mesh = bake_texture(mesh)  # views show the colours of vertices
     try:
         mesh = clean(mesh)[0]
     except MeshError:
