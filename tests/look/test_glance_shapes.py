@@ -14,7 +14,7 @@ from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 
-from .conftest import as_mesh, raised_ball
+from .conftest import as_mesh, ball_mesh, raised_ball
 
 TURN = trimesh.transformations.rotation_matrix(np.radians(37), [0, 0, 1])[:3, :3]
 
@@ -138,6 +138,12 @@ def test_the_parts_add_up_to_the_log_of_the_saliency(knob, method):
     total = np.sum(list(parts.values()), axis=0)
     assert np.std(total - np.log(saliency(knob, method)[some])) < 0.05 * np.std(total)
     assert list(parts) == list(GLANCES[method])
+
+
+def test_the_parts_speak_of_the_surface_that_saliency_looks_at():
+    doubled = Mesh(ball_mesh(2).vertices, np.r_[ball_mesh(2).faces, ball_mesh(2).faces[:, ::-1]])
+    ours, theirs = (contributions(mesh, np.arange(9)) for mesh in (doubled, ball_mesh(2)))
+    assert ours["log_side"] == pytest.approx(theirs["log_side"], abs=1e-6)
 
 
 def test_a_knob_is_found_for_its_shape_and_a_hollow_counts_against_a_place(knob):

@@ -51,7 +51,7 @@ def saliency(
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):
         raise ValueError(f"method {method!r} has no saliency: it only places points")
-    mesh = _prepared(mesh, up)
+    mesh = prepared(mesh, up)
     options = Options(_learned(method, weights), smoothing=smoothing)
     return detector.saliency(mesh, compute_maps(mesh, detector.channels, viewpoints), options)
 
@@ -111,7 +111,7 @@ class Looked:
     ) -> None:  # fmt: skip
         self.detector, self.viewpoints = method_named(method), viewpoints
         self.options = options or Options(_learned(method, None))
-        self.mesh = _prepared(mesh, up)
+        self.mesh = prepared(mesh, up)
 
     @cached_property
     def sight(self) -> Any:
@@ -158,7 +158,7 @@ def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, places: KDTr
     return np.minimum.accumulate(np.array(means, dtype=np.float64))
 
 
-def _prepared(mesh, up):
+def prepared(mesh: Mesh, up: Axis | None = None) -> Mesh:
     """The mesh as the detectors take it; one that cannot be repaired is only turned outwards."""
     mesh = bake_texture(mesh)  # views show the colours of vertices
     try:

@@ -4,13 +4,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import Axis, axis_named
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.repair import orient
 
 from ..glance import samples_of_mesh, standardised
 from ..weights.weights import GLANCE, GLANCES
+from .find import prepared
 
 # feature -> what a person calls a place where it is large, and one where it is small
 WORDS = {
@@ -55,7 +54,7 @@ def contributions(
 @lru_cache(maxsize=2)  # a person asks of one mesh again and again
 def _seen(mesh, up):
     """(the mesh as it is looked at, its samples, their standardised features)."""
-    mesh = normalise(rotate_to_z_up(orient(mesh)[0], up))
+    mesh = prepared(mesh, up)
     samples = samples_of_mesh(mesh)
     return mesh, samples, standardised(samples)
 
