@@ -7,7 +7,7 @@ import trimesh
 from haptic_glance.look.channels.channels import CHANNELS, OTHERS
 from haptic_glance.look.glance import samples_of_mesh
 from haptic_glance.look.kernels import pressed
-from haptic_glance.look.points import METHODS, detect, find_points
+from haptic_glance.look.points import METHODS, detect, find_points, saliency
 from haptic_glance.look.points.find import Looked, check_name
 from haptic_glance.look.points.methods import MEANT
 from haptic_glance.look.points.options import Options
@@ -41,6 +41,13 @@ def test_a_name_that_cannot_run_is_answered_with_ours_or_the_reason(name, messag
 @pytest.mark.parametrize("method", ["height", "random"])
 def test_a_whole_number_of_any_type_is_a_count(method):
     assert np.array_equal(find_points(ball_mesh(2), method, 3.0), find_points(ball_mesh(2), method, 3))
+
+
+@pytest.mark.parametrize("method", ["height", "centre_distance"])
+def test_a_vertex_in_no_face_counts_nothing(method):
+    ball = ball_mesh(2)
+    values = saliency(Mesh(np.r_[ball.vertices, [[0, 0, -99.0]]], ball.faces), method)
+    assert values.tolist() == [*saliency(ball, method), 0]
 
 
 def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_list():

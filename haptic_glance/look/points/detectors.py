@@ -235,12 +235,19 @@ def peaks(mesh: Mesh, saliency: np.ndarray, options: Options) -> np.ndarray:
 
 def height(mesh: Mesh) -> np.ndarray:
     """(n,) height of each vertex: people look at the upper part of things."""
-    return mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
+    return _in_faces(mesh, mesh.vertices[:, 2] - mesh.vertices[mesh.used, 2].min(initial=np.inf))
 
 
 def centre_distance(mesh: Mesh) -> np.ndarray:
     """(n,) distance of each vertex to the centre of the bounding sphere."""
-    return np.linalg.norm(mesh.vertices, axis=1)
+    return _in_faces(mesh, np.linalg.norm(mesh.vertices, axis=1))
+
+
+def _in_faces(mesh, values):
+    """The values (n,), 0 for a vertex in no face, which may lie anywhere."""
+    kept = np.zeros(len(values))
+    kept[mesh.used] = values[mesh.used]
+    return kept
 
 
 def facing_viewer(mesh: Mesh) -> np.ndarray:
