@@ -109,7 +109,7 @@ class Looked:
         self, mesh: Mesh, method: str = GLANCE, options: Options | None = None,
         viewpoints: Iterable[Viewpoint] | None = None, up: Axis | None = None,
     ) -> None:  # fmt: skip
-        self.detector, self.viewpoints = method_named(method), viewpoints
+        self.detector, self.viewpoints = method_named(method), _chosen(viewpoints)
         self.options = options or Options(_learned(method, None))
         self.mesh = prepared(mesh, up)
 
@@ -175,12 +175,9 @@ def compute_maps(
 
     renderer: that of haptic_glance.look.views.render; `raster` gives the same bytes on every machine.
     """
-    channels = tuple(channels)
+    channels, viewpoints = tuple(channels), _chosen(viewpoints)
     if not channels:
         return None
-    viewpoints = TWELVE if viewpoints is None else tuple(viewpoints)
-    if not viewpoints:
-        raise ValueError("no viewpoints: give at least one, or None for the twelve of T figure 3.2")
     per_view, masks = [], []
     for viewpoint in viewpoints:
         view = render(mesh, viewpoint, VIEW_SIZE, renderer)
@@ -188,6 +185,13 @@ def compute_maps(
         masks.append(mask_at_size(view.mask, MAP_SIZE))
     maps = {channel: np.stack([maps[channel] for maps in per_view]) for channel in channels}
     return ViewMaps(mesh, viewpoints, maps, np.stack(masks))
+
+
+def _chosen(viewpoints):
+    viewpoints = TWELVE if viewpoints is None else tuple(viewpoints)
+    if not viewpoints:
+        raise ValueError("no viewpoints: give at least one, or None for the twelve of T figure 3.2")
+    return viewpoints
 
 
 def _learned(method, weights):

@@ -38,8 +38,9 @@ class Options:
     def __post_init__(self) -> None:
         if self.selection not in SELECTIONS:
             raise ValueError(f"unknown selection {self.selection!r}: choose one of {', '.join(SELECTIONS)}")
-        if not self.radius > 0 or not self.smoothing >= 0:
-            raise ValueError(f"radius must be positive, smoothing not negative, got {self.radius}, {self.smoothing}")
+        if not (0 < self.radius < np.inf and 0 <= self.smoothing < np.inf):
+            rule = "radius must be positive, smoothing not negative, both finite"
+            raise ValueError(f"{rule}, got {self.radius}, {self.smoothing}")
 
 
 @dataclass(frozen=True)
