@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.look.channels.channels import CHANNELS, OTHERS
-from haptic_glance.look.glance import samples_of_mesh
+from haptic_glance.look.glance import Samples, samples_of_mesh
 from haptic_glance.look.kernels import pressed
 from haptic_glance.look.points import METHODS, detect, find_points, saliency
 from haptic_glance.look.points.find import Looked, check_name
@@ -48,6 +48,11 @@ def test_a_vertex_in_no_face_counts_nothing(method):
     ball = ball_mesh(2)
     values = saliency(Mesh(np.r_[ball.vertices, [[0, 0, -99.0]]], ball.faces), method)
     assert values.tolist() == [*saliency(ball, method), 0]
+
+
+def test_saliency_does_not_pay_for_a_smoothing_that_it_does_not_read(monkeypatch):
+    monkeypatch.setattr(Samples, "smoothed", None)
+    assert saliency(ball_mesh(2), smoothing=1.0).max() == 1
 
 
 def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_list():

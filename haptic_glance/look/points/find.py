@@ -46,7 +46,8 @@ def saliency(
     `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
     weights, the name of a set of weights (haptic_glance.look.weights) or a dict name -> weight, instead of its own.
     viewpoints: Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised
-    mesh (bounding sphere 0.5). Raises ValueError for unknown names or invalid weights.
+    mesh (bounding sphere 0.5). Only methods of conspicuity maps, such as `itti` and `thesis_ssim`, read these two.
+    Raises ValueError for unknown names or invalid weights.
     """
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):

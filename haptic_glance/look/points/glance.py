@@ -66,8 +66,12 @@ class SampledDetector(ABC):
     required_weights: str | None = None
 
     @abstractmethod
-    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
-        """(samples, their values (s,), above 0, and the smooth values (s,) whose peaks are the points)."""
+    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray]:
+        """(samples, their values (s,), above 0)."""
+
+    def _smooth(self, samples: Samples, values: np.ndarray, _options: Options) -> np.ndarray:
+        """(s,) the smooth values whose peaks are the points."""
+        return values
 
     def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
         """(s,) the vertices that stand for the samples."""
@@ -77,14 +81,15 @@ class SampledDetector(ABC):
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
         if not mesh.face_areas.sum() > 0:
             return np.zeros(len(mesh.vertices))
-        samples, values, _ = self._values(mesh, options)
+        samples, values = self._values(mesh, options)
         return _on_vertices(mesh, samples, values)[0]
 
     def seen(self, mesh: Mesh, options: Options) -> Seen | None:
         """The samples and values that `find` uses for every count; None without area."""
         if not mesh.face_areas.sum() > 0:
             return None
-        samples, values, smooth = self._values(mesh, options)
+        samples, values = self._values(mesh, options)
+        smooth = self._smooth(samples, values, options)
         return Seen(samples.points, samples.areas, smooth, self._vertices(mesh, samples),
                     *_on_vertices(mesh, samples, values, smooth))  # fmt: skip
 
@@ -116,11 +121,13 @@ class GlanceDetector(SampledDetector):
         self.required_weights = self._weights = weights  # a key of haptic_glance.look.weights.weights.GLANCES, or DEEP
         self._features = features
 
-    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
+    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray]:
         samples = samples_of_mesh(mesh)
-        density = fixation_density(self._features(mesh, samples), options.learned.weights[self._weights])
+        return samples, fixation_density(self._features(mesh, samples), options.learned.weights[self._weights])
+
+    def _smooth(self, samples: Samples, values: np.ndarray, options: Options) -> np.ndarray:
         # noise moves this less than a mean
-        return samples, density, np.exp(samples.smoothed(np.log(density), options.smoothing))
+        return np.exp(samples.smoothed(np.log(values), options.smoothing))
 
 
 def _on_vertices(mesh, samples, *values):

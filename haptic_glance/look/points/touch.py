@@ -31,7 +31,7 @@ ROUNDING = 1e-6  # smaller differences of skewness, steps and shares are roundin
 class TouchDetector(SampledDetector):
     """Finds places by the surface and the axis that points up, which an array is held by."""
 
-    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
+    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray]:
         samples = samples_of_mesh(mesh)
         places = spread(samples, PLACES)
         axes = sensor_axes(samples.normals[places])
@@ -42,7 +42,7 @@ class TouchDetector(SampledDetector):
         few = replace(
             samples, points=samples.points[places], normals=samples.normals[places], areas=np.full(len(places), area)
         )
-        return few, values, values
+        return few, values
 
     def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
         """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
