@@ -169,7 +169,7 @@ def _placed(scene):
             textured = isinstance(source.visual, TextureVisuals)
             part = source.copy(include_visual=not textured)
             if textured:
-                part.visual = TextureVisuals(source.visual.uv, source.visual.material)
+                part.visual = TextureVisuals(source.visual.uv, source.visual.material)  # type: ignore
                 part.vertex_attributes.update(source.vertex_attributes)
             parts.append(part.apply_transform(transform))
     return parts

@@ -78,7 +78,7 @@ def _fans(content, lines, at, rows, properties, order):
     header = "\n".join(lines) + "\n"
     header = re.sub(r"^element face .*", f"element face {len(face)}", header, flags=re.M)
     header = re.sub(r"^property list \S+ (\S+ vertex_ind)", r"property list uchar \1", header, count=1, flags=re.M)
-    begin = END.search(content).end()
+    begin = END.search(content).end()  # type: ignore
     return b"".join([header.encode("latin-1"), content[begin:at], np.hstack(parts).tobytes(), content[stop:]])
 
 
@@ -86,7 +86,7 @@ def _rows(content, at, rows, number, item, before, after):
     """(where each face begins, its number of corners)."""
 
     def count(at):
-        return int.from_bytes(content[at : at + number.itemsize], ORDERS[number.str[0]])
+        return int.from_bytes(content[at : at + number.itemsize], ORDERS[number.str[0]])  # type: ignore
 
     after += number.itemsize
     size = before + count(at + before) * item + after
