@@ -119,7 +119,8 @@ if __name__ == "__main__":
 # The registered environment ``TouchUntilSure-v0`` hides one of six basic shapes in a random pose. Each
 # touch costs 1, the right name earns 10, and a wrong name costs 10. The planner touches where its belief is expected to
 # gain most. The planner foresees imprints in the pose in which it learned the objects. In an unknown pose it therefore
-# saves few touches on these shapes, and none on six household objects: a learning agent can gain much.
+# saves few touches on these shapes, and none on six household objects. More than half of the episodes end undecided
+# after 30 touches: a learning agent can gain much.
 
 if __name__ == "__main__" and gymnasium:
     task = gymnasium.make("haptic_glance/TouchUntilSure-v0")

@@ -117,7 +117,7 @@ def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _by_value(numbers):
-    """{number: ids (k,) in order} of the places of each of the numbers (n,), in one pass for all of them."""
+    """{number: the places (k,) where it stands, in order} of numbers (n,), in one pass."""
     order = np.argsort(numbers, kind="stable")
     values, starts = np.unique(numbers[order], return_index=True)
     return dict(zip(values.tolist(), np.split(order, starts)[1:], strict=True))

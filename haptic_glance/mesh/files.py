@@ -34,7 +34,7 @@ MeshLike = (
     | tuple[ArrayLike, ArrayLike]
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
-# What the parser cannot read becomes what it can.
+# These functions rewrite a file in a form that the parser reads.
 READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
 PARSERS = {".obj": load_obj, ".ply": load_ply}  # of files whose colours may be of any kind
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)

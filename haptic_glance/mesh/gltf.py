@@ -44,9 +44,9 @@ def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
 
 
 def in_floats(content: bytes) -> bytes:
-    """The bytes of a GLB with its normalised integers as floats (glTF 2.0, section 3.6.2.2), and texture coordinates.
+    """The bytes of a GLB whose normalised integers and texture coordinates are floats (glTF 2.0, section 3.6.2.2).
 
-    The parser takes them for plain integers. What is malformed is left to it.
+    The parser takes normalised integers for plain ones. A malformed file stays as it is: the parser refuses it.
     """
     try:
         start = 20 + int.from_bytes(content[12:16], "little")

@@ -224,9 +224,9 @@ def content_of(material: Mapping[str, Any] | None) -> list[bytes]:
 
 
 def _own(values: Any, kind: type) -> np.ndarray:
-    """A contiguous array of a type that nobody else can write to, and that can be written to itself.
+    """A contiguous, writable copy of the values in a type.
 
-    A read-only array is another type for numba, which would compile all kernels again.
+    The copy of a read-only array is writable, too: numba would compile all kernels again for read-only arrays.
     """
     return np.array(values, dtype=kind, order="C")
 
@@ -239,7 +239,7 @@ def _frozen(values: Any) -> bool:
 
 
 def _whole(name: str, values: Any, kind: type) -> np.ndarray:
-    """As `_own`, of whole numbers, but as they are where nobody can write to them.
+    """Copies whole numbers as `_own` does, and shares an array that nobody can write to.
 
     Raises ValueError for numbers that the type does not hold.
     """

@@ -87,7 +87,7 @@ def test_an_object_that_is_known_is_the_right_one():
         while not task.ended:
             *_, info = task.step(task.planned())
         answers += [info["known"] == info["name"]] if info["known"] else []
-    assert len(answers) >= 4 and all(answers)  # six wrong ones of fifteen where the belief was right on average alone
+    assert len(answers) >= 4 and all(answers)  # three of ten are wrong with the belief that is right on average
 
 
 def test_the_planner_touches_an_untouched_place_where_each_is_near_a_touched_one(task):

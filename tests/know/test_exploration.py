@@ -93,6 +93,13 @@ def test_the_plain_product_is_overconfident_where_touches_share_and_the_calibrat
     assert abs(gaps[True]) < 0.02 and gaps[False] > 0.05
 
 
+@pytest.mark.parametrize(("right", "kept"), [(280, True), (274, False)])  # 285 asked, less 7.5 for chance
+def test_chance_alone_changes_no_calibration(right, kept):
+    truth = (np.arange(300) >= right).astype(int)
+    sequences = np.tile([[[4.0, 0.0]]], (300, 1, 1))  # one touch that says the first object
+    assert (calibrate_to_stop(sequences, truth, 0.95, PLAIN) is PLAIN) == kept
+
+
 def test_a_belief_that_ends_the_touching_is_as_right_as_it_says_where_it_was_not():
     random, truth = np.random.default_rng(0), np.repeat([0, 1], 150)
     signs = np.where(truth == 0, 1.0, -1.0)[:, None, None] * [1.0, -1.0]
