@@ -18,7 +18,7 @@ from haptic_glance.base.opencv import cv2
 
 from .axes import directions
 from .headers import MeshError
-from .mesh import Mesh
+from .mesh import Mesh, whole
 
 LEAST = 50  # points; fewer hold no shape
 MOST = 300_000  # points that a surface is made of; of more, as many are drawn
@@ -31,13 +31,28 @@ FLAT = 1e-3  # of the largest extent: less than this across, all points lie on a
 class Cloud:
     """points (n, 3) f8; normals (n, 3) f8 of unit length, outwards, or None; colors (n, 3) u1 or None.
 
-    sensor: (3,) f8 where all points were seen from, or None where that is not known.
+    sensor: (3,) f8 where all points were seen from, or None where that is not known. Raises ValueError for arrays of
+    other shapes, and for colors that are not whole numbers of 0..255.
     """
 
     points: np.ndarray
     normals: np.ndarray | None = None
     colors: np.ndarray | None = None
     sensor: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        points = np.asarray(self.points, np.float64)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ValueError(f"points must have shape (n, 3), got {points.shape}")
+        object.__setattr__(self, "points", points)
+        for name, shape in (("normals", points.shape), ("colors", points.shape), ("sensor", (3,))):
+            given = getattr(self, name)
+            if given is None:
+                continue
+            values = whole(name, given, np.uint8) if name == "colors" else np.asarray(given, np.float64)
+            if values.shape != shape:
+                raise ValueError(f"{name} must have shape {shape}, got {values.shape}")
+            object.__setattr__(self, name, values)
 
     def part(self, chosen: np.ndarray) -> "Cloud":
         """The Cloud of some points: their ids, or (n,) boolean."""

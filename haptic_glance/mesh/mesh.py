@@ -32,8 +32,8 @@ class Texture:
     materials: tuple[Mapping[str, Any] | None, ...] = ()
 
     def __post_init__(self) -> None:
-        uv, image = _own(self.uv, np.float64), _whole("image", self.image, np.int64)
-        images = tuple(_whole("images", picture, np.uint8) for picture in self.images)
+        uv, image = _own(self.uv, np.float64), whole("image", self.image, np.int64)
+        images = tuple(whole("images", picture, np.uint8) for picture in self.images)
         for picture in images:
             picture.flags.writeable = False  # so that no further Texture of them copies them again
         if uv.ndim != 3 or uv.shape[1:] != (3, 2):
@@ -238,7 +238,7 @@ def _frozen(values: Any) -> bool:
     return values is None or isinstance(values, bytes)
 
 
-def _whole(name: str, values: Any, kind: type) -> np.ndarray:
+def whole(name: str, values: Any, kind: type) -> np.ndarray:
     """Copies whole numbers as `_own` does, and shares an array that nobody can write to.
 
     Raises ValueError for numbers that the type does not hold.

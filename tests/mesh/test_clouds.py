@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -137,6 +138,22 @@ def test_outliers_and_pixels_without_a_reading_change_nothing():
 def test_points_without_a_shape_are_refused(points, reason):
     with pytest.raises(MeshError, match=reason):
         surface_of(Cloud(points))
+
+
+def test_a_cloud_takes_lists_and_says_what_is_wrong_with_them():
+    cloud = Cloud([[0, 0, 1]], [[0, 0, 1]], [[255, 0, 0]], [0, 0, 5])
+    assert [values.dtype.str[1:] for values in (cloud.points, cloud.normals, cloud.colors, cloud.sensor)] == [
+        "f8", "f8", "u1", "f8",
+    ]  # fmt: skip
+    for wrong, reason in (
+        ({"points": [[0, 1]]}, r"points must have shape (n, 3), got (1, 2)"),
+        ({"normals": BALL[0]}, r"normals must have shape (1200, 3), got (3,)"),
+        ({"colors": COLORS[:5]}, r"colors must have shape (1200, 3), got (5, 3)"),
+        ({"colors": COLORS / 255}, "colors must be whole numbers of uint8"),
+        ({"sensor": [0, 5]}, r"sensor must have shape (3,), got (2,)"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(reason)):
+            Cloud(**{"points": BALL, **wrong})
 
 
 @pytest.mark.parametrize(
