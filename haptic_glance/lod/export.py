@@ -215,7 +215,8 @@ def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:
     number = float(match[1])
     if match[2] and not 0 < number < 100:
         raise ValueError(f"{name}={target!r} must lie between 0% and 100%")
-    count = int(total * number / 100) if match[2] else int(number)
+    share = round(total * number / 100, 6)  # 32.3 % of 1000 are 322.99999999999994 in binary fractions
+    count = int(share if match[2] else number)
     if count < 1 and not match[2]:
         raise ValueError(f"{name}={target!r} must be 1 or more")
     return max(count, 1)

@@ -226,7 +226,9 @@ def test_names_of_methods_mean_points_and_a_way(name, method, way):
     assert variant(name) == Variant(name, method, way)
 
 
-@pytest.mark.parametrize(("target", "count"), [("50%", 500), ("12.5%", 125), ("1500", 1500), ("0.01%", 1)])
+@pytest.mark.parametrize(
+    ("target", "count"), [("50%", 500), ("12.5%", 125), ("32.3%", 323), ("32.39%", 323), ("1500", 1500), ("0.01%", 1)]
+)
 def test_targets_mean_face_counts_and_files(target, count):
     assert face_count(target, 1000) == count
     assert file_name("glance", target) == f"glance_{target.replace('%', 'pct')}.npz"
