@@ -257,6 +257,12 @@ def unit(vectors: np.ndarray) -> np.ndarray:
     return np.divide(vectors, length, out=np.zeros_like(vectors, dtype=np.float64), where=length > 0)
 
 
+def bounding_box(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner (3,) of the box around the faces of a mesh."""
+    corners = mesh.vertices[mesh.used]
+    return corners.min(axis=0), corners.max(axis=0)
+
+
 def corner_sum(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """Sums values (m, 3) or (m, 3, d), one per face corner, onto the vertices: (n,) or (n, d)."""
     n = len(mesh.vertices)

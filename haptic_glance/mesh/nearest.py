@@ -10,9 +10,9 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from .kernels.nearest import Grid, bounding_box, cell_boxes, farthest, fill_cells, planes_of, search
+from .kernels.nearest import Grid, cell_boxes, farthest, fill_cells, planes_of, search
 from .kernels.planes import corner_weights
-from .mesh import Mesh
+from .mesh import Mesh, bounding_box
 from .sampling import sample_surface
 
 CELLS_PER_FACE = 4  # a cell is then a little wider than an edge is long; more cells cost more memory than they save
@@ -34,7 +34,7 @@ class SurfaceIndex:
         if len(mesh.faces) == 0:
             raise ValueError("a mesh without faces has no surface to measure")
         self.mesh = mesh = Mesh(mesh.vertices, mesh.faces)  # its own: the caller may edit the arrays of the other
-        low, high = bounding_box(mesh.vertices, mesh.faces)
+        low, high = bounding_box(mesh)
         self.extent = high - low
         self.diagonal = float(np.linalg.norm(self.extent))
         if self.diagonal > MAX_COORDINATE or 0 < self.extent.max() < 1 / MAX_COORDINATE:

@@ -14,11 +14,11 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_table
-from haptic_glance.lod.scene.camera import Placed, Scene, bounds, fly
+from haptic_glance.lod.scene.camera import Placed, Scene, fly
 from haptic_glance.lod.scene.frames import Frames, Plan
 from haptic_glance.lod.scene.pictures import displacement_picture, shaded
 from haptic_glance.lod.task import variant
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, bounding_box
 from stages.engine.run import Rows
 from stages.lod.cell import ObjectInputs, keep_rule
 from stages.salient_points.measure import read_saliency, read_strong_points
@@ -217,7 +217,7 @@ def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> 
     """The settings of each scene: the one that they are of, or as many as they let be drawn at random from `names`."""
     if not settings.random:
         return [settings]
-    boxes = {name: bounds(read_mesh(data / MESH.format(name))) for name in names}
+    boxes = {name: bounding_box(read_mesh(data / MESH.format(name))) for name in names}
     table = read_table(data / SIZES, {"object": str})
     sizes = dict(zip(table["object"], table["size"].astype(float), strict=True))
     return [draw_scene(settings, number, boxes, sizes, seed) for number in range(settings.random)]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.mesh import Mesh, bounding_box, unit
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class Placed:
         if not np.isfinite([*self.position, self.turn, self.size]).all():
             place = f"position {self.position}, turn {self.turn} and size {self.size}"
             raise ValueError(f"{self.name} has {place}: give finite numbers")
-        low, high = bounds(mesh)
+        low, high = bounding_box(mesh)
         if not (high - low).max() > 0:
             raise ValueError(f"{self.name} has no extent: all corners of its faces coincide")
         foot = np.array([*((low + high) / 2)[:2], low[2]])
@@ -186,12 +186,6 @@ class Scene:
                 place = f"{placed.name} at {tuple(placed.position)}"
                 raise ValueError(f"the camera of frame {inside[0]} is inside {place}: move one of them")
         return poses
-
-
-def bounds(mesh: Mesh) -> Box:
-    """(low (3,), high (3,)): the box around the faces of a mesh."""
-    corners = mesh.vertices[np.unique(mesh.faces)]
-    return corners.min(axis=0), corners.max(axis=0)
 
 
 def world_mesh(mesh: Mesh, pose: Pose) -> Mesh:

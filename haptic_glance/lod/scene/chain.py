@@ -8,13 +8,13 @@ import numpy as np
 
 from haptic_glance.base.rng import rng
 from haptic_glance.look.views.shading import corner_groups
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, bounding_box
 from haptic_glance.mesh.nearest import SurfaceIndex
 from haptic_glance.mesh.rays import RayScene
 
 from ..feasibility import InfeasibleTarget, SimplifyError
 from ..simplify import simplify
-from .camera import Box, bounds
+from .camera import Box
 
 STEP = 2**-0.5  # faces of a level over those of the previous one: two levels per halving
 COARSEST = 12  # faces: with fewer, no household object can be recognised
@@ -37,7 +37,7 @@ class Level:
     @cached_property
     def box(self) -> Box:
         """(low (3,), high (3,)): a coarse level may exceed the box of the finest."""
-        return bounds(self.mesh)
+        return bounding_box(self.mesh)
 
     @cached_property
     def rays(self) -> RayScene:

@@ -158,14 +158,6 @@ def _farthest(points, corners, vertices, faces, starts, entries, low, cell, shap
     return square, count
 
 
-def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper corner of the box around all faces."""
-    used = np.zeros(len(vertices), dtype=np.bool_)
-    used[faces] = True
-    corners = vertices[used]
-    return corners.min(axis=0), corners.max(axis=0)
-
-
 def planes_of(vertices: np.ndarray, faces: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The planes (m, 16) of all faces, relative to the corner `low`, and twice their areas (m,)."""
     planes, areas = np.empty((len(faces), NUMBERS)), np.empty(len(faces))
