@@ -13,6 +13,7 @@ from haptic_glance import Mesh, MeshError, as_mesh, clean, find_points, load, pr
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
+from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.studio.mystery import gather
 from haptic_glance.touch.press import as_shown
 
@@ -162,6 +163,13 @@ def test_a_picture_that_many_nodes_share_is_decoded_once(ball, monkeypatch):
     monkeypatch.setattr(Image.Image, "convert", lambda self, *mode: decoded.append(self) or plain(self, *mode))
     mesh = as_mesh(scene)
     assert len(decoded) == 1 and len(mesh.faces) == 960 and [i.shape for i in mesh.texture.images] == [(4, 4, 4)]
+
+
+def test_a_baked_picture_is_multiplied_by_the_factor_beside_it(ball):
+    material = PBRMaterial(baseColorTexture=Image.new("RGB", (2, 2), (200, 100, 50)), baseColorFactor=[51, 255, 0, 255])
+    visual = TextureVisuals(ball.vertices[:, :2], material=material)
+    mesh = as_mesh(trimesh.Scene(trimesh.Trimesh(ball.vertices, ball.faces, visual=visual, process=False)))
+    assert (bake_texture(mesh).colors == [40, 100, 0]).all()
 
 
 def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
