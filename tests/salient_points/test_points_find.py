@@ -199,6 +199,14 @@ def test_random_points_depend_on_seed_name_and_number_of_the_draw_alone(ball):
     assert sorted(find_points(ball, "random", 10**7)) == list(range(len(ball.vertices)))  # more than there are: all
 
 
+@pytest.mark.parametrize("method", ["random", "farthest"])
+def test_methods_without_a_saliency_give_as_many_points_as_asked_for_where_there_are_any(method):
+    parts = [trimesh.creation.icosphere(1, radius=1e-4)] * 2 + [trimesh.Trimesh(np.eye(3), [[0, 1, 2]])]
+    tiny_and_doubled = trimesh.util.concatenate(parts)
+    points = find_points(Mesh(tiny_and_doubled.vertices, tiny_and_doubled.faces), method, 87)
+    assert sorted(points) == list(range(87))
+
+
 def test_a_viewpoint_comes_back_from_its_name():
     for viewpoint in TWELVE:
         turned = dataclasses.replace(viewpoint, roll=-22.5)

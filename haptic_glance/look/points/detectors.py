@@ -143,7 +143,9 @@ class FarthestPoints:
         used = np.flatnonzero(mesh.vertex_normals.any(axis=1))
         positions = mesh.vertices[used].round(9)
         order = used[np.lexsort((*positions.T[::-1], -(positions**2).sum(axis=1)))]
-        return Detection(order[select_far_points(mesh.vertices[order], count)], None, None)
+        far = select_far_points(mesh.vertices[order], count)
+        rest = np.setdiff1d(np.arange(len(order)), far)  # at the positions of others
+        return Detection(order[np.r_[far, rest][:count]], None, None)
 
 
 ROUNDS = 100  # of drawing; only a mesh with hardly more vertices than points asked for needs more than one
@@ -169,7 +171,7 @@ class RandomPoints:
 
 
 def random_vertices(mesh: Mesh, count: int, generator: np.random.Generator) -> np.ndarray:
-    """(k,) distinct vertices; fewer than count only on tiny meshes. Raises ValueError without area."""
+    """(k,) distinct vertices; fewer than count only where no more have a normal. Raises ValueError without area."""
     total, count = mesh.face_areas.sum(), min(count, len(mesh.used))
     if not total > 0:
         raise ValueError("the mesh has no area to draw points from")
@@ -178,8 +180,9 @@ def random_vertices(mesh: Mesh, count: int, generator: np.random.Generator) -> n
         vertices = np.r_[vertices, _draw(mesh, mesh.face_areas / total, 4 * count, generator)]
         vertices = vertices[np.sort(np.unique(vertices, return_index=True)[1])]
         if len(vertices) >= count:
-            break
-    return vertices[:count]
+            return vertices[:count]
+    rest = np.setdiff1d(np.flatnonzero(mesh.vertex_normals.any(axis=1)), vertices)  # of faces too small to be drawn
+    return np.r_[vertices, generator.permutation(rest)][:count]
 
 
 def _draw(mesh, probabilities, size, generator):

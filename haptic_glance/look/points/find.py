@@ -67,13 +67,13 @@ def find_points(
     `find_points(mesh, 10)` gives ten of the default method. purpose: `look`, the default, for the places that
     people look at (method `glance`), or `touch` for those whose imprint by the array, 0.16 units wide, recurs on
     the object (method `touch`); a method of METHODS may be named in its place. count: how many; None gives the
-    peaks past the method's own threshold (T3.2.5 for maps), and only a mesh with fewer vertices gives fewer than
-    asked for. With a count, `glance` visits places in turn, as a gaze does, which stays near a strong place: these
-    need not be the first of the peaks. selection: for methods that select points in each view, `suppression`
-    (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between points, in units of the normalised mesh; it
-    shrinks only where `count` points do not fit. seed and name: for `random` alone, whose draw depends on these two
-    and not on earlier calls. The other arguments are those of `saliency`. Raises ValueError for unknown names, an
-    invalid count, a method beside the purpose `touch`, or `random` or `farthest` without a count.
+    peaks past the method's own threshold (T3.2.5 for maps), and only a mesh with fewer vertices that have a normal
+    gives fewer than asked for. With a count, `glance` visits places in turn, as a gaze does, which stays near a strong
+    place: these need not be the first of the peaks. selection: for methods that select points in each view,
+    `suppression` (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between points, in units of the normalised
+    mesh; it shrinks only where `count` points do not fit. seed and name: for `random` alone, whose draw depends on
+    these two and not on earlier calls. The other arguments are those of `saliency`. Raises ValueError for unknown
+    names, an invalid count, a method beside the purpose `touch`, or `random` or `farthest` without a count.
     """
     return detect(
         mesh, method, count, purpose=purpose, weights=weights, viewpoints=viewpoints, selection=selection,
