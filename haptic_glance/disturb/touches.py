@@ -72,6 +72,10 @@ class Touches:
         """A random generator for one perturbation of this object; draw: the number of the repetition."""
         return rng(self._seed, f"{self.name} {effect} {draw}")
 
+    def skin_seed(self, draw: int) -> int:
+        """The seed of the sensor, the same for all objects; the number of the draw itself for seed 0."""
+        return int(rng(self._seed, f"skin {draw}").integers(2**31)) if self._seed else draw
+
 
 def rotations_about(axis: np.ndarray, degrees: ArrayLike) -> np.ndarray:
     """(..., 3, 3) rotations about unit axes (..., 3) by `degrees` (...,): Rodrigues' formula."""
@@ -205,7 +209,8 @@ def sensor_leaning(touches: Touches, severity: float, draw: int) -> PerturbedTou
 
 
 def _felt(touches, severity, draw, effect):
-    return PerturbedTouches(Skin(**{effect: severity}, seed=draw)(touches.images, touches.name))
+    seed = touches.skin_seed(draw)
+    return PerturbedTouches(Skin(**{effect: severity}, seed=seed)(touches.images, touches.name))
 
 
 noise = partial(_felt, effect="noise")

@@ -49,6 +49,12 @@ def test_a_harsh_severity_changes_what_the_registry_says_and_the_unharmed_one_no
     assert np.array_equal(first.images, other.images) != known.random_draws
 
 
+@pytest.mark.parametrize("name", [name for name in DISTURBING if TOUCH_PERTURBATIONS[name].random_draws])
+def test_a_random_disturbance_depends_on_the_seed(mesh, name):
+    ours, theirs = (TOUCH_PERTURBATIONS[name].apply(touches_of(mesh, seed=seed), HARSH[name], 0) for seed in (0, 1))
+    assert not np.array_equal(ours.images, theirs.images)
+
+
 def test_a_turn_about_the_vertical_moves_places_and_leaves_imprints(touches):
     perturbed = TOUCH_PERTURBATIONS["object_turned"].apply(touches, 90.0, 0)
     upright = np.abs(touches.normals[:, 2]) < 0.95  # at the poles the array's "up" is another
