@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from haptic_glance.base.extras import from_extra
-from haptic_glance.lod import simplify
+from haptic_glance.lod import InfeasibleTarget, simplify, smallest_feasible
 from haptic_glance.look.camera import Viewpoint, pixel_rays
 from haptic_glance.look.views import render
 from haptic_glance.look.views.shading import GREY
@@ -119,7 +119,7 @@ def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> P
 
 ELEVATION = 20.0  # degrees above the horizon: the underside is never seen
 SIZE = 90, 120  # rows, columns: about 85 pixels across an object
-FACES = 10_000  # at most; the reconstruction is finer than the readings
+FACES = 10_000  # at most, but where a sheet has so many holes; the reconstruction is finer than the readings
 NOISE = 0.001  # sigma along the line of sight, share of the diagonal
 
 
@@ -137,9 +137,19 @@ def scan(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturb
     views = [_points_seen(mesh, Viewpoint(float(azimuth), ELEVATION), generator) for azimuth in azimuths]
     points, normals = (np.concatenate(parts) for parts in zip(*views, strict=True))
     surface = surface_of(Cloud(points, normals))
-    surface = simplify(surface, FACES) if len(surface.faces) > FACES else surface
+    surface = _fewer(surface) if len(surface.faces) > FACES else surface
     colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(surface.vertices)[1]]
     return Perturbed(Mesh(surface.vertices, surface.faces, colors), surface.vertices)
+
+
+def _fewer(surface):
+    """FACES of the faces; the border of a thin sheet, which is ragged, is simplified where it needs more."""
+    if smallest_feasible(surface) <= FACES:
+        return simplify(surface, FACES)
+    try:
+        return simplify(surface, FACES, free_borders=True)
+    except InfeasibleTarget as error:  # +1: its last collapse may have removed two faces
+        return simplify(surface, error.smallest + 1, free_borders=True)
 
 
 def _points_seen(mesh, viewpoint, generator):

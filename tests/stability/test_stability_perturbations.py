@@ -5,6 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.base.rng import rng
+from haptic_glance.disturb import mesh as disturbed
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.disturb.perturbed import Conditions
 from haptic_glance.look.camera import Viewpoint
@@ -106,6 +107,16 @@ def test_one_depth_camera_sees_one_side(pear):
     assert 0.3 < single.face_areas.sum() / total < 0.6 < 0.75 < four.face_areas.sum() / total < 1.05
     outwards = np.einsum("ij,ij->i", four.face_normals, four.vertices[four.faces].mean(axis=1))
     assert (outwards > 0).mean() > 0.99
+
+
+@pytest.mark.parametrize("faces", [200, 700])
+def test_a_scanned_plate_may_have_a_ragged_border(faces, monkeypatch):
+    monkeypatch.setattr(disturbed, "SIZE", (30, 40))
+    monkeypatch.setattr(disturbed, "FACES", faces)
+    corners = 0.35 * np.array([[-1.0, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
+    plate = Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+    scanned = apply("scan", plate, 60).mesh
+    assert len(scanned.faces) < 1000 and np.ptp(scanned.vertices[:, [0, 2]], axis=0) == pytest.approx(0.7, abs=0.1)
 
 
 def test_noise_has_the_deviation_asked_for_and_tears_no_seam(pear):
