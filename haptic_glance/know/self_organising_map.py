@@ -37,7 +37,9 @@ class SelfOrganisingMap(TransformerMixin, BaseEstimator):
             np.add.at(sums, self._nearest(samples), samples_and_ones)
             kernel = np.exp(-((axis_positions[:, None] - axis_positions) ** 2) / (2 * width**2))
             smoothed = _smooth_grid(kernel, sums.reshape(*grid.shape[:-1], -1)).reshape(sums.shape)
-            self.neurons_ = smoothed[:, :-1] / np.maximum(smoothed[:, -1:], np.finfo(float).tiny)
+            counts, least = smoothed[:, -1:], np.finfo(float).tiny
+            means = smoothed[:, :-1] / np.maximum(counts, least)
+            self.neurons_ = np.where(counts < least, self.neurons_, means)  # far from any sample weights underflow
         return self
 
     def transform(self, samples: np.ndarray) -> np.ndarray:

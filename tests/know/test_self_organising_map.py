@@ -46,6 +46,12 @@ def test_neighbours_stay_neighbours():
     assert np.ptp(places) > 0.9
 
 
+def test_neurons_far_from_any_sample_stay_between_the_samples():
+    samples = np.r_[np.full((9, 2), 100.0), np.full((9, 2), 101.0)]
+    neurons = SelfOrganisingMap(1).fit(samples).neurons_
+    assert neurons.min() > 99 and neurons.max() < 102
+
+
 def test_map_depends_neither_on_order_nor_on_chance():
     samples, _ = blobs()
     order = np.random.default_rng(1).permutation(len(samples))
