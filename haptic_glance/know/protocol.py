@@ -70,7 +70,7 @@ class Prepared:
         return Answers(predicted, self.seconds + watch.seconds, right)
 
 
-HOLDOUT = 0.25  # T4.2.4
+HOLDOUT = 0.25  # of each object's touches; T4.2.4
 FOLDS = 5  # T4.2.4
 MIN_IMPRINTS = 10  # per object: with two objects a fold then still trains on the 12 samples that PCA needs
 

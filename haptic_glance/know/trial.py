@@ -3,6 +3,7 @@
 import numpy as np
 
 from .belief import calibrate, feature_kernel, log_likelihood, nearest_outcomes, place_kernel
+from .protocol import HOLDOUT
 from .split import Split
 
 LIKELIHOODS = (
@@ -84,7 +85,6 @@ class Trial:
         return predicted.reshape(*shape, self.classes), probabilities.reshape(shape)
 
 
-SHARE = 0.25  # of each object's touches held out, as in T4.2.4
 # Each split by its word in reports/metrics and in the seeds of the random numbers, on which the results depend.
 SPLITS: dict[str, str] = {Split.RANDOM: "anywhere", Split.REGIONS: "apart"}
 
@@ -103,7 +103,7 @@ def split_touches(
     train, test = [], []
     for label in np.unique(truth):
         members = np.flatnonzero(truth == label)
-        count = round(SHARE * len(members))
+        count = round(HOLDOUT * len(members))
         if split == Split.RANDOM:
             held_out, kept = np.split(random.permutation(members), [count])
         else:
