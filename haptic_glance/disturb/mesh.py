@@ -148,8 +148,8 @@ def _fewer(surface):
         return simplify(surface, FACES)
     try:
         return simplify(surface, FACES, free_borders=True)
-    except InfeasibleTarget as error:  # +1: its last collapse may have removed two faces
-        return simplify(surface, error.smallest + 1, free_borders=True)
+    except InfeasibleTarget as error:
+        return simplify(surface, error.smallest, free_borders=True)
 
 
 def _points_seen(mesh, viewpoint, generator):

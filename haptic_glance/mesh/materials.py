@@ -166,10 +166,10 @@ def _placed(scene):
     for transform, name in map(scene.graph.get, scene.graph.nodes_geometry):
         source = scene.geometry[name]
         if isinstance(source, trimesh.Trimesh):
-            textured = isinstance(source.visual, TextureVisuals)
-            part = source.copy(include_visual=not textured)
-            if textured:
-                part.visual = TextureVisuals(source.visual.uv, source.visual.material)  # type: ignore
+            visual = source.visual
+            part = source.copy(include_visual=not isinstance(visual, TextureVisuals))
+            if isinstance(visual, TextureVisuals):
+                part.visual = TextureVisuals(visual.uv, visual.material)
                 part.vertex_attributes.update(source.vertex_attributes)
             parts.append(part.apply_transform(transform))
     return parts
@@ -324,12 +324,6 @@ def coloured(mesh: Mesh, name: str, colours: str, suffix: str = "") -> Mesh:
     return replace(mesh, colors=np.tile(colour, (len(mesh.vertices), 1)))
 
 
-def _tint(material):
-    """(3,) what a picture's colour is multiplied by; a plain colour is in the image already."""
-    factor = (material or {}).get("baseColorFactor") if "baseColorTexture" in (material or {}) else None
-    return np.ones(3) if factor is None else to_rgba(factor)[:3] / 255
-
-
 def bake_texture(mesh: Mesh) -> Mesh:
     """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture.
 
@@ -341,9 +335,6 @@ def bake_texture(mesh: Mesh) -> Mesh:
         return replace(mesh, texture=None)
     texture, ids = mesh.texture, mesh.faces.ravel()
     rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))
-    rgb = (
-        rgb * np.array([_tint(material) for material in texture.materials]).reshape(-1, 3)[np.repeat(texture.image, 3)]
-    )
     count = np.maximum(np.bincount(ids, minlength=len(mesh.vertices)), 1)
     colors = [np.bincount(ids, weights=column, minlength=len(mesh.vertices)) / count for column in rgb.T]
     return replace(mesh, colors=np.rint(np.stack(colors, axis=1)).astype(np.uint8), texture=None)

@@ -63,13 +63,17 @@ class Texture:
         return replace(self, uv=uv)
 
     def sample(self, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
-        """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel."""
+        """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel.
+
+        A picture's colours are multiplied by the `baseColorFactor` beside it, as glTF defines.
+        """
         rgb = np.empty((len(faces), 3), dtype=np.uint8)
         numbers = self.image[faces]
         for number in np.unique(numbers):
             mask, (h, w) = numbers == number, self.images[number].shape[:2]
             across, up = (np.floor(uv[mask] * (w, h)) % (w, h)).astype(np.int64).T  # of any size, before the cast
-            rgb[mask] = self.images[number][h - 1 - up, across, :3]
+            pixels = self.images[number][h - 1 - up, across, :3]
+            rgb[mask] = np.rint(pixels * _factor(self.materials[number]))
         return rgb
 
 
@@ -229,6 +233,14 @@ def _own(values: Any, kind: type) -> np.ndarray:
     The copy of a read-only array is writable, too: numba would compile all kernels again for read-only arrays.
     """
     return np.array(values, dtype=kind, order="C")
+
+
+def _factor(material):
+    """(3,) of a picture's colours; a plain colour, without a picture, is in the image already."""
+    if not material or "baseColorTexture" not in material or material.get("baseColorFactor") is None:
+        return np.ones(3)
+    factor = np.asarray(material["baseColorFactor"])
+    return factor[:3] / (255 if factor.dtype.kind in "iu" else 1)
 
 
 def _frozen(values: Any) -> bool:

@@ -9,7 +9,6 @@ from .headers import MeshError
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"}
 TYPES |= {"float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2"}
 TYPES |= {"int32": "i4", "uint32": "u4", "int64": "i8", "uint64": "u8", "float32": "f4", "float64": "f8"}
-ORDERS = {"<": "little", "=": "little", "|": "little", ">": "big"}
 CORNERS = ("vertex_indices", "vertex_index")
 END = re.compile(rb"end_header\r?\n")
 
@@ -36,7 +35,7 @@ def triangulated(content: bytes) -> bytes:
     for name, rows, properties in _elements(lines):
         lists = [words for words in properties if words[0] == "list"]
         if name == "face" and len(lists) == 1 and lists[0][-1] in CORNERS and rows:
-            return _fans(content, lines, at, rows, properties, order)
+            return _fans(content, lines, end.end(), at, rows, properties, order)
         if lists:  # what follows begins at a place that is not known
             break
         at += rows * sum(np.dtype(TYPES[words[0]]).itemsize for words in properties)
@@ -54,12 +53,12 @@ def _elements(lines):
     return elements
 
 
-def _fans(content, lines, at, rows, properties, order):
+def _fans(content, lines, begin, at, rows, properties, order):
     place = next(i for i, words in enumerate(properties) if words[0] == "list")
     number, ids = (np.dtype(order + TYPES[kind]) for kind in properties[place][1:3])
     sizes = [np.dtype(TYPES[words[0]]).itemsize if words[0] != "list" else 0 for words in properties]
     before, after = sum(sizes[:place]), sum(sizes[place:])
-    starts, corners = _rows(content, at, rows, number, ids.itemsize, before, after)
+    starts, corners = _rows(content, at, rows, "big" if order == ">" else "little", number, ids.itemsize, before, after)
     if (corners == corners[0]).all() and corners[0] in (3, 4):
         return content
     triangles = np.maximum(corners - 2, 0)
@@ -78,15 +77,14 @@ def _fans(content, lines, at, rows, properties, order):
     header = "\n".join(lines) + "\n"
     header = re.sub(r"^element face .*", f"element face {len(face)}", header, flags=re.M)
     header = re.sub(r"^property list \S+ (\S+ vertex_ind)", r"property list uchar \1", header, count=1, flags=re.M)
-    begin = END.search(content).end()  # type: ignore
     return b"".join([header.encode("latin-1"), content[begin:at], np.hstack(parts).tobytes(), content[stop:]])
 
 
-def _rows(content, at, rows, number, item, before, after):
+def _rows(content, at, rows, order, number, item, before, after):
     """(where each face begins, its number of corners)."""
 
     def count(at):
-        return int.from_bytes(content[at : at + number.itemsize], ORDERS[number.str[0]])  # type: ignore
+        return int.from_bytes(content[at : at + number.itemsize], order)
 
     after += number.itemsize
     size = before + count(at + before) * item + after

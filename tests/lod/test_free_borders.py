@@ -1,9 +1,11 @@
 """Borders that are simplified, too: shape and loops stay, and nothing of the hidden faces comes out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from haptic_glance.lod import metro, simplify
+from haptic_glance.lod import InfeasibleTarget, metro, simplify
 from haptic_glance.lod.feasibility import frozen_faces
 from haptic_glance.lod.task import SimplificationTask
 from haptic_glance.lod.topology import NONE, faults, topology
@@ -78,6 +80,16 @@ def test_borders_between_materials_stay_where_the_boundary_is_free():
         bytes(vertex) for vertex in simple.vertices
     }
     assert topology(simple.faces).boundary_edges < topology(mesh.faces).boundary_edges / 2
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_count_that_a_refusal_offers_is_feasible(seed):
+    mesh = sheet(12, height=0.1)
+    holes = np.random.default_rng(seed).random(len(mesh.faces)) < 0.1
+    mesh = replace(mesh, faces=mesh.faces[~holes])
+    with pytest.raises(InfeasibleTarget) as refusal:
+        simplify(mesh, 4, free_borders=True)
+    assert len(simplify(mesh, refusal.value.smallest, free_borders=True).faces) <= refusal.value.smallest < 280
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from haptic_glance import Mesh, MeshError, as_mesh, clean, find_points, load, pr
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
+from haptic_glance.lod import colour_error
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.studio.mystery import gather
 from haptic_glance.touch.press import as_shown
@@ -170,6 +171,7 @@ def test_a_baked_picture_is_multiplied_by_the_factor_beside_it(ball):
     visual = TextureVisuals(ball.vertices[:, :2], material=material)
     mesh = as_mesh(trimesh.Scene(trimesh.Trimesh(ball.vertices, ball.faces, visual=visual, process=False)))
     assert (bake_texture(mesh).colors == [40, 100, 0]).all()
+    assert colour_error(mesh, bake_texture(mesh)) < 1e-9
 
 
 def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
