@@ -4,10 +4,13 @@ Each writer fills a temporary file and moves it into place, so that a file is co
 whole, or refused with the name of its file.
 """
 
+from __future__ import annotations
+
 import csv
 import errno
 import gzip
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -17,19 +20,14 @@ import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from PIL import Image
 
 from haptic_glance.mesh.mesh import Mesh
 
-from .extras import from_extra
-
-if TYPE_CHECKING:
-    import pandas as pd
-import io
-
-from PIL import Image
+from .lazy import pandas as pd
 
 PART = ".part-"  # how the name of a file begins that is not whole yet
 LEVEL = 3  # of zlib: views take a third of the time of its default 6 and 13 % more bytes, maps half and 3 %
@@ -156,7 +154,7 @@ def read_arrays(path: str | Path, prefix: str = "") -> dict[str, np.ndarray]:
             raise ValueError(f"{path} is not a sound .npz file: {' '.join(str(error).split())[:120]}") from None
 
 
-def write_table(path: str | Path, frame: "pd.DataFrame") -> None:
+def write_table(path: str | Path, frame: pd.DataFrame) -> None:
     """Writes a tidy frame to CSV: no index, six significant digits; compressed where the name ends with `.gz`."""
     content = frame.to_csv(index=False, float_format="%.6g", quoting=csv.QUOTE_MINIMAL).encode()
     if Path(path).suffix == ".gz":
@@ -165,14 +163,11 @@ def write_table(path: str | Path, frame: "pd.DataFrame") -> None:
         part.write_bytes(content)
 
 
-def read_table(path: str | Path, dtype: Any = None) -> "pd.DataFrame":
+def read_table(path: str | Path, dtype: Any = None) -> pd.DataFrame:
     """Reads a tidy CSV, compressed or not; ValueError that names it when it is not valid.
 
     dtype: the types of columns that are not to be guessed.
     """
-    with from_extra():
-        import pandas as pd
-
     try:
         with open(path, "rb") as stream:
             packed = "gzip" if Path(path).suffix == ".gz" else None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .jit import kernel_of
-from .opencv import cv2
+from .lazy import cv2
 
 WINDOW = 11  # pixels; Wang et al. 2004, with a Gaussian of sigma 1.5
 SIGMA = 1.5

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 
 from .imprint import PERTURBATIONS, as_shares, check_known, disturb, with_square
 from .perturbed import in_range

@@ -6,8 +6,8 @@ A calibrated belief of 95 % is correct 95 times in a hundred.
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize
 from scipy.special import log_softmax
 
 
@@ -46,7 +46,7 @@ def calibrate(sequences: ArrayLike, truth: ArrayLike, redundancy: bool = True) -
         return -log_belief[np.arange(len(truth)), :, truth].mean()
 
     bounds = [(-4.0, 3.0), (0.0, 1.0 if redundancy else 0.0)]
-    optimum = minimize(loss, [0.0, 0.5 if redundancy else 0.0], bounds=bounds, method="L-BFGS-B").x
+    optimum = scipy.optimize.minimize(loss, [0.0, 0.5 if redundancy else 0.0], bounds=bounds, method="L-BFGS-B").x
     return Calibration(float(np.exp(optimum[0])), float(optimum[1]))
 
 

@@ -11,11 +11,10 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
-import trimesh
-from trimesh import creation
 
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.files import FORMATS, names_of
@@ -286,13 +285,13 @@ def _learned(item: _Named) -> tuple[np.ndarray, np.ndarray]:
 SIZES = ("medium", "small")  # the household set has its basic shapes in three sizes, which `normalise` makes equal
 
 
-PRIMITIVES: dict[str, Callable[[], trimesh.Trimesh]] = {
-    "ball": lambda: creation.icosphere(subdivisions=4),
-    "box": lambda: creation.box((1.0, 0.7, 0.5)),
-    "capsule": lambda: creation.capsule(height=1.0, radius=0.3),
-    "cone": lambda: creation.cone(radius=0.4, height=1.0, sections=64),
-    "cylinder": lambda: creation.cylinder(radius=0.3, height=1.0, sections=64),
-    "torus": lambda: creation.torus(major_radius=1.0, minor_radius=0.35),
+PRIMITIVES: dict[str, Callable[[], "trimesh.Trimesh"]] = {
+    "ball": lambda: trimesh.creation.icosphere(subdivisions=4),
+    "box": lambda: trimesh.creation.box((1.0, 0.7, 0.5)),
+    "capsule": lambda: trimesh.creation.capsule(height=1.0, radius=0.3),
+    "cone": lambda: trimesh.creation.cone(radius=0.4, height=1.0, sections=64),
+    "cylinder": lambda: trimesh.creation.cylinder(radius=0.3, height=1.0, sections=64),
+    "torus": lambda: trimesh.creation.torus(major_radius=1.0, minor_radius=0.35),
 }
 
 

@@ -4,6 +4,8 @@ A face count is absolute or a share of the object's own. Written meshes have the
 textures.
 """
 
+from __future__ import annotations
+
 import argparse
 import io
 import itertools
@@ -16,13 +18,11 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-import trimesh
 from PIL import Image
 from scipy.spatial import KDTree
-from trimesh.visual import TextureVisuals
-from trimesh.visual.material import PBRMaterial
 
 from haptic_glance.base.files import whole_file
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
@@ -165,8 +165,8 @@ def _part(mesh, material, ids, name, carried):
     faces = mesh.faces[ids]
     rows = np.column_stack([faces.ravel(), mesh.texture.uv[ids].reshape(-1, 2)])
     vertices, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    pbr = PBRMaterial(**{"name": name} | material)
-    visual = TextureVisuals(uv=vertices[:, 1:], material=pbr)
+    pbr = trimesh.visual.material.PBRMaterial(**{"name": name} | material)
+    visual = trimesh.visual.TextureVisuals(uv=vertices[:, 1:], material=pbr)
     return _made(mesh, faces.ravel()[first], inverse.reshape(-1, 3), carried, visual=visual)
 
 

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 from haptic_glance.base.similarity import WINDOW, local_moments, ssim_map
 from haptic_glance.look.camera import DISTANCE, VIEW_ANGLE, Viewpoint
 from haptic_glance.look.views import TWELVE, render

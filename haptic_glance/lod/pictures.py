@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
-from trimesh.visual.color import interpolate
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import whole_file
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.look.views import render
 from haptic_glance.mesh import normalise, rotate_to_z_up
@@ -21,7 +21,7 @@ ROWS, FINER = 600, 2  # rows of a picture; drawn twice as fine and averaged
 TOP = 0.98  # quantile of the values at which the colours saturate
 WIRE = np.array([40, 56, 82])
 DOT, RIM, INK = (216, 27, 27), (255, 255, 255), (34, 34, 34)
-VIRIDIS = np.ascontiguousarray(interpolate(np.arange(256.0), "viridis")[:, :3])
+VIRIDIS = np.ascontiguousarray(trimesh.visual.color.interpolate(np.arange(256.0), "viridis")[:, :3])
 OUTER = 12  # pixels: radius of a dot with its rim, and one more
 MARGIN, ARROW, TIP = 20, 45, 8  # pixels: of the arrow that points up
 KINDS = (".jpg", ".png", ".webp")

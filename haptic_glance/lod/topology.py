@@ -6,9 +6,8 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
-import trimesh
-from trimesh.resolvers import FilePathResolver
 
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.mesh.gltf import SUFFIXES, as_glb
 from haptic_glance.mesh.mesh import Mesh, unit
 
@@ -161,7 +160,7 @@ def parts_of(path: Path) -> Parts:
     """The Parts of a file's mesh, as `haptic_glance.mesh.files` joins them; empty unless it is a GLB or .gltf."""
     if path.suffix.lower() not in SUFFIXES:
         return {}
-    content, beside = io.BytesIO(as_glb(path)), FilePathResolver(str(path))
+    content, beside = io.BytesIO(as_glb(path)), trimesh.resolvers.FilePathResolver(str(path))
     loaded = trimesh.load(content, file_type="glb", resolver=beside, process=False, skip_materials=True)
     dumped = loaded.dump() if isinstance(loaded, trimesh.Scene) else []
     parts, start = {}, 0

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import trimesh
 
 from haptic_glance.base.extras import about
 from haptic_glance.base.files import whole_file
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import rotate_to_z_up
 from haptic_glance.mesh.up import with_stated_up

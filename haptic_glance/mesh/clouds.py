@@ -4,17 +4,18 @@ Normals are lines from the neighbours, with the sides from which the points can 
 nothing was seen. Clouds are read from text by numpy, from PCD by pypcd4, from LAS by laspy, from PLY by trimesh.
 """
 
+from __future__ import annotations
+
 import io
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 from scipy.spatial import ConvexHull, KDTree
 
 from haptic_glance.base.extras import from_extra
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2, trimesh
 
 from .axes import directions
 from .headers import MeshError
@@ -54,7 +55,7 @@ class Cloud:
                 raise ValueError(f"{name} must have shape {shape}, got {values.shape}")
             object.__setattr__(self, name, values)
 
-    def part(self, chosen: np.ndarray) -> "Cloud":
+    def part(self, chosen: np.ndarray) -> Cloud:
         """The Cloud of some points: their ids, or (n,) boolean."""
         normals, colors = (None if values is None else values[chosen] for values in (self.normals, self.colors))
         return Cloud(self.points[chosen], normals, colors, self.sensor)

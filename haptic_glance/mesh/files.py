@@ -1,21 +1,22 @@
 """Reads files of meshes, one or a folder: STL, OBJ, PLY, glTF by trimesh, OFF by our own reader, scans by `clouds`."""
 
+from __future__ import annotations
+
 import io
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike
-from trimesh.exchange.obj import load_obj
-from trimesh.exchange.ply import load_ply
-from trimesh.resolvers import FilePathResolver, Resolver
 
 from haptic_glance.base.extras import MissingExtra, about
+from haptic_glance.base.lazy import trimesh
 
 from . import clouds, gltf, obj, ply
 from .axes import AUTO
+from .clouds import Cloud
 from .headers import MeshError, check_header, stated_faces
 from .materials import join_parts, merge_equal_rows, obj_vertices, scale_colors, set_apart, texture_of, vertex_colors
 from .mesh import Mesh
@@ -23,20 +24,12 @@ from .off import read_off
 from .up import UP_OF_FORMAT, stated_up
 from .upright import settled
 
-MeshLike = (
-    Mesh
-    | str
-    | Path
-    | trimesh.Trimesh
-    | trimesh.Scene
-    | trimesh.PointCloud
-    | clouds.Cloud
-    | tuple[ArrayLike, ArrayLike]
+MeshLike: TypeAlias = (
+    "Mesh | str | Path | trimesh.Trimesh | trimesh.Scene | trimesh.PointCloud | Cloud | tuple[ArrayLike, ArrayLike]"
 )
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
 READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
-PARSERS = {".obj": load_obj, ".ply": load_ply}  # of files whose colours may be of any kind
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -67,7 +60,7 @@ def load_unnamed(path: Path) -> Mesh:
     if not path.is_file():
         folder = "is a folder, not a mesh: `haptic-glance gallery` shows all meshes of a folder"
         raise MeshError(folder if path.is_dir() else "no such file")
-    return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
+    return parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)))
 
 
 def as_mesh(source: MeshLike) -> Mesh:
@@ -94,7 +87,7 @@ def as_stated(source: MeshLike) -> Mesh:
 def _converted(source):
     if isinstance(source, trimesh.Scene):
         return join_parts(source, every_colour=True) or _to_mesh(None, False, False)
-    if isinstance(source, clouds.Cloud):
+    if isinstance(source, Cloud):
         return clouds.surface_of(source)
     if isinstance(source, trimesh.Trimesh | trimesh.PointCloud):
         return _to_mesh(source, False, every_colour=True)
@@ -103,7 +96,9 @@ def _converted(source):
     raise TypeError(f"no mesh: a {type(source).__name__}; give a path, a trimesh, (vertices, faces), a Cloud or a Mesh")
 
 
-def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:
+def parse(
+    content: bytes, suffix: str, resolver: trimesh.resolvers.Resolver | None = None, every_colour: bool = False
+) -> Mesh:
     """As `load_as_stated`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, reads no other.
 
     every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture.
@@ -139,7 +134,7 @@ def _parsed(content, suffix, resolver, every_colour):
         if len(faces):
             return _checked(vertices, faces, colors)
         with about("has no faces, so it is read as a point cloud", MeshError):
-            return clouds.surface_of(clouds.Cloud(vertices, colors=colors))
+            return clouds.surface_of(Cloud(vertices, colors=colors))
     if suffix == clouds.DEPTH:
         return clouds.surface_of(clouds.read_depth(content, resolver and resolver.get))
     if suffix in clouds.FORMATS:
@@ -165,9 +160,11 @@ def _parsed(content, suffix, resolver, every_colour):
 
 def _open(content, suffix, resolver, **options):
     stream = io.BytesIO(content)
-    if suffix not in PARSERS:
+    parsers = {".obj": trimesh.exchange.obj.load_obj, ".ply": trimesh.exchange.ply.load_ply}
+    if suffix not in parsers:
         return trimesh.load(stream, file_type=suffix[1:], resolver=resolver, process=False, **options)
-    read = PARSERS[suffix](stream, resolver=resolver, **options)
+    # colours may be of any kind
+    read = parsers[suffix](stream, resolver=resolver, **options)
     parts = list(read["geometry"].values()) if "geometry" in read else [read]
     for part in parts:
         part["process"] = False

@@ -1,5 +1,7 @@
 """A .gltf file as one GLB, so that both have one reader: buffers and pictures beside the file are packed into it."""
 
+from __future__ import annotations
+
 import base64
 import json
 import struct
@@ -8,7 +10,8 @@ from typing import Any
 from urllib.parse import unquote, unquote_to_bytes
 
 import numpy as np
-from trimesh.resolvers import FilePathResolver, Resolver
+
+from haptic_glance.base.lazy import trimesh
 
 from .headers import ABSENT, MeshError, check_extensions
 
@@ -24,10 +27,10 @@ def as_glb(path: Path) -> bytes:
     """The bytes of a GLB or, as one, of a .gltf file; empty for other suffixes. Raises MeshError as `packed`."""
     suffix = path.suffix.lower()
     content = path.read_bytes() if suffix in SUFFIXES else b""
-    return in_floats(packed(content, FilePathResolver(str(path))) if suffix == ".gltf" else content)
+    return in_floats(packed(content, trimesh.resolvers.FilePathResolver(str(path))) if suffix == ".gltf" else content)
 
 
-def packed(content: bytes, resolver: Resolver | None = None) -> bytes:
+def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
     """The bytes of a GLB with what a .gltf file says and refers to (glTF 2.0, sections 3.6.1 and 4.4).
 
     resolver: reads the files beside it; None where there are none. Raises MeshError for what is no glTF, and for a
@@ -82,7 +85,7 @@ def _joined(tree: dict[str, Any], binary: bytearray) -> bytes:
     return head + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
 
 
-def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytearray:
+def _pack(tree: dict[str, Any], resolver: trimesh.resolvers.Resolver | None) -> bytearray:
     """One buffer for all that the tree refers to; the tree refers to that buffer afterwards."""
     check_extensions(tree)
     binary, starts = bytearray(), []
@@ -112,7 +115,7 @@ def _pack(tree: dict[str, Any], resolver: Resolver | None) -> bytearray:
     return binary
 
 
-def _read(uri: str, resolver: Resolver | None) -> bytes | None:
+def _read(uri: str, resolver: trimesh.resolvers.Resolver | None) -> bytes | None:
     """The bytes that a URI stands for; None where they are not at hand."""
     if uri[: len(DATA)].lower() == DATA:
         head, _, body = uri.partition(",")

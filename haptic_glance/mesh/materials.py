@@ -4,6 +4,8 @@ A material shows its colour or its picture of colour: Kd and map_Kd, baseColorFa
 properties of a glTF material are carried along, and their pictures stay undecoded.
 """
 
+from __future__ import annotations
+
 import json
 import zlib
 from contextlib import suppress
@@ -11,16 +13,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import trimesh
 from PIL import Image
-from trimesh.visual import ColorVisuals, TextureVisuals
-from trimesh.visual.color import to_rgba
-from trimesh.visual.material import PBRMaterial, color_image
+
+from haptic_glance.base.lazy import trimesh
 
 from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import MOST_UV, Mesh, Texture, content_of
-
-MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
 
 FACTORS = (
     "name", "baseColorFactor", "metallicFactor", "roughnessFactor", "emissiveFactor", "alphaMode", "alphaCutoff",
@@ -38,7 +36,7 @@ def beside_colour(material: Any) -> dict[str, Any] | None:
     A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image. That of
     colour is True where there is one: it is an image of the Texture.
     """
-    if not isinstance(material, PBRMaterial):
+    if not isinstance(material, trimesh.visual.material.PBRMaterial):
         return None
     properties = {name: getattr(material, name) for name in FACTORS} | {
         name: _file(getattr(material, name)) for name in MAPS
@@ -72,7 +70,7 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
             k: v for k, v in properties.items() if (str(properties.get("name")), k) not in elsewhere
         }
     for material in materials.values():
-        if isinstance(material, PBRMaterial):
+        if isinstance(material, trimesh.visual.material.PBRMaterial):
             for name in MAPS:
                 setattr(material, name, None)
 
@@ -167,9 +165,9 @@ def _placed(scene):
         source = scene.geometry[name]
         if isinstance(source, trimesh.Trimesh):
             visual = source.visual
-            part = source.copy(include_visual=not isinstance(visual, TextureVisuals))
-            if isinstance(visual, TextureVisuals):
-                part.visual = TextureVisuals(visual.uv, visual.material)
+            part = source.copy(include_visual=not isinstance(visual, trimesh.visual.TextureVisuals))
+            if isinstance(visual, trimesh.visual.TextureVisuals):
+                part.visual = trimesh.visual.TextureVisuals(visual.uv, visual.material)
                 part.vertex_attributes.update(source.vertex_attributes)
             parts.append(part.apply_transform(transform))
     return parts
@@ -179,7 +177,9 @@ def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray |
     """(n, 3) u1, or None when the colours are not per vertex. of_faces: else the mean of the faces around a vertex."""
     visual = part.visual
     kinds = ("vertex", "face") if of_faces else ("vertex",)
-    return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind in kinds else None
+    if isinstance(visual, trimesh.visual.ColorVisuals) and visual.kind in kinds:
+        return visual.vertex_colors[:, :3]
+    return None
 
 
 def scale_colors(parts: list[dict[str, Any]]) -> None:
@@ -201,11 +201,11 @@ def _as_picture(part):
     """The part; its colours per vertex become a picture of one row, where it has no other picture."""
     colors, beside = vertex_colors(part), part.vertex_attributes.get("color")
     if colors is None and beside is not None and _image(part).size == 4:  # an OBJ with colours and a plain material
-        colors = to_rgba(beside)[:, :3]
+        colors = trimesh.visual.color.to_rgba(beside)[:, :3]
     if colors is None:
         return part
     uv = np.column_stack([(np.arange(len(colors)) + 0.5) / len(colors), np.full(len(colors), 0.5)])
-    visual = TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
+    visual = trimesh.visual.TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
     return trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
 
 
@@ -259,7 +259,8 @@ def _stated(part):
         return True
     image = getattr(material, "image", None)
     _check_size(image)
-    made_up = image is None or np.array_equal(image.convert("RGBA"), MADE_UP)
+    unread: Any = trimesh.visual.material.color_image()  # what trimesh paints a material with whose file is not there
+    made_up = image is None or np.array_equal(image.convert("RGBA"), unread)
     return not made_up or "kd" in getattr(material, "kwargs", {})
 
 

@@ -1,12 +1,13 @@
 """OBJ files and their materials as people write them, in the form that the parser reads."""
 
+from __future__ import annotations
+
 import codecs
 import re
 from contextlib import suppress
 from pathlib import Path
 
-from trimesh.exchange.obj import parse_mtl
-from trimesh.resolvers import FilePathResolver, Resolver
+from haptic_glance.base.lazy import trimesh
 
 NUMBERED = [b"v"], [b"vt"], [b"vn"], [b"f"]  # the first words of lines of numbers
 NUMBER = r"\s+[-+]?[\d.]+(?:e[-+]?\d+)?(?=\s)"
@@ -34,7 +35,7 @@ class Beside:
     `absent` names the pictures that were not there.
     """
 
-    def __init__(self, folder: Resolver) -> None:
+    def __init__(self, folder: trimesh.resolvers.Resolver) -> None:
         self.folder = folder
         self.file_name = getattr(folder, "file_name", None)
         self.absent: list[str] = []
@@ -53,10 +54,10 @@ class Beside:
 def absent_pictures(path: Path) -> list[str]:
     """The pictures that the materials of an OBJ file name and that are not beside it; none of other files."""
     library = re.search(rb"mtllib([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
-    beside = Beside(FilePathResolver(str(path)))
+    beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
     try:
         text = beside.get(library[1].decode().strip()) if library else b""
     except (OSError, ValueError):
         return []
-    parse_mtl(text, beside)
+    trimesh.exchange.obj.parse_mtl(text, beside)
     return [f"picture {name}, not beside it" for name in dict.fromkeys(beside.absent)]

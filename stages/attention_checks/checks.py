@@ -11,10 +11,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 
 from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.base.lazy import cv2
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.look.agreement import GroundTruth, auc, nss
 from haptic_glance.look.camera import Viewpoint

@@ -7,10 +7,10 @@ data/SET/conspicuity/NAME.npz (maps, mask, viewpoints, channels) and reports/mea
 import functools
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from haptic_glance.base.files import read_mesh, read_table, write_arrays
+from haptic_glance.base.lazy import cv2
 from haptic_glance.look.channels.channels import check_channels, check_symmetry, mask_at_size
 from haptic_glance.look.channels.cropped_view import FILLED, check_background
 from haptic_glance.look.channels.printed import check_formulas

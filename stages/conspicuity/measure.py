@@ -9,10 +9,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from haptic_glance.base.files import read_arrays
+from haptic_glance.base.lazy import cv2
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.look.camera import Viewpoint

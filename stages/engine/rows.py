@@ -4,6 +4,8 @@ Every row has the columns of COMMON; a stage declares the others, with a word on
 unit counts once in an interval: an object with its copies, a class with its objects, an object with its draws.
 """
 
+from __future__ import annotations
+
 import contextlib
 import csv
 import gzip
@@ -13,16 +15,14 @@ import re
 import sys
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from haptic_glance.base.files import read_table, whole_file
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import clock
 from haptic_glance.know.split import Split
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 COMMON = {
     "dataset": "the data set",
@@ -98,7 +98,7 @@ def _empty(value):
     return value is None or value != value  # NaN alone differs from itself
 
 
-def read_rows(path: Path) -> "pd.DataFrame":
+def read_rows(path: Path) -> pd.DataFrame:
     """Reads what write_rows wrote; names stay texts even where they look like numbers.
 
     Raises ValueError that names a column of NEEDED which the file lacks.
@@ -111,10 +111,8 @@ def read_rows(path: Path) -> "pd.DataFrame":
     return rows
 
 
-def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> "pd.DataFrame":
+def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> pd.DataFrame:
     """Some columns of the rows of some metrics; no other is held in memory, and equal texts are one."""
-    import pandas as pd  # not above: most processes of a stage need none, and it takes a quarter of their start
-
     selected = (row for row in rows if row["metric"] in metrics)
     values = ([row.get(name) for name in columns] for row in selected)
     cells = (tuple(sys.intern(value) if isinstance(value, str) else value for value in row) for row in values)
@@ -140,7 +138,7 @@ def unit(item: str) -> str:
     return match[1] if match else item
 
 
-def by_unit(values: "pd.Series") -> "pd.Series":
+def by_unit(values: pd.Series) -> pd.Series:
     """The means of the outermost units of values whose index runs from the outermost level to the innermost.
 
     A level `item` counts by `unit`. Means are taken level by level, from the innermost: a unit with many draws weighs

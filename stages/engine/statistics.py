@@ -8,8 +8,8 @@ from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy import special, stats
 
 from .rows import by_unit
 
@@ -64,7 +64,7 @@ def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: floa
     """The ends of the `interval` of n values, from their mean and the means (r,) of their resamples."""
     tail = (1 + level) / 2
     low, high = np.quantile(resampled, [1 - tail, tail])
-    few = special.stdtrit(n - 1, tail) / special.ndtri(tail) * np.sqrt(n / (n - 1))
+    few = scipy.special.stdtrit(n - 1, tail) / scipy.special.ndtri(tail) * np.sqrt(n / (n - 1))
     widen = few * np.sqrt(1 + n * shared)
     return float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
 
@@ -105,7 +105,7 @@ def discoveries(p_values: ArrayLike, rate: float = 0.05) -> np.ndarray:
     finite = np.isfinite(p_values)
     holds = np.zeros(len(p_values), dtype=bool)
     if finite.any():
-        holds[finite] = stats.false_discovery_control(p_values[finite]) <= rate
+        holds[finite] = scipy.stats.false_discovery_control(p_values[finite]) <= rate
     return holds
 
 
@@ -120,7 +120,7 @@ MOST = 10_000  # units; what needs more is hardly an effect
 
 @cache
 def _quantiles() -> np.ndarray:
-    return stats.t.ppf(0.975, np.arange(1, MOST))
+    return scipy.stats.t.ppf(0.975, np.arange(1, MOST))
 
 
 def needed(spread: float, distance: float, shared: float = 0.0) -> float:
@@ -154,13 +154,13 @@ class Pooled(NamedTuple):
 
     def interval(self, level: float = 0.95) -> tuple[float, float, float]:
         """(mean, low, high), by Student's t."""
-        half = float(stats.t.ppf((1 + level) / 2, self.freedom)) * self.error
+        half = float(scipy.stats.t.ppf((1 + level) / 2, self.freedom)) * self.error
         return self.mean, self.mean - half, self.mean + half
 
     @property
     def p_value(self) -> float:
         """Two-sided, of no effect."""
-        return float(2 * stats.t.sf(abs(self.mean) / self.error, self.freedom))
+        return float(2 * scipy.stats.t.sf(abs(self.mean) / self.error, self.freedom))
 
 
 def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[float]) -> Pooled:
@@ -186,7 +186,7 @@ def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[flo
     error, freedom = weights.sum() ** -0.5, weights.sum() ** 2 / (weights**2 / np.asarray(freedoms)).sum()
     if between > 0 and k > 2:
         error, freedom = error * max(1.0, float(weights @ (effects - mean) ** 2) / (k - 1)) ** 0.5, k - 1
-    shares = between / (between + typical), stats.chi2.sf(q, k - 1)
+    shares = between / (between + typical), scipy.stats.chi2.sf(q, k - 1)
     return Pooled(mean, float(error), float(freedom), between, *map(float, shares))
 
 
@@ -266,7 +266,7 @@ def expanded_levels(units: int) -> tuple[float, float]:
     expanded percentile interval of Hesterberg (What teachers should know about the bootstrap, The American Statistician
     2015), and an end may be censored.
     """
-    tail = float(stats.norm.cdf(np.sqrt(units / (units - 1)) * stats.t.ppf((1 - 0.95) / 2, units - 1)))
+    tail = float(scipy.stats.norm.cdf(np.sqrt(units / (units - 1)) * scipy.stats.t.ppf((1 - 0.95) / 2, units - 1)))
     return tail, 1 - tail
 
 

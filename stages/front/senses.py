@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
-import cv2
 import numpy as np
 from scipy.spatial import KDTree
 
 from haptic_glance.base.files import read_arrays, read_json, read_mesh, write_arrays, write_json
+from haptic_glance.base.lazy import cv2
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know import features
 from haptic_glance.lod import InfeasibleTarget, simplify

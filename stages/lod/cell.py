@@ -11,9 +11,9 @@ from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
-import trimesh
 
 from haptic_glance.base.files import write_mesh
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.lod.errors import metro, surface_errors
 from haptic_glance.lod.export import face_count, file_name

@@ -1,13 +1,15 @@
 """Simplifies all objects of a data set by every method to every target, and summarises the errors for the gate."""
 
+from __future__ import annotations
+
 import functools
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from haptic_glance.base.files import read_arrays, read_mesh, write_table
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.lod.perceptual import take_pictures
 from haptic_glance.look.views import viewpoint_set
 from stages.engine.rows import some_rows

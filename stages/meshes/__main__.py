@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 from haptic_glance.base.files import write_mesh, write_table
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.mesh.headers import MeshError
 from haptic_glance.mesh.materials import COLOURS
@@ -58,8 +59,6 @@ def content_hash(item: MeshFile, colours: str) -> str:
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
-    import pandas as pd  # for the tables at the end; a worker needs none
-
     settings = workspace.settings(Params)
     if settings.source not in SOURCES:
         raise ValueError(f"meshes.source={settings.source!r} is not one of {', '.join(SOURCES)}")

@@ -12,10 +12,10 @@ from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 
 import numpy as np
-from trimesh.resolvers import FilePathResolver
 
 from haptic_glance.base.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
 from haptic_glance.base.files import whole_file
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.mesh.gltf import names_in
 from haptic_glance.mesh.materials import obj_vertices
 
@@ -150,7 +150,7 @@ def files_beside(path: Path) -> dict[str, bytes]:
 
     A file that is not there, or not below the folder of the mesh, is empty.
     """
-    return files_named(path.read_bytes(), path.suffix, FilePathResolver(str(path)).get)
+    return files_named(path.read_bytes(), path.suffix, trimesh.resolvers.FilePathResolver(str(path)).get)
 
 
 def files_named(content: bytes, suffix: str, read: Callable[[str], bytes]) -> dict[str, bytes]:

@@ -5,6 +5,8 @@ reason; `ruined`: it returned a mesh that is not sound, or another mesh on the s
 summary for the gate has repeatability, breaking points and these outcomes.
 """
 
+from __future__ import annotations
+
 import traceback
 import warnings
 from collections import Counter
@@ -14,8 +16,8 @@ from pathlib import Path
 from typing import cast
 
 import numpy as np
-import pandas as pd
 
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.lod import simplify

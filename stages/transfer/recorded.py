@@ -55,12 +55,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from PIL import Image
 from scipy.interpolate import griddata
 
 from haptic_glance.base.files import open_picture
+from haptic_glance.base.lazy import cv2
 from stages.classification.recorded import Grasps, open_root
 from stages.meshes.sources import read_mat
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from haptic_glance.base.files import read_mesh, write_table
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.look.views import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set
 from haptic_glance.look.views.renderer import resolve_renderer
@@ -52,8 +53,6 @@ def seen_rows(name: str, mesh: Mesh) -> Rows:
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
-    import pandas as pd  # for the tables at the end; a worker needs none
-
     settings = workspace.settings(Params)
     viewpoints = viewpoint_set(settings.viewpoints)
     renderer = resolve_renderer(settings.renderer)

@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 from haptic_glance.base.files import read_mesh, write_arrays, write_table
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.look.weights.convexity import convexity
 from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
@@ -55,8 +56,6 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
-    import pandas as pd  # for one table at the end; a worker needs none
-
     settings, meshes = workspace.settings(Params), workspace.settings(MeshesParams)
     check_pixels(settings.svm)
     marks = workspace.root / "data" / "annotations"

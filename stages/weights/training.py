@@ -10,12 +10,14 @@ pixels are similar, so with random folds of pixels a model is tested on neighbou
 difference between the two accuracies measures this leakage.
 """
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from haptic_glance.base.files import read_arrays
+from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.rng import rng
 from haptic_glance.look.agreement import gaze_peaks
 from haptic_glance.look.channels import CHANNELS
@@ -28,9 +30,6 @@ from stages.conspicuity.measure import read_maps
 from stages.engine.run import Rows
 
 from .ground_truth import gts_map, spread_on_surface, visible_points
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SPREAD = 0.025  # of the diagonal: deviation of the Gaussian that spreads gaze and marks over the surface
 MAX_MARKS = 200  # more vertices than this are gaze, whose peaks are the points; fewer are marks, which are the points
@@ -261,15 +260,13 @@ def _validated(features, labels, fold):
 CHOICES = ("gaze", "fixations")  # published weights of GLANCES, or those learned from the data set
 
 
-def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -> "pd.DataFrame":
+def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -> pd.DataFrame:
     """Frame with columns method, channel, weight, left_out.
 
     training_data: dict name -> arrays of collect_training_data, may be empty. chosen: of CHOICES, whether the weights
     of GLANCES are the published ones or learned. Raises ValueError for another choice, or for weights that cannot be
     learned for lack of ground truth.
     """
-    import pandas as pd  # not above: a worker needs none
-
     if chosen not in CHOICES or (chosen == "fixations" and not training_data):
         reason = "" if training_data else "; no object has ground truth to learn from"
         raise ValueError(f"weights.method {chosen!r} is not available: choose {', '.join(CHOICES)}{reason}")
@@ -284,7 +281,7 @@ def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -
     return pd.DataFrame(rows)
 
 
-def weight_rows(table: "pd.DataFrame") -> Rows:
+def weight_rows(table: pd.DataFrame) -> Rows:
     """The table as measurements: `item` is the object left out, empty where the weights are of all objects."""
     renamed = table.rename(columns={"left_out": "item", "weight": "value"})
     return renamed.assign(metric="weight").to_dict("records")  # type: ignore[return-value]  # names of columns are texts

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 

@@ -6,7 +6,7 @@ S - (L + M).
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View

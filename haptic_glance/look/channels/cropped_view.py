@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene

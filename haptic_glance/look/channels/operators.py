@@ -7,7 +7,7 @@ view, since pyrDown keeps the even pixels and pyrUp restores them, so maps do no
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 
 from .kernels import mean_of_other_maxima
 

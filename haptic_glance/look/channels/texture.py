@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View

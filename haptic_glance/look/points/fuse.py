@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from haptic_glance.base.opencv import cv2
+from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..kernels import spaced, suppress

@@ -1,0 +1,23 @@
+"""Large packages are imported with their first use, so that no process waits for one that it does not need."""
+
+import pickle
+import subprocess
+import sys
+
+import pytest
+
+from haptic_glance.base.lazy import pandas, trimesh
+
+
+@pytest.mark.slow
+def test_a_stage_starts_without_packages_that_only_its_end_needs():
+    code = "import sys, stages.lod.__main__ as s; print({'pandas', 'trimesh', 'scipy.stats', 'cv2'} & set(sys.modules))"
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert process.stdout == "set()\n"
+
+
+def test_a_package_that_was_used_goes_to_a_worker_and_comes_back():
+    assert trimesh.Trimesh.__module__ == "trimesh.base"
+    assert pickle.loads(pickle.dumps(trimesh)).visual.material.PBRMaterial is trimesh.visual.material.PBRMaterial
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = pandas.nothing
