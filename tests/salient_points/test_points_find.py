@@ -252,3 +252,12 @@ def test_bad_weights_and_a_channel_without_a_map_are_named(box, ball, make_maps)
     sight = ViewMaps(ball, FOUR, make_maps(ball, np.zeros(3), FOUR, channels=("color", "intensity")))
     with pytest.raises(ValueError, match="no map for orientation"):
         METHODS["itti"].find(ball, sight, Options())
+
+
+@pytest.mark.parametrize("shape", [trimesh.creation.capsule(1, 0.3), trimesh.creation.icosphere(3)])
+def test_places_of_a_symmetric_mesh_depend_neither_on_units_nor_on_the_corner_that_comes_first(shape):
+    mesh = Mesh(shape.vertices * [1, 0.7, 0.5], shape.faces)
+    other = Mesh(mesh.vertices * 1e-3, np.roll(mesh.faces, 1, axis=1))
+    points = find_points(mesh, "glance", 6)
+    assert len(points) == 6 and points.tolist() == find_points(other, "glance", 6).tolist()
+    assert points[:2].tolist() == find_points(mesh, "glance")[:2].tolist()  # the strongest places come first in both

@@ -12,6 +12,7 @@ import numpy as np
 from haptic_glance.mesh.mesh import Mesh
 
 from ..channels.surface import SMOOTHING
+from ..rivals.maxima import rounded
 from ..weights import LearnedWeights
 from .fuse import SelectedPixels, select_by_centroid, select_by_suppression
 
@@ -82,6 +83,7 @@ class HasSaliency(Protocol):
 
 FADING = 0.5  # deviation of the inhibition, in radii
 DIGITS = 6  # of coordinates: smaller differences are rounding
+ROUNDING = 1e-9  # of a value
 TIE = 0.02  # of a value: how far below it another one counts as equal, since noise may have made it lower
 
 
@@ -93,10 +95,11 @@ def visited(points: np.ndarray, values: np.ndarray, radius: float, count: int) -
     on its own slope, not on the rim of a disc cut out, which noise moves. At most `count`, fewer where no value above
     zero is left.
     """
-    remaining = np.maximum(values, 0.0)
+    remaining, places = np.maximum(values, 0.0), rounded(points)
     visits, strength = [], []
     while len(visits) < count and remaining.any():
-        best = int(remaining.argmax())
+        equal = np.flatnonzero(remaining >= (1 - ROUNDING) * remaining.max())
+        best = equal[np.lexsort(places[equal].T[::-1])[-1]]  # as `local_maxima` chooses
         visits.append(best)
         strength.append(remaining[best])
         away = ((points - points[best]) ** 2).sum(axis=1) / radius**2

@@ -13,7 +13,7 @@ from haptic_glance.mesh.mesh import Mesh
 
 NEAREST = 8  # vertices queried first: they rule out nearly all, so that few wide queries remain
 SPACING = 0.05  # of the size, between points of detectors that leave it open, as for 3D-Harris
-DIGITS = 9  # relative to the largest value: smaller differences are rounding, and count as equal
+DIGITS = 9  # relative to the largest value or coordinate: smaller differences are rounding, and count as equal
 
 
 def check_values(mesh: Mesh, values: np.ndarray) -> None:
@@ -34,7 +34,7 @@ def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
         raise ValueError(f"radius must be above 0, in units of the mesh, got {radius}")
     if not levels.any():
         return np.zeros(0, dtype=np.int64)
-    order = np.lexsort((*-mesh.vertices.T[::-1], -levels))
+    order = np.lexsort((*-rounded(mesh.vertices).T[::-1], -levels))
     ranks = np.argsort(order)
     tree = cKDTree(mesh.vertices)
     candidates = _above_nearest(tree, levels, ranks, radius)
@@ -63,12 +63,19 @@ def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     return maxima[values[maxima] >= values[maxima].mean()] if len(maxima) else maxima
 
 
+def rounded(numbers: np.ndarray) -> np.ndarray:
+    """Numbers over the largest absolute one, without their rounding errors; zeros where all are zero.
+
+    Otherwise the units of a mesh would decide between a place and its mirror image.
+    """
+    top = np.abs(numbers).max(initial=0)
+    return np.round(numbers / top, DIGITS) if top > 0 else np.zeros(numbers.shape)
+
+
 def _levels(mesh, values):
     """(n,) values over the largest, without their rounding errors; zero where no value is above zero."""
     check_values(mesh, values)
-    values = np.asarray(values, dtype=np.float64)
-    top = values.max(initial=0)
-    return np.round(values / top, DIGITS) if top > 0 else np.zeros(len(values))
+    return rounded(np.maximum(np.asarray(values, dtype=np.float64), 0))
 
 
 def _above_nearest(tree, levels, ranks, radius):
@@ -88,7 +95,7 @@ def ring_maxima(mesh: Mesh, values: np.ndarray, rings: int) -> np.ndarray:
     levels = _levels(mesh, values)
     if not levels.any():
         return np.zeros(0, dtype=np.int64)
-    order = np.lexsort((*mesh.vertices.T[::-1], levels))
+    order = np.lexsort((*rounded(mesh.vertices).T[::-1], levels))
     ranks = np.argsort(order)
     itself = sparse.identity(len(values), dtype=bool)  # pyright: ignore[reportArgumentType] (scipy has no stub)
     around = (mesh.adjacency + itself).tocsr()
