@@ -61,12 +61,16 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     values["graph"] = {stage: [] for stage in stage_names() if stage != "report"}
     check_section(schema_of("report"), values["report"])
     check_common(values)
+    if not values["sets"]:
+        raise ParamsError(f"sets=[] names no set: write sets=[household], or others of {', '.join(groups()['data'])}")
     for dataset in common["sets"]:
         special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *special])
         values[dataset] = _sections(config, dataset)
         if any("methods" in override for override in overrides):  # what conf/ names exists
             check_methods(values[dataset])
+        if any("targets" in override for override in overrides):
+            check_targets(values[dataset])
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
     values["graph"] = {
@@ -154,6 +158,17 @@ def check_methods(sections: dict[str, Any]) -> None:
                 variant(name) if section == "lod" else method_named(name)
             except ValueError as error:
                 raise ParamsError(f"{section}.methods: {error}") from None
+
+
+def check_targets(sections: dict[str, Any]) -> None:
+    """Raises ParamsError for face counts of levels that are neither a number nor a share."""
+    from haptic_glance.lod.export import face_count
+
+    for target in sections.get("lod", {}).get("targets", []):
+        try:
+            face_count(target, 1)
+        except ValueError as error:
+            raise ParamsError(str(error)) from None
 
 
 def _set_of(override: str) -> str:

@@ -128,6 +128,8 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("salient_points.methods=[glanse]", "salient_points.methods: unknown method 'glanse' (did you mean glance?)"),
         ("lod.methods=[qem,bendng]", "lod.methods: 'bendng': unknown method 'bendng'; methods are qem"),
         ("lod.methods=[qem,glanse-soft]", "(did you mean glance?)"),
+        ("lod.targets=[50%,half]", "lod.targets='half' is not a face count: write one like 1500 or 25%"),
+        ("sets=[]", "sets=[] names no set: write sets=[household]"),
     ],
 )
 def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
@@ -147,6 +149,7 @@ def params():
         ("seed", "many", "'many' is not of type int: give a whole number"),
         ("seed", -1, "negative"),
         ("sets", "folder", "sets: 'folder' is not of type list: write sets=[folder]"),
+        ("sets", "[folder", "write sets=[folder]"),
         ("salient_points.count", "many", "give a whole number"),
         ("lod.samples", 1.5, "give a whole number"),
         ("salient_points.radius", "wide", "give a number"),

@@ -212,7 +212,7 @@ def run(argv: Sequence[str]) -> int:
     options = parser(__doc__ or "").parse_args(argv)
     check_paths(options)
     check_options(options)
-    files, figures = mesh_files(options.mesh), []
+    files, figures, failed = mesh_files(options.mesh), [], []
     for path, name in zip(files, names_of(files), strict=True):
         try:
             with about(path):
@@ -221,10 +221,12 @@ def run(argv: Sequence[str]) -> int:
             if not options.mesh.is_dir():
                 raise
             report(str(error))
+            failed.append(path.name)
     if options.json:
         print(json.dumps(figures))
-    whole = len(figures) == len(files) and all(len(row["levels"]) == len(targets(options)) for row in figures)
-    return 0 if whole else 1
+    if failed:  # their reasons stand far above the last lines
+        report(f"{len(failed)} of {len(files)} are left out: {', '.join(failed)}")
+    return 0 if not failed and all(len(row["levels"]) == len(targets(options)) for row in figures) else 1
 
 
 def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:

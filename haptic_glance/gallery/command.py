@@ -47,7 +47,10 @@ def run(argv: Sequence[str]) -> int:
         raise ValueError(f"--count {options.count}: give 1 or more")
     place = options.meshes.resolve()
     name = place.name if place.is_dir() else place.stem
-    return show("gallery", f"Gallery of {name}", options, options.out or Path(f"{name}_gallery"))
+    out = options.out or Path(f"{name}_gallery")
+    if out.resolve() == (place if place.is_dir() else place.parent):
+        raise ValueError(f"--out {out} is the folder of the meshes: name another one")
+    return show("gallery", f"Gallery of {name}", options, out)
 
 
 def parser(name: str, about: str) -> argparse.ArgumentParser:
@@ -88,6 +91,8 @@ def show(name: str, title: str, options: argparse.Namespace, out: Path) -> int:
             write_text(out / PAGE, build_page(title, exhibits, failures, commands(options), out))
     if exhibits or options.json:
         print(json.dumps(figures(exhibits, failures)) if options.json else listing(exhibits, out))
+    if failures:  # their reasons stand far above the last lines
+        report(name, f"{len(failures)} of {len(files)} are left out: {', '.join(failures)}")
     return 1 if failures else 0
 
 

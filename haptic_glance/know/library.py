@@ -316,7 +316,7 @@ def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], 
         try:
             meshes[name] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
         except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
-            notes.append(f"{path.name}: {error}")
+            notes.append(f"{path.name}: {str(error).removeprefix(f'{path}: ')}")
     return meshes, notes
 
 

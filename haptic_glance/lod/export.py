@@ -218,7 +218,8 @@ def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:
     share = round(total * number / 100, 6)  # 32.3 % of 1000 are 322.99999999999994 in binary fractions
     count = int(share if match[2] else number)
     if count < 1 and not match[2]:
-        raise ValueError(f"{name}={target!r} must be 1 or more")
+        remedy = f"; for a share write {100 * number:g}%" if number else ""
+        raise ValueError(f"{name}={target!r} must be 1 or more{remedy}")
     return max(count, 1)
 
 

@@ -25,7 +25,7 @@ from haptic_glance.mesh.up import add_up
 
 from .specimen import files_at
 
-PORT = 8062
+PORT, MOST_PORT = 8062, 65535
 
 
 def parser() -> argparse.ArgumentParser:
@@ -34,12 +34,19 @@ def parser() -> argparse.ArgumentParser:
     form = argparse.RawDescriptionHelpFormatter
     command = argparse.ArgumentParser("haptic-glance studio", description=first, epilog=rest, formatter_class=form)
     command.add_argument("meshes", metavar="MESH", nargs="*", type=Path, help="a mesh file, or a folder of them")
-    command.add_argument("--port", type=int, default=PORT, help="default %(default)s, or the next free one; 0: any")
+    command.add_argument("--port", type=port, default=PORT, help="default %(default)s, or the next free one; 0: any")
     command.add_argument("--no-browser", action="store_true", help="print the address alone")
     command.add_argument("--mark", metavar="FOLDER", type=Path, help="mark points, to FOLDER/MESH.csv")
     command.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")
     add_up(command)
     return command
+
+
+def port(text: str) -> int:
+    """A port from its number; the server would not end on one out of range."""
+    if not text.isdecimal() or int(text) > MOST_PORT:
+        raise argparse.ArgumentTypeError(f"{text!r}: give a number of 0..{MOST_PORT}")
+    return int(text)
 
 
 def run(argv: Sequence[str]) -> None:

@@ -97,7 +97,7 @@ def check_common(values: dict[str, Any]) -> None:
         raise ParamsError(f"{FILE} lacks the section graph or sets: run `python -m stages.compose` to make it anew")
     for key, kind in COMMON.items():
         if key in values and not isinstance(values[key], kind):
-            remedy = {list: f"write {key}=[{values[key]}]", int: REMEDIES["Integer"]}.get(
+            remedy = {list: f"write {key}=[{str(values[key]).strip('[]')}]", int: REMEDIES["Integer"]}.get(
                 kind, f"give a {kind.__name__}"
             )
             raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}: {remedy}")

@@ -69,6 +69,7 @@ def page_data(page):
 def test_a_broken_file_is_named_and_the_rest_goes_on(whole):
     out, status, page, printed, reported = whole
     assert status == 1 and "broken.obj is left out: " in reported
+    assert reported.splitlines()[-1].endswith("1 of 3 are left out: broken.obj")
     assert re.search(r"Left out:<ul><li>broken.obj: ", page) and "notes" not in page
     assert [item["name"] for item in page_data(page)["objects"]] == ["pear & co", "pear"]
     assert "<h2>pear &amp; co</h2>" in page and printed.count("6 places, 3 levels, 6 imprints") == 2
@@ -210,3 +211,8 @@ def test_the_page_of_a_folder_has_its_whole_name(tmp_path, monkeypatch):
     monkeypatch.setattr(command, "show", lambda name, title, chosen, out: calls.append((title, str(out))))
     run([str(tmp_path / "scans v1.2")])
     assert calls == [("Gallery of scans v1.2", "scans v1.2_gallery")]
+
+
+def test_a_gallery_does_not_go_among_the_meshes(tmp_path):
+    with pytest.raises(ValueError, match="is the folder of the meshes: name another one"):
+        run([str(tmp_path), "--out", f"{tmp_path}/."])

@@ -221,6 +221,7 @@ def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes
     meshes, notes = known_objects(tmp_path)
     assert list(meshes) == ["cubelarge", "mug_large", "mug_small", "small"]
     assert [note.partition(":")[0] for note in notes] == ["broken.stl", "cloud.xyz"]
+    assert str(tmp_path) not in "".join(notes)
     assert np.linalg.norm(meshes["small"].vertices, axis=1).max() == pytest.approx(0.5)
     few, left_out = known_objects(tmp_path, most=1)
     assert not few and len(left_out) == 6  # the first by name is the broken one

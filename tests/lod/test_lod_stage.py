@@ -226,6 +226,11 @@ def test_names_of_methods_mean_points_and_a_way(name, method, way):
     assert variant(name) == Variant(name, method, way)
 
 
+def test_a_share_without_its_sign_is_told_to_have_one():
+    with pytest.raises(ValueError, match="'0.25' must be 1 or more; for a share write 25%"):
+        face_count("0.25", 1000)
+
+
 @pytest.mark.parametrize(
     ("target", "count"), [("50%", 500), ("12.5%", 125), ("32.3%", 323), ("32.39%", 323), ("1500", 1500), ("0.01%", 1)]
 )

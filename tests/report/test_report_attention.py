@@ -11,8 +11,10 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.look.views import TWELVE
 from stages.engine.statistics import interval
 from stages.report import attention, stability
+from stages.report.attention import maps
 from stages.report.attention.claims import against_gaze, agreement, difference, method_text, rivals
 from stages.report.page import pack_viewer
 from stages.report.pareto import attention_seconds
@@ -258,3 +260,9 @@ def test_nested_choices_stand_beside_those_made_once(measure):
     assert judge(claims, results).set_index("key")["verdict"].tolist() == ["supported"]
     with pytest.raises(NotRun):
         table_of("attention_nested", measure("attention_checks", rows.head(1).assign(method="equal")))
+
+
+def test_a_view_that_shows_a_sheet_from_its_edge_is_not_drawn():
+    masks = np.zeros((12, 4, 4), dtype=bool)
+    masks[[3, 7], 1, 1] = True
+    assert maps._nearest(TWELVE, masks, range(12)) in (3, 7)

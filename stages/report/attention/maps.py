@@ -64,7 +64,7 @@ def figure_3_3(results: Results) -> Figure:
 def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
     """Draws one object; returns the share of the regions without colour that stay regions with it."""
     maps, masks, viewpoints, channels = results.maps(name, COMBINATIONS["VisAttAll"])
-    view = _nearest(viewpoints, range(len(viewpoints)))
+    view = _nearest(viewpoints, masks, range(len(viewpoints)))
     mask, part = masks[view], _window(masks[view], square=True)
     render = _render(results.mesh(name), viewpoints[view], mask)[part]
     row[0].imshow(render)
@@ -87,7 +87,8 @@ def figure_3_10(results: Results) -> Figure:
     maps, masks, viewpoints, stored = results.maps(name)
     channels = [channel for channel in CHANNELS if channel in stored]
     answers = (maps.max(axis=(2, 3)) > 0.02).sum(axis=1)  # below it a map shows nothing
-    view = _nearest(viewpoints, np.flatnonzero(answers == answers.max()))
+    answers[~masks.any(axis=(1, 2))] = -1
+    view = _nearest(viewpoints, masks, np.flatnonzero(answers == answers.max()))
     viewpoint, mask, part = viewpoints[view], masks[view], _window(masks[view])
     figure, grid = plt.subplots(2, 5, figsize=(9.6, 4.6))
     grid[0, 0].imshow(_render(results.mesh(name), viewpoint, mask)[part])
@@ -132,7 +133,7 @@ def figure_3_13(results: Results) -> Figure:
     some(machines, f"no SVM was trained for {name}", "weights", runnable=False)
     spots = [visible_points(mesh, ground_truth["points"], viewpoint, masks.shape[1:])[:2] for viewpoint in viewpoints]
     counts = np.array([len(rows) for rows, _ in spots])
-    view = _nearest(viewpoints, np.flatnonzero(counts >= 0.6 * counts.max()))  # such views show points enough
+    view = _nearest(viewpoints, masks, np.flatnonzero(counts >= 0.6 * counts.max()))  # such views show points enough
     mask, part = masks[view], _window(masks[view])
     truth = gts_map(*spots[view], mask) > SALIENT_LEVEL
     figure, grid = plt.subplots(1, 2 + len(machines), figsize=(2.7 * (2 + len(machines)), 2.7))
@@ -157,9 +158,13 @@ def figure_3_13(results: Results) -> Figure:
     return Figure(figure, {"name": name, "right": "; ".join(right)})
 
 
-def _nearest(viewpoints: Sequence[Viewpoint], among: Iterable[int]) -> int:
-    """The view number of `among` that is nearest to the other figures' viewpoint."""
-    return max(among, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])
+def _nearest(viewpoints: Sequence[Viewpoint], masks: np.ndarray, among: Iterable[int]) -> int:
+    """The view number of `among` that is nearest to the other figures' viewpoint.
+
+    Views that show nothing, as of a sheet from its edge, are left out (masks (v, h, w) boolean).
+    """
+    shown = [view for view in among if masks[view].any()]
+    return max(shown, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])
 
 
 def _render(mesh: Mesh, viewpoint: Viewpoint, mask: np.ndarray) -> np.ndarray:
