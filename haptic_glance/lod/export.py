@@ -75,7 +75,7 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
             part.write_bytes(with_stated_up(data, suffix, mesh.up) if name == path.name else data)
 
 
-def check_precision(path: Path, mesh: Mesh) -> None:
+def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, .off)") -> None:
     """Warns where the path's format moves vertices by more than MOST_MOVED of the diagonal; ValueError for infinity."""
     if path.suffix.lower() not in SINGLE or not mesh.diagonal:
         return
@@ -84,7 +84,7 @@ def check_precision(path: Path, mesh: Mesh) -> None:
     if not np.isfinite(moved):
         raise ValueError(f"{path.name}: its coordinates are too large for single precision: scale it, or write .obj")
     if moved > MOST_MOVED * mesh.diagonal:
-        share, remedy = 100 * moved / mesh.diagonal, "move it to the origin, or write text (.obj, .off)"
+        share, remedy = 100 * moved / mesh.diagonal, f"move it to the origin{text}"
         warnings.warn(
             f"{path.name}: single precision moves vertices by {share:.2g} % of the diagonal: {remedy}", stacklevel=3
         )

@@ -53,7 +53,7 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
     check_suffix(path)
     with about(path.name):
         weights = check_weights(mesh, weights).astype(np.float32)
-    check_precision(path, mesh)
+    check_precision(path, mesh, text="")
     with whole_file(path) as part:
         part.write_bytes(WRITERS[path.suffix.lower()](mesh, weights))
 

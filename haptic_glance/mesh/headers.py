@@ -103,8 +103,14 @@ def _stl(content):
 
 
 def stated_faces(content: bytes) -> bytes:
-    """An STL's bytes without those that some programs write behind the faces of a binary one."""
-    return content if _in_words(content) else content[: 84 + 50 * struct.unpack("<I", content[80:84])[0]]
+    """An STL's bytes without those that some programs write behind the faces of a binary one.
+
+    A binary one that states no faces has all that follow: its program did not go back to write their number.
+    """
+    if _in_words(content):
+        return content
+    stated = struct.unpack("<I", content[80:84])[0] or (len(content) - 84) // 50
+    return content[:80] + struct.pack("<I", stated) + content[84 : 84 + 50 * stated]
 
 
 def _in_words(content):

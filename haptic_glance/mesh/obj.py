@@ -18,9 +18,13 @@ OPTION = re.compile(
 
 
 def plain(content: bytes) -> bytes:
-    """An OBJ's bytes without a byte-order mark, tabs, and comments behind numbers."""
+    """An OBJ's bytes without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers."""
     content = content.removeprefix(codecs.BOM_UTF8)  # the parser would miss the first vertex
     content = content.replace(b"\t", b" ") if b"\t" in content else content
+    # a line that ends with a backslash goes on: its numbers would grow together
+    content = (
+        re.sub(rb"(?m)(?<!\\\n)(?<!\\\r\n)^ +", b"", content) if b"\n " in content or content[:1] == b" " else content
+    )
 
     def cut(comment: re.Match[bytes]) -> bytes:
         start = content.rfind(b"\n", 0, comment.start()) + 1

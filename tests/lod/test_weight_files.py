@@ -107,8 +107,11 @@ def test_wrong_files_and_weights_are_named(ball, tmp_path, name, weights, words)
 
 def test_places_that_single_precision_moves_are_warned_of(ball, tmp_path):
     far = replace(ball[0], vertices=ball[0].vertices + 5e6)
-    for write, kind in ((write_any, "ply"), (lambda path, mesh: write_weights(path, mesh, ball[1]), "usda")):
-        with pytest.warns(UserWarning, match=rf"w.{kind}: single precision moves .* or write text \(.obj, .off\)"):
+    for write, kind, text in (
+        (write_any, "ply", r", or write text \(.obj, .off\)"),
+        (lambda path, mesh: write_weights(path, mesh, ball[1]), "usda", "$"),
+    ):
+        with pytest.warns(UserWarning, match=rf"w.{kind}: single precision moves .* move it to the origin{text}"):
             write(tmp_path / f"w.{kind}", far)
         with pytest.raises(ValueError, match=f"v.{kind}: its coordinates are too large for single precision"):
             write(tmp_path / f"v.{kind}", replace(far, vertices=1e45 * far.vertices))

@@ -179,7 +179,17 @@ def test_obj_with_texture_seams_keeps_one_vertex_a_line_and_polygons_become_tria
 
 
 @pytest.mark.parametrize(
-    "old, new", [("", "\ufeff"), (" ", "\t"), ("2 3\n", "2 3 # top\n"), ("0\n", "0 # a vertex\n"), ("f ", "# v\nf ")]
+    "old, new",
+    [
+        ("", "\ufeff"),
+        (" ", "\t"),
+        ("2 3\n", "2 3 # top\n"),
+        ("0\n", "0 # a vertex\n"),
+        ("f ", "# v\nf "),
+        ("f ", "  f "),
+        ("v ", " v "),
+        ("2 3\n", "2\\\n 3\n"),
+    ],
 )
 def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new):
     text = FLAT + "v 0 0 1\nf 1 2 3\nf 1 3 4\n"
@@ -188,6 +198,13 @@ def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new
     mesh = load_as_stated(path)
     assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+def test_a_binary_stl_that_states_no_faces_has_those_that_follow(tmp_path):
+    content = trimesh.creation.box().export(file_type="stl")
+    path = tmp_path / "unfinished.stl"
+    path.write_bytes(content[:80] + bytes(4) + content[84:] + b"end")
+    assert len(load_as_stated(path).faces) == 12
 
 
 def test_non_manifold_faces_stay_and_duplicate_and_degenerate_ones_go_with_a_note(tmp_path):
