@@ -54,7 +54,7 @@ def run(argv: Sequence[str]) -> int:
         "files", nargs="+", metavar="SET/STAGE", help="rows below reports/measurements; KEY=VALUE is a setting of all"
     )
     parser.add_argument("--items", type=int, default=2, metavar="N", help="items of the stage (default: 2)")
-    options = parser.parse_args(argv)
+    options = parser.parse_intermixed_args(argv)
     if options.items < 1:
         raise ValueError(f"--items {options.items}: give 1 or more")
     check_clone()

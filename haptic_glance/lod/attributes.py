@@ -11,7 +11,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.mesh import Mesh, Texture, edge_pairs
 from haptic_glance.mesh.nearest import SurfaceIndex
 from haptic_glance.mesh.rays import barycentric
 
@@ -129,11 +129,7 @@ def _shared_edges(mesh):
     at_tail, at_head = mesh.texture.uv.reshape(-1, 2), np.roll(mesh.texture.uv, -1, axis=1).reshape(-1, 2)
     turned = (tails > heads)[:, None]
     low, high = np.where(turned, at_head, at_tail), np.where(turned, at_tail, at_head)
-    key = np.minimum(tails, heads) * len(mesh.vertices) + np.maximum(tails, heads)
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) > 0])
-    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
-    first, second = order[pairs], order[pairs + 1]
+    first, second = edge_pairs(mesh.faces, len(mesh.vertices))
     jumps = [np.linalg.norm(ends[first] - ends[second], axis=1) for ends in (low, high)]
     return first // 3, second // 3, np.maximum(*jumps)
 

@@ -275,6 +275,19 @@ def bounding_box(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     return corners.min(axis=0), corners.max(axis=0)
 
 
+def edge_pairs(faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(first (e,), second (e,)): the two half-edges of each edge that exactly two faces (m, 3) share, edge by edge.
+
+    Half-edge 3 * face + k runs from corner k of its face to the next one. count: the number of vertices.
+    """
+    tails, heads = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    key = np.minimum(tails, heads) * count + np.maximum(tails, heads)
+    order = np.argsort(key, kind="stable")
+    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
+    pairs = starts[np.diff(starts, append=len(order)) == 2]
+    return order[pairs], order[pairs + 1]
+
+
 def corner_sum(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """Sums values (m, 3) or (m, 3, d), one per face corner, onto the vertices: (n,) or (n, d)."""
     n = len(mesh.vertices)

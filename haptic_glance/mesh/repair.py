@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from .axes import Axis, axis_named, to_z_up
 from .headers import MeshError
-from .mesh import Mesh
+from .mesh import Mesh, edge_pairs
 from .upright import settled
 
 MIN_AREA = 1e-12  # share of the squared diagonal; below it, rays in single precision find no surface
@@ -111,11 +111,7 @@ def _neighbours(mesh):
     """
     tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
     forward = tails < heads
-    edge = np.minimum(tails, heads) * len(mesh.vertices) + np.maximum(tails, heads)
-    order = np.argsort(edge, kind="stable")
-    starts = np.flatnonzero(np.r_[True, np.diff(edge[order]) > 0])
-    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
-    first, second = order[pairs], order[pairs + 1]
+    first, second = edge_pairs(mesh.faces, len(mesh.vertices))
     closed = np.zeros(len(tails), dtype=bool)
     closed[first] = closed[second] = True
     return first // 3, second // 3, forward[first] != forward[second], closed.reshape(-1, 3).all(axis=1)

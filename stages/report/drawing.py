@@ -148,6 +148,7 @@ def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     uncompressed = {"compress_level": 0}  # read again at once
     figure.savefig(buffer, dpi=dpi, bbox_inches="tight", pad_inches=0.12, pil_kwargs=uncompressed)
     plt.close(figure)
+    figure.set_layout_engine("none")  # all has its place now; a chart on the page is drawn again
     with Image.open(buffer) as image:
         few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
     with whole_file(path) as part:

@@ -166,3 +166,11 @@ def test_the_axis_that_points_up_decides_what_is_high(knob):
     assert contributions(turned, top)["rank"][0] < ours["rank"][0] - 0.3
     with pytest.raises(ValueError, match="glance_any_pose"):
         contributions(knob, top, "itti")
+
+
+def test_a_stray_part_far_away_needs_no_picture_of_its_distance():
+    ball, far = ball_mesh(), [[1e6, 0, 0], [1e6, 0.01, 0], [1e6, 0, 0.01]]
+    count = len(ball.vertices)
+    stray = Mesh(np.r_[ball.vertices, far], np.r_[ball.faces, [[count, count + 1, count + 2]]])
+    values = saliency(stray)
+    assert np.isfinite(values).all() and values.max() == 1

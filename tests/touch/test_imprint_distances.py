@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
+from haptic_glance import press, repair
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from haptic_glance.touch import Surface, distances, distances_at, sensor_axes, sensor_normals, touchable
@@ -208,3 +209,15 @@ def test_where_one_part_stands_on_another_its_inside_is_inside_whatever_the_orde
             Mesh(tower.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, max_distance=5.0
         )
         assert np.allclose(lengths, -0.6, atol=1e-15)
+
+
+def test_a_closed_mesh_that_is_inside_out_is_warned_of_and_its_repair_is_not(recwarn):
+    ball = trimesh.creation.icosphere(2, radius=0.5)
+    inside_out = Mesh(ball.vertices, ball.faces[:, ::-1])
+    for faces in (ball.faces, ball.faces[1:, ::-1]):  # an open mesh has no inside
+        Surface(Mesh(ball.vertices, faces))
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match=r"look inwards.*`haptic_glance.repair`"):
+        Surface(inside_out)
+    assert press(repair(inside_out), 0).max() == 1
+    assert not recwarn.list

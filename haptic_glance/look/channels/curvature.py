@@ -5,7 +5,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from haptic_glance.base.weak_cache import weak_cache
-from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.mesh import Mesh, edge_pairs, unit
 
 from ..views import View
 from .surface import surface_conspicuity, visible_surface
@@ -68,11 +68,7 @@ def mean_curvature(mesh: Mesh, smoothing: float = SMOOTHING) -> np.ndarray:
 def _hinges(faces, count):
     """(tail, head, first, second): edges of exactly two faces; `first` runs from tail to head, `second` back."""
     tail, head = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    key = np.minimum(tail, head) * count + np.maximum(tail, head)
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
-    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
-    a, b = order[pairs], order[pairs + 1]
+    a, b = edge_pairs(faces, count)
     opposed = (tail[a] == head[b]) & (tail[a] != head[a])
     a, b = a[opposed], b[opposed]
     return tail[a], head[a], a // 3, b // 3

@@ -8,7 +8,7 @@ were reversed, since objects that are scanned or modelled as thin sheets are see
 import numpy as np
 
 from haptic_glance.mesh.components import graph_components
-from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.mesh import Mesh, edge_pairs, unit
 
 GREY = 204  # of 255, the brightness of the material facing the light; uses most of the 8 bits
 CREASE = 40.0  # degrees between two faces: a prism of nine sides (40) is smooth, the edges of a box are not
@@ -37,13 +37,8 @@ def _next_corner(corners):
 
 def _smooth_pairs(mesh):
     """Opposite half-edges of smooth edges: two arrays of corner numbers 3 * face + corner."""
-    tail = mesh.faces.ravel()
-    head = np.roll(mesh.faces, -1, axis=1).ravel()
-    key = np.minimum(tail, head) * len(mesh.vertices) + np.maximum(tail, head)
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) != 0]) if len(order) else np.zeros(0, dtype=np.int64)
-    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
-    first, second = order[pairs], order[pairs + 1]
+    tail, head = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    first, second = edge_pairs(mesh.faces, len(mesh.vertices))
     normals = mesh.face_normals
     cosine = np.einsum("ij,ij->i", normals[first // 3], normals[second // 3])
     # The cosine of an angle of exactly CREASE may round either way; it counts as smooth.
