@@ -25,9 +25,11 @@ import argparse
 import csv
 import gzip
 import io
+import math
 import re
 import subprocess
 import sys
+import zlib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -62,6 +64,14 @@ def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
     return flat
 
 
+def read_metrics(path: Path) -> dict[str, Any]:
+    """The metrics of a JSON file, nested or not; ValueError that names it where it holds none."""
+    values = read_json(path)
+    if not isinstance(values, dict):
+        raise ValueError(f"{path} is no table of metrics: it needs {{NAME: number}}")
+    return values
+
+
 def measured(workspace: Workspace, folder: Path | None = None) -> dict[str, float]:
     """All metrics of the report and of the switched-on sets, flat: SET.STAGE.NAME. folder: reports/metrics or such."""
     folder = folder or workspace.reports / "metrics"
@@ -70,7 +80,7 @@ def measured(workspace: Workspace, folder: Path | None = None) -> dict[str, floa
         for stage, sets in sections.items():
             if dataset in sets:
                 files[f"{dataset}.{stage}"] = folder / dataset / f"{stage}.json"
-    return flatten({name: read_json(path) for name, path in files.items() if path.exists()})
+    return flatten({name: read_metrics(path) for name, path in files.items() if path.exists()})
 
 
 def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, others: Iterable[str] = ()) -> str:
@@ -80,7 +90,7 @@ def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, other
     """
     if not path.exists():
         raise SystemExit(f"gate: no {path}: --update makes it from the metrics at hand, after a run that you trust")
-    baseline = read_json(path)
+    baseline = flatten(read_metrics(path))
     tolerances.check([*baseline, *metrics, *others])
     moved = compare(metrics, baseline, tolerances)
     if moved:
@@ -94,9 +104,11 @@ def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, other
 
 
 def update(metrics: Mapping[str, float], path: Path) -> str:
-    """Writes the baseline; SystemExit where there are no metrics."""
+    """Writes the baseline; SystemExit where there are no metrics, or where one of them is no finite number."""
     if not metrics:
         raise SystemExit(f"gate: no metrics to write to {path}: run `dvc repro` first")
+    if lost := [name for name, value in metrics.items() if not math.isfinite(value)]:
+        raise SystemExit(f"gate: {', '.join(lost)} of the metrics at hand are no finite numbers: {path} stays as it is")
     write_json(path, dict(metrics))
     return f"gate: {path} written from {len(metrics)} metrics"
 
@@ -130,8 +142,12 @@ def hold_rows(revision: str, root: Path = Path()) -> str:
     present = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob(f"*{SUFFIX}")]
     lines = []
     for name in sorted({*listed, *present}):
-        before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in listed else Counter()
-        after = _rows_of((root / name).read_bytes()) if name in present else Counter()
+        try:
+            before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in listed else Counter()
+            after = _rows_of((root / name).read_bytes()) if name in present else Counter()
+        except (EOFError, OSError, ValueError, csv.Error, zlib.error) as error:  # the other files go on
+            lines.append(f"  {name}: not a valid table ({error})")
+            continue
         old, new = (before - after).total(), (after - before).total()
         if old or new:
             lines.append(f"  {name}: {min(old, new)} rows changed, {max(new - old, 0)} more, {max(old - new, 0)} fewer")
@@ -176,7 +192,7 @@ def run(argv: Sequence[str]) -> None:
     if options.metrics and (options.spread or not options.baseline):
         parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
     if options.metrics:
-        metrics = flatten({file.stem: read_json(file) for file in options.metrics})
+        metrics = flatten({file.stem: read_metrics(file) for file in options.metrics})
         path, rules, others = options.baseline, options.tolerances, []
     else:
         check_clone()

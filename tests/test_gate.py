@@ -87,7 +87,16 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     assert "needs --baseline" in capsys.readouterr().err
     with pytest.raises(SystemExit, match="no metrics to write"):
         gate.update({}, tmp_path / "none.json")
+    with pytest.raises(SystemExit, match="b of the metrics at hand are no finite numbers"):
+        gate.update({"a": 1.0, "b": float("nan")}, tmp_path / "none.json")
     assert not (tmp_path / "none.json").exists()
+    metrics.write_text("[0.9, 10]")
+    with pytest.raises(ValueError, match=r"train.json is no table of metrics: it needs \{NAME: number\}"):
+        gate.run(given)
+    baseline.write_text(json.dumps({"train": {"accuracy": 0.9}}))  # as a project's own metrics are
+    metrics.write_text(json.dumps({"accuracy": 0.9}))
+    gate.run(given)
+    assert "1 metrics within" in capsys.readouterr().out
 
 
 def test_what_moved_with_the_seed_may_move_as_far(workspace, tmp_path, monkeypatch):
@@ -213,3 +222,13 @@ def test_a_file_that_is_gone_and_a_revision_that_is_none_are_named(repository):
         gate.hold_rows("HEAD", root)
     with pytest.raises(SystemExit, match="gate: git ls-tree: .*nowhere"):
         gate.hold_rows("nowhere", root)
+
+
+@pytest.mark.parametrize("cut", [lambda content: content[:40], lambda _: b"hello"], ids=["cut off", "no archive"])
+def test_a_damaged_file_of_rows_is_named_and_the_others_are_compared(repository, cut):
+    root, rows = repository
+    path = root / gate.ROWS / "off/lod.csv.gz"
+    path.write_bytes(cut(path.read_bytes()))
+    write(root, "toys", rows[:-1])
+    with pytest.raises(SystemExit, match=r"(?s)off/lod.csv.gz: not a valid table .*toys/lod.csv.gz: .*1 fewer"):
+        gate.hold_rows("HEAD", root)

@@ -54,7 +54,7 @@ from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
 from haptic_glance.mesh.gltf import as_glb
 from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.obj import absent_pictures
+from haptic_glance.mesh.obj import absent
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
 LEAST_PERCENT = 0.01  # a bare tolerance from here on is more likely one in percent: few want 1 % of the diagonal
@@ -307,7 +307,7 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
 
 def dropped_from(path: Path) -> str:
     """The sentence that names the parts of a file that a Mesh has no place for; empty without such parts."""
-    lost = not_read(as_glb(path)) + absent_pictures(path)
+    lost = not_read(as_glb(path)) + absent(path)
     return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}" if lost else ""
 
 

@@ -55,13 +55,13 @@ class Beside:
     __getitem__ = get
 
 
-def absent_pictures(path: Path) -> list[str]:
-    """The pictures that the materials of an OBJ file name and that are not beside it; none of other files."""
-    library = re.search(rb"mtllib([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
+def absent(path: Path) -> list[str]:
+    """The material file of an OBJ file, or the pictures that it names, that are not beside it; none of other files."""
+    library = re.search(rb"(?m)^[ \t]*mtllib[ \t]([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
     beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
-    try:
-        text = beside.get(library[1].decode().strip()) if library else b""
-    except (OSError, ValueError):
-        return []
-    trimesh.exchange.obj.parse_mtl(text, beside)
-    return [f"picture {name}, not beside it" for name in dict.fromkeys(beside.absent)]
+    kind, text = "materials", b""
+    with suppress(OSError):
+        text = beside.get(library[1].decode(errors="replace").strip()) if library else b""
+        kind = "picture"
+        trimesh.exchange.obj.parse_mtl(text, beside)
+    return [f"{kind} {name}, not beside it" for name in dict.fromkeys(beside.absent)]

@@ -66,7 +66,7 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
                 lambda group: NUMBERS.get(str(group).partition("_")[0])
             )  # four of four_drawn
         share = _beside(results, stage, dataset, all_rows, "commonest_share")
-        reasons = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
+        reasons = (share.fillna(0) > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
         if share.notna().any() and "classifier" in all_rows:  # an older run counted the answers of some trials alone
             narrow = all_rows["classifier"].eq(DEAF) & (all_rows["scaling"] != WIDE if "scaling" in all_rows else True)
             reasons[share.isna() & narrow & all_rows["metric"].eq("accuracy")] = UNKNOWN

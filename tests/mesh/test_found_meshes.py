@@ -151,6 +151,8 @@ def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, 
     assert dropped_from(path) == ""
     (tmp_path / "maps" / "wood 1.png").unlink()
     assert dropped_from(path).endswith(": picture maps/wood 1.png, not beside it")
+    (tmp_path / "a.mtl").unlink()
+    assert dropped_from(path).endswith(": materials a.mtl, not beside it")
 
 
 def test_a_picture_that_many_nodes_share_is_decoded_once(ball, monkeypatch):

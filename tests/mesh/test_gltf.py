@@ -209,12 +209,13 @@ def test_points_and_lines_beside_the_surface_are_named(write):
     assert not_read(as_glb(path)) == ["points", "lines"]
 
 
-def test_morph_targets_are_named_and_sparse_accessors_refused(write):
+def test_morph_targets_and_lights_are_named_and_sparse_accessors_refused(write):
     path = write(embedded)
     tree = json.loads(path.read_text())
     tree["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
+    tree["extensionsUsed"] = ["KHR_lights_punctual"]
     path.write_text(json.dumps(tree))
-    assert not_read(as_glb(path)) == ["morph targets"]
+    assert not_read(as_glb(path)) == ["KHR_lights_punctual", "morph targets"]
     tree["accessors"][0]["sparse"] = {"count": 1}
     path.write_text(json.dumps(tree))
     with pytest.raises(MeshError, match="sparse accessors, which are not read"):
