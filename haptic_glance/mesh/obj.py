@@ -57,7 +57,7 @@ class Beside:
 
 def absent(path: Path) -> list[str]:
     """The material file of an OBJ file, or the pictures that it names, that are not beside it; none of other files."""
-    library = re.search(rb"(?m)^[ \t]*mtllib[ \t]([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
+    library = re.search(rb"(?m)^[ \t]*mtllib\s([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
     beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
     kind, text = "materials", b""
     with suppress(OSError):
