@@ -27,10 +27,13 @@ from stages.engine import cluster  # noqa: E402  # needs that extra
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 300  # seconds, on a machine that does much else
-# In each worker: ends it where it opens a file of the run by its own path, which it should have from elsewhere, and
-# kills the first worker that begins to write a file of some suffix.
+# In each worker: a stage's code is one file, since a digest of all takes seconds; ends the worker where it opens a file
+# of the run by its own path, which it should have from elsewhere, and kills the first that begins to write a file of
+# some suffix.
 PRELOADED = """
 import os, signal, sys
+from stages.engine import code
+code.imported_files = lambda path: set()
 def look(event, arguments):
     path = str(arguments[0]) if event == "open" else ""
     if path.startswith(os.environ["FORBIDDEN"]):
@@ -116,6 +119,7 @@ def machines(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_lost_workers_change_no_byte_and_what_ends_a_run_is_named(machines, tmp_path, monkeypatch):
     """One worker is killed in the middle of an object; no worker can see the run's folder."""
+    monkeypatch.setattr("stages.engine.code.imported_files", lambda path: set())
     answers = list(finished(lambda task, folder: os.getpid(), [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
     assert answers[0][1] in [process.pid for process in machines]
     with monkeypatch.context() as patch:
