@@ -17,6 +17,7 @@ from haptic_glance.look.views import TWELVE, gl
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from stages import compose
+from stages.engine import run
 from stages.engine.settings import Workspace
 
 SIZE = (75, 100)
@@ -56,6 +57,14 @@ def spot():
 @pytest.fixture(scope="session")
 def sight(ball, spot):
     return ViewMaps(ball, TWELVE, spot_maps(ball, spot))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def code_of_stages_by_name():
+    """A digest of all that a stage imports takes seconds; tests/test_architecture.py tests it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "stage_digest", str)
+        yield
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import shutil
 import sys
 from html import unescape
 from pathlib import Path
@@ -17,6 +16,7 @@ import yaml
 from haptic_glance.base.files import write_text
 from stages.compose import compose
 from stages.engine import statistics
+from stages.engine.settings import load_params
 from stages.report import items, reuse
 from stages.report.__main__ import write_report
 from stages.report.claims_page import sets_read
@@ -49,6 +49,14 @@ def note(event, arguments):
 
 
 sys.addaudithook(note)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def code_unread():
+    """What the topics import takes as long to find as all that they write."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reuse, "files_behind", sorted)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -224,7 +232,8 @@ def test_a_second_run_builds_only_what_was_touched_and_gives_equal_bytes(damaged
 def test_equal_runs_give_equal_bytes_with_any_number_of_workers(own, small):
     files = sorted(path for path in own.reports.rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
-    shutil.rmtree(own.workspace.build / reuse.FOLDER)
+    for part in sorted((own.workspace.build / reuse.FOLDER).iterdir())[::3]:  # of all kinds and most topics
+        part.unlink()
     params = own.workspace.root / "params.yaml"
     params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
     write_report(small.results(own.workspace.root))
@@ -291,7 +300,12 @@ def test_the_command_of_a_claim_switches_its_stage_on(small, compose_once):
         assert set().union(*targets.values()) == {f"{stage}@{name}" for name in sets}, (stage, sets)
         for override, names in targets.items():
             switched.setdefault(override, set()).update(names)
-    kinds = [next(option for option in switched if option.startswith(start)) for start in ("experiment=", "sets=")]
-    for override in ["", *kinds]:
-        graph = compose([override] if override else [])["graph"]
+    chosen = {"": load_params(ROOT / "params.yaml")}  # which tests/test_compose.py holds against what is composed
+    for start in ("experiment=", "sets="):
+        fewest = min(
+            (option for option in switched if option.startswith(start)), key=lambda option: len(switched[option])
+        )
+        chosen[fewest] = compose([fewest])
+    for override, values in chosen.items():
+        graph = values["graph"]
         assert all(name.partition("@")[2] in graph[name.partition("@")[0]] for name in switched[override]), override
