@@ -8,10 +8,10 @@ import time
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from haptic_glance import first_run
 from haptic_glance.base.kept import cache_folder, claim, is_kept, kept_in, marker
-from haptic_glance.gallery.demo import sample
 
 fcntl = pytest.importorskip("fcntl")
 
@@ -163,7 +163,8 @@ def test_the_kernels_of_a_list_are_just_those_of_its_command(command, tmp_path):
         copy.mkdir(parents=True, exist_ok=True)
         for kept in folder.glob(f"{Path(file).name}.{name}-*"):
             shutil.copy(kept, copy)
-    mesh = [] if command == "demo" else [str(sample())]
+    mesh = [] if command == "demo" else [str(tmp_path / "ball.ply")]
+    trimesh.creation.icosphere(3).export(tmp_path / "ball.ply")
     levels = ["--levels", "50%,10%"] if command == "simplify" else []
     printed = in_process(ASKED, tmp_path, command, *mesh, *levels, "--out", str(tmp_path / "out"))
     assert printed.splitlines()[-1] == "set()"
