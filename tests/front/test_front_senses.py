@@ -6,12 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from omegaconf import OmegaConf
 
 from haptic_glance.base.files import write_mesh, write_text
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
+from stages import compose
 from stages.engine.rows import read_rows
 from stages.front import senses as module
+from stages.front import space
 from stages.front.senses import Senses
 from stages.front.space import SPACE, WHOLE, choice_of
 
@@ -27,6 +30,21 @@ def shape(number):
     random = np.random.default_rng(number)
     bumps = np.exp(-20 * (1 - ball.vertices @ random.normal(size=(3, 4)) / 2) ** 2).sum(axis=1)
     return normalise(Mesh(ball.vertices * (1 + 0.3 * bumps[:, None]) * random.uniform(0.6, 1, 3), ball.faces))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def settings_by_classifier():
+    """One composition a classifier: tests/front/test_front_space.py has one a choice."""
+
+    def composed(overrides):
+        _, classifier, *values = overrides
+        chosen = OmegaConf.merge(compose.composed(["data=household", classifier]), OmegaConf.from_dotlist(values))
+        return {"household": OmegaConf.to_container(chosen)}
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(space, "compose", composed)
+        yield
+    space.settings_of.cache_clear()
 
 
 @pytest.fixture
@@ -68,13 +86,13 @@ def test_parts_that_cannot_be_so_coarse_keep_the_fewest_faces_they_can(tmp_path)
 def test_a_tiny_study_leaves_rows_that_a_second_call_finds_done(tmp_path, monkeypatch, capsys):
     pytest.importorskip("optuna", reason="pip install 'haptic-glance[front]'")
     from stages.front import __main__ as command
-    from stages.front import search, space
-    from stages.front import search as halving
+    from stages.front import search
     from stages.front.known import Effort
 
     few = {name: tuple(option for option in options if option in (SMALL[name], "harris", 3, "svm"))
            for name, options in SPACE.items()}  # fmt: skip
-    efforts = {name: Effort(shapes=6, sixes=1, regions=1, folds=2) for name in halving.RUNGS}
+    efforts = {name: Effort(shapes=6, sixes=1, regions=1, folds=2) for name in search.RUNGS}
+    monkeypatch.setattr(command, "stage_digest", str)
     for part in (space, search):
         monkeypatch.setattr(part, "SPACE", few)
         monkeypatch.setattr(part, "DEFAULT", choice_of(SMALL | {"method": "farthest"}))
