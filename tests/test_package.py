@@ -71,6 +71,24 @@ def run_command(*arguments, before="", **options):
     return python(f"{before}\nfrom haptic_glance.__main__ import main\nmain()", *arguments, **options)
 
 
+RULE = "=========\n"
+
+
+def run_all(*lines):
+    """The finished process that runs these commands in turn in a core install, with a RULE between what they print."""
+    code = f"""{CORE}
+from haptic_glance.__main__ import run
+for number, (name, *given) in enumerate({[[*map(str, line)] for line in lines]!r}):
+    for stream in (sys.stdout, sys.stderr):
+        print({RULE!r} if number else "", end="", file=stream, flush=True)
+    try:
+        run(name, given)
+    except SystemExit as ended:
+        assert not ended.code
+"""
+    return python(code)
+
+
 def distributions(requirements):
     """Their names as packages_distributions() has them, in lower case with dashes."""
     return {normalised(re.split(r"[^\w.-]", text)[0]) for text in requirements}
@@ -125,22 +143,23 @@ def test_the_studio_needs_no_picture_table_or_learner(ball):
 
 @pytest.mark.slow
 def test_the_commands_do_their_work_in_a_core_install(ball):
-    process = run_command("simplify", ball, "--faces", 200, "--out", ball.with_suffix(".ply"), before=CORE)
-    assert process.returncode == 0 and ball.with_suffix(".ply").exists(), process.stderr
-    measures = [line.split() for line in process.stdout.splitlines() if "SSIM" in line or "pyramid" in line]
-    assert len(measures) == 3 and all(words[-3:] == ["-", "-", "-"] for words in measures)
-    assert process.stderr.count("which is not installed: pip install '.[pictures]'\n") == 1
-
     written = [ball.with_suffix(suffix) for suffix in (".glb", ".csv", ".png")]
     options = [word for pair in zip(("--out", "--points", "--picture"), written, strict=True) for word in pair]
-    process = run_command("saliency", ball, *options, before=CORE)
-    assert process.returncode == 0 and all(path.exists() for path in written), process.stderr
-    assert process.stdout.startswith("rank,vertex,x,y,z,score")
-
-    process = run_command("touch", ball, "--at", "0,0,0.5", "--up", "z", "--out", ball.parent / "out", before=CORE)
-    assert process.returncode == 0, process.stderr
+    process = run_all(
+        ("simplify", ball, "--faces", 200, "--out", ball.with_suffix(".ply")),
+        ("saliency", ball, *options),
+        ("touch", ball, "--at", "0,0,0.5", "--up", "z", "--out", ball.parent / "out"),
+    )
+    assert process.returncode == 0 and all(path.exists() for path in (*written, ball.with_suffix(".ply"))), (
+        process.stderr
+    )
+    (simplified, salient, _), (said, _, of_touch) = (text.split(RULE) for text in (process.stdout, process.stderr))
+    measures = [line.split() for line in simplified.splitlines() if "SSIM" in line or "pyramid" in line]
+    assert len(measures) == 3 and all(words[-3:] == ["-", "-", "-"] for words in measures)
+    assert said.count("which is not installed: pip install '.[pictures]'\n") == 1
+    assert salient.startswith("rank,vertex,x,y,z,score")
     assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "places.csv"}
-    (line,) = (line for line in process.stderr.splitlines() if "imprints.png" in line)
+    (line,) = (line for line in of_touch.splitlines() if "imprints.png" in line)
     assert line.endswith("by matplotlib, which is not installed: pip install '.[pictures]'")
 
 
@@ -212,17 +231,8 @@ def test_an_unknown_command_is_named_with_one_like_it_and_none_at_all_shows_the_
 
 @pytest.mark.slow
 def test_every_command_shows_its_name_examples_and_json_in_a_core_install():
-    code = """
-from haptic_glance.__main__ import OWN, run
-for name in OWN:
-    print("=" * 9)
-    try:
-        run(name, ["--help"])
-    except SystemExit:
-        pass
-"""
-    process = python(CORE + code)
-    texts = dict(zip(command.OWN, process.stdout.split("=========\n")[1:], strict=True))
+    process = run_all(*((name, "--help") for name in command.OWN))
+    texts = dict(zip(command.OWN, process.stdout.split(RULE), strict=True))
     for name, text in texts.items():
         assert text.startswith(f"usage: haptic-glance {name} ")
         assert f"  haptic-glance {name} " in text.partition("examples:")[2]
