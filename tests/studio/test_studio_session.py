@@ -109,7 +109,9 @@ ON_THREADS = """
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from haptic_glance.look.points import find
 from haptic_glance.studio.specimen import open_file
+find.VIEW_SIZE = 225, 300
 specimen = open_file(Path(sys.argv[1]))
 with ThreadPoolExecutor(2) as pool:
     for look in pool.map(lambda count: specimen.look("itti", count), (2, 3)):
