@@ -27,5 +27,6 @@ def test_its_head_is_in_front():
 @pytest.mark.slow
 def test_the_script_makes_it():
     pytest.importorskip("skimage")
-    made = runpy.run_path(str(sample().with_name("make.py")))["dromedary"]()
-    assert metro(made, load(sample()), samples=2000)["mean"] < 1e-3
+    make = runpy.run_path(str(sample().with_name("make.py")))["dromedary"]
+    make.__globals__["CELL"] *= 2  # an eighth of the cells: the surface moves by a sixth of what is allowed
+    assert metro(make(), load(sample()), samples=2000)["mean"] < 1e-3
