@@ -28,5 +28,5 @@ def test_its_head_is_in_front():
 def test_the_script_makes_it():
     pytest.importorskip("skimage")
     make = runpy.run_path(str(sample().with_name("make.py")))["dromedary"]
-    make.__globals__["CELL"] *= 2  # an eighth of the cells: the surface moves by a sixth of what is allowed
-    assert metro(make(), load(sample()), samples=2000)["mean"] < 1e-3
+    make.__globals__["CELL"] *= 2  # an eighth of the cells: the surface moves by a third of what is allowed
+    assert metro(make(), load(sample()), samples=2000)["mean"] < 5e-4
