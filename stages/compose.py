@@ -54,6 +54,7 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     stage the sets that it runs on; for stages that begin with files, what tells DVC that these have changed. Raises
     ParamsError that names the nearest right name, and for a set whose files are not there.
     """
+    _check_names(overrides)
     overrides = [quoted(override) for override in overrides]
     general = [override for override in overrides if not _set_of(override)]
     common = composed(general)
@@ -61,14 +62,17 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     values["graph"] = {stage: [] for stage in stage_names() if stage != "report"}
     check_section(schema_of("report"), values["report"])
     check_common(values)
-    if not values["sets"]:
-        raise ParamsError(f"sets=[] names no set: write sets=[household], or others of {', '.join(groups()['data'])}")
+    _check_run(values)
+    for override in overrides:
+        if (dataset := _set_of(override)) not in ("", *values["sets"]):
+            on = ",".join([*values["sets"], dataset])
+            raise ParamsError(f"{override}: {dataset} is not switched on: add 'sets=[{on}]'")
     for dataset in common["sets"]:
         special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *special])
         values[dataset] = _sections(config, dataset)
-        if any("methods" in override for override in overrides):  # what conf/ names exists
-            check_methods(values[dataset])
+        if any(word in override for override in overrides for word in ("methods", "classifiers", "channels")):
+            check_methods(values[dataset])  # what conf/ names exists
         if any("targets" in override for override in overrides):
             check_targets(values[dataset])
         for stage in config["stages"]:
@@ -147,9 +151,34 @@ def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
     return sections
 
 
+def _check_names(overrides: Sequence[str]) -> None:
+    """Raises ParamsError for an override without a name, and for one that adds to no section."""
+    for override in overrides:
+        name = override.partition("=")[0].lstrip("+~")
+        if not name:
+            raise ParamsError(f"{override!r} has no name: write group=option or section.key=value")
+        if override.startswith("+") and not _set_of(name) and name.partition(".")[0] not in composed([]):
+            raise ParamsError(f"unknown setting {override}: {_near(name, list(composed([])))}")
+
+
+def _check_run(values: dict[str, Any]) -> None:
+    """Raises ParamsError for sets, workers or a folder of results that no run can have."""
+    sets, workers = values["sets"], values["parallel"].get("workers", -1)
+    if not sets:
+        raise ParamsError(f"sets=[] names no set: write sets=[household], or others of {', '.join(groups()['data'])}")
+    if twice := [name for name in dict.fromkeys(sets) if sets.count(name) > 1]:
+        raise ParamsError(f"sets=[{','.join(sets)}] names {', '.join(twice)} twice")
+    if workers != -1 and workers < 1:
+        raise ParamsError(f"parallel.workers={workers} must be 1 or more, or -1 for one a core")
+    if values["out"] and (Path(values["out"]).is_file() or Path(values["out"]) == Path("/")):
+        raise ParamsError(f"out={values['out']} is no folder for results: write out=runs/NAME")
+
+
 def check_methods(sections: dict[str, Any]) -> None:
-    """Raises ParamsError with the nearest name for an unknown method of salient points in one of the sections."""
+    """Raises ParamsError with the nearest name for an unknown method, classifier or channel in one of the sections."""
+    from haptic_glance.know.classifiers import CLASSIFIERS
     from haptic_glance.lod.task import variant  # seconds, which most compositions need not
+    from haptic_glance.look.channels import CHANNELS
     from haptic_glance.look.points.methods import method_named
 
     for section in ("salient_points", "stability", "imprints", "exploration", "lod"):
@@ -158,6 +187,12 @@ def check_methods(sections: dict[str, Any]) -> None:
                 variant(name) if section == "lod" else method_named(name)
             except ValueError as error:
                 raise ParamsError(f"{section}.methods: {error}") from None
+    known = (("classification", "classifiers", CLASSIFIERS), ("touch_stability", "classifiers", CLASSIFIERS),
+             ("conspicuity", "channels", CHANNELS))  # fmt: skip
+    for section, key, names in known:
+        for name in sections.get(section, {}).get(key, []):
+            if name not in names:
+                raise ParamsError(f"{section}.{key}: unknown name {name!r}: {_near(name, list(names))}")
 
 
 def check_targets(sections: dict[str, Any]) -> None:
@@ -201,21 +236,25 @@ def _check_options(overrides: Sequence[str]) -> None:
 
 def _explain(overrides: Sequence[str], error: Exception) -> str:
     """The first override that names nothing known, and the nearest name; else what Hydra said."""
-    keys = [*groups(), *_dotted(composed([]))] if overrides else []
+    config = composed([]) if overrides else {}
+    keys = [*groups(), *_dotted(config)]
     for override in overrides:
         name = override.partition("=")[0]
         if name[0] not in "+~" and name not in keys:
             parent = name.rpartition(".")[0]
             if parent in OPEN:
                 return f"{parent} has no {name.rpartition('.')[2]} yet: to add it, write +{override}"
-            return f"unknown setting {name}: {_near(name, keys)}"
+            first, dot, rest = name.partition(".")
+            meant = difflib.get_close_matches(first, groups()["data"], n=1, cutoff=0.8) if rest in keys else []
+            near = f"did you mean {meant[0]}.{rest}?" if meant else _near(name, keys if dot else [*groups(), *config])
+            return f"unknown setting {name}: {near}"
     message = str(error).splitlines()[0]
     section = next((name for name in OPEN if f"'{name}'" in message), None)  # with a name that it does not have
     return message + (f" To add a name, write +{section}.NAME=..." if section else "")
 
 
 def _near(name: str, options: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name, options, n=1, cutoff=0.4)
+    near = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(options)}"
 
 

@@ -130,6 +130,18 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("lod.methods=[qem,glanse-soft]", "(did you mean glance?)"),
         ("lod.targets=[50%,half]", "lod.targets='half' is not a face count: write one like 1500 or 25%"),
         ("sets=[]", "sets=[] names no set: write sets=[household]"),
+        ("sets=[gaze,gaze]", "sets=[gaze,gaze] names gaze twice"),
+        ("gaze.lod.rings=2", "gaze is not switched on: add 'sets=[household,gaze]'"),
+        ("houshold.lod.rings=2", "did you mean household.lod.rings?"),
+        ("nope=1", "unknown setting nope: known: "),
+        ("+foo.bar=1", "unknown setting +foo.bar=1: known: "),
+        ("", "'' has no name: write group=option or section.key=value"),
+        ("=3", "has no name"),
+        ("parallel.workers=0", "parallel.workers=0 must be 1 or more, or -1"),
+        ("out=/", "out=/ is no folder for results"),
+        ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
+        ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),
+        ("conspicuity.channels=[colour]", "unknown name 'colour': did you mean color?"),
     ],
 )
 def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
