@@ -269,3 +269,10 @@ def _sheet():
     corner = (np.arange(20) + 21 * np.arange(2)[:, None]).ravel()
     halves = (corner, corner + 1, corner + 22), (corner, corner + 22, corner + 21)
     return Mesh(vertices, np.concatenate([np.stack(half, axis=1) for half in halves]))
+
+
+def test_one_vertex_may_be_kept_and_borders_that_are_no_truth_value_are_named(body):
+    mesh = Mesh(*body)
+    assert simplify(mesh, "50%", keep=5) == simplify(mesh, "50%", keep=[5])
+    with pytest.raises(ValueError, match="free_borders must be True, False, or one per vertex"):
+        simplify(mesh, "50%", free_borders="no")

@@ -143,14 +143,15 @@ def check_backend(backend: str) -> None:
 
 def _check_borders(mesh, free, backend, counted):
     """(n,) boolean of the vertices of borders that may move, or None; ValueError where they cannot."""
-    free = np.asarray(free, dtype=bool)
-    if free.shape not in ((), (len(mesh.vertices),)):
-        raise ValueError(f"free_borders must be True or one per vertex, ({len(mesh.vertices)},), got {free.shape}")
+    free = np.asarray(free)
+    if free.shape not in ((), (len(mesh.vertices),)) or free.dtype.kind not in "biu":
+        shape = f"({len(mesh.vertices)},), got {free.shape} {free.dtype}"
+        raise ValueError(f"free_borders must be True, False, or one per vertex, {shape}")
     if not free.any() or (half_edges(mesh.faces)[1] >= 0).all():
         return None
     if backend == "pymeshlab" or counted:
         raise ValueError("borders stay where the backend is pymeshlab or attributes are counted: leave one out")
-    return np.broadcast_to(free, len(mesh.vertices))
+    return np.broadcast_to(free.astype(bool), len(mesh.vertices))
 
 
 def check_weights(mesh: Mesh, weights: np.ndarray) -> np.ndarray:

@@ -135,7 +135,7 @@ class Looked:
 
 
 def _check(count):
-    if count is not None and (count != int(count) or count < 1):
+    if count is not None and not (float(count).is_integer() and count >= 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")
     return None if count is None else int(count)
 
@@ -192,6 +192,8 @@ def _chosen(viewpoints):
     viewpoints = TWELVE if viewpoints is None else tuple(viewpoints)
     if not viewpoints:
         raise ValueError("no viewpoints: give at least one, or None for the twelve of T figure 3.2")
+    if strange := [viewpoint for viewpoint in viewpoints if not isinstance(viewpoint, Viewpoint)]:
+        raise ValueError(f"viewpoints must be of the class Viewpoint, got {strange[0]!r}")
     return viewpoints
 
 
