@@ -190,8 +190,8 @@ def simplify(
     keep: vertex ids, most salient first, or one, whose neighbourhood of `rings` edges stays unchanged (T3.1.3).
     weights: (n,) in 0..1, such as a saliency: the error counts more where it is high. attributes: weights of colors,
     normals and uv in the error. free_borders: whether the boundary is simplified, too; None: where the count is
-    infeasible without. shrink: keep smaller neighbourhoods where the count needs it. The method is quadric edge collapse (Garland and
-    Heckbert 1997), of `haptic_glance.lod.simplify`.
+    infeasible without. shrink: keep smaller neighbourhoods where the count needs it. The method is quadric edge
+    collapse (Garland and Heckbert 1997), of `haptic_glance.lod.simplify`.
 
     Where the count is infeasible, the coincident vertices of the mesh are merged and its faces oriented, as `repair`
     does, and its borders are simplified. Where the count leaves a fold, a few faces fewer do not. Without kept points
