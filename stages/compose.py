@@ -168,7 +168,7 @@ def _check_run(values: dict[str, Any]) -> None:
         raise ParamsError(f"sets=[] names no set: write sets=[household], or others of {', '.join(groups()['data'])}")
     if twice := [name for name in dict.fromkeys(sets) if sets.count(name) > 1]:
         raise ParamsError(f"sets=[{','.join(sets)}] names {', '.join(twice)} twice")
-    if workers != -1 and workers < 1:
+    if not (isinstance(workers, int) and (workers == -1 or workers >= 1)):
         raise ParamsError(f"parallel.workers={workers} must be 1 or more, or -1 for one a core")
     if values["out"] and (Path(values["out"]).is_file() or Path(values["out"]) == Path("/")):
         raise ParamsError(f"out={values['out']} is no folder for results: write out=runs/NAME")

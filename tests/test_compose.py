@@ -138,6 +138,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("", "'' has no name: write group=option or section.key=value"),
         ("=3", "has no name"),
         ("parallel.workers=0", "parallel.workers=0 must be 1 or more, or -1"),
+        ("parallel.workers=many", "parallel.workers=many must be 1 or more, or -1"),
         ("out=/", "out=/ is no folder for results"),
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
         ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),

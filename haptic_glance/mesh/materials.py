@@ -87,7 +87,8 @@ def not_read(content: bytes) -> list[str]:
     tree = _header(content)
     names = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
     used = tree.get("extensionsUsed") if isinstance(tree, dict) else None
-    names += [name for name in used or () if str(name).startswith(("KHR_lights_", "KHR_xmp"))]
+    whole = map(str, used) if isinstance(used, list) else ()  # extensions of the scene
+    names += [name for name in whole if name.startswith(("KHR_lights_", "KHR_xmp"))]
     names += [f"picture {entry[ABSENT]}, not beside it" for entry in _stated_in(tree, "images") if ABSENT in entry]
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
     with suppress(*MALFORMED):

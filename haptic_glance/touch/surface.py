@@ -95,8 +95,9 @@ def _inside_out(mesh):
     if not len(mesh.faces):
         return False
     corners = mesh.vertices[mesh.faces] - mesh.vertices[mesh.faces[0, 0]]
-    six_volumes = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
-    return six_volumes < -FLAT * mesh.diagonal**3 and mesh.watertight
+    with np.errstate(over="ignore", invalid="ignore"):  # of huge coordinates
+        six_volumes = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+        return six_volumes < -FLAT * mesh.diagonal**3 and mesh.watertight
 
 
 _cached_surface = lru_cache(maxsize=2)(Surface)  # for touching one mesh, or two in turn, point by point
