@@ -178,7 +178,7 @@ def check_methods(sections: dict[str, Any]) -> None:
     """Raises ParamsError with the nearest name for an unknown method, classifier or channel in one of the sections."""
     from haptic_glance.know.classifiers import CLASSIFIERS
     from haptic_glance.lod.task import variant  # seconds, which most compositions need not
-    from haptic_glance.look.channels import CHANNELS
+    from haptic_glance.look.channels.channels import CHANNELS, OTHERS
     from haptic_glance.look.points.methods import method_named
 
     for section in ("salient_points", "stability", "imprints", "exploration", "lod"):
@@ -188,7 +188,7 @@ def check_methods(sections: dict[str, Any]) -> None:
             except ValueError as error:
                 raise ParamsError(f"{section}.methods: {error}") from None
     known = (("classification", "classifiers", CLASSIFIERS), ("touch_stability", "classifiers", CLASSIFIERS),
-             ("conspicuity", "channels", CHANNELS))  # fmt: skip
+             ("conspicuity", "channels", [*CHANNELS, *OTHERS]))  # fmt: skip
     for section, key, names in known:
         for name in sections.get(section, {}).get(key, []):
             if name not in names:
