@@ -61,7 +61,7 @@ def sight(ball, spot):
 
 @pytest.fixture(scope="session", autouse=True)
 def code_of_stages_by_name():
-    """A digest of all that a stage imports takes seconds; tests/test_architecture.py tests it."""
+    """The name of a stage stands for the digest of its code, which takes seconds; tests of the digest use their own."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "stage_digest", str)
         yield

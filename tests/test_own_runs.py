@@ -27,8 +27,8 @@ class Missing:
 
 sys.meta_path.insert(0, Missing())
 """
-# `dvc repro` that runs the commands of its stages in its own process, so that all that they import is imported once.
-# What a stage imports, pixels and resamples take long and are tested elsewhere.
+# `dvc repro` runs the commands of its stages in its own process here, so that each package is imported once. Digests of
+# code, pixels and resamples take long; other tests check them.
 REPRO = """
 import runpy
 import shlex

@@ -104,6 +104,11 @@ def test_a_stage_of_an_experiment_is_switched_on_by_its_name(committed, tmp_path
     assert graph["coarse_imprints"] == ["furniture"] and recheck.prepared("furniture").params["graph"]["contours"]
 
 
+def test_a_setting_may_stand_behind_the_number_of_items(committed, capsys):
+    assert run(["off/views", "--items", "1", "seed=3"]) == 1
+    assert "recheck: no reports/measurements/off/views.csv.gz" in capsys.readouterr().err
+
+
 def test_a_number_of_items_below_one_is_named(committed):
     with pytest.raises(ValueError, match="--items 0: give 1 or more"):
         run(["toys/views", "--items", "0"])

@@ -27,9 +27,9 @@ from stages.engine import cluster  # noqa: E402  # needs that extra
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 300  # seconds, on a machine that does much else
-# In each worker: a stage's code is one file, since a digest of all takes seconds; ends the worker where it opens a file
-# of the run by its own path, which it should have from elsewhere, and kills the first that begins to write a file of
-# some suffix.
+# In each worker: a stage's code is one file, since a digest of all files takes seconds. A worker ends where it opens a
+# file of the run by the run's own path, since it should have a copy. The first worker that begins to write a file of
+# some suffix is killed.
 PRELOADED = """
 import os, signal, sys
 from stages.engine import code

@@ -34,7 +34,7 @@ def shape(number):
 
 @pytest.fixture(scope="module", autouse=True)
 def settings_by_classifier():
-    """One composition a classifier: tests/front/test_front_space.py has one a choice."""
+    """Settings are composed once a classifier; tests/front/test_front_space.py composes them for each choice."""
 
     def composed(overrides):
         _, classifier, *values = overrides

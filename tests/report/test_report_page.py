@@ -53,7 +53,7 @@ sys.addaudithook(note)
 
 @pytest.fixture(scope="module", autouse=True)
 def code_unread():
-    """What the topics import takes as long to find as all that they write."""
+    """The search for the imports of all topics would take as long as the report itself."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reuse, "files_behind", sorted)
         yield
