@@ -36,8 +36,9 @@ MESHES = {  # public function: its arguments that are meshes
 }  # fmt: skip
 LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
 METRIC = {"press_forces": "depth", "gaps_at": "within"}  # public function: its argument in metres
+SAID = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 TRIES = 8  # lower counts that are tried where one leaves a fold
-LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that points up
+LOOKING = "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"  # depend on the axis that is up
 
 
 def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -45,7 +46,7 @@ def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     wrapped = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING)
     if name in METRIC:
         return with_metres(wrapped, METRIC[name])
-    return with_lengths(wrapped, LENGTHS[name]) if name in LENGTHS else wrapped
+    return with_lengths(wrapped, LENGTHS[name], name in LOOKING) if name in LENGTHS else wrapped
 
 
 def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
@@ -62,17 +63,18 @@ def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: 
             mesh = bound.arguments[name]
             if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
                 silent = not looking or bound.arguments.get("up") is not None
-                bound.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, "up={!r}")
+                remedy = "up={!r}" if "up" in parameters.parameters else SAID
+                bound.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, remedy)
         return function(*bound.args, **bound.kwargs)
 
     return work
 
 
-def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable[..., Any]:
+def with_lengths(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
     """The function, its lengths as shares of the object's diameter, or as text such as "1mm" with unit="mm".
 
     unit: what the coordinates of the mesh are in. The diameter is that of the bounding sphere about the middle of the
-    bounding box, which is 1 for a normalised mesh.
+    bounding box, which is 1 for a normalised mesh. looking: as of `takes_any_mesh`.
     """
     parameters = signature(function)
 
@@ -82,7 +84,7 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable
         bound.apply_defaults()
         name, whole = next(iter(bound.arguments.items()))
         if not isinstance(getattr(whole, "mesh", whole), Mesh):
-            bound.arguments[name] = whole = as_mesh(whole)
+            bound.arguments[name] = whole = _settled(whole, SAID) if looking else as_mesh(whole)
         if unit is not None and not any(isinstance(bound.arguments[name], str) for name in names):
             raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
         diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
@@ -166,16 +168,19 @@ def load(path: str | Path, up: Axis | None = None) -> Mesh:
     if up is None:
         return _settled(path, "load(path, up={!r})")
     mesh = replace(as_stated(path), up=axis_named(up))
-    return _settled(mesh, "load(path, up={!r})", Path(path).name) if mesh.up == AUTO else mesh
+    return _settled(mesh, "load(path, up={!r})", f"by the shape of {Path(path).name}") if mesh.up == AUTO else mesh
 
 
-def _settled(source: MeshLike, remedy: str, name: str = "") -> Mesh:
-    """The Mesh of what is given; where nothing says which axis points up, a warning says which one is assumed."""
+def _settled(source: MeshLike, remedy: str, reason: str = "") -> Mesh:
+    """The Mesh of what is given; where nothing says which axis points up, a warning says which one is assumed.
+
+    reason: why the shape decides; by default that nothing else says it.
+    """
     mesh = as_stated(source)
     if mesh.up != AUTO:
         return mesh
-    name = name or (Path(source).name if isinstance(source, str | Path) else "the mesh")
-    mesh, note = assumed(mesh, f"{name} does not say which axis points up", remedy)
+    name = Path(source).name if isinstance(source, str | Path) else "the mesh"
+    mesh, note = assumed(mesh, reason or f"{name} does not say which axis points up", remedy)
     warnings.warn(note, stacklevel=3)
     return mesh
 

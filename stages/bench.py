@@ -137,7 +137,9 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
         row: dict[str, Any] = {"item": name, "method": OWN, "clock": clock()}
         scores: dict[str, float] = {}
         try:
-            others = [(mesh, truth.density) for other, (mesh, truth) in objects.items() if other != name]
+            others = [  # copies: a method may change what it is given
+                (replace(mesh), truth.density.copy()) for other, (mesh, truth) in objects.items() if other != name
+            ]
             saliency, fresh = method(others) if train else method, replace(mesh)  # without what the truth has cached
             with Stopwatch() as watch:
                 values = saliency(fresh)

@@ -73,6 +73,7 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         values[dataset] = _sections(config, dataset)
         if any(word in override for override in overrides for word in ("methods", "classifiers", "channels")):
             check_methods(values[dataset])  # what conf/ names exists
+            check_maps(values[dataset])
         if any("targets" in override for override in overrides):
             check_targets(values[dataset])
         for stage in config["stages"]:
@@ -193,6 +194,19 @@ def check_methods(sections: dict[str, Any]) -> None:
         for name in sections.get(section, {}).get(key, []):
             if name not in names:
                 raise ParamsError(f"{section}.{key}: unknown name {name!r}: {_near(name, list(names))}")
+
+
+def check_maps(sections: dict[str, Any]) -> None:
+    """Raises ParamsError for a method of the salient points whose channels the stage conspicuity does not compute."""
+    from haptic_glance.look.points.methods import method_named
+
+    computed = sections.get("conspicuity", {}).get("channels")
+    for name in sections.get("salient_points", {}).get("methods", []) if computed is not None else []:
+        if missing := [channel for channel in method_named(name).channels if channel not in computed]:
+            raise ParamsError(
+                f"{name} needs the channels {', '.join(missing)}: add them to conspicuity.channels, or leave it out of "
+                "salient_points.methods"
+            )
 
 
 def check_targets(sections: dict[str, Any]) -> None:

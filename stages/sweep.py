@@ -8,8 +8,9 @@ examples:
 Every job finds the points, presses the array and recognises the objects of classification.sets, on the meshes and
 conspicuity maps of data/SET; SET is household, or `data=SET`. Where these are not there, `dvc repro` makes them first.
 A group of classification.sets with objects that SET does not have is left out. Settings are those of params.yaml,
-where it has the set, but for what the command line says. Rows are appended to runs/sweeps/recognition.csv (a repeated
-job replaces its rows), and a table of the jobs ends the sweep.
+where it has the set, but for what the command line says. The rows of a job are appended to
+runs/sweeps/recognition.csv when it ends (a repeated job replaces its rows), so that a sweep that is stopped loses the
+job in work alone. A job that fails is named, and the others go on. A table of the jobs ends the sweep.
 """
 
 import re
@@ -47,7 +48,7 @@ OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs
 SECTIONS = ("salient_points", "imprints", "classification")
 NEEDED = "meshes", "conspicuity", "weights"  # stages whose results the jobs read
-ROWS = "rows.csv"  # what each job leaves in its own folder
+ROWS, FAILURE = "rows.csv", "failure.txt"  # a job leaves one of them in its own folder
 KEYS = ["job", "dataset", "group", "method", "classifier", "seed"]  # rows that agree in these are the same measurement
 
 
@@ -96,7 +97,7 @@ def _touch(name: str, config: dict[str, Any], sections: dict[str, Any], data: Pa
     settings = sections["salient_points"]
     for folder, file in (("meshes", f"{name}.npz"), ("conspicuity", f"{name}.npz"), ("weights", "weights.csv")):
         if not (data / folder / file).exists():
-            sys.exit(f"sweep: {data / folder / file} is not there: run `dvc repro {folder}@{data.name}` first")
+            raise ParamsError(f"{data / folder / file} is not there: run `dvc repro {folder}@{data.name}` first")
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     looking = any(method_named(method).channels for method in settings.methods)
     sight = read_view_maps(data / "conspicuity" / f"{name}.npz", mesh) if looking else None
@@ -139,7 +140,9 @@ def prepare(argv: Sequence[str]) -> None:
     options = dict(word.split("=", 1) for word in argv if is_override(word) and not word.startswith("hydra"))
     for key, values in options.items():
         for value in split_values(values):
-            composed([quoted(f"{key}={value}")])
+            values_of = composed([quoted(f"{key}={value}")])
+            for section in SECTIONS:
+                check_section(schema_of(section), values_of[section])
     params, bases = load_params(), {}
     for dataset in split_values(options.get("data", "household")):
         if dataset in params.get("sets", []):
@@ -191,41 +194,55 @@ def job(config: DictConfig) -> None:
     values: dict[str, Any] = OmegaConf.to_container(config, resolve=True)  # type: ignore[assignment]  # a dict
     dataset = HydraConfig.get().runtime.choices["data"]
     name = " ".join(sorted(HydraConfig.get().overrides.task)) or "defaults"
+    folder = Path(HydraConfig.get().runtime.output_dir)
     try:
         with Stopwatch() as watch:
             rows = recognise(based(values, dataset), Path("data") / dataset)
     except (ParamsError, ValueError) as error:
-        sys.exit(f"sweep: {name}: {error}")
+        print(f"sweep: {name}: {error}", file=sys.stderr, flush=True)
+        write_text(folder / FAILURE, name)
+        return
     frame = pd.DataFrame(rows)
     frame.insert(0, "job", name)
     frame.insert(1, "dataset", dataset)
     frame["job_seconds"] = watch.seconds
-    write_table(Path(HydraConfig.get().runtime.output_dir) / ROWS, frame)
+    write_table(folder / ROWS, frame)
 
 
 class Gather(Callback):
-    """Collects what the jobs left, when the last one has ended."""
+    """Collects the rows of each job when it has ended, and prints a table of all when the last one has."""
 
-    def on_run_end(self, config: DictConfig, **_: Any) -> None:
+    def on_job_end(self, config: DictConfig, **_: Any) -> None:
         gather(Path(config.hydra.runtime.output_dir))
 
+    def on_run_end(self, config: DictConfig, **_: Any) -> None:
+        conclude(Path(config.hydra.runtime.output_dir))
+
     def on_multirun_end(self, config: DictConfig, **_: Any) -> None:
-        gather(Path(config.hydra.sweep.dir))
+        conclude(Path(config.hydra.sweep.dir))
 
 
 def gather(folder: Path, out: Path = OUT) -> None:
-    """Appends the jobs' rows to `out` and prints one line per job."""
-    parts = [read_table(path) for path in sorted(folder.rglob(ROWS))]
-    if not parts:
+    """Appends the rows of the job that worked in a folder to `out`."""
+    if not (folder / ROWS).exists():
         return
-    new = pd.concat(parts, ignore_index=True)
+    new = read_table(folder / ROWS)
     out.parent.mkdir(parents=True, exist_ok=True)
     with FileLock(out.with_suffix(".lock")):  # two sweeps may end at once
         old = read_table(out) if out.exists() else new.iloc[:0]
         repeated = old.set_index(KEYS).index.isin(new.set_index(KEYS).index)
         write_table(out, pd.concat([old.loc[~repeated], new], ignore_index=True))
-    print(table(new).to_string(index=False))
-    print(f"sweep: {number(len(parts), 'job')}, {number(len(new), 'row')} appended to {out}")
+    print(f"sweep: {new['job'].iloc[0]}: {number(len(new), 'row')} appended to {out}", flush=True)
+
+
+def conclude(folder: Path) -> None:
+    """Prints one line for each job below a folder; ends the process with an error where a job has failed."""
+    parts = [read_table(path) for path in sorted(folder.rglob(ROWS))]
+    if parts:
+        print(table(pd.concat(parts, ignore_index=True)).to_string(index=False))
+    failed = [path.read_text() for path in sorted(folder.rglob(FAILURE))]
+    if failed:
+        sys.exit(f"sweep: {len(failed)} of {number(len(parts) + len(failed), 'job')} failed: {'; '.join(failed)}")
 
 
 def table(frame: pd.DataFrame) -> pd.DataFrame:

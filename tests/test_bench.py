@@ -36,6 +36,8 @@ def moody(mesh):
 def counts(training):
     assert all(len(mesh.vertices) == len(density) for mesh, density in training)
     sizes = {mesh.vertices[:, 0].max() for mesh, _ in training}
+    for mesh, density in training:
+        density[:] = 0  # which spoils nothing for the objects that come later
     return lambda mesh: height(mesh) * (len(sizes) == 2 and mesh.vertices[:, 0].max() not in sizes)
 """
 
@@ -126,8 +128,9 @@ def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(fi
 @pytest.mark.slow
 def test_a_method_that_learns_never_gets_the_object_that_it_is_judged_on(file, toys, capsys):
     options = listed(capsys, f"{file}:counts", "--train"), listed(capsys, f"{file}:height")
-    assert [table["yours"]["nss"] for table in options] == pytest.approx([options[1]["yours"]["nss"]] * 2)
-    assert options[0]["yours"]["nss"] > 0
+    for metric in ("nss", "cc"):
+        assert options[0]["yours"][metric] == pytest.approx(options[1]["yours"][metric])
+        assert options[0]["yours"][metric] > 0
 
 
 def test_a_function_that_is_no_saliency_is_named(file, toys):

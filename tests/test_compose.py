@@ -79,7 +79,9 @@ def test_a_set_runs_only_its_stages_and_its_path_may_be_any():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("options", [["channels=judged", "classifier=all"], ["conspicuity.channels=[fine_grained]"]])
+@pytest.mark.parametrize(
+    "options", [["channels=judged", "classifier=all"], ["channels=blind", "conspicuity.channels=[fine_grained]"]]
+)
 def test_every_channel_and_classifier_may_be_named(options):
     assert compose(["sets=[household]", *options])["household"]["conspicuity"]["channels"][-1] == "fine_grained"
 
@@ -148,6 +150,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
         ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),
         ("conspicuity.channels=[colour]", "unknown name 'colour': did you mean color?"),
+        ("conspicuity.channels=[color]", "needs the channels intensity, orientation: add them to conspicuity.channels"),
     ],
 )
 def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):

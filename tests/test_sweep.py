@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from omegaconf import OmegaConf
 
-from haptic_glance.base.files import read_table, write_json, write_table
+from haptic_glance.base.files import read_table, write_json, write_table, write_text
 from stages import compose, sweep
 from stages.engine.settings import ParamsError, load_params
 
@@ -34,9 +34,39 @@ def test_rows_are_appended_and_a_repeated_job_replaces_its_own(leave, tmp_path, 
     sweep.gather(leave("first", job_rows("classifier=knn", "knn", 0.5)), out)
     sweep.gather(leave("second", job_rows("classifier=svm", "svm", 0.7)), out)
     sweep.gather(leave("third", job_rows("classifier=knn", "knn", 0.6)), out)
+    sweep.gather(tmp_path / "failed", out)
     stored = read_table(out)
     assert stored.groupby("classifier").value.mean().to_dict() == pytest.approx({"knn": 0.6, "svm": 0.7})
-    assert len(stored) == 8 and "1 job, 4 rows appended" in capsys.readouterr().out
+    assert len(stored) == 8 and capsys.readouterr().out.count("classifier=knn: 4 rows appended") == 2
+
+
+def test_a_job_that_fails_is_named_at_the_end_and_the_others_are_shown(leave, tmp_path, capsys):
+    leave("0", job_rows("classifier=knn", "knn", 0.5))
+    sweep.conclude(tmp_path)
+    write_text(tmp_path / "1" / sweep.FAILURE, "seed=-1")
+    with pytest.raises(SystemExit, match="1 of 2 jobs failed: seed=-1"):
+        sweep.conclude(tmp_path)
+    assert capsys.readouterr().out.count("classifier=knn") == 2
+
+
+@pytest.mark.slow
+def test_a_sweep_goes_on_behind_a_job_that_fails_and_keeps_the_rows_of_each(root, monkeypatch):
+    def recognise(values, _):
+        if values["seed"] == 2:
+            raise ParamsError("a reason")
+        if values["seed"] == 4:  # Ctrl-C
+            raise KeyboardInterrupt
+        return job_rows("", "knn", 0.5).drop(columns=["job", "dataset"]).assign(seed=values["seed"]).to_dict("records")
+
+    monkeypatch.setattr(sweep, "recognise", recognise)
+    monkeypatch.setattr(sweep.sys, "argv", ["sweep", "-m", "data=household_four", "seed=1,2,3,4"])
+    with pytest.raises(KeyboardInterrupt):
+        sweep.job()
+    assert sorted(set(read_table(sweep.OUT)["seed"])) == [1, 3]
+    monkeypatch.setattr(sweep.sys, "argv", ["sweep", "-m", "data=household_four", "seed=2,5"])
+    with pytest.raises(SystemExit, match="1 of 2 jobs failed: .*seed=2"):
+        sweep.job()
+    assert sorted(set(read_table(sweep.OUT)["seed"])) == [1, 3, 5]
 
 
 def test_the_table_has_one_line_a_job_and_classifier():
@@ -71,7 +101,7 @@ def test_jobs_begin_with_the_settings_of_params_yaml_and_missing_results_are_nam
     assert values["classification"]["repetitions"] == 20
     values["classification"]["repetitions"] = 7
     assert sweep.based(values, "household_four")["classification"]["repetitions"] == 7
-    with pytest.raises(SystemExit, match=r"elephant.npz is not there: run `dvc repro meshes@toys` first"):
+    with pytest.raises(ParamsError, match=r"elephant.npz is not there: run `dvc repro meshes@toys` first"):
         sweep.recognise(values, root / "data/toys")
 
 
@@ -105,6 +135,7 @@ def test_a_set_without_a_section_begins_with_its_other_settings(root):
         ("chanels=itti", "did you mean channels"),
         ("channels=itti,al", "did you mean all"),
         ("classification.repetitons=3", "did you mean classification.repetitions"),
+        ("imprints.pitch=0.01,-1", "imprints.pitch: -1 must be above 0"),
         ("data=household", "sets=.household.* and data=SET sweeps another set"),
     ],
 )

@@ -100,7 +100,11 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument("--free-borders", action="store_true", help=help_borders)
     add_up(command)
     command.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
-    command.add_argument("--json", action="store_true", help="print the figures as JSON")
+    command.add_argument(
+        "--json",
+        action="store_true",
+        help="print the figures as JSON; mean, rms, max and salient are errors in percent of the diagonal",
+    )
     command.add_argument("--seed", type=int, default=0, help="for the samples of the errors (default: %(default)s)")
     return command
 

@@ -119,7 +119,9 @@ AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three width
 def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned: bool = False) -> "Library":
     """The Library of meshes {name: mesh} that `normalise` has scaled; a mesh that was learned before costs nothing.
 
-    turned: each array is turned at random about its normal, as it lies on an object whose pose is unknown.
+    placed: the objects stand where they were learned; otherwise they stand upright at an unknown place. turned: each
+    array is turned at random about its normal, as it lies on an object that may also be turned. So a pose of which
+    nothing is known needs placed=False and turned=True.
     Raises ValueError for fewer than two, and for a mesh that cannot be touched or has another scale, with its name.
     """
     if len(meshes) < 2:

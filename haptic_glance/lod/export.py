@@ -36,6 +36,7 @@ FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
 PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
 COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
+OF_ONE = 7  # digits of texture coordinates and colours, which trimesh writes with as many places as the vertices
 SINGLE = (".glb", ".npz", ".ply", ".stl", ".usda")  # the formats of single precision
 MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farther is seen to be elsewhere
 
@@ -62,7 +63,8 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     elif suffix == ".obj" and mesh.texture is not None:  # its materials have no more
         mesh = replace(mesh, texture=replace(mesh.texture, materials=()))
     loaded = for_glb(mesh, path.stem, named) if suffix == ".glb" else to_trimesh(mesh, path.stem)
-    digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), 1)
+    least = OF_ONE if suffix == ".obj" else 1
+    digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), least)
     options: dict[str, Any] = {"digits": digits} if suffix in (".obj", ".off") else {}
     if suffix == ".obj":
         options |= {"return_texture": True, "mtl_name": f"{path.stem}.mtl"}

@@ -11,6 +11,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from itertools import product
 from operator import call
 from pathlib import Path
 from typing import Any
@@ -25,17 +26,18 @@ from . import Params
 from .claims_page import claims_shown
 from .items import Built
 from .own_page import write_own_page
-from .page import pack_viewer
+from .page import viewer_or_reason
 from .records import HEADLINES_FILE, PROVENANCE_FILE, write_headlines, write_records
 from .results import NotRun, Results
-from .reuse import keep, key_of, taken_again
+from .reuse import VIEWER, built, keep, key_of, taken_again
 from .site import write_site
 from .tables import as_text, markdown_table
-from .topics import CLAIMS, KINDS, TOPICS, build_all, name_of
+from .topics import CLAIMS, KINDS, TOPICS, build_all, files_of, name_of
 from .verdict import by_claim, counted, counts, open_by_cause, tabled
 
 OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html", HEADLINES_FILE,
            PROVENANCE_FILE)  # fmt: skip
+CLAIMED = "claims"  # the kind of a part that is none of KINDS
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. The words:
@@ -112,25 +114,24 @@ def beside(reports: Path, out: Path) -> Iterator[Path]:
 def build(results: Results, out: Path) -> dict[str, Any]:
     """Writes the report below `out`; returns its metrics."""
     own_meshes = results.own_meshes
-    built, (claims, differences) = side_by_side(results)
-    remove_older(built, out)
-    write_records(built, results, out)
-    not_run = {f"{kind}/{name}": why for kind, batch in built.items() for name, why in batch.not_run.items()}
+    items, (claims, differences), meshes = side_by_side(results)
+    remove_older(items, out)
+    write_records(items, results, out)
+    not_run = {f"{kind}/{name}": why for kind, batch in items.items() for name, why in batch.not_run.items()}
     if own_meshes:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
     write_headlines(out, None if own_meshes else counts(claims))
-    parts = {**built, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
-    parts |= {"not_run": not_run, "sets": results.sets, "own": own_meshes, "meshes": None}
+    parts = {**items, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
+    parts |= {"not_run": not_run, "sets": results.sets, "own": own_meshes}
+    parts["meshes"] = None if isinstance(meshes, str) else meshes
+    if isinstance(meshes, str) and not own_meshes:
+        not_run["viewer"] = meshes
     parts |= {"first": ["pipeline"], "dataset": dataset_line(results)}
-    try:
-        parts["meshes"] = None if own_meshes else pack_viewer(results)
-    except NotRun as missing:
-        not_run["viewer"] = str(missing)
     pages = write_site(TOPICS, parts, out)
     if own_meshes:
         write_own_page(results, pages, out)
-    totals = {kind: len(batch.items) for kind, batch in built.items()}
+    totals = {kind: len(batch.items) for kind, batch in items.items()}
     reasons: dict[str, list[str]] = {}
     for name, why in not_run.items():
         reasons.setdefault(why, []).append(name)
@@ -143,30 +144,35 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     return {"claims": counts(claims), **totals, "not_run": len(not_run)}
 
 
-def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame]]:
-    """Builds the changed parts of each topic; returns {kind: its items} and the frames of `judged`."""
-    keys = {name_of(topic): key_of(topic, results) for topic in TOPICS}
-    jobs: dict[tuple[str, str], Callable[[], Any]] = {
-        ("claims", name_of(topic)): partial(by_claim, topic.CLAIMS, results) for topic in TOPICS
-    }
-    for kind in ("figures", "tradeoff", "tables"):  # the longest first
-        jobs |= {(kind, name_of(topic)): partial(build_all, kind, results, [topic]) for topic in TOPICS}
-    parts = {job: taken_again("-".join(job), keys[job[1]], results) for job in jobs}
+def side_by_side(
+    results: Results,
+) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame], dict[str, Any] | str]:
+    """Builds the changed parts; returns {kind: its items}, the frames of `tabled` and the meshes of the viewer."""
+    jobs: dict[tuple[str, str], Callable[[Results], Any]] = {}
+    keys: dict[tuple[str, str], str] = {}
+    for kind, topic in product((CLAIMED, "figures", "tradeoff", "tables"), TOPICS):  # the longest first
+        job = kind, name_of(topic)
+        jobs[job] = partial(by_claim, topic.CLAIMS) if kind == CLAIMED else partial(build_all, kind, topics=[topic])
+        keys[job] = key_of(files_of(topic, kind), results)
+    jobs["viewer", "page"], keys["viewer", "page"] = viewer_or_reason, key_of(VIEWER, results)
+    parts = {job: taken_again("-".join(job), keys[job], results) for job in jobs}
     anew = [job for job, part in parts.items() if part is None]
     where = dict(results.workspace.parallel)
     if where.get("backend") == "dask":  # the files that a topic reads are here alone
         where["backend"] = "loky"
-    for job, part in zip(anew, parallel_map(call, [jobs[job] for job in anew], "report", **where), strict=True):
+    work = [partial(built, jobs[job], results) for job in anew]
+    for job, (part, read) in zip(anew, parallel_map(call, work, "report", **where), strict=True):
         parts[job] = part
-        keep("-".join(job), keys[job[1]], part, results)
+        keep("-".join(job), keys[job], part, read, results)
     if len(anew) < len(jobs):
         print(f"report: {len(jobs) - len(anew)} of {len(jobs)} parts are those of the last run")
-    built = {kind: Built() for kind in KINDS}
-    for kind, total in built.items():
+    items = {kind: Built() for kind in KINDS}
+    for kind, total in items.items():
         for topic in TOPICS:
             total.items += parts[kind, name_of(topic)].items
             total.not_run |= parts[kind, name_of(topic)].not_run
-    return built, tabled(CLAIMS, [row for topic in TOPICS for row in parts["claims", name_of(topic)]])
+    claims = tabled(CLAIMS, [row for topic in TOPICS for row in parts[CLAIMED, name_of(topic)]])
+    return items, claims, parts["viewer", "page"]
 
 
 def remove_older(built: dict[str, Built], out: Path) -> None:

@@ -10,6 +10,7 @@ import re
 import statistics
 from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
+from functools import lru_cache
 from pathlib import Path
 
 import pandas as pd
@@ -94,7 +95,7 @@ def rows_of(path: Path, where: str = "") -> pd.DataFrame:
     """The rows of a CSV that agree with `where`, empty cells included; strings."""
     if not path.exists():
         raise LookupError(f"no {path.name}")
-    frame = pd.read_csv(path, dtype=str, keep_default_na=False)
+    frame = _cells(path, path.stat().st_mtime_ns)
     for column, sign, value in PAIR.findall(where):
         name = value if column in ENDS else column
         if name not in frame:
@@ -105,6 +106,12 @@ def rows_of(path: Path, where: str = "") -> pd.DataFrame:
         else:
             frame = frame[[fnmatchcase(cell, value) == (sign == "=") for cell in frame[column]]]
     return frame
+
+
+@lru_cache(maxsize=32)  # prose asks for many cells of one table in turn
+def _cells(path: Path, _changed: int) -> pd.DataFrame:
+    """The cells of a CSV as strings; _changed: when the file changed."""
+    return pd.read_csv(path, dtype=str, keep_default_na=False)
 
 
 def number_of(rows: pd.DataFrame, term: str) -> float:

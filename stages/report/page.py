@@ -178,6 +178,16 @@ def pack_viewer(results: Results) -> dict[str, Any]:
     return viewer_data(objects, colours, left_out)
 
 
+def viewer_or_reason(results: Results) -> dict[str, Any] | str:
+    """`pack_viewer`; the reason where there is nothing to pack, and for a folder of a person's own meshes."""
+    if results.own_meshes:
+        return "the page of an own folder has no viewer"
+    try:
+        return pack_viewer(results)
+    except NotRun as missing:
+        return str(missing)
+
+
 def pack_object(results: Results, name: str) -> dict[str, Any]:
     """One object: the full mesh, saliency and points by method, and chains of simplified meshes by method.
 

@@ -72,7 +72,8 @@ def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
         records = {item.name: item.record for item in batch.items}
         files |= {name for record in records.values() for name in record.get("files", ())}
         _write_parts(out / kind / FILE, {"items": records})
-    rows = {name: _file(results, name) for name in files}
+    known = commits(results.reports) | commits(results.workspace.published)
+    rows = {name: _file(results, name, known) for name in files}
     _write_parts(out / PROVENANCE_FILE, {"packages": versions(), "files": rows})
 
 
@@ -152,9 +153,10 @@ def _provenance(results: Results) -> dict[str, dict[str, str]]:
     return read_json(path)["files"] if path.is_file() else {}
 
 
-def _file(results: Results, name: str) -> dict[str, str]:
+def _file(results: Results, name: str, known: Mapping[Path, str]) -> dict[str, str]:
+    """The entry of a file of rows in provenance.json; known: see `commits`."""
     path = path_of(results, name)
-    entry = {"sha256": sha256(path)[:DIGITS], "commit": commit(path), "code": code_of(results, name)[0]}
+    entry = {"sha256": sha256(path)[:DIGITS], "commit": known.get(path, ""), "code": code_of(results, name)[0]}
     dataset, _, stage = name.partition("/")
     if again := rechecked(results, name):
         rows = len(results.rows(stage, dataset))
@@ -166,18 +168,23 @@ def _file(results: Results, name: str) -> dict[str, str]:
     return {key: value for key, value in entry.items() if value}
 
 
-@cache
-def commit(path: Path) -> str:
-    """The commit that last changed a file; empty where it was changed since, or git does not know it."""
+def commits(reports: Path) -> dict[Path, str]:
+    """{file of rows: the commit that last changed it}, without files changed since; empty where git knows none."""
 
     def git(*words: str) -> str:
-        return subprocess.run(["git", "-C", str(path.parent), *words, "--", path.name], capture_output=True, text=True,
-                              check=True).stdout.strip()  # fmt: skip
+        of_rows = ["--name-only", "--relative", "--", "measurements", "bench"]
+        command = ["git", "-C", str(reports), *words, *of_rows]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
+    last: dict[str, str] = {}
     try:
-        return "" if git("status", "--porcelain") else git("log", "-1", "--format=%h")
+        changed = git("diff", "HEAD").splitlines()
+        for commit in git("log", "--format=%x01%h").split("\x01")[1:]:  # the newest first
+            name, *files = commit.splitlines()
+            last = dict.fromkeys(files, name) | last
     except (OSError, subprocess.CalledProcessError):
-        return ""
+        return {}
+    return {reports / file: name for file, name in last.items() if file not in changed}
 
 
 HEADLINES_FILE = "headlines.json"

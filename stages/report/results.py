@@ -116,6 +116,12 @@ class Results:
         self._known: dict[Hashable, Any] = {}
         self._recent: dict[Hashable, pd.DataFrame] = {}  # the answers to the last queries, oldest first
 
+    def unread(self) -> "Results":
+        """The same results, of which nothing was read yet."""
+        results = Results(self.workspace, self.settings)
+        results.reports, results.sets, results.out = self.reports, self.sets, self.out
+        return results
+
     def forget(self) -> None:
         """Begins anew to note what is read."""
         self.read.clear()
@@ -130,7 +136,15 @@ class Results:
 
     def datasets(self, stage: str) -> list[str]:
         """The sets that have rows of a stage, `in_order`."""
-        return self.in_order({path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")})
+        return self.in_order(self._measured.get(stage, set()))
+
+    @cached_property
+    def _measured(self) -> dict[str, set[str]]:
+        """{stage: the sets that have rows of it}."""
+        measured: dict[str, set[str]] = {}
+        for path in (self.reports / "measurements").glob(f"*/*{SUFFIX}"):
+            measured.setdefault(path.name.partition(".")[0], set()).add(path.parent.name)
+        return measured
 
     def printed(self, dataset: str, stage: str) -> str | None:
         """The set that follows a protocol as printed, where it has rows of a stage; else None, the first that has."""
@@ -139,7 +153,7 @@ class Results:
     @property
     def stages(self) -> list[str]:
         """Names of the stages that have rows of any set, in alphabetical order."""
-        return sorted({path.name.partition(".")[0] for path in (self.reports / "measurements").glob(f"*/*{SUFFIX}")})
+        return sorted(self._measured)
 
     def rows(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
         """Rows of a stage on one set, filtered: `metric="accuracy"`, a list of accepted values, or None for no value.

@@ -1,15 +1,19 @@
 """Parts of the report from an earlier run, used again while their inputs are unchanged.
 
-A part is one kind of a topic: its claims, tables, figures or charts. Its key hashes all rows of measurements, the files
-in data/ by size and time, the settings, the code behind the topic and the topic's prose. A part is built again where
-its key is another one, or where a file that it wrote is no longer the same.
+A part is one kind of a topic (its claims, tables, figures or charts), or the meshes of the viewer. A part is built
+again where a file that it opened or wrote is no longer the same: rows, benchmarks, data, or the code digests of other
+stages. It is also built again where its key is another one. The key hashes the names of all such files, the settings,
+the code behind the part and its prose.
 """
 
 import hashlib
+import os
 import pickle
-from collections.abc import Iterable
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import cloudpickle
@@ -25,36 +29,70 @@ FOLDER = "report"  # below build/
 HERE = Path(__file__).parent
 COMMON = ("items.py", "page.py", "records.py", "verdict.py", "words.py")  # run for each topic, with all they import
 BESIDE = ("topics.py", "reuse.py")  # run, too; what they import does not count: all topics
+VIEWER = (HERE / "page.py",)
 
 
-def key_of(topic: ModuleType, results: Results) -> str:
-    """Hashes everything that the parts of a topic depend on."""
-    own = sorted(Path(topic.__file__ or "").parent.glob("*.*"))
-    files = files_behind([*(path for path in own if path.suffix == ".py"), *(HERE / name for name in COMMON)])
-    files = [path for path in files if path.suffix != ".md"]  # prose of other topics
-    files += [path for path in own if path.suffix == ".md"] + [HERE / name for name in BESIDE]
+def key_of(own: Iterable[Path], results: Results) -> str:
+    """Hashes what a part depends on, but for the content of the files that it opens.
+
+    own: the code and the prose of the part alone, such as the files of its topic.
+    """
+    code = tuple(sorted(path for path in own if path.suffix == ".py"))
+    behind = results.once(code, lambda: files_behind([*code, *(HERE / name for name in COMMON)]))
+    files = [path for path in behind if path.suffix != ".md"]  # prose of other topics
+    files += sorted(path for path in own if path.suffix == ".md") + [HERE / name for name in BESIDE]
     digests = [(str(path), file_digest(path)) for path in files]
     return _hash(results.once("inputs", lambda: _inputs(results)), *digests)
 
 
 def _inputs(results: Results) -> str:
-    """Hashes the inputs that all topics share."""
-    folders = {results.reports, results.workspace.published}
-    rows = [path for folder in folders for name in ("measurements", "bench") for path in _files(folder / name)]
-    code = [
-        path for path in _files(results.workspace.build / "code") if path.name != "report"
-    ]  # for rows that are older
-    stats = [(str(path), path.stat().st_size, path.stat().st_mtime_ns) for path in _files(results.data)]
-    hashes = [(str(path), sha256(path)) for path in (*rows, *code)]
-    return _hash(results.workspace.params, results.settings, versions(), *hashes, *stats)
+    """Hashes the inputs that all parts share."""
+    names = [str(path) for folder in _folders(results) for path in sorted(folder.rglob("*")) if path.is_file()]
+    return _hash(results.workspace.params, results.settings, versions(), names)
 
 
-def _files(folder: Path) -> Iterable[Path]:
-    return sorted(path for path in folder.rglob("*") if path.is_file())
+def _folders(results: Results) -> list[Path]:
+    """The folders of the files that a part reads."""
+    reports = {results.reports, results.workspace.published}
+    folders = {folder / name for folder in reports for name in ("measurements", "bench")}
+    return sorted({*folders, results.data, results.workspace.build / "code"})
 
 
 def _hash(*parts: object) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+_opened: list[set[str]] = []  # paths go into the last one; an audit hook cannot be taken back
+
+
+@contextmanager
+def files_opened() -> Iterator[set[str]]:
+    """A set that gets the path of each file that this process opens inside the block."""
+    _watch()
+    _opened.append(set())
+    try:
+        yield _opened[-1]
+    finally:
+        _opened.pop()
+
+
+@cache
+def _watch() -> None:
+    def note(event: str, arguments: tuple) -> None:
+        if event == "open" and _opened and isinstance(arguments[0], str):
+            _opened[-1].add(arguments[0])
+
+    sys.addaudithook(note)
+
+
+def built(work: Callable[[Results], Any], results: Results) -> tuple[Any, dict[Path, str]]:
+    """(the part that some work makes of the results, {file: SHA-256} of the rows and data that it opened)."""
+    with files_opened() as opened:
+        part = work(results.unread())  # whatever was read before would not be opened
+    folders = [os.path.abspath(folder) for folder in _folders(results)]
+    paths = sorted({Path(os.path.abspath(path)) for path in opened})
+    read = [path for path in paths if any(path.is_relative_to(folder) for folder in folders) and path.is_file()]
+    return part, {path: sha256(path) for path in read}
 
 
 def taken_again(name: str, key: str, results: Results) -> Any:
@@ -68,9 +106,9 @@ def taken_again(name: str, key: str, results: Results) -> Any:
     return part if same else None
 
 
-def keep(name: str, key: str, part: Any, results: Results) -> None:
-    """Stores a part below build/, with its key and the hashes of its files."""
+def keep(name: str, key: str, part: Any, read: dict[Path, str], results: Results) -> None:
+    """Stores a part below build/, with its key and the hashes of the files that it read and wrote."""
     paths = [path for item in part.items for path in item.paths] if isinstance(part, Built) else []
-    content = cloudpickle.dumps((key, {path: sha256(path) for path in paths}, part))
+    content = cloudpickle.dumps((key, read | {path: sha256(path) for path in paths}, part))
     with whole_file(results.workspace.build / FOLDER / f"{name}.pickle") as file:
         file.write_bytes(content)

@@ -1,6 +1,7 @@
 """The topics of the report, in reading order, and what each has to say."""
 
 from collections.abc import Iterable
+from pathlib import Path
 from types import ModuleType
 
 from matplotlib.figure import Figure as Drawing
@@ -39,6 +40,12 @@ CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]
 def name_of(topic: ModuleType) -> str:
     """`touch`, say."""
     return topic.__name__.rpartition(".")[2]
+
+
+def files_of(topic: ModuleType, kind: str) -> list[Path]:
+    """The code of a topic and, for a kind that has words in it, its prose; findings are read for each page anew."""
+    folder = Path(topic.__file__ or "").parent
+    return [*folder.glob("*.py"), *([folder / "prose.md"] if kind in KINDS else [])]
 
 
 def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS) -> Built:

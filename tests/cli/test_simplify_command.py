@@ -1,5 +1,6 @@
 """`haptic-glance simplify MESH`: a person's own mesh, from file to file."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -263,6 +264,13 @@ def test_small_units_keep_their_digits(tmp_path):
     tiny = Mesh(1e-6 * (mesh.vertices - PLACE), mesh.faces)
     write_any(tmp_path / "tiny.obj", tiny)
     assert np.abs(load(tmp_path / "tiny.obj").vertices - tiny.vertices).max() < 1e-8 * tiny.diagonal
+
+
+def test_large_units_keep_texture_coordinates(tmp_path):
+    mesh = textured()
+    write_any(tmp_path / "large.obj", replace(mesh, vertices=1e8 * mesh.vertices))
+    again = load(tmp_path / "large.obj")
+    assert again.texture is not None and np.abs(again.texture.uv - mesh.texture.uv).max() < 1e-6
 
 
 @pytest.mark.slow

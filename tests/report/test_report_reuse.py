@@ -1,15 +1,18 @@
 """Parts of the report that are taken from the last run: only where nothing that they read has changed."""
 
+from functools import partial
+
 import pytest
 
 from haptic_glance.base.files import write_text
 from stages.report import reuse, scene, touch
-from stages.report.reuse import HERE, keep, key_of, taken_again
-from stages.report.topics import build_all
+from stages.report.reuse import HERE, built, keep, key_of, taken_again
+from stages.report.topics import build_all, files_of
 
 
-def keys(small, root):
-    return {topic.__name__.rpartition(".")[2]: key_of(topic, small.results(root)) for topic in (scene, touch)}
+def keys(small, root, kind="tables"):
+    results = small.results(root)
+    return {topic.__name__.rpartition(".")[2]: key_of(files_of(topic, kind), results) for topic in (scene, touch)}
 
 
 def test_equal_inputs_have_equal_keys(small, root):
@@ -25,6 +28,7 @@ def test_equal_inputs_have_equal_keys(small, root):
         ("topics.py", {"scene", "touch"}),
         ("page/site.css", {"scene", "touch"}),
         ("attention/prose.md", set()),
+        ("touch/findings.md", set()),
         ("hybrid/section_5_5.py", set()),
     ],
 )
@@ -35,21 +39,25 @@ def test_code_and_prose_change_the_keys_of_the_topics_that_read_them(file, chang
     assert (HERE / file).is_file() and {name for name in after if after[name] != before[name]} == changed
 
 
+def test_prose_does_not_change_the_keys_of_claims(small, root, monkeypatch):
+    before, digest = keys(small, root, "claims"), reuse.file_digest
+    monkeypatch.setattr(reuse, "file_digest", lambda path: "changed" if path.suffix == ".md" else digest(path))
+    assert keys(small, root, "claims") == before != keys(small, root)
+
+
 @pytest.mark.parametrize(
     "file",
-    ["reports/measurements/test/lod.csv.gz", "data/test/meshes/ball.npz", "build/code/lod", "reports/bench/new.csv"],
+    ["reports/measurements/other/lod.csv.gz", "data/test/meshes/new.npz", "build/code/new", "reports/bench/new.csv"],
 )
-def test_rows_data_and_the_code_of_other_stages_change_all_keys(file, small, root):
+def test_a_new_file_of_rows_data_or_code_changes_all_keys(file, small, root):
     before = keys(small, root)
     write_text(root / file, "other")
     after = keys(small, root)
     assert all(after[name] != before[name] for name in after)
 
 
-def test_a_setting_changes_all_keys_and_the_code_of_the_report_itself_none(small, root):
+def test_a_setting_changes_all_keys(small, root):
     before = keys(small, root)
-    write_text(root / "build/code/report", "other")
-    assert keys(small, root) == before
     params = root / "params.yaml"
     params.write_text(params.read_text().replace("seed: 0", "seed: 1"))
     assert not {*keys(small, root).values()} & {*before.values()}
@@ -57,8 +65,8 @@ def test_a_setting_changes_all_keys_and_the_code_of_the_report_itself_none(small
 
 @pytest.fixture
 def kept(results):
-    part = build_all("tables", results, [touch])
-    keep("tables-touch", "key", part, results)
+    part, read = built(partial(build_all, "tables", topics=[touch]), results)
+    keep("tables-touch", "key", part, read, results)
     return part
 
 
@@ -68,6 +76,20 @@ def test_a_part_is_taken_again_with_its_files_alone(kept, results):
     assert taken_again("tables-touch", "other", results) is None and taken_again("tables-scene", "key", results) is None
     write_text(kept.items[0].paths[0], "edited")
     assert taken_again("tables-touch", "key", results) is None
+
+
+@pytest.mark.parametrize(("stage", "again"), [("classification", False), ("lod", True)])
+def test_a_part_is_built_again_where_rows_that_it_opened_have_changed(stage, again, kept, results):
+    path = results.reports / f"measurements/test/{stage}.csv.gz"
+    path.write_bytes(path.read_bytes() + b" ")
+    assert (taken_again("tables-touch", "key", results) is not None) == again
+
+
+def test_rows_that_were_read_before_count_as_read(small, root):
+    results = small.results(root)
+    results.rows("lod", "test")
+    _, read = built(lambda results: results.rows("lod", "test"), results)
+    assert [path.name for path in read] == ["lod.csv.gz"]
 
 
 @pytest.mark.parametrize("content", [b"", b"\x80\x04", b"nothing"])

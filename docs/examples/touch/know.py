@@ -15,7 +15,7 @@ from haptic_glance.know import Exploration, known_objects, learn, primitives
 
 meshes, left_out = known_objects(sample().parent)  # or a folder of yours: Path("scans")
 meshes |= primitives()
-library = learn(meshes, placed=False)  # nothing is known of the pose; placed: objects stand as they were learned
+library = learn(meshes, placed=False, turned=True)  # nothing is known of the pose
 exploration = Exploration(library, Surface(meshes["cylinder"]), np.random.default_rng(0))
 print(f"known as {exploration.finish()!r} after {len(exploration.images)} touches")
 
