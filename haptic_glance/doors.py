@@ -192,6 +192,8 @@ def simplify(
 ) -> Mesh:  # fmt: skip
     """A Mesh of at most `faces` faces: a count, a share of the mesh's own such as 0.25, or a text, "25%" or "1500".
 
+    A float of at most 1 is a share, so that 1.0 asks for the mesh itself, and 1 for one face.
+
     keep: vertex ids, most salient first, or one, whose neighbourhood of `rings` edges stays unchanged (T3.1.3).
     weights: (n,) in 0..1, such as a saliency: the error counts more where it is high. attributes: weights of colors,
     normals and uv in the error. free_borders: whether the boundary is simplified, too; None: where the count is
@@ -206,8 +208,8 @@ def simplify(
     work = import_module("haptic_glance.lod").simplify
     target = str(faces)
     keep = None if keep is None else np.atleast_1d(keep)
-    if isinstance(faces, float | np.floating) and 0 < faces < 1:
-        target = f"{100 * float(target):.12g}%"
+    if isinstance(faces, float | np.floating) and 0 < faces <= 1:
+        target = f"{100 * float(target):.12g}%" if faces < 1 else str(len(mesh.faces))
     count = face_count(target, len(mesh.faces), "faces")
     arguments = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
     borders = [False if free_borders is None else free_borders]

@@ -96,6 +96,8 @@ def test_a_length_that_does_not_fit_the_mesh_is_warned_of(body):
         press(Mesh(100 * mesh.vertices, mesh.faces), 7, pitch="1mm", unit="mm")
     with pytest.raises(ValueError, match="cells must be two whole numbers"):
         press(mesh, 7, cells=16, pitch="1mm", unit="mm")
+    with pytest.raises(ValueError, match=r"cells=\(100000, 100000\): an array has at most 16,777,216 cells"):
+        press(mesh, 7, cells=(100_000, 100_000))
 
 
 def test_forces_take_lengths_as_texts(body):
@@ -164,6 +166,7 @@ def test_faces_are_a_count_or_a_share(body):
         assert len(simplify(Mesh(*body), faces).faces) == 320
     with pytest.raises(ValueError, match="faces='None' is not a face count"):
         simplify(Mesh(*body), None)
+    assert simplify(body, 1.0) == Mesh(*body)
 
 
 def test_values_that_colour_a_mesh_are_one_per_vertex_and_finite(body):

@@ -17,6 +17,7 @@ from haptic_glance.mesh.mesh import Mesh
 from .surface import Surface, as_surface, check_vertices, sensor_axes, sensor_normals
 
 EYE = np.eye(3)
+MOST_CELLS = 2**24  # of an array: 4096 x 4096
 SKEW = 1e-6 + 1e-5 * EYE  # how far products of an array's axes may be from 0 and 1
 
 
@@ -128,6 +129,8 @@ def check_arrays(
 def _check_cells(cells):
     if np.shape(cells) != (2,) or any(not number >= 1 or number % 1 for number in cells):
         raise ValueError(f"cells must be two whole numbers from 1 (rows, columns), got {cells}")
+    if cells[0] * cells[1] > MOST_CELLS:
+        raise ValueError(f"cells={tuple(cells)}: an array has at most {MOST_CELLS:,} cells")
     return int(cells[0]), int(cells[1])
 
 
