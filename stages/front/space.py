@@ -7,7 +7,7 @@ from typing import Any
 
 from haptic_glance.look.points.methods import method_named
 from stages.classification import Params as Classification
-from stages.compose import compose
+from stages.compose import composed
 from stages.conspicuity import Params as Conspicuity
 from stages.engine.settings import check_section
 from stages.imprints import Params as Imprints
@@ -102,6 +102,6 @@ def settings_of(choice: Choice) -> Settings:
         rows, columns = choice.image_rows, choice.image_rows * 4 // 3
         overrides += [f"views.viewpoints={choice.viewpoints}", f"views.size=[{rows},{columns}]"]
         overrides += [f"conspicuity.size=[{rows // 4},{columns // 4}]"]
-    sections = compose(["sets=[household]", *overrides])["household"]
+    sections = composed(["data=household", *overrides])
     schemas = {field.name: field.type for field in fields(Settings)}
     return Settings(**{name: check_section(schema, sections[name]) for name, schema in schemas.items()})  # type: ignore[arg-type]

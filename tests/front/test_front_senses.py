@@ -39,10 +39,10 @@ def settings_by_classifier():
     def composed(overrides):
         _, classifier, *values = overrides
         chosen = OmegaConf.merge(compose.composed(["data=household", classifier]), OmegaConf.from_dotlist(values))
-        return {"household": OmegaConf.to_container(chosen)}
+        return OmegaConf.to_container(chosen)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(space, "compose", composed)
+        patch.setattr(space, "composed", composed)
         yield
     space.settings_of.cache_clear()
 
