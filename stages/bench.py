@@ -64,6 +64,8 @@ def run(argv: Sequence[str]) -> None:
     options = parser.parse_args(argv)
     # Before the imports below, which take seconds.
     method = function_of(options.method) if options.method else None
+    if method is None and (options.train or options.gaze):
+        raise ValueError(f"{'--train' if options.train else '--gaze'} is about a METHOD: name one, FILE.py:FUNCTION")
     if options.gaze and not options.gaze.exists():
         raise ValueError(f"--gaze {options.gaze}: no such file")
     with from_extra():
@@ -106,7 +108,10 @@ def function_of(text: str) -> Callable:
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     sys.path.insert(0, str(path.parent.resolve()))  # what lies beside the file can be imported, as when it is run
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:  # the file may do anything
+        raise ValueError(f"{path} cannot be imported: {type(error).__name__}: {error}") from error
     if not callable(getattr(module, name, None)):
         raise ValueError(f"{path} has no function {name!r}")
     return getattr(module, name)

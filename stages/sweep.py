@@ -14,6 +14,7 @@ job in work alone. A job that fails is named, and the others go on. A table of t
 """
 
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -46,6 +47,7 @@ from stages.report.tables import with_interval, within
 
 OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs
+BEFORE = Path("build/sweeps/params.yaml")  # params.yaml as it was, while a sweep makes what its jobs read
 SECTIONS = ("salient_points", "imprints", "classification")
 NEEDED = "meshes", "conspicuity", "weights"  # stages whose results the jobs read
 ROWS, FAILURE = "rows.csv", "failure.txt"  # a job leaves one of them in its own folder
@@ -169,13 +171,21 @@ def prepare(argv: Sequence[str]) -> None:
 
 @contextmanager
 def results_in(folder: Path) -> Iterator[None]:
-    """Inside, params.yaml sends the rows of stages to a folder, and not to the published results."""
+    """Inside, params.yaml sends the rows of stages to a folder, and not to the published results.
+
+    What a sweep that was killed inside has left there is put back first.
+    """
+    chosen = f"out: {folder.as_posix()}"
     text = FILE.read_text()
-    write_text(FILE, re.sub(r"^out: .*$", f"out: {folder.as_posix()}", text, flags=re.MULTILINE))
+    if BEFORE.exists() and chosen in text.splitlines():
+        text = BEFORE.read_text()
+    write_text(BEFORE, text)
+    write_text(FILE, re.sub(r"^out: .*$", chosen, text, flags=re.MULTILINE))
     try:
         yield
     finally:
         write_text(FILE, text)
+        BEFORE.unlink()
 
 
 def is_override(word: str) -> bool:
@@ -263,6 +273,9 @@ def main() -> None:
         print(__doc__)  # before Hydra's own help, which lists every group and setting
     else:
         check_clone()
+        for name in ("SIGTERM", "SIGHUP"):  # as Ctrl-C, so that params.yaml is put back
+            if hasattr(signal, name):
+                signal.signal(getattr(signal, name), lambda number, _: sys.exit(128 + number))
         prepare(sys.argv[1:])
         sys.argv[1:] = [quoted(word) if is_override(word) else word for word in sys.argv[1:]]
     job()

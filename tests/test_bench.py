@@ -148,11 +148,15 @@ def test_a_new_method_takes_few_lines(code, options, tmp_path, toys, capsys):
 
 
 def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):
+    broken = file.with_name("broken.py")
+    broken.write_text("def width(mesh:")
     monkeypatch.setattr("stages.engine.rows.read_rows", None)
     for options, words in (
         (["nowhere.py:saliency"], "^nowhere.py: no such file"),
         (["nowhere.py"], "name a file and a function of it"),
         ([f"{file}:width"], "mine.py has no function 'width'"),
+        ([f"{broken}:width"], "broken.py cannot be imported: SyntaxError: "),
+        (["--train"], "--train is about a METHOD: name one"),
         ([f"{file}:height", "--gaze", "gone.zip"], "^--gaze gone.zip: no such file"),
     ):
         with pytest.raises(ValueError, match=words):

@@ -157,6 +157,19 @@ def test_a_path_with_a_blank_and_an_accent_reaches_the_jobs(root, monkeypatch):
 
 
 @pytest.mark.slow
+def test_settings_that_a_killed_sweep_left_are_put_back(root):
+    before = Path("params.yaml").read_text()
+    with sweep.results_in(Path("runs/sweeps")):
+        left = {path: path.read_text() for path in (Path("params.yaml"), sweep.BEFORE)}
+    for path, text in left.items():  # as after SIGKILL
+        write_text(path, text)
+    assert load_params()["out"] == "runs/sweeps"
+    with sweep.results_in(Path("runs/sweeps")):
+        assert load_params()["out"] == "runs/sweeps"
+    assert Path("params.yaml").read_text() == before and not sweep.BEFORE.exists()
+
+
+@pytest.mark.slow
 def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
     (root / "data/household_four/weights/there.json").unlink()
     commands, before = [], Path("params.yaml").read_text()

@@ -7,6 +7,7 @@ there. `rigid` is the plate that the sentence describes. On saddles the pitch sh
 (T4.4.3).
 """
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -47,6 +48,8 @@ def distances(
     The thesis uses the centre of the face that the ray hits as the surface point (T figure 4.7). Here it is the exact
     intersection, so that the imprint does not depend on the triangulation.
 
+    Warns of vertices where no cell finds a surface.
+
     mesh: a Mesh, or a Surface if it is touched more than once; vertices: (k,) vertex ids; axes: (k, 3, 3) rows
     right, up, normal, to orient the array otherwise; contact: "tangent" (the plane stands at the vertex) or "rigid"
     (it rests on the first contact), see `haptic_glance.touch.distances`.
@@ -59,6 +62,13 @@ def distances(
     measured = distances_at(
         surface, surface.mesh.vertices[vertices], axes, (rows, columns), pitch, max_distance, contact
     )
+    missed = vertices[(measured == max_distance).all(axis=(1, 2))]
+    if len(missed):
+        others = f" and {len(missed) - 1} others" if len(missed) > 1 else ""
+        warnings.warn(
+            f"the array touches nothing at vertex {missed[0]}{others}: the faces there look inwards "
+            "(`haptic_glance.repair` turns them), or the place is narrower than a cell", stacklevel=3,
+        )  # fmt: skip
     if contact == "tangent" and rows % 2 and columns % 2:
         measured[:, rows // 2, columns // 2] = 0.0
     return measured

@@ -8,6 +8,7 @@ import pytest
 
 from stages.report import touch
 from stages.report.results import SETS_4_2, NotRun
+from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, touches
 from stages.report.touch.rows import PRINTED
@@ -185,6 +186,22 @@ def test_chart_counts_the_making_of_the_features(glance):
     assert frame.loc["kNN, 41 features", "seconds"] == pytest.approx(0.03)
     assert frame.loc["kNN, pixels", "seconds"] == pytest.approx(0.01)
     assert frame.loc["kNN, 5 touches, map and position", "cost_ratio"] == pytest.approx(1)
+
+
+@pytest.mark.slow
+def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(root, small, monkeypatch):
+    ours = rows("glance", "test")
+    added = ours[ours["classifier"] == "knn"].assign(classifier="centroid")
+    small.write(root, "classification", pd.concat([ours, added]))
+    results, bars = small.results(root), []
+    monkeypatch.setattr(touches, "draw_bars", lambda axes, frame, classifiers, **_: bars.append(classifiers))
+    monkeypatch.setattr(touches.plt.Axes, "legend", lambda *_, **__: None)
+    for name in ("table_4_1", "table_4_6"):
+        frame = table(name, results).frame
+        cells = frame[(frame["classifier"] == "centroid") & (frame["sampling"] == "glance")]
+        assert cells["accuracy"].notna().any() and cells["thesis"].isna().all()
+    build_one(touch, "figures", "table_4_1", results)
+    assert bars == [[*CLASSIFIERS, "centroid"]]
 
 
 def test_bars_are_of_the_samplings_that_ran_with_chance_by_the_objects_of_the_group(root, small, monkeypatch):

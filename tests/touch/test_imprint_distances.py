@@ -5,7 +5,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from haptic_glance import press, repair
+from haptic_glance import press, press_many, repair
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from haptic_glance.touch import Surface, distances, distances_at, sensor_axes, sensor_normals, touchable
@@ -209,6 +209,17 @@ def test_where_one_part_stands_on_another_its_inside_is_inside_whatever_the_orde
             Mesh(tower.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, max_distance=5.0
         )
         assert np.allclose(lengths, -0.6, atol=1e-15)
+
+
+def test_a_part_that_is_inside_out_beside_a_larger_one_is_warned_of_where_it_is_touched(recwarn):
+    ball = trimesh.creation.icosphere(2, radius=0.5)
+    count = len(ball.vertices)
+    vertices = np.vstack([ball.vertices, 0.4 * ball.vertices + 2])
+    mesh = Mesh(vertices, np.vstack([ball.faces, ball.faces[:, ::-1] + count]))
+    assert press(mesh, 0).max() == 1 and not recwarn.list
+    with pytest.warns(UserWarning, match=rf"nothing at vertex {count + 3} and 1 others: the faces there look inwards"):
+        press_many(mesh, [0, count + 3, count + 5])
+    assert press_many(repair(mesh), [0, count + 3]).max(axis=(1, 2)).tolist() == [1, 1]
 
 
 def test_a_closed_mesh_that_is_inside_out_is_warned_of_and_its_repair_is_not(recwarn):

@@ -76,16 +76,22 @@ def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool 
     run = set(rows["method"])
     names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
     measured = grouped(rows[rows["metric"] == "accuracy"], ["method", "classifier"])
-    thesis, groups = thesis.reindex(names), dict(measured)
+    classifiers = [*thesis.columns, *added(rows["classifier"])]
+    thesis, groups = thesis.reindex(names, columns=classifiers), dict(measured)
     return pd.DataFrame(
         [
             {"protocol": protocol.name, "sampling": f"{sampling}{few}", "classifier": classifier}
             | accuracies(groups.get((sampling, classifier), rows[:0]))
             | {"thesis": thesis.loc[sampling, classifier]}
             for sampling in names
-            for classifier in thesis.columns
+            for classifier in classifiers
         ]
     )
+
+
+def added(classifiers: pd.Series) -> list[str]:
+    """The classifiers that the thesis does not have, such as those that somebody adds."""
+    return sorted({*classifiers.dropna()} - {*CLASSIFIERS, *MEANS})
 
 
 table_4_1 = partial(beside_thesis, group="six", printed="table_4_1_six_virtual_objects")
@@ -127,7 +133,7 @@ def _by_touches(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
     if frame.empty:
         return frame
     samplings = [protocol.best, *sorted({*frame["sampling"]} - {protocol.best})]
-    classifiers = [*CLASSIFIERS[::-1], *MEANS]
+    classifiers = [*CLASSIFIERS[::-1], *MEANS, *added(frame["classifier"])]
     orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": classifiers}
     frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
     best = frame["sampling"] == protocol.best
@@ -171,7 +177,9 @@ def figure_4_1(results: Results) -> Figure:
     figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 4.1 * len(parts)), squeeze=False)
     figure.subplots_adjust(hspace=0.52)
     for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):
-        draw_bars(axes, frame, [*CLASSIFIERS], chance=1 / results.classes("six"), regions=True)
+        draw_bars(
+            axes, frame, [*CLASSIFIERS, *added(frame["classifier"])], chance=1 / results.classes("six"), regions=True
+        )
         axes.set_title(f"Recognising {results.group_text('six')} by one touch, {protocol}", pad=42)
         handles, names = axes.get_legend_handles_labels()
         axes.legend(
