@@ -76,7 +76,7 @@ def write_rows(
 def _check(path, number, row, names):
     unknown = sorted(name for name in row.keys() - names if not name.startswith("_"))
     if unknown:
-        raise ValueError(f"{path.name}: columns {', '.join(unknown)} are not declared in the stage's __init__.py")
+        raise ValueError(f"{path.name}: columns {', '.join(unknown)} are not declared in the COLUMNS that StageRun got")
     if _empty(row.get("metric")):
         raise ValueError(f"{path.name}: row {number} has no metric")
     split = row.get("split")
