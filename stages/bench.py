@@ -151,7 +151,7 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
             scores = agreement(np.asarray(values, dtype=np.float64), truth)
             row["seconds"] = watch.seconds
         except Exception as error:  # a method may raise anything; the other objects are judged
-            row["note"] = failed[name] = f"{type(error).__name__}: {error}"
+            row["note"] = failed[name] = " ".join(f"{type(error).__name__}: {error}".split())
             report(f"{name} is left out: {failed[name]}")
         rows += [row | {"metric": metric, "value": scores.get(metric, np.nan)} for metric in SCORES]
     if len(failed) == len(objects):
