@@ -52,7 +52,8 @@ interval. The words:
 - *not testable*: more than a fifth of the pairs is invalid. The column *invalid* counts the causes. Otherwise invalid
   pairs are left out. A pair is invalid where a method found no point, kept less than one ring of a neighbourhood, gave
   one answer for nearly all samples, was less accurate than guessing, left nothing out, started from random layers that
-  the thesis has trained, or was tuned by a training that stopped while it still improved.
+  the thesis has trained, was tuned by a training that stopped while it still improved, or of which nobody measured
+  whether it did; or where both sides are the same mesh, unless the sentence is about when that happens.
 - *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
 
 The set that follows the printed protocol judges a sentence of the thesis. The column *carries over* has the word that

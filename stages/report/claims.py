@@ -99,6 +99,7 @@ class Claim:
     None: 1 for the thesis's claims, 0 for ours. of: key of the primary claim whose sentence this claim tests elsewhere;
     a later claim in the same words and chapter is secondary without being told. readings: other readings of the
     protocol, in which the verdict must hold too. checked: whether rows that stages.report.effects refuses are out.
+    ties: whether two equal meshes are a result, a difference of zero; otherwise such a pair is invalid.
     """
 
     key: str
@@ -126,6 +127,7 @@ class Claim:
     printed: int | None = None
     readings: tuple[Reading, ...] = ()
     checked: bool = True
+    ties: bool = False
 
     @property
     def own(self) -> bool:

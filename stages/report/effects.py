@@ -124,7 +124,7 @@ def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
 
 def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
     """(pairs,) whether two simplifications have errors that are equal to the last digit, and not zero."""
-    if claim.stage != "lod" or not claim.checked:
+    if claim.stage != "lod" or not claim.checked or claim.ties:
         return pd.Series(False, index=joined.index)
     return (joined["first"] == joined["second"]) & (joined["first"] > 0)
 

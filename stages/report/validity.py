@@ -20,6 +20,7 @@ MOST = 0.5  # the same share where the number of classes is not known by the nam
 DEAF, WIDE = "svm", "min_max"  # a classifier that often gives one answer, but not where all data lie in 0 to 1
 UNKNOWN = "nobody counted the answers of a classifier that often gives one"
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
+UNMEASURED = "nobody measured whether the training was saturated"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
@@ -80,11 +81,16 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
 @check("transfer")
 @check("recorded_networks")
 def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of tuned networks whose training was stopped after some passes while it still improved."""
+    """Rows of tuned networks whose training was stopped after some passes while it still improved, or may have been.
+
+    A network that knows its test part has learned its training part.
+    """
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
     converged = rows["passes"] == "converged" if "passes" in rows else False
-    learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
-    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+    known = _beside(results, stage, dataset, rows, "train_accuracy")
+    doubtful = tuned & ~converged & (rows["value"] < SATURATED)
+    return pd.Series("", index=rows.index).mask(doubtful & (known < SATURATED), UNTRAINED).mask(
+        doubtful & known.isna(), UNMEASURED)  # fmt: skip
 
 
 @check("fixation")

@@ -83,7 +83,7 @@ def tabled(claims: Sequence[Claim], rows: Sequence[Row]) -> tuple[pd.DataFrame, 
 def _row(claim: Claim, results: Results) -> Row:
     row = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
     try:
-        judgements = _judgements(claim, results)
+        judgements, not_run = _judgements(claim, results)
     except NotRun as absent:
         unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {absent}", "cause": CAUSES[0]}
         return row | unmeasured | {"verdict": "open"}, []
@@ -94,7 +94,7 @@ def _row(claim: Claim, results: Results) -> Row:
         named = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
         decides = effect in judgement.chosen
         pairs += ((claim.key, name, value, decides) for name, value in zip(named, effect.differences, strict=True))
-    return row | _numbers(judgement) | _words(judgement, results) | _readings(judgement, judgements), pairs
+    return row | _numbers(judgement) | _words(judgement, results) | _readings(judgement, judgements, not_run), pairs
 
 
 @dataclass(frozen=True)
@@ -113,25 +113,28 @@ class Judgement:
         return word_of(self.chosen, self.claim.unit)
 
 
-def _judgements(claim: Claim, results: Results) -> list[Judgement]:
-    """The claim as it is written, then in its other readings that were run; NotRun where none was.
+def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[str]]:
+    """(the claim as it is written, then in its other readings that were run; names of the others).
 
-    A reading on data sets of its own was run where the first of them was.
+    A reading on data sets of its own was run where the first of them was. Raises NotRun where no reading was run.
     """
-    judgements, absent = [], []
+    judgements, absent, not_run = [], [], []
     for name, variant in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
         try:
             measured, missing = effects(variant, results)
         except NotRun as why:
             absent.append(why)
+            not_run.append(name)
             continue
         chosen = deciding(variant, measured, results, strict=variant is not claim)
         judgement = Judgement(name, variant, measured, missing, chosen)
         if variant is claim or (chosen and np.isfinite(effect_of(chosen).interval[1])):
             judgements.append(judgement)
+        else:
+            not_run.append(name)
     if not judgements:
         raise absent[0]
-    return judgements
+    return judgements, not_run
 
 
 def word_of(effects: Sequence[Effect], unit: str) -> str:
@@ -153,12 +156,13 @@ def over_readings(words: Sequence[str]) -> str:
     return DEPENDS if words[0] in DECIDED and {*words} & {*DECIDED, MIXED} != {words[0]} else words[0]
 
 
-def _readings(judged_one: Judgement, judgements: Sequence[Judgement]) -> dict[str, str]:
-    """Columns verdict and readings: the word and the effect in each reading, the judged one first."""
-    if len(judgements) == 1 and judged_one.name == "as written":
+def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: Sequence[str]) -> dict[str, str]:
+    """Columns verdict and readings: the word and the effect in each reading, the judged one first; those not run."""
+    if len(judgements) == 1 and judged_one.name == "as written" and not not_run:
         return {}
     ordered = sorted(judgements, key=lambda reading: reading is not judged_one)
     texts = [f"{reading.name}: {reading.word} {_interval_text(effect_of(reading.chosen))}" for reading in ordered]
+    texts += [f"{name}: not run" for name in not_run]
     return {"verdict": over_readings([reading.word for reading in judgements]), "readings": "; ".join(texts)}
 
 

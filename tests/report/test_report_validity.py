@@ -27,6 +27,7 @@ from stages.report.validity import (
     SAME,
     UNIT,
     UNKNOWN,
+    UNMEASURED,
     UNTRAINED,
     causes,
     invalid_units,
@@ -171,6 +172,9 @@ def test_two_sides_with_the_same_mesh_are_no_evidence(measure):
     row = judge([claim], results).iloc[0]
     assert row["validity"] == f"test: 2 of 24 pairs invalid: {SAME} (2)" and row["units"] == COUNT - 1
     assert differences(results, claim)["o01"] == 0
+    as_result = judge([replace(claim, ties=True)], results).iloc[0]
+    assert as_result["validity"] == "" and as_result["units"] == COUNT
+    assert differences(results, replace(claim, ties=True))["o00"] == 0
     same_as_plain = replace(OVER, first={"method": "y"}, second={"method": "qem"})
     results = measure("lod", pd.concat([rows, other.assign(value=1.0)]))
     assert judge([same_as_plain], results)["verdict"].iloc[0] == "not testable"
@@ -209,8 +213,8 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     rows = rows.assign(mode=["finetuned", "finetuned", "frozen", "18:139"], passes=["printed"] * 3 + ["converged"])
     learned = rows.assign(metric="train_accuracy", value=[0.77, 0.97, 0.1, 0.5])
     assert causes_in(measure(stage, pd.concat([rows, learned])), stage) == [UNTRAINED, "", "", ""]
-    unknown = rows.drop(columns="passes")  # nobody knows how far these were trained
-    assert causes_in(measure(stage, unknown), stage) == [UNTRAINED, UNTRAINED, "", UNTRAINED]
+    unknown = rows.drop(columns="passes").assign(value=[0.6, 0.96, 0.6, 0.6])  # nobody knows how far they were trained
+    assert causes_in(measure(stage, unknown), stage) == [UNMEASURED, "", "", UNMEASURED]
 
 
 def test_a_selection_that_left_nothing_out_is_no_evidence(measure):

@@ -22,8 +22,8 @@ from .rows import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, WHOLE, netwo
 # The thesis's (T3.3.2), but that ResNet101's weights come with no package; then ours, with new heads alone.
 PRINTED = RESNET, VGG = ("resnet50-last_block", "vgg16-last_block")
 FROZEN = ("vgg16-frozen", "resnet50-frozen", "mobilenet_v2-frozen")
-TUNED = "*-last_block"
-EWIGC, EWIGC_L4 = (TUNED, FUSED), (TUNED, NARROWED)  # of both networks
+TUNED = RESNET  # the fully connected layers of VGG16 start from random weights here, see stages.report.validity
+EWIGC, EWIGC_L4 = (TUNED, FUSED), (TUNED, NARROWED)
 NEAREST = RESNET, FUSED  # to the thesis's best
 BOTH = (RESNET, FUSED), (VGG, FUSED)
 NAMED = {ITSELF: "the object itself", "convexity": "the convexity"}  # tasks that are not fused
@@ -41,7 +41,7 @@ SEEN = (*GAZED, "household", "princeton")  # sets of whose objects networks were
 VIEWS = ("0", "1", "2")  # the three views of which an object's score is the mean
 SHORT = {RESNET: "ResNet", VGG: "VGG16"}
 PHRASES = {
-    ("method", TUNED): "mean of the networks", ("method", "rival"): "", ("method", "control"): "",
+    ("method", "rival"): "", ("method", "control"): "",
     ("method", "*-frozen"): "frozen networks,", ("metric", "nearer_than_chance"): "",
     ("metric", "nearer_than_middle"): "", ("view", VIEWS): "", ("view", ALL_VIEWS): "", ("over", "task"): "tasks",
     ("metric", AS_PRINTED): "PCC the thesis's way, hidden vertices as zeros",
@@ -111,12 +111,12 @@ def each_network(
 def nearer(key: str, sentence: str, near: Pair, far: Pair, of: str = "", **more: Any) -> list[Claim]:
     """The claim that the centres of `near` are nearer: the nearest of a view, the thesis's measure; the mean of all."""
     mean = agrees(key, sentence, far, near, metric="distance_mean", scale=100, unit=DIAMETER, **more)
-    letter = reading("maxima to the letter", where={"metric": "distance_maximum"})
     least = replace(mean, key=f"{key}_least", where={**mean.where, "metric": "distance"}, of=of)
-    least = replace(least, readings=(*mean.readings, letter))
+    least = replace(least, readings=(*mean.readings, LETTER))
     return [least, replace(mean, of=of or least.key)]
 
 
+LETTER = reading("maxima to the letter", where={"metric": "distance_maximum"})
 MEAN_DISTANCE = reading("mean distance of all pairs", where={"metric": "distance_mean"})
 
 
@@ -125,7 +125,7 @@ def quartile(key: str, sentence: str, near: Pair, far: Pair, statistic: str, of:
     words = statistic.replace("_", " ").replace("below", "of both")
     return agrees(key, sentence, near, far, metric="distance", scale=100, unit="% of the views", within=("view",),
                   statistic=statistic, of=of, note=f"share of views below the {words}",
-                  readings=(*(VGG_FROZEN["readings"] if near[0] == VGG else ()), MEAN_DISTANCE))  # fmt: skip
+                  readings=(*(VGG_FROZEN["readings"] if near[0] == VGG else ()), MEAN_DISTANCE, LETTER))  # fmt: skip
 
 
 def same_place(place: str, words: str, note: str, of: str = "") -> Claim:
