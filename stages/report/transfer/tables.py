@@ -16,7 +16,7 @@ from scipy.stats import spearmanr
 
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
-from stages.report.claims import Claim, Reading, reading
+from stages.report.claims import Claim, Pick, Reading, highest_of, reading
 from stages.report.drawing import label
 from stages.report.effects import statistic
 from stages.report.items import Table
@@ -231,7 +231,7 @@ PRINTED_RATE = (*CONVERGED, reading("at the printed learning rates", where={"pas
 
 
 def claim(
-    key: str, section: str, sentence: str, column: str, first: str, second: str, margin: float = 0.0,
+    key: str, section: str, sentence: str, column: str, first: str, second: str | Pick, margin: float = 0.0,
     readings: tuple[Reading, ...] = CONVERGED, note: str = "", **where: str,
 ) -> Claim:  # fmt: skip
     """The claim of one value of a column over another. where: what both have in common that differs from SETTING."""
@@ -288,7 +288,12 @@ CHANGES = Claim(
            "passes": "printed"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
-CLAIMS = [*OWN, *EARLY, CHANGES]
+BEST = [  # of the networks at the thesis's size
+    replace(claim(key, "T5.4", "ResNet50 outperforms the other architectures in all cases.", "method", "resnet50",
+                  highest_of("alexnet", "mobilenet_v2", "vgg16"), split="random", mode=mode), dataset=THEIRS, of=of)
+    for key, mode, of in (("resnet_best_tuned", "finetuned", ""), ("resnet_best_frozen", "frozen", "resnet_best_tuned"))
+]  # fmt: skip
+CLAIMS = [*OWN, *EARLY, CHANGES, *BEST]
 
 
 SETTINGS = {
