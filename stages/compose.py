@@ -200,8 +200,10 @@ def check_maps(sections: dict[str, Any]) -> None:
     """Raises ParamsError for a method of the salient points whose channels the stage conspicuity does not compute."""
     from haptic_glance.look.points.methods import method_named
 
-    computed = sections.get("conspicuity", {}).get("channels")
-    for name in sections.get("salient_points", {}).get("methods", []) if computed is not None else []:
+    if "channels" not in sections.get("conspicuity", {}):
+        return
+    computed = sections["conspicuity"]["channels"]
+    for name in sections.get("salient_points", {}).get("methods", []):
         if missing := [channel for channel in method_named(name).channels if channel not in computed]:
             raise ParamsError(
                 f"{name} needs the channels {', '.join(missing)}: add them to conspicuity.channels, or leave it out of "
