@@ -64,7 +64,7 @@ def test_rows_that_are_missing_are_named(clone, capsys):
     file.unlink()
     assert run(["keep_metro"]) == 1
     message = capsys.readouterr().err
-    assert "contradicted (-31.4, 14 units), in reports/claims.csv contradicted (-70.9, 17 units)" in message
+    assert "contradicted (-25.2, 14 units), in reports/claims.csv contradicted (-67.6, 17 units)" in message
     assert f"{file} is missing; `git checkout {file}`" in message
 
 
