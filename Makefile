@@ -20,11 +20,10 @@ repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on w
 studio: $(VENV)/ready ## look at a mesh, simplify it, touch and mark it, on a local page (mesh=FILE_OR_FOLDER)
 	haptic-glance studio $(or $(mesh),samples/dromedary.glb)
 
-# One worker more than there are cores, since some tests wait for a browser or another process.
 test: $(VENV)/ready ## unit and property tests, and beside them the whole pipeline at profile=smoke with its gate
 	@mkdir -p build
 	@$(MAKE) smoke > build/smoke.log 2>&1 & smoke=$$!; rc=0; \
-	pytest -n $$(python -c 'import os; print(os.cpu_count() + 1)') --dist worksteal || rc=$$?; \
+	pytest -n logical --dist worksteal || rc=$$?; \
 	wait $$smoke || { tail -n 40 build/smoke.log; echo "the pipeline at profile=smoke failed: build/smoke.log"; exit 1; }; \
 	tail -n 1 build/smoke.log; exit $$rc
 
