@@ -173,7 +173,7 @@ def prepare(argv: Sequence[str]) -> None:
 def results_in(folder: Path) -> Iterator[None]:
     """Inside, params.yaml sends the rows of stages to a folder, and not to the published results.
 
-    What a sweep that was killed inside has left there is put back first.
+    Settings that a killed sweep has left there are put back first.
     """
     chosen = f"out: {folder.as_posix()}"
     text = FILE.read_text()
