@@ -31,7 +31,7 @@ from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
 from .multi_touch import MultiTouchTrials, evaluate_variants
-from .recorded import feature_cost_rows, gather, similar_share_rows
+from .recorded import alike, feature_cost_rows, gather, similar_share_rows
 from .trials import TouchSet, drawn_sets, set_of
 
 METRICS = {  # (metric, split): the name of their mean in reports/metrics
@@ -156,7 +156,9 @@ def run(workspace: Workspace) -> None:
         check_name(name)
     with StageRun(workspace, "classification", COLUMNS, inputs=("imprints",)) as stage:
         if settings.drawn:
-            sets = drawn_sets(settings.sets, object_files(workspace.data / "imprints"), settings.drawn, stage.seed)
+            folder = workspace.data / "imprints"
+            likeness = functools.partial(alike, folder=folder)
+            sets = drawn_sets(settings.sets, object_files(folder), settings.drawn, stage.seed, likeness)
             settings = dataclasses.replace(settings, sets=sets)
         planned = plan(settings.sets, workspace.data / "imprints")
         work = functools.partial(process, data=workspace.data, planned=planned, settings=settings, seed=stage.seed)

@@ -1,9 +1,11 @@
 """Readers of recorded touches (a pressure array, a hand with BioTac SP fingertips), and imprints of one sampling."""
 
 import io
+import itertools
 import re
 import zipfile
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import pandas as pd
 
 from haptic_glance.base.files import open_picture
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.know.features import features, image_features, wavelet_features
+from haptic_glance.know.features import SIMILARITY_THRESHOLD, features, image_features, similarity, wavelet_features
 from stages.imprints.imprints import read_imprints
 
 from .trials import THESIS_COUNT, TouchSet
@@ -156,6 +158,17 @@ def similar_share_rows(touched: TouchSet, objects: list[str]) -> list[dict]:
             rows.append({"variant": variant, "classifier": None, "item": name, "metric": "similar_share"})
             rows[-1] |= {"imprints": len(share), "value": float(share.mean()), "seconds": None, "note": None}
     return rows
+
+
+def alike(objects: Sequence[str], folder: Path) -> np.ndarray:
+    """(n, n) share of imprints of two objects that are confusable with one of the other, the mean of all samplings."""
+    imprints = [read_imprints(folder / f"{name}.npz") for name in objects]
+    shared = sorted(set.intersection(*map(set, imprints)))
+    shares = np.zeros((len(objects), len(objects)))
+    for sampling, (row, first), (column, second) in itertools.product(shared, enumerate(imprints), enumerate(imprints)):
+        same = similarity(first[sampling].images, second[sampling].images) >= SIMILARITY_THRESHOLD
+        shares[row, column] += (same.any(axis=1).mean() + same.any(axis=0).mean()) / 2
+    return shares / max(1, len(shared))
 
 
 def feature_cost_rows(touched: TouchSet) -> list[dict]:

@@ -25,7 +25,7 @@ cannot give five different touches, so the thesis's combinations seem to be draw
 Sets of objects can be drawn at random, so that a conclusion is about sets and not about one of them.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -208,13 +208,18 @@ def _rotated_positions(touched, parts, random_state):
 
 
 def drawn_sets(
-    groups: Mapping[str, Sequence[str]], objects: Sequence[str], count: int, seed: int
+    groups: Mapping[str, Sequence[str]],
+    objects: Sequence[str],
+    count: int,
+    seed: int,
+    alike: Callable[[Sequence[str]], np.ndarray],
 ) -> dict[str, list[str]]:
     """{"GROUP.NUMBER": objects}: `count` random sets, each with groups of as many objects as the named ones have.
 
     The objects are dealt like cards and shuffled anew when too few are left, so that two sets share as few as they can.
-    The groups of one number are nested: four objects are the first four of the six. Raises ValueError where there are
-    fewer objects than the largest group takes.
+    The groups of one number are nested. A smaller group has the objects that are least alike (T4.2.4), one whose name
+    ends in "_drawn" the first ones. alike: the likeness (n, n) of n objects, see `least_alike`.
+    Raises ValueError where there are fewer objects than the largest group takes.
     """
     size = max(map(len, groups.values()))
     if size > len(objects):
@@ -223,10 +228,28 @@ def drawn_sets(
     while len(hands) < count:
         deck = rng(seed, f"deck {len(hands)}").permutation(sorted(objects)).tolist()
         hands += [deck[start : start + size] for start in range(0, len(deck) - size + 1, size)]
-    return {
-        f"{group}.{number:02}": hand[: len(named)]
-        for number, hand in enumerate(hands[:count], 1) for group, named in groups.items()
-    }  # fmt: skip
+    sets = {}
+    for number, hand in enumerate(hands[:count], 1):
+        likeness = alike(hand)
+        for group, named in groups.items():
+            drawn = group.endswith("_drawn")
+            sets[f"{group}.{number:02}"] = hand[: len(named)] if drawn else least_alike(hand, likeness, len(named))
+    return sets
+
+
+def least_alike(objects: Sequence[str], likeness: np.ndarray, count: int) -> list[str]:
+    """The `count` objects without two of the highest similarity (T4.2.4).
+
+    Of the two objects that are most alike the one that is more like all others is left out, again and again.
+    likeness: (n, n), symmetric.
+    """
+    kept = np.arange(len(objects))
+    while len(kept) > count:
+        part = likeness[np.ix_(kept, kept)]
+        others = np.where(np.eye(len(kept), dtype=bool), -np.inf, part)
+        pair = np.unravel_index(others.argmax(), others.shape)
+        kept = np.delete(kept, max(pair, key=lambda place: part[place].sum()))
+    return [objects[place] for place in kept]
 
 
 def set_of(name: str) -> dict[str, str | int | None]:

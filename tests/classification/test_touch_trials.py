@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from stages.classification.multi_touch import MultiTouchTrials, evaluate_variants
-from stages.classification.trials import TouchSet, drawn_sets, selection_trials, set_of, single_touch_trials
+from stages.classification.recorded import alike
+from stages.classification.trials import (
+    TouchSet,
+    drawn_sets,
+    least_alike,
+    selection_trials,
+    set_of,
+    single_touch_trials,
+)
+from stages.imprints.imprints import Imprints, write_imprints
 
 
 def touched(bumps, count=24, jitter=0.5):
@@ -135,20 +144,50 @@ def test_rows_are_the_same_from_run_to_run(bumps):
     assert run() == run()
 
 
-GROUPS = {"six": list("abcdef"), "four": list("abcd")}
+GROUPS = {"six": list("abcdef"), "four": list("abcd"), "four_drawn": list("abcd")}
 OBJECTS = [f"object_{k:02}" for k in range(20)]
 
 
+def of_last_digit(objects):
+    """Likeness that falls with the distance of two numbers, so that neighbours are alike."""
+    numbers = np.array([int(name[-2:]) for name in objects])
+    return 1 / (1 + np.abs(numbers[:, None] - numbers))
+
+
 def test_drawn_sets_are_nested_and_dealt_like_cards_by_the_seed_alone():
-    sets = drawn_sets(GROUPS, OBJECTS, 6, 0)
-    assert len(sets) == 12
+    sets = drawn_sets(GROUPS, OBJECTS, 6, 0, of_last_digit)
+    assert len(sets) == 18
     sixes = [sets[f"six.{number:02}"] for number in range(1, 7)]
     for number, six in enumerate(sixes, start=1):
-        assert len(set(six)) == 6 and sets[f"four.{number:02}"] == six[:4] and set(six) <= set(OBJECTS)
+        assert len(set(six)) == 6 and sets[f"four_drawn.{number:02}"] == six[:4] and set(six) <= set(OBJECTS)
+        assert sets[f"four.{number:02}"] == least_alike(six, of_last_digit(six), 4)
     assert max(Counter(sum(sixes[:3], [])).values()) == 1  # none comes again before too few are left
     assert max(Counter(sum(sixes, [])).values()) == 2
-    assert drawn_sets(GROUPS, OBJECTS[::-1], 6, 0) == sets != drawn_sets(GROUPS, OBJECTS, 6, 1)
-    assert list(sets.items())[:4] == list(drawn_sets(GROUPS, OBJECTS, 2, 0).items())
+    again, other = (drawn_sets(GROUPS, OBJECTS[::-1], 6, seed, of_last_digit) for seed in (0, 1))
+    assert again == sets != other
+    assert list(sets.items())[:6] == list(drawn_sets(GROUPS, OBJECTS, 2, 0, of_last_digit).items())
     assert set_of("six.07") == {"group": "six", "set": 7} and set_of("six") == {"group": "six", "set": None}
     with pytest.raises(ValueError, match="takes 6 objects, there are 5"):
-        drawn_sets(GROUPS, OBJECTS[:5], 1, 0)
+        drawn_sets(GROUPS, OBJECTS[:5], 1, 0, of_last_digit)
+
+
+def test_the_least_alike_have_no_two_of_the_highest_similarity():
+    animals = ["cow", "dromedary", "glasses", "hand", "plane", "cup"]
+    likeness = np.full((6, 6), 0.1)
+    likeness[0, 1] = likeness[1, 0] = 0.9  # cow and dromedary
+    likeness[2, 4] = likeness[4, 2] = 0.8  # glasses and plane
+    likeness[1, 3] = likeness[3, 1] = likeness[4, 5] = likeness[5, 4] = 0.3  # what tells which of a pair goes
+    assert least_alike(animals, likeness, 4) == ["cow", "glasses", "hand", "cup"]  # the thesis's four
+    assert least_alike(animals, likeness, 6) == animals
+
+
+def test_likeness_is_the_share_of_confusable_imprints_of_all_samplings(tmp_path):
+    ramp, step = np.tile(np.arange(4.0), (4, 1)), np.repeat([0.0, 0.0, 1.0, 1.0], 4).reshape(4, 4)
+    for name, first, second in (("a", (ramp, step), (ramp, ramp)), ("b", (ramp, ramp), (ramp.T, ramp.T))):
+        samplings = {"first": first, "second": second}
+        imprints = {
+            key: Imprints(np.array(pair), np.arange(2), np.zeros((2, 3)), 0.01) for key, pair in samplings.items()
+        }
+        write_imprints(tmp_path / f"{name}.npz", imprints)
+    # First: one of a's two imprints is like b's, both of b's are like one of a's. Second: none is alike.
+    assert alike(["a", "b"], tmp_path) == pytest.approx(np.array([[1, 0.375], [0.375, 1]]))
