@@ -354,10 +354,13 @@ def deciding(claim: Claim, measured: Sequence[Effect], results: Results, strict:
 
 
 def effect_of(measured: Sequence[Effect]) -> Effect | PooledEffect:
-    """The pooled effect of all testable sets with an interval, or that of the only one.
+    """The pooled effect of all testable sets with an interval, or that of the only one; of all sets where none is.
 
     A set of two units is left out beside others: the spread of two is often tiny by luck, and would rule the mean.
     """
-    usable = [effect for effect in measured if effect.testable and np.isfinite(effect.interval[1])]
+    testable = [
+        effect for effect in measured if effect.testable
+    ] or measured  # else the numbers of all that were measured
+    usable = [effect for effect in testable if np.isfinite(effect.interval[1])]
     usable = [effect for effect in usable if len(usable) == 1 or effect.most > PAIR] or usable
-    return PooledEffect(usable) if len(usable) > 1 else (usable or measured)[0]
+    return PooledEffect(usable) if len(usable) > 1 else (usable or testable)[0]

@@ -152,6 +152,13 @@ CLAIMS = [
     # Detectors.
     metro("attention_rivals", "Attention, in all combinations, leads to a lower error than the detectors.",
           RIVALS, COMBINATIONS),
+    *(
+        lower("T3.1.5", metric, f"attention_rivals_{short}",
+              f"Attention, in all combinations, leads to a lower error than the detectors ({how}).",
+              RIVALS, COMBINATIONS, **printed, of="attention_rivals")
+        for short, metric, how in (("seen", SEEN, "as seen"), ("dlap", "dlap", "Laplacian distance"),
+                                   ("dnor", "dnor", "normalised Laplacian distance"))
+    ),
     metro("attention_hks", "HKS is the exception: its error is lower than that of attention.", COMBINATIONS, HKS),
     ranks(key="points_errors", section="T3.1.5", sentence="More points go with larger errors.", first=ERROR,
           where=BOTH, **of_3_1, note=f"with the number of points, over the methods, {OF_EACH}"),
@@ -206,6 +213,10 @@ CLAIMS += [
     metro("proposed_rivals", "ED, SSIM and SVM have a lower Metro error than the detectors.", RIVALS, PRINTED),
     claim(key="rivals_low", section="T3.2.9.1", sentence="More so at low resolution.", **of_3_2,
           first={"method": RIVALS}, second={"method": PRINTED}, contrast=FEW_MINUS_MANY, **SHARE),
+    seen("proposed_rivals_seen", "ED, SSIM and SVM are better as seen than the detectors.", RIVALS, PRINTED),
+    claim(key="rivals_low_seen", section="T3.2.9.2", sentence="In particular at low resolution.", **of_3_2,
+          first={"method": RIVALS}, second={"method": PRINTED}, contrast=FEW_MINUS_MANY, where={"metric": SEEN},
+          scale=100.0, unit="hundredths of 1 - SSIM"),
     *(
         claimed(f"adaptive_{UNSEEN[name]}_{short}", ties=True,  # eq. 3.17 may leave three rings everywhere
                 sentence=f"Adaptive neighbourhoods lower the error of {label(UNSEEN[name])} ({how}).", worse=name,

@@ -71,12 +71,12 @@ TOUCHES = [
         for key, group in (("real_knn_best_six", "six_drawn"), ("real_knn_best_all", "all"))
     ),
     *(
-        touches(key=f"real_alike_harder{end}", of=of,
+        touches(key=f"real_alike_harder{end}", of="alike_harder",
                 sentence="The similarity between objects degrades the performance.",
                 first={"group": f"{count}_drawn"}, second={"group": f"{count}_alike"}, mean_of="second", shared=0.0,
                 where=ALL | {"method": "all"}, phrases=OF_SETS, note="mean of all classifiers",
                 readings=(NO_SVM, *SCALED))
-        for end, count, of in (("", "six", ""), ("_four", "four", "real_alike_harder"))
+        for end, count in (("", "six"), ("_four", "four"))
     ),
     touches(key="real_blocked", section="ours", sentence="A random hold-out of real touches flatters.", phrases=OF_SETS,
             where=KNN | SCALE | {"method": "all"}, first={"split": Split.RANDOM}, second={"split": Split.BLOCKS}),
@@ -172,7 +172,8 @@ NETWORKS = [
             GUESSING, ACCURACY, ARRAY, margin=GUESS,
             note="the thesis's own largest lead; 28 x 50 cells, the thesis has 16 x 16"),
     *claims("instant_by_guessing", "One reading of 7 x 3 cells is hardly better than guessing what is grasped.",
-            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM), note="another hand than BiGS's"),
+            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM),
+            note="another hand than BiGS's; at random, other fingers of a grasp are trained on"),
     *claims("series_over_instant", "A series of readings tells grasped objects apart better than one of 7 x 3 cells.",
             {"data": "schunk"}, {"data": "schunk_coarse"}, HAND, shared=shared_by(Split.RANDOM),
             note="another hand than BiGS's"),

@@ -16,7 +16,7 @@ from scipy.stats import spearmanr
 
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
-from stages.report.claims import Claim, Pick, Reading, highest_of, reading
+from stages.report.claims import Claim, Pick, Reading, highest_of, lowest_of, reading
 from stages.report.drawing import label
 from stages.report.effects import statistic
 from stages.report.items import Table
@@ -218,6 +218,7 @@ PHRASES = {
     ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
     ("passes", "printed_rate"): "at the printed learning rate",
 }  # fmt: skip
+Value = str | tuple[str, ...] | Pick  # of a column; of several the mean
 SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
 CONVERGED = (  # splits first: objects share the trainings, so that their interval is too narrow
     reading("trained until nothing improves", where={"passes": "converged"}),
@@ -231,7 +232,7 @@ PRINTED_RATE = (*CONVERGED, reading("at the printed learning rates", where={"pas
 
 
 def claim(
-    key: str, section: str, sentence: str, column: str, first: str, second: str | Pick, margin: float = 0.0,
+    key: str, section: str, sentence: str, column: str, first: Value, second: Value, margin: float = 0.0,
     readings: tuple[Reading, ...] = CONVERGED, note: str = "", **where: str,
 ) -> Claim:  # fmt: skip
     """The claim of one value of a column over another. where: what both have in common that differs from SETTING."""
@@ -288,12 +289,29 @@ CHANGES = Claim(
            "passes": "printed"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
+OTHERS = ("alexnet", "mobilenet_v2", "vgg16")  # networks beside ResNet50
 BEST = [  # of the networks at the thesis's size
     replace(claim(key, "T5.4", "ResNet50 outperforms the other architectures in all cases.", "method", "resnet50",
-                  highest_of("alexnet", "mobilenet_v2", "vgg16"), split="random", mode=mode), dataset=THEIRS, of=of)
+                  highest_of(*OTHERS), split="random", mode=mode), dataset=THEIRS, of=of)
     for key, mode, of in (("resnet_best_tuned", "finetuned", ""), ("resnet_best_frozen", "frozen", "resnet_best_tuned"))
 ]  # fmt: skip
-CLAIMS = [*OWN, *EARLY, CHANGES, *BEST]
+RANGES = ("1:150", "1:144", "1:134", "10:150", "10:144", "16:138")  # T table 5.6, but for 18:139
+LESS = [  # at the thesis's size, by networks or by layers
+    replace(entry, dataset=THEIRS)
+    for entry in (
+        claim("mobile_near_resnet", "T5.4", "Fine-tuned, MobileNetV2 comes within 3.33 points of ResNet50.", "method",
+              NETWORK, "resnet50", 3.33, split="random", mode="finetuned"),
+        replace(claim("resnet_smallest_updates", "T5.4", "ResNet50 has the smallest updates of its weights.", "method",
+                      lowest_of(*OTHERS), "resnet50", split="random", mode="finetuned", metric="weight_change",
+                      readings=CONVERGED[:1]), relative=True, unit="% of the mean of both"),
+        replace(claim("resnet_gains_least", "T5.4", "ResNet50 has the smallest updates of its accuracy.", "method",
+                      OTHERS, "resnet50", split="random", note="what tuning gains over frozen filters"),
+                contrast=({"mode": "finetuned"}, {"mode": "frozen"}), of="resnet_smallest_updates"),
+        claim("early_and_late_best", "T5.5", "Frozen in layers 18 to 139, a network comes closest to one that is tuned "
+              "whole.", "mode", "18:139", highest_of(*RANGES), split="random", note="of T table 5.6's ranges"),
+    )
+]  # fmt: skip
+CLAIMS = [*OWN, *EARLY, CHANGES, *BEST, *LESS]
 
 
 SETTINGS = {
