@@ -178,7 +178,9 @@ NETWORKS = [
             {"data": "schunk"}, {"data": "schunk_coarse"}, HAND, shared=shared_by(Split.RANDOM),
             note="another hand than BiGS's"),
     *claims("seen_over_random_frozen", f"{SHARED} frozen filters for recorded touches.",
-            SEEN, UNSEEN, **BEYOND, readings=(reading("AlexNet", where={"method": "alexnet"}),)),
+            SEEN, UNSEEN, **BEYOND, readings=(
+                reading("AlexNet", where={"method": "alexnet"}),
+                reading("random side with its initial statistics", second={"weights": "random_initial"}))),
     *claims("seen_over_random_networks", f"{SHARED} frozen filters, whichever network.",
             SEEN, UNSEEN, (*ARRAY, *FINGERS, *HAND), ANY, **BEYOND, over=("method",), within=("repetition",),
             note="each network that was run"),
