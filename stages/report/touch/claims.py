@@ -94,7 +94,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
     readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
     section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
-    sets = {} if end.endswith("_ours") else SETS
+    sets = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end], stage=STAGE, phrases=PHRASES,
         note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (), **sets,
