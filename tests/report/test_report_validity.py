@@ -12,7 +12,7 @@ import pytest
 
 from stages.report import meshes
 from stages.report.claims import Claim
-from stages.report.effects import differences, invalid
+from stages.report.effects import Effect, differences, effect_of, invalid
 from stages.report.meshes import tables
 from stages.report.results import SECTION_3_1
 from stages.report.topics import build_one
@@ -159,6 +159,17 @@ def test_more_than_a_fifth_cannot_be_tested_unless_the_claim_is_about_all_rows(m
     assert row["verdict"] == "not testable" and row["holds"] == "" and row["effect"] > 10  # of all pairs
     assert row["validity"] == f"test: 5 of 24 pairs invalid: {NO_POINT} (5)"
     assert unchecked["verdict"] != "not testable" and unchecked["validity"] == "" and unchecked["pairs"] == COUNT
+
+
+def test_the_effect_is_of_all_testable_sets_or_else_of_all_sets():
+    means = {"first": 1.0, "second": 3.0, "third": 8.0}
+    sets = [
+        Effect(name, pd.Series(mean + np.arange(-2.0, 3.0)), 0.0, ("no point",) * 5, 5) for name, mean in means.items()
+    ]
+    assert not any(effect.testable for effect in sets)
+    assert effect_of(sets).interval[0] == pytest.approx(4.0, abs=0.1)
+    sets[1] = replace(sets[1], refused=())
+    assert effect_of(sets) is sets[1]
 
 
 def test_two_sides_with_the_same_mesh_are_no_evidence(measure):
