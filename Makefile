@@ -49,25 +49,23 @@ docs: $(VENV)/ready ## the documentation, to build/docs/index.html; a warning is
 	python -m sphinx -E -W --keep-going --quiet docs build/docs # -E: numbers come from reports/, which may have changed
 	@echo "Open build/docs/index.html."
 
-# Each is one process on one core, but the pipeline and cluster; errors, scenes and cluster read what `make repro` made. The last fetches its
-# meshes by `apt-get download`.
+# Each is one process on one core, but the pipeline and cluster; errors, scenes and cluster read what `make repro` made.
 bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scenes, imprints (tacto=PYTHON), ... (an hour)
 	OMP_NUM_THREADS=1 python -m benchmarks.kernels
 	OMP_NUM_THREADS=1 python -m benchmarks.errors
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb) $(newest)
 	OMP_NUM_THREADS=1 python -m benchmarks.salient_simplification $(gaze) $(newest)
-	OMP_NUM_THREADS=1 python -m benchmarks.painted_simplification $(gaze) $(newest)
 	python -m benchmarks.large_simplification
-	OMP_NUM_THREADS=1 python -m benchmarks.saliency $(psb)
 	python -m benchmarks.scenes
 	python -m benchmarks.frame_times
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
 	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
+	OMP_NUM_THREADS=1 python -m benchmarks.up_axis
+	OMP_NUM_THREADS=1 python -m benchmarks.deep_gaze
+	OMP_NUM_THREADS=1 python -m benchmarks.invariance
 	python -m benchmarks.networks
 	python -m benchmarks.cluster
 	python -m benchmarks.pipeline
-	python -m benchmarks.faults
-	OMP_NUM_THREADS=1 python -m benchmarks.broken_meshes
 
 lock: ## pin in constraints.txt all that pyproject.toml asks for
 	mkdir -p build

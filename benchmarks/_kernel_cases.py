@@ -16,7 +16,6 @@ from haptic_glance.mesh.mesh import Mesh
 
 from .errors import fresh, hausdorff
 from .imprints import by_trimesh
-from .maps import wavy
 
 Call = Callable[[], object]
 
@@ -165,8 +164,10 @@ CASES: dict[str, tuple[str, Callable[[], tuple[Call, Call]]]] = {  # what -> (pe
 
 
 def ball(subdivisions: int) -> Mesh:
-    """A ball of 20 * 4^subdivisions faces with bumps."""
-    return wavy(trimesh.creation.icosphere(subdivisions, radius=0.5))
+    """A ball of 20 * 4^subdivisions faces with bumps, which lie inside of radius 0.5: in the camera's frame."""
+    smooth = trimesh.creation.icosphere(subdivisions, radius=0.5)
+    bumps = np.sin(20 * smooth.vertices).prod(axis=1, keepdims=True)
+    return Mesh(smooth.vertices * (0.9 + 0.1 * bumps), smooth.faces)
 
 
 def _quiet(call, *arguments, **named):

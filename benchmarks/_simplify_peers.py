@@ -57,26 +57,16 @@ class Meshoptimizer:
         """bits (n,) u1: LOCK, PRIORITY or neither of each vertex; None: LOCK for the corners of frozen faces."""
         return self._simplified(mesh, faces, locks(mesh, frozen) if bits is None else bits)
 
-    def painted(self, mesh, faces, weight, update):
-        """With the colours of the vertices in its error; update: vertices move and change colour, else they stay."""
-        return self._simplified(mesh, faces, np.zeros(len(mesh.vertices), np.uint8), weight, update)
-
-    def _simplified(self, mesh, faces, bits, weight=None, update=True):
-        ids, points, colors = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32), None
+    def _simplified(self, mesh, faces, bits):
+        ids, points = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32)
         start = self._call("sbrk", 0)
         at, place, byte, error = (self._put(array) for array in (ids, points, bits, np.zeros(1, np.float32)))
-        paint = 0, 0, 0, 0
-        if weight is not None:
-            colors = (mesh.colors / 255).astype(np.float32)
-            paint = self._put(colors), colors.strides[0], self._put(np.full(3, weight, np.float32)), 3
-        name, to = ("meshopt_simplifyWithUpdate", ()) if update else ("meshopt_simplifyWithAttributes", (at,))
-        surface = *to, at, ids.size, place, len(points), points.strides[0], *paint, byte if bits.any() else 0
-        left = self._call(name, *surface, 3 * faces, NO_LIMIT, 0, error)
+        no_colours = 0, 0, 0, 0
+        surface = at, ids.size, place, len(points), points.strides[0], *no_colours, byte if bits.any() else 0
+        left = self._call("meshopt_simplifyWithUpdate", *surface, 3 * faces, NO_LIMIT, 0, error)
         points, ids = self._get(place, points), self._get(at, ids).ravel()[:left].reshape(-1, 3)
-        if colors is not None:
-            colors = np.rint(255 * self._get(paint[0], colors).clip(0, 1)).astype(np.uint8)
         self._call("sbrk", start - self._call("sbrk", 0))
-        return in_use(points, ids, colors)
+        return in_use(points, ids)
 
     def _call(self, name, *values):
         return self.exports[name](self.store, *values)
@@ -130,11 +120,11 @@ def locks(mesh, frozen):
     return bits
 
 
-def in_use(points, faces, colors=None):
+def in_use(points, faces):
     """The Mesh of those points that have faces."""
     used = np.zeros(len(points), bool)
     used[faces] = True
-    return Mesh(points[used], (np.cumsum(used) - 1)[faces], None if colors is None else colors[used])
+    return Mesh(points[used], (np.cumsum(used) - 1)[faces])
 
 
 def vtk(mesh, faces, _):

@@ -1,4 +1,4 @@
-"""Time and memory of the whole pipeline from a fresh copy, and of its busiest part: `python -m benchmarks.pipeline`
+"""Time and memory of the whole pipeline from a fresh copy: `python -m benchmarks.pipeline`
 
 Copies the files that git knows or would add to build/bench, runs all stages of dvc.yaml there, side by side as `make
 repro` does, and writes reports/bench/pipeline.csv: a row a measurement (what, metric, value, unit, limit, machine).
@@ -22,8 +22,6 @@ import psutil
 
 from benchmarks import arguments, reference_seconds
 from haptic_glance.base.files import write_table
-
-from .maps import nine_maps_rows
 
 COPY = Path("build/bench")
 OUT = Path("reports/bench/pipeline.csv")
@@ -85,7 +83,7 @@ def main():
     compiling = "from stages.lod.cell import warm_up; warm_up()"
     subprocess.run([sys.executable, "-c", compiling], cwd=COPY, check=True, env={**os.environ, "PYTHONPATH": ""})
     loop = reference_seconds()
-    rows = [{"what": "reference loop", "metric": "processor time", "value": loop, "unit": "s"}, *nine_maps_rows()]
+    rows = [{"what": "reference loop", "metric": "processor time", "value": loop, "unit": "s"}]
     total, peak, output = watch([sys.executable, "-m", "stages.repro"], COPY)
     stages = {name: float(seconds) for name, seconds in TAKEN.findall(output)}
     rows += [{"what": name, "metric": "processor time", "value": stages[name], "unit": "s"} for name in stages]
