@@ -1,6 +1,7 @@
 """Meshes, views, imprints and runs that several folders test with."""
 
 import functools
+import shutil
 from copy import deepcopy
 
 import numpy as np
@@ -20,6 +21,8 @@ from stages import compose
 from stages.engine import run
 from stages.engine.settings import Workspace
 
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
+SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 SIZE = (75, 100)
 CHANNELS = (*NINE, *OTHERS)
 
@@ -113,6 +116,28 @@ def renderer(request):
     if request.param == "pyrender" and gl.egl_error():
         pytest.skip(f"no EGL context on this machine: {gl.egl_error()}")
     return request.param
+
+
+@pytest.fixture(scope="module")
+def browser_program():
+    program = next((path for path in map(shutil.which, BROWSERS) if path), None)
+    if not program:
+        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
+    return program
+
+
+@pytest.fixture(scope="module")
+def driver():
+    playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright: it drives the browser")
+    with playwright.sync_playwright() as context:
+        yield context
+
+
+@pytest.fixture(scope="module")
+def browser(driver, browser_program):
+    opened = driver.chromium.launch(executable_path=browser_program, args=SOFTWARE_GL)
+    yield opened
+    opened.close()
 
 
 @pytest.fixture

@@ -11,9 +11,11 @@ from typing import Any
 
 import pandas as pd
 
+from haptic_glance.gallery.page import as_script
+
 from .claims import Claim
 from .effects import sets_of
-from .page import WORDS, box, folded, part, prose, script_json
+from .page import WORDS, box, folded, part, prose
 from .records import command
 from .results import Results, dataset_text
 from .tables import with_interval
@@ -103,7 +105,7 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         "causes": escape(open_by_cause(claims)),
         **{f"{name}s": _options(choices) for name, choices in values.items()},
         "claims": "".join(items),
-        "pairs": script_json(pairs),
+        "pairs": as_script(pairs),
     }
     return Template(part("claims.html")).substitute(words)
 

@@ -7,7 +7,6 @@ viewer of the library's gallery.
 
 import base64
 import io
-import json
 import re
 from collections.abc import Iterable
 from contextlib import suppress
@@ -99,11 +98,6 @@ def part(name: str) -> str:
     """A file of the package's page folder, or of the viewer of meshes that the library's gallery has."""
     folders = resources.files(__package__ or "") / "page", resources.files("haptic_glance.gallery") / "viewer"
     return next(folder / name for folder in folders if (folder / name).is_file()).read_text(encoding="utf-8")
-
-
-def script_json(value: object) -> str:
-    """JSON that is safe inside a script element."""
-    return json.dumps(value, separators=(",", ":")).replace("</", "<\\/")
 
 
 def links(paths: list[Path]) -> str:

@@ -14,13 +14,14 @@ import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import write_text
+from haptic_glance.gallery.page import as_script
 
 from .cells import CLAIMS, PREFIXES, filled
 from .claims_page import claims_main
 from .drawing import CYCLE, INK, SETTINGS, plt
 from .items import Figure, Table
 from .marks import vector
-from .page import box, folded, image, lacks_cells, part, prose, script_json
+from .page import box, folded, image, lacks_cells, part, prose
 from .results import dataset_text
 from .tables import with_interval
 from .topics import name_of
@@ -270,7 +271,7 @@ def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, st
         "questions": "" if own_meshes else questions_html(questions(out, link)),
         "chart": "" if own_meshes or chart is None else chart_html(chart),
         "viewer": part("viewer.html") if meshes else f"<p>not run: {escape(not_run.get('viewer', ''))}</p>",
-        "meshes": script_json(meshes) if meshes else "null",
+        "meshes": as_script(meshes) if meshes else "null",
         "topics": "".join(
             f'<li><a href="{FOLDER}/{name}.html">{name.capitalize()}</a> {prose(leads[name])}</li>' for name in mains
         ),

@@ -167,14 +167,6 @@ def test_lengths_are_those_of_the_object_in_its_unit(touched, file, unit, pitch,
     assert np.allclose(arrays["images"], plain["images"], atol=1e-5)
 
 
-@pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".off", ".glb"])
-def test_every_format_is_touched(suffix, tmp_path, touched):
-    arrays, _, _, messages = touched("--at", 4, source=exported(tmp_path / f"ball{suffix}"))
-    assert (
-        arrays["images"].shape == (1, 16, 16) and ("y up, as" if suffix == ".glb" else "assuming y is up") in messages
-    )
-
-
 @pytest.mark.parametrize("count", [1, 25])
 @pytest.mark.slow
 def test_picture_is_drawn_for_any_number(count, tmp_path, monkeypatch):
@@ -267,22 +259,6 @@ def test_a_quantity_that_is_none_is_named_with_its_remedy(options, words, file, 
 def test_a_load_may_have_its_unit():
     options = ["mesh.stl", "--unit", "mm", "--load"]
     assert parser("").parse_args([*options, "5N"]).load == parser("").parse_args([*options, "5"]).load == 5
-
-
-@pytest.mark.parametrize(
-    "name, content, words",
-    [
-        ("gone.stl", None, "gone.stl: no such file"),
-        ("text.ply", b"hello", "text.ply: unreadable as PLY"),
-        ("empty.off", b"", "empty.off: the file is empty"),
-        ("model.step", b"x", "cannot read .step: the formats are .stl"),
-    ],
-)
-def test_files_without_a_mesh_are_named(name, content, words, tmp_path):
-    if content is not None:
-        (tmp_path / name).write_bytes(content)
-    with pytest.raises(ValueError, match=words):
-        run([str(tmp_path / name), "--at", "0", "--out", str(tmp_path / "out")])
 
 
 def test_folders_are_no_meshes_and_files_no_folders(file, tmp_path):

@@ -1,6 +1,5 @@
 """A small run to report on: measurements with a known truth, beside the thesis's tables."""
 
-import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,8 +21,6 @@ from stages.report.results import Results
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run
 OBJECTS = ["ball", "cube"]
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
-SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 FOUND = ["glance", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
 
 
@@ -316,18 +313,6 @@ def root(tmp_path):
 def results(root):
     """The results of the small run."""
     return read_results(root)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright: it drives the browser")
-    program = next((path for path in map(shutil.which, BROWSERS) if path), None)
-    if not program:
-        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
-    with playwright.sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=program, args=SOFTWARE_GL)
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

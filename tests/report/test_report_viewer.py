@@ -11,8 +11,9 @@ from PIL import Image
 
 from haptic_glance.base.files import write_mesh
 from haptic_glance.base.packing import SHADES, STEPS, Store, ordered
+from haptic_glance.gallery.page import as_script
 from haptic_glance.mesh.mesh import Mesh
-from stages.report.page import FINEST, apart, pack_object, pack_viewer, part, script_json
+from stages.report.page import FINEST, apart, pack_object, pack_viewer, part
 from stages.report.site import page
 
 
@@ -155,7 +156,7 @@ def shown(request, browser, levels, tmp_path):
 
 def opened(browser, results, tmp_path, width):
     front = Template(part("front.html"))
-    parts = {"meshes": script_json(pack_viewer(results)), "viewer": part("viewer.html")}
+    parts = {"meshes": as_script(pack_viewer(results)), "viewer": part("viewer.html")}
     main = front.substitute(dict.fromkeys(front.get_identifiers(), "") | parts)
     (tmp_path / "page.html").write_text(page([], "", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
     tab = browser.new_page(viewport={"width": width, "height": 900})

@@ -1,7 +1,6 @@
 """The studio in a real browser: what a hand does to it, what the page says, and what lies on disk afterwards."""
 
 import io
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +18,6 @@ from .conftest import ball
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser: pip install playwright")
 pytestmark = pytest.mark.slow
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
-SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 WIDE = {"width": 800, "height": 560}
 PATIENCE = 300_000  # milliseconds, on a machine with other work
 DROP = """(hex) => {
@@ -29,27 +26,6 @@ DROP = """(hex) => {
   const drop = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
   document.querySelector("canvas").dispatchEvent(drop);
 }"""
-
-
-@pytest.fixture(scope="module")
-def driver():
-    with playwright.sync_playwright() as context:
-        yield context
-
-
-@pytest.fixture(scope="module")
-def binary():
-    program = next((path for path in map(shutil.which, BROWSERS) if path), None)
-    if not program:
-        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
-    return program
-
-
-@pytest.fixture(scope="module")
-def browser(driver, binary):
-    opened = driver.chromium.launch(executable_path=binary, args=SOFTWARE_GL)
-    yield opened
-    opened.close()
 
 
 @pytest.fixture(scope="module")
@@ -239,8 +215,8 @@ def test_the_page_says_when_the_server_has_ended(window, studio):
     hand.reads("The studio has ended. Start it again")
 
 
-def test_without_webgl_the_page_says_so(driver, binary, studio):
-    blind = driver.chromium.launch(executable_path=binary, args=["--disable-3d-apis"])
+def test_without_webgl_the_page_says_so(driver, browser_program, studio):
+    blind = driver.chromium.launch(executable_path=browser_program, args=["--disable-3d-apis"])
     page = blind.new_page(viewport=WIDE)
     page.goto(studio.address)
     playwright.expect(page.get_by_text("WebGL").first).to_be_visible(timeout=PATIENCE)

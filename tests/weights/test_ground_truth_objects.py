@@ -10,14 +10,12 @@ import pytest
 import trimesh
 from scipy.io import savemat
 
-from haptic_glance.base.fetch import FetchError
-from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.mesh import clean, normalise
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import rotate_to_z_up
 from stages.meshes.sources import SOURCES
-from stages.weights.ground_truth import digest, ground_truth_amounts, ground_truth_files, gts_map, visible_points
+from stages.weights.ground_truth import digest, ground_truth_amounts, ground_truth_files
 
 BALL = trimesh.creation.icosphere(2)
 MESH = normalise(Mesh(BALL.vertices, BALL.faces))
@@ -142,74 +140,3 @@ def test_interest_points_weigh_as_many_users_as_marked_them(tmp_path):
     assert amounts_of("cup", "interest_points", MESH, tmp_path) is None
     with pytest.raises(ValueError, match=r"GROUND_TRUTH_B/ant.mat names vertex 9, the mesh has 3"):
         amounts_of("ant", "interest_points", SMALL, tmp_path)
-
-
-@pytest.mark.parametrize(
-    ("source", "place"), [("gaze", "GitHub: FandosA/"), ("interest_points", "https://www.itl.nist")]
-)
-def test_an_absent_archive_ends_in_one_line_with_the_remedy(tmp_path, source, place):
-    message = rf"does not hold the {source} data: get .* from {place}.*meshes\.folder"
-    with pytest.raises(FetchError, match=message) as error:
-        amounts_of("ball", source, MESH, tmp_path / "gone.zip")
-    assert "\n" not in str(error.value)
-
-
-WHOLE = np.ones((900, 1200), dtype=bool)
-
-
-def test_a_point_is_a_round_region_of_the_kernels_size_in_a_map_of_any_size():
-    values = gts_map([450], [600], WHOLE)
-    assert values[450, 600] == values.max() == 1
-    reach = np.array(np.nonzero(values * 255 >= 1)) - [[450], [600]]
-    assert np.abs(reach).max() == 24  # visible in 8 bits just up to the edge of the 50 by 50 kernel
-    assert np.linalg.norm(reach, axis=0).max() < 25  # and a disc, not the kernel's square
-    assert values[450, 600 + 25] > 0 and values[450, 600 + 26] == 0
-    np.testing.assert_allclose(values[450 - 24 : 475, 600 - 24 : 625], values[450 - 24 : 475, 600 - 24 : 625].T)
-    small = gts_map([112.0], [149.5], np.ones((225, 300), dtype=bool))
-    assert small.sum() * 16 == pytest.approx(gts_map([449.5], [599.5], WHOLE).sum(), rel=0.02)
-
-
-def test_regions_never_add_up_and_nothing_lies_off_the_object_or_the_image():
-    whole = np.ones((90, 120), dtype=bool)
-    merged = gts_map([45, 45], [60, 61], whole)
-    np.testing.assert_array_equal(merged, np.maximum(gts_map([45], [60], whole), gts_map([45], [61], whole)))
-    mask = np.arange(90)[:, None].repeat(120, axis=1) < 45
-    values = gts_map([45, 44.6], [60, 80], mask)
-    assert (values[45:] == 0).all() and values[44, 60] > 0
-    assert gts_map([-500, 2000], [0, 5000], whole).max() == gts_map([], [], whole).max() == 0
-    assert gts_map([-0.3], [60], whole).max() > 0.9
-
-
-@pytest.mark.parametrize(
-    ("rows", "columns", "mask", "reason"),
-    [([1, 2], [1], WHOLE, "rows, columns"), ([1], [np.nan], WHOLE, "NaN"), ([1], [1], WHOLE[0], "rows, columns")],
-)
-def test_bad_points_are_named(rows, columns, mask, reason):
-    with pytest.raises(ValueError, match=reason):
-        gts_map(rows, columns, mask)
-
-
-def visible(mesh, vertices, viewpoint):
-    return visible_points(mesh, vertices, viewpoint, (900, 1200))
-
-
-@pytest.mark.parametrize("viewpoint", [Viewpoint(37, 21), Viewpoint(200, -45, 30)])
-def test_a_convex_body_shows_the_vertices_of_the_faces_turned_to_the_camera(viewpoint):
-    rows, columns, ids = visible(MESH, np.arange(len(MESH.vertices)), viewpoint)
-    facing = MESH.face_normals @ viewpoint.axes[2]
-    turned, edgewise = (set(MESH.faces[chosen].ravel()) for chosen in (facing > 1e-6, facing > -1e-6))
-    assert turned <= set(ids) <= edgewise
-    np.testing.assert_array_equal((rows, columns), project(MESH.vertices[ids], viewpoint, (900, 1200))[:2])
-    near, far = (int(pick(MESH.vertices @ viewpoint.axes[2])) for pick in (np.argmax, np.argmin))
-    assert visible(MESH, [far, near, far, near], viewpoint)[2].tolist() == [1, 3]  # in the order of the question
-    with pytest.raises(ValueError, match=r"0\.\.161"):
-        visible(MESH, [162], viewpoint)
-
-
-def test_a_wall_just_before_a_point_hides_it():
-    wall = np.array([(0.1, -0.3, -0.3), (0.1, 0.3, -0.3), (0.1, 0.0, 0.4)])
-    walls = Mesh(np.r_[wall, wall - (1e-4, 0, 0), [(0.05, 0, 0)]], [(0, 1, 2), (3, 4, 5)])  # vertex 6 is in no face
-    inward = Mesh(walls.vertices, walls.faces[:, ::-1])
-    for mesh in (walls, inward):
-        assert visible(mesh, [0, 1, 2, 6], Viewpoint(0, 0))[2].tolist() == [0, 1, 2]
-    assert len(visible(walls, [6], Viewpoint(180, 0))[2]) == 1
