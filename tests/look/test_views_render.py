@@ -6,6 +6,7 @@ import trimesh
 from scipy import ndimage
 
 from haptic_glance.look.camera import DISTANCE, Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.look.points import compute_maps
 from haptic_glance.look.views import Material, gl, render
 from haptic_glance.look.views import renderer as renderers
 from haptic_glance.look.views.shading import GREY, corner_groups
@@ -147,6 +148,12 @@ def test_without_egl_auto_takes_the_rays_and_says_so_once_and_pyrender_says_what
     assert capsys.readouterr().err.count("raster") == 1
     with pytest.raises(OSError, match="libegl1"):
         render(shapes["cube"], FRONT, (90, 120), "pyrender")
+
+
+def test_the_default_draws_the_same_bytes_on_every_machine(shapes, monkeypatch):
+    monkeypatch.setitem(renderers.RENDERERS, "pyrender", None)  # what EGL, where it is installed, would call
+    assert render(shapes["cube"], FRONT, (90, 120)).mask.any()
+    assert compute_maps(shapes["cube"], ["edge"], [FRONT]).maps["edge"].any()
 
 
 @pytest.mark.parametrize("change", [lambda v: 3 * v, lambda v: v + [0, 0.6, 0], lambda v: v + [30, 0, 0]])

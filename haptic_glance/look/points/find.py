@@ -170,11 +170,11 @@ def prepared(mesh: Mesh, up: Axis | None = None) -> Mesh:
 
 
 def compute_maps(
-    mesh: Mesh, channels: Iterable[str], viewpoints: Iterable[Viewpoint] | None = None, renderer: str = "auto"
+    mesh: Mesh, channels: Iterable[str], viewpoints: Iterable[Viewpoint] | None = None, renderer: str = "raster"
 ) -> ViewMaps | None:
     """The ViewMaps of a normalised mesh: rendered from the viewpoints, with the channels' maps; None without channels.
 
-    renderer: that of haptic_glance.look.views.render; `raster` gives the same bytes on every machine.
+    renderer: that of haptic_glance.look.views.render.
     """
     channels, viewpoints = tuple(channels), _chosen(viewpoints)
     if not channels:

@@ -50,17 +50,17 @@ def render(
     mesh: Mesh,
     viewpoint: Viewpoint,
     size: Sequence[int] = (900, 1200),
-    renderer: str = "auto",
+    renderer: str = "raster",
     background: str = "black",
     material: Material = LAMBERT,
 ) -> View:
     """Renders a mesh by the thesis's orthographic camera (T3.1.1, T3.2.6).
 
     mesh: centred and scaled by haptic_glance.mesh.repair; its vertex colours are used if it has any. size: (rows,
-    columns); one unit of the mesh spans 0.954 of the rows. renderer: `raster`, `pyrender` (needs EGL) or `auto`
-    (pyrender if EGL is available, else raster, with a message on stderr). background: `black` as in the thesis,
-    `grey` or `white`. material: how the surface reflects the light (haptic_glance.look.views.Material), matte by
-    default. A mesh without faces gives a view of the background.
+    columns); one unit of the mesh spans 0.954 of the rows. renderer: `raster`, which gives the same bytes on every
+    machine, `pyrender` (needs EGL) or `auto` (pyrender if EGL is available, else raster, with a message on stderr).
+    background: `black` as in the thesis, `grey` or `white`. material: how the surface reflects the light
+    (haptic_glance.look.views.Material), matte by default. A mesh without faces gives a view of the background.
 
     Raises ValueError for a mesh that leaves the frame and for unknown names or sizes, OSError for `pyrender` when no
     EGL context can be created.
