@@ -7,8 +7,8 @@
     small = simplify(mesh, 1500, keep=points)
     images = [press(mesh, point) for point in points]
 
-A name is imported when it is first asked for. A function
-that takes a mesh takes a path, `(vertices, faces)`, an object of trimesh or a point cloud as well, see `as_mesh`.
+A name is imported at its first use. A function that takes a mesh also takes a path, `(vertices, faces)`, an object of
+trimesh or a point cloud, see `as_mesh`.
 Lengths of `press`, `press_many` and `follow` are shares of the object's diameter.
 """
 

@@ -1,4 +1,4 @@
-"""The public functions as a person calls them: a mesh in every form, lengths and face counts as people say them."""
+"""The public functions: they take a mesh in any form, and lengths and face counts as text."""
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -158,12 +158,10 @@ def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: flo
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:
-    """The Mesh of a file, see `haptic_glance.mesh.files`. up: the axis that points up: x, -y, Z, or a vector as (0, 1,
-    1).
+    """Reads a mesh file, see `haptic_glance.mesh.files`.
 
-    None: the axis that the file states, as every GLB does; else y or z, whichever the shape suggests, with a warning
-    that has the probability, since people look at the upper part of things. "auto": the shape's, whatever the file
-    says.
+    up: the axis that points up: x, -y, Z, or a vector such as (0, 1, 1). None: the axis that the file states, as every
+    GLB does; else y or z by the shape, with a warning that states the probability. "auto": always by the shape.
     """
     if up is None:
         return _settled(path, "load(path, up={!r})")
@@ -200,9 +198,9 @@ def simplify(
     infeasible without. shrink: keep smaller neighbourhoods where the count needs it. The method is quadric edge
     collapse (Garland and Heckbert 1997), of `haptic_glance.lod.simplify`.
 
-    Where the count is infeasible, the coincident vertices of the mesh are merged and its faces oriented, as `repair`
-    does, and its borders are simplified. Where the count leaves a fold, a few faces fewer do not. Without kept points
-    even a count is tried near which the surface loses its shape. So a refusal is the last resort. Raises
+    If the count is infeasible, the function first merges coincident vertices and orients faces, as `repair` does, and
+    simplifies the borders. If the result has a fold, the function tries a few faces fewer. Without kept points it also
+    tries counts near which the surface loses its shape. Raises
     InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
     work = import_module("haptic_glance.lod").simplify
@@ -256,7 +254,7 @@ def _as_given_and_mended(mesh: Mesh, arguments: dict[str, Any]) -> Iterator[tupl
 
 
 def repair(mesh: MeshLike) -> Mesh:
-    """The mesh without repeated and degenerate faces, all others wound alike and outwards, coincident vertices merged.
+    """Removes repeated and degenerate faces, turns the other faces outwards, and merges coincident vertices.
 
     Vertices are merged only where that closes the boundary; their ids change then. Raises MeshError where nothing is
     left.
@@ -265,7 +263,7 @@ def repair(mesh: MeshLike) -> Mesh:
 
 
 class Shown:
-    """A mesh in a notebook, which turns it; `html` is the page."""
+    """A rotatable mesh in a notebook; `html` is the page."""
 
     def __init__(self, mesh: Mesh) -> None:
         from trimesh.viewer.notebook import scene_to_html
@@ -278,8 +276,7 @@ class Shown:
 
 
 def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
-    """A mesh for a notebook, to be turned; values (n,) from 0 on: such as a saliency, which colour it from violet to
-    yellow."""
+    """Shows a rotatable mesh in a notebook; values (n,), 0 or more, colour it from violet (low) to yellow (high)."""
     model = as_mesh(mesh)
     if values is not None:
         values = np.asarray(values, dtype=np.float64)

@@ -1,7 +1,7 @@
 """The first run on a machine, which compiles kernels: in two processes at once, or more.
 
-The command compiles a kernel when it comes to it; other processes begin with the longest and then go through the same
-list from its end. A kernel that one of them compiles, the others leave alone or wait for: see `haptic_glance.base.jit`.
+The command compiles a kernel at its first use. Other processes compile the longest kernels first and then the same list
+from its end. While one process compiles a kernel, the others skip it or wait: see `haptic_glance.base.jit`.
 """
 
 import atexit

@@ -4,9 +4,9 @@ METHOD is FILE.py:FUNCTION, a function of a mesh (vertices (n, 3), faces (m, 3),
 negative. With --train it is a function of a list of (mesh, density) that returns such a function: it is called once for
 each object, with all other objects. The gaze is that of 32 people on 19 meshes, or on 14 point clouds with --set
 gaze_clouds; --gaze names its archive or folder. Other methods are not run again: their rows are in the repository.
-Without METHOD, the list of these alone. Metrics are means over the objects with a 95 % interval, by area; less KL is
-better. `lead` is by how much METHOD is better, on the same objects; * marks a method that has learned from the object.
-An object on which METHOD fails is named and left out. docs/judging.md describes the splits.
+Without METHOD, the command lists the other methods only. Metrics are means over the objects with a 95 % interval,
+weighted by area; a lower KL is better. `lead` is the advantage of METHOD on the same objects; * marks a method that has
+learned from the object. An object on which METHOD fails is named and left out. docs/judging.md describes the splits.
 
 examples:
   python -m stages.bench

@@ -2,9 +2,9 @@
 
 Examples: `python -m stages.compose profile=smoke`, `python -m stages.compose sets=[folder] meshes.folder=~/scans`,
 `python -m stages.compose sets=[household,gaze] gaze.lod.rings=2`. A setting holds for every set; with a set's name
-before it, for that set alone. The pipeline reads params.yaml alone. Without arguments the published configuration comes
-back, whose results lie in reports/. Every other choice writes to a folder of its own below runs/, of which git ignores
-all but headlines.json; out=FOLDER names another one.
+before it, for that set alone. The pipeline reads params.yaml alone. Without arguments, the command restores the
+published configuration, whose results are in reports/. Every other choice writes to its own folder below runs/, where
+git ignores all files but headlines.json; out=FOLDER names another folder.
 """
 
 import argparse

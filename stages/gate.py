@@ -4,13 +4,12 @@ Without files: the metrics of the sets that params.yaml switches on, reports/met
 report, against reports/baselines/PROFILE.json of its profile, within reports/tolerances.yaml. A run with other sets or
 settings has a baseline of its own, baseline.json in the folder of its results, which --update makes. With files, of any
 project: each metric is called by its file and its keys, `train.accuracy` in train.json. A baseline is {metric: value};
---tolerances names a file of rules such as ours: abs, rel, direction; exact without a rule. How far each metric moves
-with the seed, the threads or the machine is measured by --spread, which writes it beside the baseline: so far it may
-move, whatever its rule. Exits with 1 and names what moved, by how much.
+--tolerances names a file of rules such as ours (abs, rel, direction); a metric without a rule must be exact. --spread
+measures how far each metric moves with the seed, the threads or the machine, and writes it beside the baseline: the
+metric may move that far, whatever its rule. Exits with 1 and lists the metrics that moved, with the difference.
 
-Tolerances let small errors pass. On one machine, two runs give equal rows: --rows compares each row of every
-measurement, of the sets that are off too, with those of a git revision. Times and notes are
-left out.
+Tolerances let small errors pass. On one machine, two runs give equal rows: --rows compares every row of measurements,
+also of sets that are switched off, with the rows of a git revision. Times and notes are left out.
 
 examples:
   python -m stages.gate

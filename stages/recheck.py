@@ -1,7 +1,7 @@
 """Measures a few items of committed rows again and compares them: `python -m stages.recheck SET/STAGE ...`
 
-Rows outside the default run are committed, and the code that made them goes on changing. The report marks rows that
-are older than the code of their stage, but cannot tell a new method from a new form. This command can: it runs the
+Rows outside the default run are committed, while their code changes further. The report marks rows that are older than
+the code of their stage, but cannot tell whether the change affects the results. This command can: it runs the
 stages that the rows depend on in build/recheck, the stage itself on its first items alone, and compares each row with
 the committed one. It prints a line for each method, and keeps the outcome in reports/measurements/rechecked.json: where
 98 % of the compared rows of each method agree within 1 %, the report does not call the file older. Rows of a metric
@@ -11,8 +11,8 @@ again, and where a stage stopped before its end: the outcome is not kept then.
 Examples: `python -m stages.recheck gaze/lod`, `python -m stages.recheck gaze/lod princeton/lod --items 5`,
 `python -m stages.recheck furniture/coarse_imprints experiment=coarse_imprints` for rows of an experiment. A data set
 that is not fetched by hash must lie where conf/data/SET.yaml says. Stages that work on their objects together need all
-objects: --items 1000, which also compares the rows about all of them. A second run takes from its cache what has not
-changed.
+objects: --items 1000, which also compares the rows about all of them. A second run reuses unchanged results from its
+cache.
 """
 
 import argparse

@@ -2,9 +2,9 @@
 
 `dvc repro` runs one stage at a time. Here a stage starts as soon as those that it depends on are done, through DVC, so
 that dvc.lock, its cache and what counts as changed are the same. All stages share one budget of cores, so two at once
-take no more processors than one. A stage that fails leaves out those that need it; the others go on, and the exit
-status is 1. The output of a stage appears when it ends and stays in build/logs/STAGE.log. Where stderr is no terminal,
-lines say what runs.
+take no more processors than one. If a stage fails, the stages that need it are skipped, the others continue, and the
+exit status is 1. The output of a stage appears when it ends and stays in build/logs/STAGE.log. Where stderr is no
+terminal, lines say what runs.
 """
 
 import argparse

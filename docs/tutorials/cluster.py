@@ -3,8 +3,8 @@ Run it on a cluster
 ===================
 
 The pipeline's objects, trainings and splits are pieces of work that do not depend on each other. With ``parallel=dask``
-they go to the workers of a dask cluster, and the results are the same bytes. No folder is shared: what a piece reads
-travels to the worker, and its files and rows come back.
+they go to the workers of a dask cluster, and the results are the same bytes. The machines share no folder: the input
+files of a piece are sent to the worker, and its files and rows come back.
 
 This page is not run when it is built, since it needs a cluster. The tests check that its code is valid and that the
 settings exist.
@@ -27,7 +27,7 @@ from haptic_glance.gallery.demo import sample
 # By hand
 # -------
 #
-# On each machine ``pip install '.[cluster]'``, in the same version; another one is an error that names both. Then:
+# On each machine ``pip install '.[cluster]'``, in the same version; an error names both versions if they differ. Then:
 #
 # .. code-block:: sh
 #

@@ -84,8 +84,9 @@ for method in ["thin_parts", "glance"]:
 # Judge it by people
 # ------------------
 #
-# The gaze of 32 people on 19 meshes decides. One command asks a function in a file of yours about them, and lists it
-# beside all others, with five metrics, their intervals and those of its lead. :doc:`/judging` has the splits, and how
+# The gaze of 32 people on 19 meshes decides. One command evaluates the function in your file on these meshes, and lists
+# it beside all other methods, with five metrics, their intervals and the interval of its lead. :doc:`/judging` has the
+# splits, and how
 # to judge a method that learns:
 #
 # .. code-block:: sh

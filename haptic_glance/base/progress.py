@@ -1,4 +1,4 @@
-"""Lines of progress on stderr, and a word now and then while a step takes long, so that nobody waits in silence."""
+"""Lines of progress on stderr, with a regular message during a long step."""
 
 import sys
 import threading

@@ -71,7 +71,7 @@ def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
         type=int,
         help="how many places to visit in turn (default: the peaks past the threshold, which may be other places)",
     )
-    help_purpose = "look: where people look (default); touch: where one touch tells most of the object"
+    help_purpose = "look: where people look (default); touch: where one touch identifies the object best"
     command.add_argument("--purpose", choices=list(PURPOSES), default="look", help=help_purpose)
     command.add_argument("--method", help=HELP)
     add_up(command, "unknown: --method glance_any_pose")

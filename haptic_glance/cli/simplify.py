@@ -73,25 +73,25 @@ def parser(about: str) -> argparse.ArgumentParser:
     help_tolerance = "the fewest faces with a Metro mean error of at most this share of the diagonal: 0.2%%, or 0.002"
     help_tolerance += f" (from {LEAST_PERCENT:g} on the sign is required: 0.2 could mean 20%% or 0.2%%)"
     target.add_argument("--tolerance", metavar="SHARE", type=share, help=help_tolerance)
-    help_out = f"the result: {', '.join(FORMATS)}; with --levels, or of a folder: the folder for them"
+    help_out = f"the result: {', '.join(FORMATS)}; with --levels, or for a folder of meshes: the output folder"
     command.add_argument("--out", metavar="PATH", type=Path, required=True, help=help_out)
-    help_format = "of the files in that folder (default: that of the mesh, or glb)"
+    help_format = "format of the files in the output folder (default: that of the mesh, or glb)"
     command.add_argument("--format", choices=[suffix[1:] for suffix in FORMATS], help=help_format)
     command.add_argument(
         "--picture", metavar="FILE", type=Path, help="also draw the saliency, and the mesh before and after"
     )
-    help_method = f"whose saliency and points: {HELP}; qem: nobody's, every place has the same weight"
+    help_method = f"method of saliency and points: {HELP}; qem: none, every place has the same weight"
     command.add_argument("--method", default="glance", help=help_method)
     help_ways = "soft: the saliency weights the error, nothing is frozen (default); the others freeze the faces around"
     help_ways += f" the salient points, within {RINGS} rings, or by the mesh's density, or by the salient area"
     command.add_argument("--neighbourhood", choices=[SOFT, *NEIGHBOURHOODS], default=SOFT, help=help_ways)
-    help_keep = "how many points to freeze the faces around (default: those past the method's threshold)"
+    help_keep = "number of points whose faces are frozen (default: the points past the method's threshold)"
     command.add_argument("--keep", metavar="N", type=int, help=help_keep)
     command.add_argument("--rings", metavar="N", type=int, help=f"rings of --neighbourhood fixed (default: {RINGS})")
     command.add_argument(
         "--shrink", action="store_true", help="freeze fewer faces where the target is too low for all of them"
     )
-    help_weights = "what the error counts beside the shape, and how much: colors=1,uv=1,normals=0.03 or some of them;"
+    help_weights = "weights of attributes in the error: colors=1,uv=1,normals=0.03 or some of them;"
     help_weights += " with colors=1, black and white differ as much as two ends of the mesh (default: nothing)"
     command.add_argument(
         "--attributes", metavar="NAME=WEIGHT,...", type=attribute_weights, default={}, help=help_weights
@@ -105,7 +105,7 @@ def parser(about: str) -> argparse.ArgumentParser:
         action="store_true",
         help="print the figures as JSON; mean, rms, max and salient are errors in percent of the diagonal",
     )
-    command.add_argument("--seed", type=int, default=0, help="for the samples of the errors (default: %(default)s)")
+    command.add_argument("--seed", type=int, default=0, help="seed of the error samples (default: %(default)s)")
     return command
 
 
@@ -118,7 +118,7 @@ def share(text: str) -> float:
         raise argparse.ArgumentTypeError(f"{text!r}: {reason}")
     if match and not match[2] and value >= LEAST_PERCENT:
         percent = f"{100 * value:g}%, " if value < 1 else ""
-        raise argparse.ArgumentTypeError(f"{text!r}: write {percent}{match[1]}% or what else of the diagonal is meant")
+        raise argparse.ArgumentTypeError(f"{text!r}: write {percent}{match[1]}% or another share of the diagonal")
     if not value < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a share of the diagonal: write one like 0.2% or 0.002")
     return value

@@ -58,13 +58,13 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
     help_cells = "size of the array (default: 16 16)"
     result.add_argument("--cells", metavar=("ROWS", "COLS"), nargs=2, type=int, default=[16, 16], help=help_cells)
-    help_pitch = "distance of two cells: a length such as 1mm, or in units, of which the bounding sphere is 1 across"
+    help_pitch = "distance of two cells: a length such as 1mm, or a number of units (the bounding sphere is 1 across)"
     result.add_argument(
         "--pitch", metavar="LENGTH", type=length_option, default=0.01, help=f"{help_pitch} (default: 0.01)"
     )
     help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
     result.add_argument("--count", metavar="N", type=int, help=help_count)
-    result.add_argument("--method", help=f"of the salient places: {HELP}")
+    result.add_argument("--method", help=f"method of the salient places: {HELP}")
     help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
     result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
     help_depth = (
@@ -73,9 +73,9 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--depth", metavar="LENGTH", type=length_option, help=help_depth)
     help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {', '.join(names_of(Skin))}"
     result.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
-    help_load = "also write the force on each cell, in newtons, at which the whole array bears this load"
+    help_load = "load on the whole array in newtons: also write the force on each cell, in newtons"
     result.add_argument("--load", metavar="NEWTONS", type=newtons, help=help_load)
-    help_unit = "what the coordinates of the file are in; --load and lengths such as 1mm need it"
+    help_unit = "unit of the file's coordinates; --load and lengths such as 1mm need it"
     result.add_argument("--unit", choices=list(METRES), help=help_unit)
     names = [f"{name} in {LAYER_UNITS[name]}" if name in LAYER_UNITS else name for name in names_of(Layer)]
     help_layer = f"the foam on the array, for --load; the names are {', '.join(names)}"

@@ -1,4 +1,4 @@
-"""An object that is touched until it is known, by a person or by the planner, which touches where it gains most."""
+"""An object that a person or the planner touches until it is recognised; the planner touches where it gains most."""
 
 from functools import cached_property
 

@@ -49,8 +49,8 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     A glb has normals, for which creases double vertices, too. obj and off have nine digits or more, the others single
     precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned here
     (haptic_glance.mesh.up.upright_for); the other formats get a comment that names the axis. parts: in a glb the nodes,
-    by name. Raises ValueError for another suffix, and for coordinates that the format does not hold; warns where it
-    moves vertices, as those far from the origin.
+    by name. Raises ValueError for another suffix, and for coordinates that the format does not hold. Warns if single
+    precision moves vertices, for example far from the origin.
     """
     path = Path(path)
     suffix = path.suffix.lower()

@@ -1,4 +1,4 @@
-"""Topology of a surface (loops, components, genus), faults that no simplification may add, and named nodes of a GLB."""
+"""Topology of a surface (loops, components, genus), faults that a simplification must not add, and nodes of a GLB."""
 
 import io
 import re

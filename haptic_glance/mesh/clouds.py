@@ -217,12 +217,12 @@ GAP = 1.5  # times the distance to the neighbours that points have there: surfac
 
 
 def surface_of(cloud: Cloud) -> Mesh:
-    """The Mesh of a Cloud, in its units; it is closed where points are all round, and open where none were seen.
+    """Reconstructs the surface of a Cloud, in its units: closed where points lie all round, open where none were seen.
 
     Screened Poisson reconstruction (Kazhdan and Hoppe, ACM Transactions on Graphics 32(3), 2013; pymeshlab's) of the
-    usable points and their normals, in cells as wide as the points are apart. It closes every hole; what lies farther
-    from the points than they lie from each other is cut away again. Colours are those of the nearest points. Raises
-    MeshError for a cloud without a shape.
+    usable points and their normals, in cells as wide as the points are apart. The reconstruction closes every hole.
+    Surface that is farther from the points than the points are from each other is then cut away. Colours are those of
+    the nearest points. Raises MeshError for a cloud without a shape.
     """
     cloud = usable(cloud)
     with from_extra("a point cloud is made a surface by pymeshlab, which "):

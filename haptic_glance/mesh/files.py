@@ -67,9 +67,9 @@ def as_mesh(source: MeshLike) -> Mesh:
     """The Mesh of a path, an object of trimesh, (vertices (n, 3), faces (m, 3)) or a Cloud, or the Mesh that is given.
 
     Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
-    trimesh are taken over. Only a Mesh and some files say which axis points up; of the others `up` is y or z, whichever
-    the shape suggests, as of `load`, so that a file and its arrays have one answer. A Mesh is z up unless it is made
-    with another `up`. Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything
+    trimesh are taken over. Only a Mesh and some files state which axis points up. For the others the shape chooses y or
+    z, as in `load`, so that a file and its arrays have the same axis. A Mesh is z up unless it is made with another
+    `up`. Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything
     else.
     """
     return settled(as_stated(source))

@@ -19,7 +19,7 @@ DENSEST = 100  # bytes that one compressed byte of a PCD can hold: LZF writes th
 
 
 class MeshError(ValueError):
-    """A mesh that cannot be used. The message is the reason; who opened the file names it."""
+    """A mesh that cannot be used. The message states the reason; the caller adds the name of the file."""
 
 
 def check_header(content: bytes, suffix: str) -> None:

@@ -86,9 +86,9 @@ class Mesh:
     up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown. Functions that derive a
     mesh from another one keep its axis (`dataclasses.replace`). Stored meshes are z up.
 
-    The arrays are the mesh's own, copies of the caller's. They are not to be edited in place, since what is computed of
-    them is kept: make a new Mesh (`dataclasses.replace`). Two meshes are equal where all of this is, and equal meshes
-    have one hash; a pickled mesh leaves what it has computed behind.
+    The arrays are copies of the caller's. Do not edit them in place, since derived values are cached: make a new Mesh
+    (`dataclasses.replace`). Two meshes are equal if all of these fields are equal, and equal meshes have one hash. A
+    pickled mesh does not include the derived values.
     """
 
     vertices: np.ndarray

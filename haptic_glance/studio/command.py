@@ -34,7 +34,7 @@ def parser() -> argparse.ArgumentParser:
     form = argparse.RawDescriptionHelpFormatter
     command = argparse.ArgumentParser("haptic-glance studio", description=first, epilog=rest, formatter_class=form)
     command.add_argument("meshes", metavar="MESH", nargs="*", type=Path, help="a mesh file, or a folder of them")
-    command.add_argument("--port", type=port, default=PORT, help="default %(default)s, or the next free one; 0: any")
+    command.add_argument("--port", type=port, default=PORT, help="port (default: %(default)s or the next free; 0: any)")
     command.add_argument("--no-browser", action="store_true", help="print the address alone")
     command.add_argument("--mark", metavar="FOLDER", type=Path, help="mark points, to FOLDER/MESH.csv")
     command.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")

@@ -1,4 +1,4 @@
-"""The top of the page: which mesh is on the table, where else there is one, and which axis points up."""
+"""The top of the page: the current mesh, other meshes to open, and the axis that points up."""
 
 from collections.abc import Callable
 from pathlib import Path

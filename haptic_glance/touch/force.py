@@ -1,4 +1,4 @@
-"""Touch in newtons: what each taxel of an array below an elastic layer is pressed and dragged with."""
+"""Touch in newtons: normal and tangential forces on each taxel of an array below an elastic layer."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -61,9 +61,9 @@ def gaps_at(
 ) -> np.ndarray:
     """(k, rows, cols) f8 metres that each cell can still approach until its layer touches the object.
 
-    Below 0 where the object is in the layer of an array that stands at its centre. The array comes from as far above as
-    its longer side, so that it meets what overhangs the place. inf where a cell meets nothing, or nothing `within` so
-    many metres of the first contact: the fewer, the faster. Other arguments as of `press_forces`.
+    Below 0 where the object is in the layer of an array that stands at its centre. The array starts above the place at
+    a height of its longer side, so that it meets overhangs. inf where a cell meets nothing, or nothing within `within`
+    metres of the first contact; a smaller value is faster. Other arguments as of `press_forces`.
     """
     _check_unit(unit)
     if not within >= 0:  # NaN fails as well
@@ -93,8 +93,8 @@ def forces(
     cosines: a number, or one per taxel; the cosine is that of its normal to the approach, by which the layer is
     indented less.
 
-    A sphere of radius R that goes a small depth d into the layer of a fine array is answered with pi R d^2
-    layer.stiffness, a flat punch of area A with A d layer.stiffness (Johnson 1985, section 4.3).
+    On a fine array, a sphere of radius R at a small depth d in the layer gives a load of pi R d^2 layer.stiffness, a
+    flat punch of area A gives A d layer.stiffness (Johnson 1985, section 4.3).
     Raises ValueError, naming the touch, for a load that is not positive, a negative depth, an indentation above the
     layer's thickness, and a load on an array that touches nothing.
     """

@@ -1,4 +1,4 @@
-"""Taxels at any places: hexagonal arrays, fingertips, and what a file says."""
+"""Taxels at any places: hexagonal arrays, fingertips, and layouts from a file."""
 
 import csv
 from dataclasses import dataclass

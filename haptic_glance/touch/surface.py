@@ -21,7 +21,7 @@ LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane 
 class Surface:
     """A mesh prepared for touching: its faces in a tree of boxes (20 ms for 50,000 faces).
 
-    mesh: a Mesh, which must not change afterwards, or what `as_mesh` makes one of. Faces without area are ignored. Use
+    mesh: a Mesh, which must not change afterwards, or any input of `as_mesh`. Faces without area are ignored. Use
     a Surface to touch a mesh many times. Building one costs less than sending it to another process. Warns of a closed
     mesh whose faces look inwards: the array would be inside, and miss the surface.
     """

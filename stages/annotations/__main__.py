@@ -2,7 +2,7 @@
 
 Reads data/annotations (data/annotations/gaze for meshes with human gaze), data/SET/meshes and, for the gaze,
 data/SET/weights. Writes reports/measurements/SET/annotations.csv.gz, rows per object and metric:
-  found     share of one pass's marks that another pass has a mark near of, mean over the pairs
+  found     share of one pass's marks with a mark of another pass nearby, mean over the pairs
             (method `random`: the same against as many vertices drawn uniformly over the surface)
   nss, auc  of the marks spread over the surface against the gaze, beside the same of one pass (`one`) and of `height`
 """

@@ -1,11 +1,11 @@
 """Searches the front from mesh to named object: `python -m stages.front`
 
 The choices at all stages (detector, viewpoints, image size, places, sensels, faces of the model, touches, classifier)
-decide together how often an object is known, and after how many seconds. Optuna proposes choices, Hydra composes and
-checks each, and a third of them is asked about again with more objects and splits, twice. Choices that no other beats
-are then confirmed on shapes and classes that the search has not seen, and from the smallest good one each single choice
-is changed. Seconds are those of one processor core, from the mesh of an object to its name: simplifying, looking,
-pressing, asking. Learning is reported apart.
+decide together how often an object is known, and after how many seconds. Optuna proposes choices, and Hydra composes
+and checks each. Twice, a third of the choices is tested again with more objects and splits. Choices that no other
+choice beats are then confirmed on shapes and classes that the search has not seen. Finally, each option of the smallest
+good choice is changed alone. Seconds are those of one processor core, from the mesh of an object to its name:
+simplifying, looking, pressing, asking. Learning is reported apart.
 
 Reads data/SET/meshes of household and of a set with classes; writes reports/measurements/SET/front.csv.gz of both.
 Keeps its study in build/front and goes on where it stopped. `dvc repro` does not run it.

@@ -1,7 +1,7 @@
 """The search for the cheapest settings that are as good: Optuna's study on the disk, and successive halving.
 
-Optuna prunes no study of several objectives. Here the choices that no other dominates are asked about again first, with
-more objects and splits, and among equal choices those that stand farthest from the others (Deb and others, NSGA-II,
+Optuna prunes no study of several objectives. Here the choices that no other dominates are tested again first, with more
+objects and splits, and among equal choices those farthest from the others (Deb and others, NSGA-II,
 2002).
 """
 

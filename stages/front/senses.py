@@ -1,8 +1,7 @@
 """Looks at an object and presses the array on it, with the seconds of each part; both are cached.
 
-An object is looked at and learned from a mesh of as many faces as were chosen. The touches that ask are pressed on the
-object itself, with all its faces: a coarse model must know the real thing. The cost of a method is that of the method
-by itself.
+Looking and learning use a mesh with the chosen number of faces. Test touches are pressed on the object itself, with all
+its faces, since a coarse model must recognise the real object. The cost of a method is the cost of this method alone.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,7 @@
 """Series of recorded touches: readers, and recognition of grasps by a hand with pressure arrays.
 
-The readers are for events of a NeuTouch fingertip and for grasps of a hand. No grasp is in training and test, and few
-are all there are.
+The readers are for events of a NeuTouch fingertip and for grasps of a hand. No grasp is in both training and test. Only
+few grasps exist.
 """
 
 import functools

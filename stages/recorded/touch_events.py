@@ -1,7 +1,7 @@
-"""Recognition of events of a fingertip on the publisher's own test part; and, within training, what it takes.
+"""Recognition from events of a fingertip on the publisher's test part; and, within training, the effect of conditions.
 
 The choices (bins, parameter) and the variations (time listened, taxels, disturbances) are decided within the training
-part. The test part is asked one time by each method.
+part. Each method is tested on the test part once.
 """
 
 import functools

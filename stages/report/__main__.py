@@ -1,10 +1,10 @@
-"""Writes what was measured: tables beside the thesis's, claims, figures, charts of accuracy against cost, the pages.
+"""Writes the report: tables beside the thesis's, claims, figures, charts of accuracy against cost, and the pages.
 
 Reads reports/measurements/SET/STAGE.csv.gz, data/ and data/reference/thesis/*.csv. Writes reports/tables,
 reports/figures, reports/tradeoff, reports/claims.md and .csv with the differences behind them in
 reports/claims/differences.csv.gz, reports/index.html with reports/site, and reports/metrics/report.json. A table
-without measurements is listed as not run, with the stage to run. Parts that nothing has changed are those of the last
-run, see `reuse`.
+without measurements is listed as not run, with the stage to run. Unchanged parts are reused from the last run, see
+`reuse`.
 """
 
 import shutil
@@ -91,7 +91,7 @@ def write_report(results: Results) -> None:
 
 @contextmanager
 def beside(reports: Path, out: Path) -> Iterator[Path]:
-    """A copy of the report of an earlier run, to be made anew; it takes its place where nothing failed.
+    """A copy of the report of an earlier run, for the update; it replaces the report if nothing failed.
 
     The copy holds figures of data sets whose data is no longer there.
     """
@@ -177,7 +177,7 @@ def side_by_side(
 
 
 def remove_older(built: dict[str, Built], out: Path) -> None:
-    """Removes results of an earlier run that this one did not make, so that none looks new."""
+    """Removes results of an earlier run that this run did not write, so that no old result looks new."""
     for kind, batch in built.items():
         (out / kind).mkdir(parents=True, exist_ok=True)
         for path in set((out / kind).glob("*.*")).difference(*(item.paths for item in batch.items)):

@@ -68,7 +68,7 @@ def _figure(reports: Path, name: str, where: str, request: str) -> str:
 
 
 def text_of(rows: pd.DataFrame, request: str) -> str:
-    """The text of what is asked for of the only row, or of all of them; LookupError where it is missing."""
+    """The text of the requested columns for the only row, or for all rows; LookupError if it is missing."""
     columns, words, style = parts_of(request)
     try:
         mean, *ends = (number_of(rows, column) for column in columns)

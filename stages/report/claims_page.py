@@ -83,7 +83,7 @@ def sets_read(claim: Claim, results: Results) -> list[str]:
 
 
 def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
-    """The text of the page below its head. claims, differences: what `judged` found of the claims."""
+    """The text of the page below its head. claims, differences: the results of `judged`."""
     by_key = {claim.key: claim for claim in known}
     items, values = [], {name: {} for name in ("chapter", "verdict", "set")} | {"kind": KINDS}
     for row in claims.itertuples():

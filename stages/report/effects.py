@@ -257,7 +257,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class PooledEffect:
-    """The effects of two sets or more with an interval each, and what they come to."""
+    """The effects of two or more sets with an interval each, and their pooled effect."""
 
     sets: Sequence[Effect]
 

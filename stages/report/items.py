@@ -34,10 +34,10 @@ class Item:
 
 @dataclass(eq=False)
 class Table(Item):
-    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose.
+    """frame: tidy numbers, for the CSV; shown: the table for readers, the same or pivoted; words: for its prose.
 
-    best: by what its best row is found, None where none of its rows competes. answer: the columns of `shown` that
-    answer its question, all where it is empty; the others stand behind them. summary: what it found, in one sentence.
+    best: the ranking of its rows, None if no rows compete. answer: the columns of `shown` that answer its question, all
+    if empty; the other columns follow them. summary: the finding in one sentence.
     """
 
     frame: pd.DataFrame
@@ -92,7 +92,7 @@ class Table(Item):
 class Figure(Item):
     """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside the PNG.
 
-    alt: what a blind reader needs; element: the picture or chart alone, as a page shows it.
+    alt: text for blind readers; element: the picture or chart alone, as a page shows it.
     """
 
     drawing: Drawing

@@ -85,7 +85,7 @@ def image(item: Figure, widest: int = WIDEST) -> str:
 
 
 def lacks_cells(table: Table) -> bool:
-    """Whether a cell of the table says that something was not run."""
+    """Whether a cell of the table says "not run"."""
     return any("not run" in text for text in table.text.to_numpy().ravel())
 
 

@@ -125,7 +125,7 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
 
 
 def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
-    """{older: those files of rows that other code than today's has made}; empty where there is none.
+    """{older: files of rows that were made by other code than today's}; empty if there are none.
 
     A file does not count where `stages.recheck` with today's code gave rows that agree.
     """

@@ -81,7 +81,7 @@ def there(path: Path, message: str, stage: str, runnable: bool = True) -> Path:
 
 
 class ByMethod(dict):
-    """The findings of a stage by method; a method that it did not run raises NotRun."""
+    """The results of a stage by method; NotRun for a method without results."""
 
     def __init__(self, stage: str, findings: dict[str, np.ndarray]) -> None:
         super().__init__(findings)
@@ -203,7 +203,7 @@ class Results:
     def clock(self, stage: str, dataset: str | None = None) -> str:
         """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time of older rows.
 
-        Rows of both kinds count as wall time, which tells less.
+        If rows have both clocks, the clock is wall time, the less precise one.
         """
         rows = self._read(stage, dataset)
         timed = rows[rows["seconds"].notna()] if "seconds" in rows else rows

@@ -35,8 +35,8 @@ ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each
 class Finding:
     """A claim that the front page shows with its chart.
 
-    verdict: with which the title is right; under any other the claim's own sentence stands. shown: a key of PREFIXES,
-    what is shown of its differences. unit: of what is shown, with its direction.
+    verdict: the verdict for which the title is right; with any other verdict, the card shows the claim's own sentence.
+    shown: a key of PREFIXES, the shown form of its differences. unit: of what is shown, with its direction.
     """
 
     key: str

@@ -77,7 +77,7 @@ def records(frame: pd.DataFrame) -> Iterable[Any]:
 
 
 def within(values: ArrayLike, shared: float = 0.0, least: float = 0.0, top: float = 1.0) -> tuple[float, float, float]:
-    """(mean, low, high) with the interval cut at what the values can be: rates unless told otherwise."""
+    """(mean, low, high) with the interval cut at the range of the values, by default that of rates."""
     mean, low, high = interval(values, shared)
     return mean, float(np.maximum(low, least)), float(np.minimum(high, top))
 
@@ -114,10 +114,10 @@ def cell_texts(cells: pd.DataFrame, places: int = 0) -> list[str]:
 def blocks(
     cells: pd.DataFrame, down: Sequence[str], across: str, below: Mapping[str, Callable[[str], str]]
 ) -> pd.DataFrame:
-    """Cells of `grid`, and below them those of further columns of theirs, each a block of rows of its own.
+    """Cells of `grid`, and below them one block of rows for each further column.
 
-    below: {column: from a value of the first column of `down` to what the block is called there}. Of cells that come
-    to stand in one place, such as the thesis's beside two protocols, the first stays.
+    below: {column: function from a value of the first column of `down` to the name of its block}. If several cells
+    share a place, such as the thesis's beside two protocols, the first stays.
     """
     parts, key = [cells], down[0]
     for column, say in below.items():
@@ -207,7 +207,7 @@ FIRST = re.compile(r"[+<]?\s*([-−]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?)")  # numb
 
 @dataclass(frozen=True)
 class Ranking:
-    """By which column of what is shown a table is ranked.
+    """The column of the shown frame that ranks a table.
 
     lowest: whether less is better. among: columns; rows that agree in them are compared with each other alone. exempt:
     names; a row that has one in any of its cells takes no part: a truth, a full model, what the thesis printed.

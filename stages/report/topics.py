@@ -1,4 +1,4 @@
-"""The topics of the report, in reading order, and what each has to say."""
+"""The topics of the report, in reading order, and their contents."""
 
 from collections.abc import Iterable
 from pathlib import Path

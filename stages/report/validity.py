@@ -42,7 +42,7 @@ def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd
 
 @check("lod")
 def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
+    """Rows of methods that should keep neighbourhoods but kept none: their mesh is that of plain simplification."""
     if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
         return pd.Series("", index=rows.index)
 

@@ -179,9 +179,10 @@ def _numbers(judgement: Judgement) -> dict[str, object]:
 
 
 def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
-    """Columns needed, needed_of and cause: of how many units the present effect and spread would be decided.
+    """Columns needed, needed_of and cause: the number of units that would decide a claim at its present effect and
+    spread.
 
-    Decided is what excludes zero, or shows no difference.
+    A claim is decided if its interval excludes zero, or shows no difference.
     """
     mean, low, _ = effect.interval
     if np.isnan(low):

@@ -71,7 +71,8 @@ def _joined(lines: str) -> str:
 
 
 class Kept(Figure):
-    """A figure whose words stand beside it in NAME.json, so that both outlast the data; drawing empty: they did."""
+    """A figure with its words in NAME.json beside it, so that both remain without the data. An empty drawing: the data
+    are gone."""
 
     def write(self, folder: Path) -> None:
         """Writes NAME.png and NAME.json, where there is something new."""

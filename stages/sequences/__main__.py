@@ -3,7 +3,7 @@
 Reads data/SET/contours/NAME.npz and the classes of data/SET/meshes. Two networks and the sum of their probabilities,
 kNN and SVM, each with sequences drawn at random for testing, as in the thesis, and with whole objects held out. Writes
 data/SET/sequences/predictions/TRIAL.npz, and reports/measurements/SET/sequences.csv.gz: one row per trial and
-classifier, of unseen objects also one per class; what is taken for what, and the layers of both networks.
+classifier, of unseen objects also one per class; confusions, and the layers of both networks.
 """
 
 import functools

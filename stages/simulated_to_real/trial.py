@@ -1,6 +1,6 @@
 """Trains classifiers on simulated imprints, on real touches and on both, and tests them on real touches.
 
-A mesh is pressed as a real pressure array would feel it, in five ways to lay an object on the array.
+A mesh is pressed like on a real pressure array, in five ways to place the object.
 """
 
 from collections.abc import Iterator

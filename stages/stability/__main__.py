@@ -15,11 +15,11 @@ The points that the methods `used` find at the middle severities (those of the f
 `lod_salient` are the errors of the undisturbed object when it is simplified around them (perturbation `plain`: around
 nothing), `recognised` the share of touches there that are recognised among ten objects (stages.stability.uses).
 
-The objects `broken` are broken in the ways of stages.stability.DAMAGES, too, and every backend of stages.lod simplifies
-them: a row `faces` a case (method: the backend; perturbation: the damage; severity: the faces asked for; budget, kept,
-soft: what was asked; outcome: valid, refused, ruined or crash, with the reason in `note`) and, where a mesh came back,
-a row `error`, its Metro mean, beside the `limit` of ruin.
-Settings: section `stability` of params.yaml.
+The objects `broken` are also damaged in the ways of stages.stability.broken.DAMAGES, and every backend of
+haptic_glance.lod simplifies them: a row `faces` a case (method: the backend; perturbation: the damage; severity: the
+faces asked for; budget, kept, soft: what was asked; outcome: valid, refused, ruined or crash, with the reason in
+`note`) and, where a mesh came back, a row `error`, its Metro mean, beside the `limit` of ruin. Settings: section
+`stability` of params.yaml.
 """
 
 import dataclasses

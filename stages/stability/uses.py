@@ -1,6 +1,6 @@
 """The worth of the points of a disturbed object: the whole object is simplified around them, and recognised there.
 
-Recognition by touch is asked where a disturbed object says it should be touched, with touches learned on whole objects.
+Recognition by touch is tested at the points of the disturbed object, with touches learned on undisturbed objects.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

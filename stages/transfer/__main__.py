@@ -1,11 +1,11 @@
-"""Lets networks that learned on photographs recognise imprints, beside ones that learned on nothing (T5.2 to T5.4).
+"""Tests networks trained on photographs on imprints, beside untrained ones (T5.2 to T5.4).
 
 Reads data/SET/meshes and data/SET/salient_points of classes of objects. Presses the touches of every object with a
 fine and a coarse array, then trains transfer.networks from each of transfer.weights, with touches drawn at random for
 testing and with whole objects left out. Writes data/SET/transfer: imprints/NAME.npz, networks/TRIAL.npz (what was
 trained, of the first repetition) and predictions/TRIAL.npz. Stitches hybrid networks for sight and touch (T5.5) of
 networks that share their middle, to data/SET/transfer/hybrid. The rows are in reports/measurements/SET/transfer.csv.gz:
-accuracies, the same on disturbed touches, the change of each convolution, what the hybrid takes for what.
+accuracies, also on disturbed touches, the change of each convolution, and the confusions of the hybrid.
 """
 
 import dataclasses

@@ -1,6 +1,6 @@
 """Renders each mesh from a set of viewpoints (T3.1.1, T figure 3.2).
 
-Reads data/SET/meshes/NAME.npz. Writes data/SET/views/NAME/VIEWPOINT.npz (stages.views.read_view),
+Reads data/SET/meshes/NAME.npz. Writes data/SET/views/NAME/VIEWPOINT.npz (stages.views.storage.read_view),
 data/SET/views/viewpoints.csv and reports/measurements/SET/views.csv.gz.
 """
 

@@ -2,8 +2,8 @@
 A look in any pose
 ==================
 
-The default method must know which axis points up. What lies in any pose is a case for ``glance_any_pose``: what it
-finds hardly changes when the mesh is turned. It predicts gaze worse on what stands upright.
+The default method must know which axis points up. For objects in any pose, use ``glance_any_pose``: its result hardly
+changes when the mesh is turned. On upright objects it predicts gaze worse than the default.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 The nine channels of a view
 ===========================
 
-The thesis looks at pictures of an object. Nine channels say, pixel by pixel, what stands out in one of them; their
-weighted average is its saliency map (T eq. 3.9).
+The thesis looks at pictures of an object. Each of nine channels measures how much each pixel of a picture stands out.
+The weighted average of the channels is the saliency map of the picture (T eq. 3.9).
 """
 
 import matplotlib.pyplot as plt

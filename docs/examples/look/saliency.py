@@ -3,8 +3,8 @@ Where people look
 =================
 
 :func:`haptic_glance.saliency` predicts, for each vertex, how much it attracts the gaze. The model behind it was learned
-from human gaze. It needs to know which axis points up: a GLB says so, of other files the shape decides between y and z,
-and ``up="y"`` says it.
+from human gaze. It needs to know which axis points up. A GLB stores the axis; for other files the shape decides between
+y and z, and ``up="y"`` sets the axis.
 """
 
 import matplotlib.pyplot as plt

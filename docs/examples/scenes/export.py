@@ -3,7 +3,8 @@ Meshes for other programs
 =========================
 
 :func:`haptic_glance.write_any` writes GLB, OBJ, PLY, STL and OFF, with colours and textures where the format has them.
-:func:`haptic_glance.to_trimesh` hands a mesh to whatever speaks trimesh. Any of these is accepted where a mesh is.
+:func:`haptic_glance.to_trimesh` converts a mesh for programs that use trimesh. Functions accept all of these forms as a
+mesh.
 """
 
 import tempfile

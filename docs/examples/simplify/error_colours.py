@@ -2,8 +2,8 @@
 Where the error is
 ==================
 
-:func:`haptic_glance.lod.vertex_errors` gives the distance of every vertex to the other surface, which makes a picture
-of it.
+:func:`haptic_glance.lod.vertex_errors` gives the distance of every vertex to the other surface. The example draws these
+distances as colours.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,9 @@
 Neighbourhoods kept unchanged
 =============================
 
-The thesis freezes the faces around each salient point (T3.1.3). They survive bit for bit, and the rest pays for them:
-the error of the whole surface is higher than that of plain simplification with as many faces. We advise weights
-instead; :doc:`/concepts/simplification` has the measurements.
+The thesis freezes the faces around each salient point (T3.1.3). The kept faces survive bit for bit, and the other faces
+take all of the error: the whole surface has a higher error than plain simplification with as many faces. We advise
+weights instead; :doc:`/concepts/simplification` has the measurements.
 """
 
 import matplotlib.pyplot as plt

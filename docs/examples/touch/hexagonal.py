@@ -3,7 +3,7 @@ Taxels anywhere
 ===============
 
 An array need not be a grid. A ``Layout`` places taxels with positions, normals and areas: a honeycomb, a fingertip, or
-what a CSV file says (:func:`haptic_glance.read_layout`).
+the taxels of a CSV file (:func:`haptic_glance.read_layout`).
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Sizes of the sensor
 ===================
 
-Number of cells and their distance are free. Which array is enough for a task is a question for measurements
-(:doc:`/concepts/sensor`); here is what each feels at one place.
+You choose the number of cells and their distance. :doc:`/concepts/sensor` measures which array is enough for a task.
+This example shows the imprints of several arrays at one place.
 """
 
 import matplotlib.pyplot as plt

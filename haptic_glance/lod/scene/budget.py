@@ -30,11 +30,11 @@ def budget(
     salient regions: dict(weights=saliency), or dict(keep=vertices, rings=3). chains: dict name -> Levels from
     build_lod_chain, in place of options. frames: Frames of this scene, to share what is rendered.
 
-    The levels' own errors predict those of a frame. The levels chosen by them are rendered, the rendered errors replace
-    the predicted ones, and the plan is made again, until it rests on rendered errors alone and every frame, with all
-    objects at their levels, is within the tolerance. Where a level switches, the jump of the picture must be within the
-    tolerance as well, and a level stays for `scene.hold` frames. Where a frame exceeds the face limit, the objects
-    whose error stays smallest are coarsened; such frames may exceed the tolerance.
+    The errors of the levels predict the errors of a frame. The function renders the chosen levels, replaces the
+    predicted errors by the rendered ones, and plans again, until the plan uses rendered errors alone and every frame,
+    with all objects at their levels, is within the tolerance. Where a level switches, the jump of the picture must be
+    within the tolerance as well, and a level stays for `scene.hold` frames. Where a frame exceeds the face limit, the
+    objects whose error stays smallest are coarsened; such frames may exceed the tolerance.
 
     Raises ValueError for a scene that does not fit the meshes, and for a limit below the smallest feasible one, which
     it names.

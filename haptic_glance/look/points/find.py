@@ -40,9 +40,9 @@ def saliency(
     shape; None: its own, `mesh.up`.
     People look at the upper part of things and walk around them, so `glance` and `height` need the right one. method:
     a name of METHODS that has a saliency (all but `random` and `farthest`). `glance`, the default, is the fixation
-    density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the
-    surface, `glance_any_pose` the same without the features that need an up axis, for what lies in any pose;
-    `glance_deep` the same with the maps of a network that looks at pictures (extra `deep`), more accurate and slower;
+    density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the surface;
+    `glance_any_pose` is the same without the features that need an up axis, for objects in any pose; `glance_deep` adds
+    the maps of a network that looks at pictures (extra `deep`), and is more accurate and slower;
     `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
     weights, the name of a set of weights (haptic_glance.look.weights) or a dict name -> weight, instead of its own.
     viewpoints: Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised

@@ -1,9 +1,4 @@
-"""The nearest point on a surface.
-
-The search for the nearest face in a grid of cells, compiled by numba.
-
-The faces of a mesh sorted into the cells of a grid, compiled by numba.
-"""
+"""The nearest point on a surface: faces sorted into the cells of a grid, and the search in it, compiled by numba."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A picture and a touch of the mesh on the table, one of them dark or dead, and which the hybrid network trusts."""
+"""A picture and a touch of the current mesh, one of them damaged, and which one the hybrid network trusts."""
 
 import numpy as np
 import viser

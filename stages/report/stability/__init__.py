@@ -1,4 +1,4 @@
-"""The stability of methods: the perturbation under which each breaks, and how much of it; and the use of time."""
+"""The stability of methods: the perturbation and severity at which each breaks; and the time of each stage."""
 
 from . import claims, costs, people, points, score, simplification, touch, transfer
 
