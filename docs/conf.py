@@ -14,6 +14,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "myst_parser",
     "_extensions.docstrings",
+    "sphinx.ext.napoleon",  # after our own extension, which links the names in backticks
     "_extensions.mathml",
     "_extensions.measured",
     "_extensions.settings",
@@ -26,6 +27,9 @@ myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 default_role = "literal"
 
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True  # autodoc lists the attributes, too
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True

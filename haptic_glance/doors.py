@@ -158,10 +158,36 @@ def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: flo
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:
-    """Reads a mesh file, see `haptic_glance.mesh.files`.
+    """Reads a mesh file: STL, OBJ, PLY, OFF, GLB or glTF, and with the extra `pipeline` a point cloud.
 
-    up: the axis that points up: x, -y, Z, or a vector such as (0, 1, 1). None: the axis that the file states, as every
-    GLB does; else y or z by the shape, with a warning that states the probability. "auto": always by the shape.
+    Parameters
+    ----------
+    path : path
+        The file, see `haptic_glance.mesh.files`.
+    up : str or (3,) array_like, optional
+        The axis that points up: `x`, `-y`, `Z`, or a vector such as (0, 1, 1). None: the axis that the file states, as
+        every GLB does; else y or z by the shape, with a warning that states the probability. "auto": always by the
+        shape.
+
+    Returns
+    -------
+    Mesh
+        The mesh in the units of the file.
+
+    Raises
+    ------
+    MeshError
+        For a file that cannot be read, with the reason and the remedy.
+    ValueError
+        For an axis that is none.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import load
+    >>> _ = trimesh.creation.box().export("box.stl")
+    >>> load("box.stl", up="z").faces.shape
+    (12, 3)
     """
     if up is None:
         return _settled(path, "load(path, up={!r})")
@@ -188,20 +214,60 @@ def simplify(
     backend: str = "fast", shrink: bool = False, weights: np.ndarray | None = None, attributes: Any = None,
     free_borders: bool | np.ndarray | None = None,
 ) -> Mesh:  # fmt: skip
-    """A Mesh of at most `faces` faces: a count, a share of the mesh's own such as 0.25, or a text, "25%" or "1500".
+    """Simplifies a mesh, with chosen neighbourhoods kept or with more detail where weights are high.
 
-    A float of at most 1 is a share, so that 1.0 asks for the mesh itself, and 1 for one face.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+    faces : int, float or str
+        Most faces of the result: a count, a share of the mesh's own such as 0.25, or a text, "25%" or "1500". A float
+        of at most 1 is a share, so that 1.0 asks for the mesh itself, and 1 for one face.
+    keep : int or sequence of int, optional
+        Vertex ids, most salient first, whose neighbourhoods stay unchanged (T3.1.3).
+    rings : int or (k,) array_like
+        Edges from each kept vertex to the rim of its neighbourhood.
+    backend : {"fast", "qslim", "pymeshlab"}
+        `fast` fits the vertices to the surface; `qslim` does not; `pymeshlab` is the reference.
+    shrink : bool
+        Whether neighbourhoods shrink, the least salient first, if the count needs it.
+    weights : (n,) array_like, optional
+        Weights in 0..1, such as a saliency: the error counts more where they are high.
+    attributes : mapping of str to float, optional
+        Weights of `colors`, `normals` and `uv` in the error.
+    free_borders : bool or (n,) array of bool, optional
+        Whether the boundary is simplified, too. None: only if the count is infeasible without.
 
-    keep: vertex ids, most salient first, or one, whose neighbourhood of `rings` edges stays unchanged (T3.1.3).
-    weights: (n,) in 0..1, such as a saliency: the error counts more where it is high. attributes: weights of colors,
-    normals and uv in the error. free_borders: whether the boundary is simplified, too; None: where the count is
-    infeasible without. shrink: keep smaller neighbourhoods where the count needs it. The method is quadric edge
-    collapse (Garland and Heckbert 1997), of `haptic_glance.lod.simplify`.
+    Returns
+    -------
+    Mesh
+        A mesh of at most `faces` faces, with the colours, texture and up axis of the given one.
 
+    Raises
+    ------
+    InfeasibleTarget
+        If the frozen faces leave too few; its `smallest` is a feasible count.
+    SimplifyError
+        If every attempt leaves a fold.
+    ValueError
+        For invalid arguments.
+
+    Notes
+    -----
     If the count is infeasible, the function first merges coincident vertices and orients faces, as `repair` does, and
     simplifies the borders. If the result has a fold, the function tries a few faces fewer. Without kept points it also
-    tries counts near which the surface loses its shape. Raises
-    InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
+    tries counts near which the surface loses its shape. `haptic_glance.lod.simplify` does the simplification alone.
+
+    References
+    ----------
+    Garland and Heckbert, Surface simplification using quadric error metrics, SIGGRAPH 1997 (T [222]).
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import simplify
+    >>> len(simplify(trimesh.creation.icosphere(3), "25%").faces)
+    320
     """
     work = import_module("haptic_glance.lod").simplify
     target = str(faces)
@@ -256,14 +322,41 @@ def _as_given_and_mended(mesh: Mesh, arguments: dict[str, Any]) -> Iterator[tupl
 def repair(mesh: MeshLike) -> Mesh:
     """Removes repeated and degenerate faces, turns the other faces outwards, and merges coincident vertices.
 
-    Vertices are merged only where that closes the boundary; their ids change then. Raises MeshError where nothing is
-    left.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+
+    Returns
+    -------
+    Mesh
+        The repaired mesh. Vertices are merged only where that closes the boundary; their ids change then.
+
+    Raises
+    ------
+    MeshError
+        If nothing is left.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import repair
+    >>> soup = trimesh.creation.box()
+    >>> soup.unmerge_vertices()  # 36 corners, as an STL file stores them
+    >>> len(repair(soup).vertices)
+    8
     """
     return repaired(as_mesh(mesh))[0]
 
 
 class Shown:
-    """A rotatable mesh in a notebook; `html` is the page."""
+    """A rotatable mesh in a notebook.
+
+    Attributes
+    ----------
+    html : str
+        The page, which any browser can open.
+    """
 
     def __init__(self, mesh: Mesh) -> None:
         from trimesh.viewer.notebook import scene_to_html
@@ -276,7 +369,25 @@ class Shown:
 
 
 def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
-    """Shows a rotatable mesh in a notebook; values (n,), 0 or more, colour it from violet (low) to yellow (high)."""
+    """Shows a rotatable mesh in a notebook.
+
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+    values : (n,) array_like, optional
+        One value per vertex, 0 or more, that colours the mesh from violet (low) to yellow (high).
+
+    Returns
+    -------
+    Shown
+        An object that notebooks draw.
+
+    Raises
+    ------
+    ValueError
+        For values of another shape, negative values, and values that are not finite.
+    """
     model = as_mesh(mesh)
     if values is not None:
         values = np.asarray(values, dtype=np.float64)

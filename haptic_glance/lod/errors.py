@@ -10,15 +10,46 @@ from haptic_glance.mesh.nearest import closest, surface_index
 
 
 def metro(reference: Mesh, mesh: Mesh, samples: int = 10_000, seed: int = 0) -> dict[str, float]:
-    """Symmetric surface distance of two meshes: dict(mean, rms, max), divided by the reference's bounding-box diagonal.
+    """Symmetric surface distance of two meshes, as shares of the reference's bounding-box diagonal.
 
-    Distances are from points on either surface to the nearest point on the other. mean and rms are over `samples`
-    points, uniform by area, max is over those and the vertices; each is the larger of its two directions (Cignoni,
-    Rocchini and Scopigno 1998, T [224]). The distance of a point is exact. On four household objects at a quarter of
-    their faces, 10,000 samples give mean within 1 % and rms within 1.5 % (one standard deviation), 1,000 samples within
-    4 and 8 %. max is a lower bound, 0.86 to 1 times that of 400,000 samples. Equal seeds give equal numbers.
+    Parameters
+    ----------
+    reference, mesh : Mesh or any input of `as_mesh`
+        The meshes.
+    samples : int
+        Points on each surface, uniform by area.
+    seed : int
+        Equal seeds give equal numbers.
 
-    Raises ValueError for a mesh without area or fewer than one sample.
+    Returns
+    -------
+    dict of str to float
+        `mean`, `rms` and `max`, each the larger of its two directions. `max` is over the samples and the vertices.
+
+    Raises
+    ------
+    ValueError
+        For a mesh without area or fewer than one sample.
+
+    Notes
+    -----
+    Distances are from points on either surface to the nearest point on the other; the distance of a point is exact. On
+    four household objects at a quarter of their faces, 10,000 samples give `mean` within 1 % and `rms` within 1.5 %
+    (one standard deviation), 1,000 samples within 4 and 8 %. `max` is a lower bound, 0.86 to 1 times that of 400,000
+    samples.
+
+    References
+    ----------
+    Cignoni, Rocchini and Scopigno, Metro: measuring error on simplified surfaces, Computer Graphics Forum 17(2), 1998
+    (T [224]).
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import metro
+    >>> ball = trimesh.creation.icosphere(2)
+    >>> metro(ball, ball)["max"] < 1e-9
+    True
     """
     return surface_errors(reference, mesh, samples=samples, seed=seed)
 

@@ -42,15 +42,39 @@ MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farth
 
 
 def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
-    """Writes a Mesh in the format of the path's suffix: glb, obj, off, ply or stl; the file is whole or absent.
+    """Writes a mesh in the format of the path's suffix: glb, obj, off, ply or stl; the file is whole or absent.
 
+    Parameters
+    ----------
+    path : path
+        The file.
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+    parts : mapping of str to Mesh, optional
+        In a glb the nodes, by name.
+
+    Raises
+    ------
+    ValueError
+        For another suffix, and for coordinates that the format does not hold.
+
+    Warns
+    -----
+    UserWarning
+        If single precision moves vertices, for example far from the origin.
+
+    Notes
+    -----
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
     glb with all that its materials say; ply gets the texture's colour at each vertex instead; off and stl have neither.
     A glb has normals, for which creases double vertices, too. obj and off have nine digits or more, the others single
     precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned here
-    (haptic_glance.mesh.up.upright_for); the other formats get a comment that names the axis. parts: in a glb the nodes,
-    by name. Raises ValueError for another suffix, and for coordinates that the format does not hold. Warns if single
-    precision moves vertices, for example far from the origin.
+    (`haptic_glance.mesh.up.upright_for`); the other formats get a comment that names the axis.
+
+    Examples
+    --------
+    >>> from haptic_glance import Mesh, write_any
+    >>> write_any("triangle.ply", Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     """
     path = Path(path)
     suffix = path.suffix.lower()
@@ -93,10 +117,27 @@ def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, 
 
 
 def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
-    """A trimesh.Trimesh, or with a texture a trimesh.Scene with one part per image, vertices doubled at seams.
+    """Converts a mesh to an object of trimesh.
 
-    name: prefix of the names of its parts, and of materials that have none of their own. parts: a Scene of these, named
-    so, each with one part per image, the further ones numbered.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+    name : str
+        Prefix of the names of its parts, and of materials that have none of their own.
+    parts : mapping of str to Mesh, optional
+        Meshes by name, for a Scene with all of them, each with one part per image, the further ones numbered.
+
+    Returns
+    -------
+    trimesh.Trimesh or trimesh.Scene
+        With a texture a Scene with one part per image, vertices doubled at seams.
+
+    Examples
+    --------
+    >>> from haptic_glance import Mesh, to_trimesh
+    >>> to_trimesh(Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])).faces.shape
+    (1, 3)
     """
     return _converted(mesh, name, parts)
 

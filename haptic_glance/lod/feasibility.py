@@ -40,7 +40,17 @@ Rings = int | np.ndarray  # one number, or one per vertex
 
 
 class InfeasibleTarget(ValueError):
-    """The target leaves too few free faces; `smallest` is the smallest feasible face count, `faces` the target."""
+    """The target leaves too few free faces.
+
+    Attributes
+    ----------
+    faces : int
+        The target.
+    smallest : int
+        The smallest feasible face count.
+    frozen : int
+        Number of frozen faces.
+    """
 
     def __init__(self, faces: int, smallest: int, frozen: int = 0) -> None:
         self.faces, self.smallest, self.frozen = int(faces), int(smallest), int(frozen)

@@ -12,11 +12,28 @@ VIEW_ANGLE = 6.0  # degrees, over the rows of the image; T3.2.6
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """The place of the camera: azimuth, elevation and roll in degrees, +z up, looking at the origin.
+    """The place of the camera, which looks at the origin; +z is up.
 
-    Azimuth 0 stands on +x and turns counter-clockwise seen from +z. At elevation +-90 the image's up is the limit of
-    the elevations below, so that the poles have no jump. Roll turns the image counter-clockwise about the view axis.
-    Raises ValueError for an angle that is not finite.
+    Parameters
+    ----------
+    azimuth : float
+        Degrees from +x, counter-clockwise seen from +z.
+    elevation : float
+        Degrees above the horizon. At +-90 the image's up is the limit of the elevations below, so that the poles have
+        no jump.
+    roll : float
+        Degrees by which the image turns counter-clockwise about the view axis.
+
+    Raises
+    ------
+    ValueError
+        For an angle that is not finite.
+
+    Examples
+    --------
+    >>> from haptic_glance import Viewpoint
+    >>> Viewpoint(azimuth=30, elevation=20).roll
+    0.0
     """
 
     azimuth: float

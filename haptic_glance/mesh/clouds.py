@@ -30,10 +30,23 @@ FLAT = 1e-3  # of the largest extent: less than this across, all points lie on a
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
-    """points (n, 3) f8; normals (n, 3) f8 of unit length, outwards, or None; colors (n, 3) u1 or None.
+    """A point cloud: points, and optionally their normals, colours and the place of the sensor.
 
-    sensor: (3,) f8 where all points were seen from, or None where that is not known. Raises ValueError for arrays of
-    other shapes, and for colors that are not whole numbers of 0..255.
+    Parameters
+    ----------
+    points : (n, 3) array of float
+        Coordinates.
+    normals : (n, 3) array of float, optional
+        Unit normals that point outwards.
+    colors : (n, 3) array of uint8, optional
+        Colours.
+    sensor : (3,) array of float, optional
+        Place from which all points were seen.
+
+    Raises
+    ------
+    ValueError
+        For arrays of other shapes, and for colors that are not whole numbers of 0..255.
     """
 
     points: np.ndarray
@@ -152,11 +165,37 @@ JUMP = 0.02  # of the distance, between neighbours: more is an edge, where camer
 
 
 def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float, scale: float = 1.0) -> Cloud:
-    """The Cloud of a depth image (h, w), its sensor at the origin; x points right, y away from the camera, z up.
+    """The Cloud of a depth image, its sensor at the origin; x points right, y away from the camera, z up.
 
-    depth: distances along the optical axis, times `scale` in the units that the points get; 0, NaN and infinity are no
-    reading. fx, fy, cx, cy: focal lengths and centre of a pinhole camera, in pixels. Pixels next to a jump of the depth
-    are left out. Raises MeshError for an image without a reading, or intrinsics that cannot be its own.
+    Parameters
+    ----------
+    depth : (h, w) array
+        Distances along the optical axis. 0, NaN and infinity mean no reading.
+    fx, fy : float
+        Focal lengths of a pinhole camera, in pixels.
+    cx, cy : float
+        Centre of the picture, in pixels.
+    scale : float
+        Units of the points per unit of `depth`, for example 0.001 from millimetres to metres.
+
+    Returns
+    -------
+    Cloud
+        Points with normals. Pixels next to a jump of the depth are left out.
+
+    Raises
+    ------
+    MeshError
+        For an image without a reading, and for intrinsics that do not fit the image.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance import cloud_of_depth
+    >>> rows, columns = np.mgrid[:40, :40] - 20
+    >>> bump = 1 - 0.01 * np.exp(-(rows**2 + columns**2) / 100)
+    >>> cloud_of_depth(bump, fx=60, fy=60, cx=20, cy=20).points.shape[1]
+    3
     """
     depth = np.asarray(depth, np.float64) * scale
     if depth.ndim != 2:
@@ -217,12 +256,31 @@ GAP = 1.5  # times the distance to the neighbours that points have there: surfac
 
 
 def surface_of(cloud: Cloud) -> Mesh:
-    """Reconstructs the surface of a Cloud, in its units: closed where points lie all round, open where none were seen.
+    """Reconstructs the surface of a point cloud: closed where points lie all round, open where none were seen.
 
-    Screened Poisson reconstruction (Kazhdan and Hoppe, ACM Transactions on Graphics 32(3), 2013; pymeshlab's) of the
-    usable points and their normals, in cells as wide as the points are apart. The reconstruction closes every hole.
-    Surface that is farther from the points than the points are from each other is then cut away. Colours are those of
-    the nearest points. Raises MeshError for a cloud without a shape.
+    Parameters
+    ----------
+    cloud : Cloud
+        Points; normals are estimated where it has none.
+
+    Returns
+    -------
+    Mesh
+        The surface in the units of the cloud, with the colours of the nearest points.
+
+    Raises
+    ------
+    MeshError
+        For a cloud without a shape.
+
+    Notes
+    -----
+    Cells are as wide as the points are apart. The reconstruction closes every hole. Surface that is farther from the
+    points than the points are from each other is then cut away. Needs the extra `pipeline` (pymeshlab).
+
+    References
+    ----------
+    Kazhdan and Hoppe, Screened Poisson surface reconstruction, ACM Transactions on Graphics 32(3), 2013.
     """
     cloud = usable(cloud)
     with from_extra("a point cloud is made a surface by pymeshlab, which "):

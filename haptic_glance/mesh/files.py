@@ -64,13 +64,39 @@ def load_unnamed(path: Path) -> Mesh:
 
 
 def as_mesh(source: MeshLike) -> Mesh:
-    """The Mesh of a path, an object of trimesh, (vertices (n, 3), faces (m, 3)) or a Cloud, or the Mesh that is given.
+    """Converts a path, an object of trimesh, a pair of arrays or a Cloud to a Mesh.
 
-    Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
-    trimesh are taken over. Only a Mesh and some files state which axis points up. For the others the shape chooses y or
-    z, as in `load`, so that a file and its arrays have the same axis. A Mesh is z up unless it is made with another
-    `up`. Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything
-    else.
+    Parameters
+    ----------
+    source : Mesh, path, Trimesh, Scene, PointCloud, Cloud, or pair of (n, 3) and (m, 3) arrays
+        The mesh. The parts of a Scene are joined, as those of a GLB are.
+
+    Returns
+    -------
+    Mesh
+        The same object for a Mesh. Vertices keep their ids, except those of a Scene. Colours and textures of trimesh
+        are taken over.
+
+    Raises
+    ------
+    MeshError
+        As `load` does.
+    ValueError
+        For arrays of another shape.
+    TypeError
+        For anything else.
+
+    Notes
+    -----
+    Only a Mesh and some files state which axis points up. For the others the shape chooses y or z, as in `load`, so
+    that a file and its arrays have the same axis. A Mesh is z up unless it is made with another `up`.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import as_mesh
+    >>> len(as_mesh(trimesh.creation.box()).faces)
+    12
     """
     return settled(as_stated(source))
 

@@ -81,14 +81,30 @@ class Texture:
 class Mesh:
     """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
 
-    vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
-    texture: a Texture of the m faces or None (the pipeline stores none). up: the axis that points
-    up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown. Functions that derive a
-    mesh from another one keep its axis (`dataclasses.replace`). Stored meshes are z up.
+    Parameters
+    ----------
+    vertices : (n, 3) array of float
+        Coordinates.
+    faces : (m, 3) array of int
+        Vertex ids of each triangle, counter-clockwise seen from outside.
+    colors : (n, 3) array of uint8, optional
+        Colours of the vertices.
+    texture : Texture, optional
+        Pictures and texture coordinates of the m faces.
+    up : str
+        The axis that points up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown.
 
+    Notes
+    -----
     The arrays are copies of the caller's. Do not edit them in place, since derived values are cached: make a new Mesh
-    (`dataclasses.replace`). Two meshes are equal if all of these fields are equal, and equal meshes have one hash. A
-    pickled mesh does not include the derived values.
+    (`dataclasses.replace`), which keeps the axis. Two meshes are equal if all of these fields are equal, and equal
+    meshes have one hash. A pickled mesh does not include the derived values.
+
+    Examples
+    --------
+    >>> from haptic_glance import Mesh
+    >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).faces.shape
+    (1, 3)
     """
 
     vertices: np.ndarray

@@ -21,13 +21,38 @@ MIN_VISIBLE_AREA = 1e-4  # share of the squared extent: about five pixels of the
 
 
 def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
-    """The repaired mesh and notes on what was repaired: (Mesh, list of str).
+    """Removes useless faces and turns the others outwards; vertices keep their ids.
 
-    Removes faces that repeat a vertex and duplicate faces, and turns the others outwards. Vertices keep their ids.
-    Where most faces lie back to back, as SketchUp and games write surfaces to be seen from both sides, one of each two
-    is removed: together they would have no normal. Faces without area that have three distinct vertices stay: they
-    connect their neighbours, and removing them would open a closed mesh. Raises MeshError when no face or no area is
-    left.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+
+    Returns
+    -------
+    mesh : Mesh
+        The repaired mesh.
+    notes : list of str
+        The repairs in words.
+
+    Raises
+    ------
+    MeshError
+        When no face or no area is left.
+
+    Notes
+    -----
+    Faces that repeat a vertex and duplicate faces are removed. Where most faces lie back to back, as SketchUp and games
+    write surfaces to be seen from both sides, one of each two is removed: together they would have no normal. Faces
+    without area that have three distinct vertices stay: they connect their neighbours, and removing them would open a
+    closed mesh.
+
+    Examples
+    --------
+    >>> from haptic_glance import Mesh, clean
+    >>> mesh, notes = clean(Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2]]))
+    >>> len(mesh.faces)
+    1
     """
     ids, notes = np.arange(len(mesh.faces)), []
     a, b, c = mesh.faces.T
@@ -183,10 +208,30 @@ RADIUS = 0.5  # the sphere then spans 859 of the 900 image rows of the thesis's 
 
 
 def normalise(mesh: Mesh) -> Mesh:
-    """The mesh with the centre of its bounding box at 0 and a bounding sphere about it of radius 0.5 (T3.2.9).
+    """Moves the centre of the bounding box to 0 and scales the bounding sphere about it to radius 0.5 (T3.2.9).
 
-    Only vertices that a face uses count, so that a stray vertex cannot shrink the object. Raises ValueError when the
-    mesh has no faces or no extent.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+
+    Returns
+    -------
+    Mesh
+        The scaled mesh. Only vertices of faces count, so that a stray vertex cannot shrink the object.
+
+    Raises
+    ------
+    ValueError
+        When the mesh has no faces or no extent.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import normalise
+    >>> cube = normalise(trimesh.creation.box())
+    >>> float(abs(cube.vertices).max().round(3))
+    0.289
     """
     centre, radius = centre_and_radius(mesh)
     return replace(mesh, vertices=(mesh.vertices - centre) * (RADIUS / radius))
@@ -205,9 +250,31 @@ def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
 
 
 def rotate_to_z_up(mesh: Mesh, up: Axis | None = None) -> Mesh:
-    """The mesh rotated so that its axis `up` (see `axis_named`; None: its own) becomes +z; ValueError for no axis.
+    """Rotates a mesh so that its up axis becomes +z.
 
-    `auto` stands for the axis that the shape suggests (`probable_up`).
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+    up : str or (3,) array_like, optional
+        The axis that points up: `x`, `-y`, a vector, or `auto` for the axis that the shape suggests. None: the mesh's
+        own.
+
+    Returns
+    -------
+    Mesh
+        The rotated mesh, z up.
+
+    Raises
+    ------
+    ValueError
+        For an axis that is none.
+
+    Examples
+    --------
+    >>> from haptic_glance import Mesh, rotate_to_z_up
+    >>> rotate_to_z_up(Mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]], up="y")).vertices[2].tolist()
+    [0.0, 0.0, 2.0]
     """
     mesh = settled(mesh if up is None else replace(mesh, up=axis_named(up)))
     return replace(mesh, vertices=mesh.vertices @ to_z_up(mesh.up).T, up="z")

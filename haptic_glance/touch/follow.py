@@ -138,10 +138,22 @@ def _text(point):
 class Sequence:
     """The frames of one contour, in the order of motion.
 
-    images (frames, rows, cols) f4 in 0..1 (the cutaneous cues), normals (frames, 3) unit vectors of the array and
-    positions (frames, 3) in units of the mesh (the kinesthetic cues), pitches (frames,) units between neighbouring
-    cells. loops: the number of curves of the section; length of the one that was followed, in units; share: of the
-    length of all curves.
+    Attributes
+    ----------
+    images : (frames, rows, cols) array of float
+        Imprints in 0..1, the cutaneous cues.
+    normals : (frames, 3) array of float
+        Unit normals of the array.
+    positions : (frames, 3) array of float
+        Centres of the array in units of the mesh; with the normals the kinesthetic cues.
+    pitches : (frames,) array of float
+        Distance of neighbouring cells, in units of the mesh.
+    loops : int
+        Number of curves of the section.
+    length : float
+        Length of the followed curve, in units of the mesh.
+    share : float
+        That length as a share of the length of all curves.
     """
 
     images: np.ndarray
@@ -163,29 +175,58 @@ def follow(
     cells: tuple[int, int] = (32, 32),
     pitch: float = 0.01,
 ) -> Sequence:
-    """The Sequence that the array measures along one contour of an object (T4.4.5, T4.4.6).
+    """Measures along one contour of an object with the array (T4.4.5, T4.4.6).
 
-    plane_points (3, 3): the object's centre and two points, in units of the mesh; the contour is the
-    section of the mesh by their plane. Of several curves the longest is followed: T4.4.6 puts all planes through the
-    centre "to avoid the selection of local contours around object extremities", which the shorter curves are.
-    `Sequence.loops` and `.share` tell what was left out. An open curve (on a mesh with boundary edges) is followed as
-    well: at its end the finger is lifted and continues at its beginning.
+    Parameters
+    ----------
+    mesh_or_surface : Mesh, Surface or any input of `as_mesh`
+        The object.
+    plane_points : (3, 3) array_like
+        The object's centre and two points, in units of the mesh. The contour is the section of the mesh by their plane.
+    frames : int
+        Number of places, equally spaced along the contour.
+    cells : tuple of 2 ints
+        Rows and columns of the array.
+    pitch : float or str
+        Distance of neighbouring cells, in units of the mesh. `haptic_glance.follow` takes a share of the object's
+        diameter, or a text such as "1mm" together with `unit`, the unit of the mesh's coordinates.
 
-    The `frames` places are equally spaced along the contour. The thesis gives neither start nor direction. Here the
-    start is the contour's point nearest to the second of the plane points (the first after the centre). The direction
-    is counter-clockwise about the plane's normal, (second - centre) x (third - centre), so towards the third by the
-    shorter way. A place on a contour is not a vertex: the array's normal is the mean of the unit normals of the faces
-    that the contour crosses within one pitch before and behind, weighted by the length crossed, as T4.3.1 averages the
-    faces around a vertex. Interpolation between the averages at the vertices would tilt the array on the large faces of
-    flat sides, in their middle by tens of degrees.
+    Returns
+    -------
+    Sequence
+        Imprints, normals and positions in the order of motion.
+
+    Raises
+    ------
+    ValueError
+        If the points define no plane, the plane misses the mesh, frames is less than 1, or cells or pitch are invalid.
+
+    Notes
+    -----
+    Of several curves the longest is followed: T4.4.6 puts all planes through the centre "to avoid the selection of
+    local contours around object extremities", which the shorter curves are. `Sequence.loops` and `.share` state the
+    rest. An open curve (on a mesh with boundary edges) is followed as well: at its end the finger is lifted and
+    continues at its beginning.
+
+    The thesis gives neither start nor direction. Here the start is the contour's point nearest to the second of the
+    plane points (the first after the centre). The direction is counter-clockwise about the plane's normal, (second -
+    centre) x (third - centre), so towards the third by the shorter way. A place on a contour is not a vertex: the
+    array's normal is the mean of the unit normals of the faces that the contour crosses within one pitch before and
+    behind, weighted by the length crossed, as T4.3.1 averages the faces around a vertex. Interpolation between the
+    averages at the vertices would tilt the array on the large faces of flat sides, in their middle by tens of degrees.
 
     Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
     keeps its heading. So a rotation of the object does not change a sequence, and the frames do not spin where the
     contour passes a pole, as they would with `sensor_axes`. The thesis does not say this either. The array is smaller
     at saddles, with the same number of cells (T4.4.3, `adaptive_distances`).
 
-    Raises ValueError if the points define no plane, the plane misses the mesh, frames is less than 1, or cells or pitch
-    are invalid.
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import follow
+    >>> ball = trimesh.creation.icosphere(3, radius=0.5)
+    >>> follow(ball, [(0, 0, 0), (0.5, 0, 0), (0, 0.5, 0)], frames=4, cells=(8, 8)).images.shape
+    (4, 8, 8)
     """
     results = follow_many(mesh_or_surface, np.asarray(plane_points, dtype=np.float64)[None], frames, cells, pitch)[0]
     if isinstance(results, str):

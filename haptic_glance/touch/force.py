@@ -22,11 +22,48 @@ def press_forces(
     depth: ArrayLike | None = None,
     unit: float = 1.0,
 ) -> np.ndarray:
-    """(k, rows, cols) f8: the normal force on each cell in newtons, of arrays pressed at centres (k, 3).
+    """Normal forces on the cells of arrays that are pressed on an object under a layer.
 
-    axes (k, 3, 3) rows right, up, normal; pitch: units of the mesh; unit: metres a unit of the mesh is long; load,
-    depth: as in `forces`. `haptic_glance.press_forces` takes texts as well: unit="mm", pitch="1mm", depth="2mm".
-    Raises ValueError as `distances_at` and `forces` do.
+    Parameters
+    ----------
+    surface : Surface, Mesh or any input of `as_mesh`
+        The object.
+    centres : (k, 3) array_like
+        Centres of the arrays, in units of the mesh.
+    axes : (k, 3, 3) array_like
+        Unit vectors right, up and normal of each array, see `sensor_axes`.
+    layer : Layer
+        The layer on the array.
+    cells : tuple of 2 ints
+        Rows and columns.
+    pitch : float or str
+        Distance of neighbouring cells, in units of the mesh, or a text such as "1mm".
+    load : float, str or (k,) array_like, optional
+        Newtons on the whole array. Give `load` or `depth`.
+    depth : float, str or (k,) array_like, optional
+        Approach after the first contact in metres, or a text such as "2mm".
+    unit : float or str
+        Metres that a unit of the mesh is long; `haptic_glance.press_forces` also takes a name such as "mm".
+
+    Returns
+    -------
+    (k, rows, cols) array of float
+        Newtons.
+
+    Raises
+    ------
+    ValueError
+        As `forces` does, and for invalid arrays.
+
+    Examples
+    --------
+    >>> import numpy as np, trimesh
+    >>> from haptic_glance import Layer, press_forces, sensor_axes
+    >>> ball = trimesh.creation.icosphere(4, radius=0.02)  # metres
+    >>> axes = sensor_axes([[0, 0, 1]])
+    >>> newtons = press_forces(ball, [[0, 0, 0.02]], axes, Layer(), cells=(8, 8), pitch=0.002, load=2.0)
+    >>> newtons.shape, float(newtons.sum().round(6))
+    ((1, 8, 8), 2.0)
     """
     if (load is None) == (depth is None):
         raise ValueError("give either load, in newtons, or depth, in metres")
@@ -59,11 +96,37 @@ def gaps_at(
     pitch: float = 0.001,
     unit: float = 1.0,
 ) -> np.ndarray:
-    """(k, rows, cols) f8 metres that each cell can still approach until its layer touches the object.
+    """Distances that each cell of an array can still approach until its layer touches the object.
 
-    Below 0 where the object is in the layer of an array that stands at its centre. The array starts above the place at
-    a height of its longer side, so that it meets overhangs. inf where a cell meets nothing, or nothing within `within`
-    metres of the first contact; a smaller value is faster. Other arguments as of `press_forces`.
+    Parameters
+    ----------
+    surface : Surface, Mesh or any input of `as_mesh`
+        The object.
+    centres : (k, 3) array_like
+        Centres of the arrays, in units of the mesh.
+    axes : (k, 3, 3) array_like
+        Unit vectors right, up and normal of each array.
+    within : float or str
+        Metres after the first contact within which a surface counts, or a text such as "2mm"; a smaller value is
+        faster.
+    cells : tuple of 2 ints
+        Rows and columns.
+    pitch : float or str
+        Distance of neighbouring cells, in units of the mesh, or a text such as "1mm".
+    unit : float or str
+        Metres that a unit of the mesh is long; `haptic_glance.gaps_at` also takes a name such as "mm".
+
+    Returns
+    -------
+    (k, rows, cols) array of float
+        Metres; below 0 where the object is in the layer of an array that stands at its centre, inf where a cell meets
+        nothing within `within`. The array starts above the place at a height of its longer side, so that it meets
+        overhangs.
+
+    Raises
+    ------
+    ValueError
+        For invalid arrays, and for lengths that are none.
     """
     _check_unit(unit)
     if not within >= 0:  # NaN fails as well
@@ -85,18 +148,46 @@ def forces(
     depth: ArrayLike | None = None,
     cosines: ArrayLike = 1.0,
 ) -> np.ndarray:
-    """Forces in newtons along the normals of taxels with gaps (k, ...): f8 of the same shape.
+    """Forces along the normals of taxels under a layer.
 
-    gaps: metres, from anywhere, that the array can approach until a taxel's layer touches the object, inf for never;
-    areas: of the taxels, in m2; load: newtons on the whole array along its approach, at which the approach ends (the
-    sum is exact); or depth: metres of approach after the first contact. Both are a number, or one per touch. areas,
-    cosines: a number, or one per taxel; the cosine is that of its normal to the approach, by which the layer is
-    indented less.
+    Parameters
+    ----------
+    gaps : (k, ...) array of float
+        Metres, from anywhere, that the array can approach until a taxel's layer touches the object; inf for never.
+    layer : Layer
+        The layer on the array.
+    areas : float or array_like
+        Areas of the taxels in square metres: a number, or one per taxel.
+    load : float or (k,) array_like, optional
+        Newtons on the whole array along its approach, at which the approach ends (the sum is exact). Give `load` or
+        `depth`.
+    depth : float or (k,) array_like, optional
+        Metres of approach after the first contact.
+    cosines : float or array_like
+        Cosine of each taxel's normal to the approach, by which the layer is indented less.
 
-    On a fine array, a sphere of radius R at a small depth d in the layer gives a load of pi R d^2 layer.stiffness, a
-    flat punch of area A gives A d layer.stiffness (Johnson 1985, section 4.3).
-    Raises ValueError, naming the touch, for a load that is not positive, a negative depth, an indentation above the
-    layer's thickness, and a load on an array that touches nothing.
+    Returns
+    -------
+    (k, ...) array of float
+        Newtons.
+
+    Raises
+    ------
+    ValueError
+        For a load that is not positive, a negative depth, an indentation above the layer's thickness, and a load on an
+        array that touches nothing. The message names the touch.
+
+    References
+    ----------
+    Johnson, Contact Mechanics, 1985, section 4.3: on a fine array, a sphere of radius R at a small depth d in the layer
+    gives a load of pi R d^2 layer.stiffness, a flat punch of area A gives A d layer.stiffness.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance import Layer, forces
+    >>> forces(np.zeros((1, 2, 2)), Layer(), areas=1e-4, load=4.0).round(6).tolist()  # a flat punch
+    [[[1.0, 1.0], [1.0, 1.0]]]
     """
     gaps = np.asarray(gaps, dtype=np.float64)
     if (load is None) == (depth is None):
@@ -129,12 +220,40 @@ def forces(
 
 
 def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) -> np.ndarray:
-    """(..., 2) tangential forces in newtons on taxels with normal forces (...), after the object has slipped sideways.
+    """Tangential forces on taxels after the object has slipped sideways.
 
-    slips: (..., 2) metres that the object has moved along the array's right and up, in one direction since the contact;
-    (k, 2) is one slip for all taxels of a touch. areas: as in `forces`. The layer sticks and shears until a taxel's
-    force is friction times its normal force, where it slides. So contacts begin to slide at their rim, as those of
-    Cattaneo and Mindlin do (Johnson 1985, section 7.2).
+    Parameters
+    ----------
+    normal : (...) array of float
+        Normal forces in newtons.
+    slips : (..., 2) array_like
+        Metres that the object has moved along the array's right and up, in one direction since the contact; (k, 2) is
+        one slip for all taxels of a touch.
+    layer : Layer
+        The layer on the array.
+    areas : float or array_like
+        Areas of the taxels in square metres, as of `forces`.
+
+    Returns
+    -------
+    (..., 2) array of float
+        Newtons along the array's right and up.
+
+    Notes
+    -----
+    The layer sticks and shears until a taxel's force is friction times its normal force, where it slides. So contacts
+    begin to slide at their rim, as those of Cattaneo and Mindlin do.
+
+    References
+    ----------
+    Johnson, Contact Mechanics, 1985, section 7.2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance import Layer, shear
+    >>> shear(np.array([1.0]), [[1.0, 0.0]], Layer(friction=0.6), areas=1e-6).tolist()  # a metre: it slides
+    [[0.6, 0.0]]
     """
     normal, slips = np.asarray(normal, dtype=np.float64), np.asarray(slips, dtype=np.float64)
     if slips.shape not in ((len(normal), 2), (*normal.shape, 2)) or not np.isfinite(slips).all():

@@ -79,7 +79,23 @@ class Layout:
 
 
 def read_layout(path: str | Path) -> Layout:
-    """The Layout of a CSV file, a row a taxel: columns x, y, z, nx, ny, nz in metres and area in m2, in any order."""
+    """Reads a layout of taxels from a CSV file.
+
+    Parameters
+    ----------
+    path : path
+        A row a taxel: columns x, y, z, nx, ny, nz in metres and area in square metres, in any order.
+
+    Returns
+    -------
+    Layout
+        Positions, normals and areas of the taxels.
+
+    Raises
+    ------
+    ValueError
+        For a missing column or a value that is no number.
+    """
     with open(path, newline="", encoding="utf-8-sig") as file:
         reader = csv.DictReader(file, skipinitialspace=True)
         absent = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
@@ -102,10 +118,33 @@ def layout_forces(
     load: ArrayLike | None = None,
     depth: ArrayLike | None = None,
 ) -> np.ndarray:
-    """(k, n) f8: forces in newtons along the normals of taxels, for layouts at centres (k, 3) with axes (k, 3, 3).
+    """Forces along the normals of the taxels of a free layout, such as a curved fingertip.
 
-    mesh: in metres; load, depth: along the approach, which is against the third axis, as in `forces`. Rays are parallel
-    to the approach, so that the forces of a curved sensor are those of small indentations.
+    Parameters
+    ----------
+    mesh : Mesh, Surface or any input of `as_mesh`
+        The object, in metres.
+    centres : (k, 3) array_like
+        Places of the layout, in metres.
+    axes : (k, 3, 3) array_like
+        Unit vectors right, up and normal; the approach is against the third.
+    layer : Layer
+        The layer on the taxels.
+    layout : Layout
+        The taxels, from `read_layout`.
+    load, depth : float or (k,) array_like, optional
+        Along the approach, as of `forces`.
+
+    Returns
+    -------
+    (k, n) array of float
+        Newtons. Rays are parallel to the approach, so that the forces of a curved sensor are those of small
+        indentations.
+
+    Raises
+    ------
+    ValueError
+        As `forces` does.
     """
     centres, axes = check_places(centres, axes)
     depths = layer.thickness if depth is None else checked_depths(depth, len(centres))

@@ -21,11 +21,57 @@ def press(
     max_distance: float | None = None,
     contact: str = "tangent",
 ) -> np.ndarray:
-    """(rows, cols) f4 in 0..1: the imprint of the virtual pressure array pressed on a mesh at one vertex (T4.3.1).
+    """The imprint of the virtual pressure array pressed on a mesh at one vertex (T4.3.1).
 
-    0 is the cell of first contact, 1 the cell farthest from the surface. So the image shows distance and is dark where
-    the pressure is high; 1 - image is the pressure. A flat place gives all zeros, and so does an array that misses the
-    object with every cell. Parameters, errors and sources as in `distances`.
+    Parameters
+    ----------
+    mesh : Mesh, Surface or any input of `as_mesh`
+        The object; a Surface if it is touched more than once.
+    vertex : int
+        Vertex id. The plane of the array is perpendicular to the average of the normals of the faces around it
+        (`sensor_normals`). Row 0 is at the top and column 0 at the left, seen from outside onto the object
+        (`sensor_axes`).
+    cells : tuple of 2 ints
+        Rows and columns.
+    pitch : float or str
+        Distance of neighbouring cells, in units of the mesh. `haptic_glance.press` takes a share of the object's
+        diameter, or a text such as "1mm" together with `unit`, the unit of the mesh's coordinates.
+    max_distance : float or str, optional
+        Sensing depth in both directions; a cell without a surface within it reports it. None: the longer side of the
+        array.
+    contact : {"tangent", "rigid"}
+        `tangent`: the plane stands at the vertex. `rigid`: it rests on the first contact.
+
+    Returns
+    -------
+    (rows, cols) array of float
+        0 at the cell of first contact, 1 at the cell farthest from the surface. So the image shows distance and is dark
+        where the pressure is high; 1 - image is the pressure. A flat place gives all zeros, and so does an array that
+        misses the object with every cell.
+
+    Raises
+    ------
+    ValueError
+        For invalid cells or pitch, and for a vertex that cannot be touched, which the message names.
+
+    Warns
+    -----
+    UserWarning
+        If no cell finds a surface.
+
+    Notes
+    -----
+    The thesis uses the centre of the face that the ray hits as the surface point (T figure 4.7). Here it is the exact
+    intersection, so that the imprint does not depend on the triangulation.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import Mesh, press
+    >>> ball = trimesh.creation.icosphere(4, radius=0.5)
+    >>> image = press(Mesh(ball.vertices, ball.faces), 0, cells=(8, 8), pitch=0.02)
+    >>> image.shape, float(image.min()), float(image.max())
+    ((8, 8), 0.0, 1.0)
     """
     return press_many(mesh, [vertex], cells, pitch, max_distance, contact)[0]
 
@@ -38,7 +84,35 @@ def press_many(
     max_distance: float | None = None,
     contact: str = "tangent",
 ) -> np.ndarray:
-    """(k, rows, cols) f4 in 0..1: the imprints at vertices (k,), as `press` gives them."""
+    """The imprints of the array at several vertices, as `press` makes them.
+
+    Parameters
+    ----------
+    mesh : Mesh, Surface or any input of `as_mesh`
+        The object.
+    vertices : (k,) array_like of int
+        Vertex ids.
+    cells, pitch, max_distance, contact
+        As of `press`.
+
+    Returns
+    -------
+    (k, rows, cols) array of float
+        Imprints in 0..1.
+
+    Raises
+    ------
+    ValueError
+        As `press` does.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import Mesh, press_many
+    >>> ball = trimesh.creation.icosphere(3, radius=0.5)
+    >>> press_many(Mesh(ball.vertices, ball.faces), [0, 5], cells=(8, 8)).shape
+    (2, 8, 8)
+    """
     return normalise(distances(mesh, vertices, cells, pitch, max_distance, contact=contact), pitch)
 
 

@@ -139,15 +139,37 @@ LAYER_UNITS = {"thickness": "metres", "modulus": "pascals"}
 class Layer:
     """A foam or soft rubber bonded to the rigid array, as Winkler's elastic foundation: a bed of separate springs.
 
-        layer = Layer(thickness=0.002, modulus=2e5)
+    Parameters
+    ----------
+    thickness : float
+        Metres.
+    modulus : float
+        Young's modulus, in pascals.
+    poisson : float
+        Poisson's ratio, below 0.5.
+    friction : float
+        Coulomb's coefficient between layer and object.
 
-    A spring's pressure grows with its own indentation alone. This holds for a layer that is thin against the contact
-    and compressible (Johnson, Contact Mechanics, 1985, sections 4.3 and 5.8). A rubber near a Poisson's ratio of 0.5
+    Raises
+    ------
+    ValueError
+        For values out of range.
+
+    Notes
+    -----
+    The defaults are 2 mm of a soft open-celled foam. The pressure of a spring grows with its own indentation alone.
+    This holds for a layer that is thin against the contact and compressible. A rubber near a Poisson's ratio of 0.5
     bulges sideways, and this model is too stiff for it.
 
-    thickness: metres; modulus: Young's, in pascals; poisson: Poisson's ratio, below 0.5; friction: Coulomb's
-    coefficient between layer and object. The defaults are 2 mm of a soft open-celled foam.
-    Raises ValueError for values out of range.
+    References
+    ----------
+    Johnson, Contact Mechanics, 1985, sections 4.3 and 5.8.
+
+    Examples
+    --------
+    >>> from haptic_glance import Layer
+    >>> Layer(thickness=0.002, modulus=2e5).thickness
+    0.002
     """
 
     thickness: float = 0.002

@@ -21,9 +21,26 @@ LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane 
 class Surface:
     """A mesh prepared for touching: its faces in a tree of boxes (20 ms for 50,000 faces).
 
-    mesh: a Mesh, which must not change afterwards, or any input of `as_mesh`. Faces without area are ignored. Use
-    a Surface to touch a mesh many times. Building one costs less than sending it to another process. Warns of a closed
-    mesh whose faces look inwards: the array would be inside, and miss the surface.
+    Use a Surface to touch a mesh many times. Building one costs less than sending it to another process.
+
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh, which must not change afterwards. Faces without area are ignored.
+
+    Warns
+    -----
+    UserWarning
+        For a closed mesh whose faces look inwards: the array would be inside, and miss the surface.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import Mesh, Surface, press
+    >>> ball = trimesh.creation.icosphere(3, radius=0.5)
+    >>> surface = Surface(Mesh(ball.vertices, ball.faces))
+    >>> [press(surface, vertex).shape for vertex in (0, 1)]
+    [(16, 16), (16, 16)]
     """
 
     def __init__(self, mesh: MeshLike) -> None:
@@ -112,11 +129,33 @@ CANCELLED = 1e-6  # length below which an average of unit normals is rounding er
 
 
 def sensor_normals(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
-    """(k, 3) unit normals of the array's plane at vertices (k,): the average of the unit normals of the faces around.
+    """Unit normals of the array's plane at vertices: the average of the unit normals of the faces around.
 
-    Every face around the vertex has the same weight, as in T4.3.1. Weights by area (`Mesh.vertex_normals`) or by angle
-    tilt the plane where the faces differ in size. Faces without area have no normal and do not count.
-    Raises ValueError that names the first vertex that is not in the mesh, is in no face, or whose faces cancel out.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The object.
+    vertices : (k,) array_like of int
+        Vertex ids.
+
+    Returns
+    -------
+    (k, 3) array of float
+        Unit normals. Every face around the vertex has the same weight, as in T4.3.1. Weights by area
+        (`Mesh.vertex_normals`) or by angle tilt the plane where the faces differ in size. Faces without area have no
+        normal and do not count.
+
+    Raises
+    ------
+    ValueError
+        For a vertex that is not in the mesh, is in no face, or whose faces cancel out. The message names the first.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import sensor_normals
+    >>> sensor_normals(trimesh.creation.icosphere(2), [0]).shape
+    (1, 3)
     """
     vertices = check_vertices(mesh, vertices)
     average = mean_vertex_normals(mesh)[vertices]
@@ -161,12 +200,31 @@ POLE = 0.95  # |z| of a normal above which +z has no stable projection on the pl
 
 
 def sensor_axes(normals: ArrayLike, up: Axis = "z") -> np.ndarray:
-    """(k, 3, 3) rows right, up, normal of arrays with unit normals (k, 3), seen from outside onto the object.
+    """Axes of arrays with given normals, upright on the object.
 
-    up: the axis of the object that points up, a name or a vector; in what follows it is z. Up is +z projected on the
-    plane, so that the array is upright everywhere. Within 18 degrees of the poles, where that has no stable direction,
-    +y is projected. The thesis does not give the array's rotation about its normal. The axes depend on the normal
-    alone, not on the order of vertices or faces.
+    Parameters
+    ----------
+    normals : (k, 3) array_like
+        Unit normals.
+    up : str or (3,) array_like
+        The axis of the object that points up, a name or a vector.
+
+    Returns
+    -------
+    (k, 3, 3) array of float
+        Rows right, up and normal, seen from outside onto the object.
+
+    Notes
+    -----
+    Up is the object's axis projected on the plane, so that the array is upright everywhere. Within 18 degrees of the
+    poles, where that has no stable direction, +y of an object that is z up is projected. The thesis does not give the
+    array's rotation about its normal. The axes depend on the normal alone, not on the order of vertices or faces.
+
+    Examples
+    --------
+    >>> from haptic_glance import sensor_axes
+    >>> sensor_axes([[1, 0, 0]])[0].round(6).tolist()  # right, up, normal
+    [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]
     """
     normals = np.asarray(normals, dtype=np.float64)
     if normals.ndim != 2 or normals.shape[1] != 3:

@@ -24,20 +24,40 @@ def budget(
     meshes: Mapping[str, Mesh], scene: Scene, options: Mapping[str, Mapping[str, Any]] | None = None,
     chains: Mapping[str, Sequence[Level]] | None = None, frames: Frames | None = None,
 ) -> Plan:  # fmt: skip
-    """The Plan with the fewest faces of each object in each frame, with every frame within the scene's tolerance.
+    """Plans the fewest faces of each object in each frame, with every frame within the scene's tolerance.
 
-    meshes: dict name -> Mesh; scene: Scene; options: dict name -> options of haptic_glance.lod.simplify, for the
-    salient regions: dict(weights=saliency), or dict(keep=vertices, rings=3). chains: dict name -> Levels from
-    build_lod_chain, in place of options. frames: Frames of this scene, to share what is rendered.
+    Parameters
+    ----------
+    meshes : mapping of str to Mesh
+        The mesh of each name in the scene.
+    scene : Scene
+        Objects, cameras and tolerance.
+    options : mapping of str to mapping, optional
+        Options of `haptic_glance.lod.simplify` by name, for the salient regions: `{"weights": saliency}`, or `{"keep":
+        vertices, "rings": 3}`.
+    chains : mapping of str to sequence of Level, optional
+        Levels from `haptic_glance.lod.scene.build_lod_chain`, in place of options.
+    frames : Frames, optional
+        Frames of this scene, to share rendered pictures with another plan.
 
+    Returns
+    -------
+    Plan
+        The level of each object in each frame.
+
+    Raises
+    ------
+    ValueError
+        For a scene that does not fit the meshes, and for a limit below the smallest feasible one, which the message
+        names.
+
+    Notes
+    -----
     The errors of the levels predict the errors of a frame. The function renders the chosen levels, replaces the
     predicted errors by the rendered ones, and plans again, until the plan uses rendered errors alone and every frame,
     with all objects at their levels, is within the tolerance. Where a level switches, the jump of the picture must be
     within the tolerance as well, and a level stays for `scene.hold` frames. Where a frame exceeds the face limit, the
     objects whose error stays smallest are coarsened; such frames may exceed the tolerance.
-
-    Raises ValueError for a scene that does not fit the meshes, and for a limit below the smallest feasible one, which
-    it names.
     """
     if chains is None:
         scene.poses(meshes)  # raises before the work begins

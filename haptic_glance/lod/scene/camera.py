@@ -13,10 +13,29 @@ from haptic_glance.mesh.mesh import Mesh, bounding_box, unit
 
 @dataclass(frozen=True)
 class Camera:
-    """The camera of one frame: eye and target (3,) in metres; vertical view angle in degrees; size, rows and columns.
+    """The camera of one frame; +z is up, and pixel centres lie at whole numbers.
 
-    +z is up. Pixel centres lie at whole numbers. Raises ValueError for a camera that has no direction or renderings
-    straight up or down, and for an angle outside 1 to 170 degrees.
+    Parameters
+    ----------
+    eye : tuple of 3 floats
+        Position of the camera, in metres.
+    target : tuple of 3 floats
+        Point in the middle of the picture, in metres.
+    angle : float
+        Vertical view angle in degrees, 1 to 170.
+    size : tuple of 2 ints
+        Rows and columns of the picture, in pixels.
+
+    Raises
+    ------
+    ValueError
+        For a camera without a direction, a camera that looks straight up or down, and an angle out of range.
+
+    Examples
+    --------
+    >>> from haptic_glance import Camera
+    >>> Camera(eye=(3, 0, 1), target=(0, 0, 1), angle=40, size=(270, 480)).size
+    (270, 480)
     """
 
     eye: tuple[float, float, float]
@@ -64,10 +83,42 @@ class Camera:
 
 
 def fly(eyes: ArrayLike, targets: ArrayLike, frames: int, angle: float, size: Sequence[int]) -> list[Camera]:
-    """`frames` Cameras along keyframes: eyes and targets (k, 3), at equal times, joined by a smooth curve.
+    """Cameras along keyframes that are joined by a smooth curve.
 
-    The curve (Fritsch and Carlson 1980, monotone piecewise cubic) does not overshoot its keyframes.
-    Raises ValueError for no keyframe or no frame, and for keyframes that are not finite.
+    Parameters
+    ----------
+    eyes : (k, 3) array_like
+        Positions of the camera in metres, at equal times.
+    targets : (k, 3) array_like
+        Points that the camera looks at, in metres.
+    frames : int
+        Number of cameras, 1 or more.
+    angle : float
+        Vertical view angle in degrees.
+    size : sequence of 2 ints
+        Rows and columns of a picture.
+
+    Returns
+    -------
+    list of Camera
+        One camera per frame.
+
+    Raises
+    ------
+    ValueError
+        Without a keyframe or a frame, and for keyframes that are not finite.
+
+    References
+    ----------
+    Fritsch and Carlson, Monotone piecewise cubic interpolation, SIAM Journal on Numerical Analysis 17(2), 1980: the
+    curve does not overshoot its keyframes.
+
+    Examples
+    --------
+    >>> from haptic_glance import fly
+    >>> path = fly([(3, 0, 1), (1, 0, 1)], [(0, 0, 0), (0, 0, 0)], frames=3, angle=40, size=(270, 480))
+    >>> [float(camera.eye[0]) for camera in path]
+    [3.0, 2.0, 1.0]
     """
     eye, target = np.asarray(eyes, dtype=np.float64), np.asarray(targets, dtype=np.float64)
     if eye.ndim != 2 or eye.shape[1:] != (3,) or eye.shape != target.shape or not len(eye) or frames < 1:
@@ -89,8 +140,18 @@ Box = tuple[np.ndarray, np.ndarray]  # low (3,), high (3,)
 
 @dataclass(frozen=True)
 class Placed:
-    """An object in the world: name of its mesh; position (3,) in metres of the middle of its foot; turn in degrees
-    about +z, counter-clockwise seen from above; size in metres of the longest side of its bounding box.
+    """An object in the world.
+
+    Parameters
+    ----------
+    name : str
+        Name of its mesh.
+    position : tuple of 3 floats
+        Middle of its foot, in metres.
+    turn : float
+        Angle about +z in degrees, counter-clockwise seen from above.
+    size : float
+        Longest side of its bounding box, in metres.
     """
 
     name: str
@@ -149,9 +210,32 @@ class Pose:
 class Scene:
     """Objects, a camera path, and the tolerated error.
 
-    objects: Placed, one or more. cameras: one per frame. tolerance: above 0, in pixels of the screen (kind `pixels`),
-    or a share of the structure lost, 1 - SSIM (kind `ssim`). limit: faces of all objects of a frame together, 0 for no
-    limit. hold: the least number of frames that a level stays. Raises ValueError for anything else.
+    Parameters
+    ----------
+    objects : sequence of Placed
+        One or more objects.
+    cameras : sequence of Camera
+        One camera per frame.
+    tolerance : float
+        Tolerated error above 0: pixels of the screen (kind `pixels`), or a loss of structure, 1 - SSIM (kind `ssim`).
+    kind : {"pixels", "ssim"}
+        Unit of the tolerance.
+    limit : int
+        Most faces of all objects of a frame together; 0 for no limit.
+    hold : int
+        Fewest frames that a level stays.
+
+    Raises
+    ------
+    ValueError
+        For values out of range.
+
+    Examples
+    --------
+    >>> from haptic_glance import Placed, Scene, fly
+    >>> path = fly([(3, 0, 1), (1, 0, 1)], [(0, 0, 0), (0, 0, 0)], frames=5, angle=40, size=(270, 480))
+    >>> len(Scene([Placed("duck", (0, 0, 0), turn=0, size=1)], path, tolerance=1.0).cameras)
+    5
     """
 
     objects: tuple[Placed, ...]

@@ -55,18 +55,56 @@ def conspicuity(
     symmetry: str = PERCEIVED,
     formulas: str = OURS,
 ) -> dict[str, np.ndarray]:
-    """The conspicuity maps of a view: {channel: (h', w') f4 in 0..1}, zero off the object.
+    """The conspicuity maps of a view (T3.1.1, T3.2).
 
-    view: of this mesh. channels: names out of CHANNELS and OTHERS, None for the nine of CHANNELS. size: (rows,
-    columns) of the maps, by default a quarter of the view's. filled: True keeps the background out of the filters
-    (haptic_glance.look.channels.cropped_view), False leaves it in, for comparison. The two maps of OpenCV use the
-    image as rendered in either case. symmetry: `perceived`, only symmetries that people see, or `strongest`, the best
-    plane and axis of each object, however weak. formulas: `ours`, or `printed` or `mended`, which are T's to the
-    letter and want the background left in (haptic_glance.look.channels.printed).
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The normalised mesh.
+    view : View
+        A view of this mesh, from `render`.
+    channels : iterable of str, optional
+        Names out of CHANNELS and `haptic_glance.look.channels.OTHERS`. None: the nine of CHANNELS.
+    size : sequence of 2 ints, optional
+        Rows and columns of the maps. None: a quarter of the view's.
+    filled : bool
+        True keeps the background out of the filters (`haptic_glance.look.channels.cropped_view`), False leaves it in,
+        for comparison. The two maps of OpenCV use the image as rendered in either case.
+    symmetry : {"perceived", "strongest"}
+        `perceived`: only symmetries that people see. `strongest`: the best plane and axis of each object, however weak.
+    formulas : {"ours", "printed", "mended"}
+        `printed` and `mended` are the thesis's formulas to the letter, and need the background
+        (`haptic_glance.look.channels.printed`).
 
-    With our formulas, N(.) is finally applied to each map as a whole, as Itti 1998 brings channels to one scale before
-    their sum, so that the highest value of a map says how much it stands out. Raises ValueError for an unknown channel,
-    a size without pixels, formulas that do not go with the background, or a view of another mesh.
+    Returns
+    -------
+    dict of str to (h, w) array of float
+        Map of each channel in 0..1, zero off the object.
+
+    Raises
+    ------
+    ValueError
+        For an unknown channel, a size without pixels, formulas that do not go with the background, or a view of another
+        mesh.
+
+    Notes
+    -----
+    With `ours`, N(.) is finally applied to each map as a whole, as Itti 1998 brings channels to one scale before their
+    sum, so that the highest value of a map says how much it stands out.
+
+    References
+    ----------
+    Itti, Koch and Niebur, A model of saliency-based visual attention for rapid scene analysis, IEEE Transactions on
+    Pattern Analysis and Machine Intelligence 20(11), 1998.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import Viewpoint, conspicuity, normalise, render
+    >>> cube = normalise(trimesh.creation.box())
+    >>> view = render(cube, Viewpoint(30, 20), size=(90, 120))
+    >>> {name: image.shape for name, image in conspicuity(cube, view, ["edge"]).items()}
+    {'edge': (22, 30)}
     """
     check_formulas(formulas, filled)
     names = list(CHANNELS) if channels is None else check_channels(channels)

@@ -34,20 +34,46 @@ def saliency(
     mesh: Mesh, method: str = GLANCE, weights: str | Mapping[str, float] | None = None,
     viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: Axis | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """How much each vertex attracts attention: (n,) f8 in 0..1, 1 at the maximum, whatever the mesh's place and size.
+    """How much each vertex attracts attention.
 
-    up: the axis of the mesh that points up: x, -y, a vector of three numbers, or `auto`, which chooses y or z by the
-    shape; None: its own, `mesh.up`.
-    People look at the upper part of things and walk around them, so `glance` and `height` need the right one. method:
-    a name of METHODS that has a saliency (all but `random` and `farthest`). `glance`, the default, is the fixation
-    density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the surface;
-    `glance_any_pose` is the same without the features that need an up axis, for objects in any pose; `glance_deep` adds
-    the maps of a network that looks at pictures (extra `deep`), and is more accurate and slower;
-    `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
-    weights, the name of a set of weights (haptic_glance.look.weights) or a dict name -> weight, instead of its own.
-    viewpoints: Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised
-    mesh (bounding sphere 0.5). Only methods of conspicuity maps, such as `itti` and `thesis_ssim`, read these two.
-    Raises ValueError for unknown names or invalid weights.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh, at any place and of any size.
+    method : str
+        A name of METHODS that has a saliency (all but `random` and `farthest`). `glance`, the default, is the fixation
+        density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the
+        surface. `glance_any_pose` is the same without the features that need an up axis, for objects in any pose.
+        `glance_deep` adds the maps of a network that looks at pictures (extra `deep`); it is more accurate and slower.
+        `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model.
+    weights : str or mapping of str to float, optional
+        Name of a set of weights (`haptic_glance.look.weights`), or weight of each channel, for a method with weights.
+        None: the method's own.
+    viewpoints : iterable of Viewpoint, optional
+        None: the twelve of T figure 3.2. Only methods of conspicuity maps read this and the next.
+    smoothing : float
+        Length in units of the normalised mesh, whose bounding sphere has the radius 0.5.
+    up : str or (3,) array_like, optional
+        The axis that points up: `x`, `-y`, a vector, or `auto`, which chooses y or z by the shape. None: `mesh.up`.
+        People look at the upper part of things and walk around them, so `glance` and `height` need the right one.
+
+    Returns
+    -------
+    (n,) array of float
+        Saliency in 0..1, 1 at the maximum.
+
+    Raises
+    ------
+    ValueError
+        For unknown names or invalid weights.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import saliency
+    >>> values = saliency(trimesh.creation.capsule(count=(16, 16)), up="z")
+    >>> values.shape, float(values.max())
+    ((258,), 1.0)
     """
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):
@@ -62,18 +88,49 @@ def find_points(
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """Vertex ids of the places that attract attention, or that are worth touching: (k,) i8, the best first.
+    """Finds the places that attract attention, or that are worth touching.
 
-    `find_points(mesh, 10)` gives ten of the default method. purpose: `look`, the default, for the places that
-    people look at (method `glance`), or `touch` for those whose imprint by the array, 0.16 units wide, recurs on
-    the object (method `touch`); a method of METHODS may be named in its place. count: how many; None gives the
-    peaks past the method's own threshold (T3.2.5 for maps), and only a mesh with fewer vertices that have a normal
-    gives fewer than asked for. With a count, `glance` visits places in turn, as a gaze does, which stays near a strong
-    place: these need not be the first of the peaks. selection: for methods that select points in each view,
-    `suppression` (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between points, in units of the normalised
-    mesh; it shrinks only where `count` points do not fit. seed and name: for `random` alone, whose draw depends on
-    these two and not on earlier calls. The other arguments are those of `saliency`. Raises ValueError for unknown
-    names, an invalid count, a method beside the purpose `touch`, or `random` or `farthest` without a count.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The mesh.
+    method : str or int, optional
+        A name of METHODS. `find_points(mesh, 10)` finds ten places by the default method.
+    count : int, optional
+        Number of points. None: the peaks past the method's own threshold (T3.2.5 for maps). With a count, `glance`
+        visits places in turn, as a gaze does, which stays near a strong place: these need not be the first of the
+        peaks.
+    purpose : {"look", "touch"}
+        `look`: places that people look at (method `glance`). `touch`: places whose imprint by the array, 0.16 units
+        wide, recurs on the object (method `touch`).
+    weights, viewpoints, up
+        As of `saliency`.
+    selection : {"suppression", "centroid"}
+        For methods that select points in each view: T3.2.5 or T3.1.2.
+    radius : float
+        Least distance between points, in units of the normalised mesh. It shrinks only if `count` points do not fit.
+    seed : int
+        For `random` alone, whose draw depends on seed and name and not on earlier calls.
+    name : str
+        For `random` alone.
+
+    Returns
+    -------
+    (k,) array of int
+        Vertex ids, the best first. A mesh with fewer vertices that have a normal gives fewer than `count`.
+
+    Raises
+    ------
+    ValueError
+        For unknown names, an invalid count, a method beside the purpose `touch`, or `random` or `farthest` without a
+        count.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import find_points
+    >>> find_points(trimesh.creation.capsule(count=(16, 16)), 3, up="z").shape
+    (3,)
     """
     return detect(
         mesh, method, count, purpose=purpose, weights=weights, viewpoints=viewpoints, selection=selection,
@@ -86,9 +143,29 @@ def detect(
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> Detection:  # fmt: skip
-    """The points of `find_points` and the saliency of `saliency`, from one look, with the points that are equally good.
+    """Finds points and saliency in one look, with the points that are equally good.
 
-    The arguments are those of these two functions.
+    Parameters
+    ----------
+    mesh, method, count, purpose, weights, viewpoints, selection, radius, seed, name, up
+        As of `find_points` and `saliency`.
+
+    Returns
+    -------
+    Detection
+        Points, scores, ties, and the saliency of all vertices.
+
+    Raises
+    ------
+    ValueError
+        As `find_points` and `saliency` do.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import detect
+    >>> detect(trimesh.creation.icosphere(2), count=2, up="z").ties.tolist()  # a ball has no better place
+    [0, 0]
     """
     if not isinstance(method, str | None):
         if count is not None:

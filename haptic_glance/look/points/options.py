@@ -46,12 +46,22 @@ class Options:
 
 @dataclass(frozen=True)
 class Detection:
-    """points (k,) i8, most salient first; strong: how many pass the threshold; saliency (n,) f8.
+    """Salient points of a mesh, with their scores and the saliency of all vertices.
 
-    strong is None for a method without a threshold, saliency for one that only places points. `detect` adds scores
-    (k,) f8, those of `scores_of`, and ties (k,) i8: points with the same number have the same score within 2 %, so
-    that none of them is the better one; it is the rank, from 0, of the first of them. On a sphere, a box or two equal
-    parts their order is only a convention: higher ones first, then those farther from the middle.
+    Attributes
+    ----------
+    points : (k,) array of int
+        Vertex ids, most salient first.
+    strong : int or None
+        Number of points past the method's threshold; None for a method without a threshold.
+    saliency : (n,) array of float or None
+        Saliency of each vertex in 0..1; None for a method that only places points.
+    scores : (k,) array of float or None
+        Scores of the points, see `haptic_glance.look.points.find.scores_of`; set by `detect`.
+    ties : (k,) array of int or None
+        Rank, from 0, of the first point whose score is the same within 2 %; set by `detect`. Points with one number are
+        equally good. On a sphere, a box or two equal parts their order is a convention: higher points first, then
+        points farther from the middle.
     """
 
     points: np.ndarray

@@ -56,14 +56,40 @@ def render(
 ) -> View:
     """Renders a mesh by the thesis's orthographic camera (T3.1.1, T3.2.6).
 
-    mesh: centred and scaled by haptic_glance.mesh.repair; its vertex colours are used if it has any. size: (rows,
-    columns); one unit of the mesh spans 0.954 of the rows. renderer: `raster`, which gives the same bytes on every
-    machine, `pyrender` (needs EGL) or `auto` (pyrender if EGL is available, else raster, with a message on stderr).
-    background: `black` as in the thesis, `grey` or `white`. material: how the surface reflects the light
-    (haptic_glance.look.views.Material), matte by default. A mesh without faces gives a view of the background.
+    Parameters
+    ----------
+    mesh : Mesh or any input of `as_mesh`
+        The normalised mesh (`normalise`); its vertex colours are used if it has any.
+    viewpoint : Viewpoint
+        Place of the camera.
+    size : sequence of 2 ints
+        Rows and columns; one unit of the mesh spans 0.954 of the rows.
+    renderer : {"raster", "pyrender", "auto"}
+        `raster` gives the same bytes on every machine. `pyrender` needs EGL. `auto`: pyrender if EGL is available, else
+        raster, with a message on stderr.
+    background : {"black", "grey", "white"}
+        Black as in the thesis.
+    material : Material
+        How the surface reflects the light (`haptic_glance.look.views.Material`), matte by default.
 
-    Raises ValueError for a mesh that leaves the frame and for unknown names or sizes, OSError for `pyrender` when no
-    EGL context can be created.
+    Returns
+    -------
+    View
+        Colours, depth and visible faces; of a mesh without faces the background.
+
+    Raises
+    ------
+    ValueError
+        For a mesh that leaves the frame, and for unknown names or sizes.
+    OSError
+        For `pyrender` when no EGL context can be created.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import Viewpoint, normalise, render
+    >>> render(normalise(trimesh.creation.box()), Viewpoint(30, 20), size=(90, 120)).rgb.shape
+    (90, 120, 3)
     """
     if background not in BACKGROUNDS:
         raise ValueError(f"unknown background {background!r}: choose one of {', '.join(BACKGROUNDS)}")

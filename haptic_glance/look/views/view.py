@@ -19,8 +19,16 @@ DEPTH_STEP = 2.0**-16  # of a unit: 1.3 % of a pixel at 900 rows; exact in float
 class View:
     """A rendered image of a mesh.
 
-    rgb (h, w, 3) u1; depth (h, w) f4, distance from the camera plane in units of the mesh, inf off the object;
-    face (h, w) i4, the id of the visible face, -1 off the object; viewpoint, the haptic_glance.look.camera.Viewpoint.
+    Attributes
+    ----------
+    rgb : (h, w, 3) array of uint8
+        Colours.
+    depth : (h, w) array of float
+        Distance from the camera plane in units of the mesh, inf off the object.
+    face : (h, w) array of int
+        Id of the visible face, -1 off the object.
+    viewpoint : Viewpoint
+        The viewpoint.
     """
 
     rgb: np.ndarray
