@@ -149,11 +149,34 @@ CLASSIFIERS: dict[str, Callable[[int], Any]] = {
 
 
 def classifier(name: str, seed: int = 0, kind: str = "features", scaling: str = TRAINING) -> "Pipeline":
-    """The scikit-learn pipeline of one classifier: the steps of `reduction`, then the classifier.
+    """The scikit-learn pipeline of one classifier of imprints: the steps of `reduction`, then the classifier (T4.2.4).
 
-    All steps are fitted to what `fit` is given, whatever the scaling.
+    Parameters
+    ----------
+    name : str
+        A name of CLASSIFIERS.
+    seed : int
+        Seed of the classifier.
+    kind : str
+        Kind of samples, such as `features` or `located` (with the position of the touch).
+    scaling : str
+        A name of SCALINGS. All steps are fitted to the samples that `fit` receives, whatever the scaling.
 
-    Raises ValueError for a name that is not in CLASSIFIERS, or another kind.
+    Returns
+    -------
+    sklearn.pipeline.Pipeline
+        To be fitted.
+
+    Raises
+    ------
+    ValueError
+        For a name that is not in CLASSIFIERS, or another kind.
+
+    Examples
+    --------
+    >>> from haptic_glance.know import classifier
+    >>> classifier("knn").steps[-1][0]
+    'kneighborsclassifier'
     """
     from sklearn.pipeline import make_pipeline
 

@@ -20,8 +20,33 @@ WORTHLESS = 1e-3  # nats: a touch that promises less does not help
 class Exploration:
     """The touches of one object and the belief that follows from them.
 
-    Neither the planner nor the belief asks what the object is; the planner knows PLACES places on it, drawn at random.
-    surface: of the object, scaled by `normalise` as the library's objects are. Raises ValueError for another scale.
+    Neither the planner nor the belief asks what the object is; the planner knows 64 places on it, drawn at random.
+
+    Parameters
+    ----------
+    library : Library
+        The known objects, from `learn`.
+    surface : Mesh or Surface
+        The object, scaled by `normalise` as the library's objects are.
+    random : numpy.random.Generator
+        Draws the places.
+
+    Raises
+    ------
+    ValueError
+        For an object of another scale.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance.know import Exploration, learn, primitives
+    >>> shapes = primitives()
+    >>> library = learn({name: shapes[name] for name in ("box", "cylinder")}, placed=False)
+    >>> exploration = Exploration(library, shapes["box"], np.random.default_rng(0))
+    >>> exploration.touch(exploration.next_place()).shape
+    (16, 16)
+    >>> sorted(exploration.belief.probabilities)
+    ['box', 'cylinder']
     """
 
     def __init__(self, library: Library, surface: Mesh | Surface, random: np.random.Generator) -> None:

@@ -24,15 +24,41 @@ FEATURES = (
 
 
 def features(images: np.ndarray) -> np.ndarray:
-    """(k, 41) f8 features, named by FEATURES, of imprints (k, rows, cols) in 0..1, at least 8 x 8 cells.
+    """The 41 features of imprints, named by FEATURES (T4.2.3.4).
 
-    Of the horizontal (h), vertical (v) and diagonal (d) coefficients of each of three wavelet levels, level 1 the
-    finest: Euclidean norm, mean, standard deviation and entropy. Then maximum, mean, standard deviation and centre of
-    mass (row and column, 0..1 over the imprint; 0.5 in an imprint without mass) of the imprint itself.
+    Parameters
+    ----------
+    images : (k, rows, cols) array of float
+        Imprints in 0..1, at least 8 x 8 cells.
 
+    Returns
+    -------
+    (k, 41) array of float
+        Euclidean norm, mean, standard deviation and entropy of the horizontal (h), vertical (v) and diagonal (d)
+        coefficients of each of three wavelet levels, level 1 the finest; then maximum, mean, standard deviation and
+        centre of mass (row and column, 0..1 over the imprint; 0.5 in an imprint without mass) of the imprint itself.
+
+    Raises
+    ------
+    ValueError
+        For another shape, fewer cells, or NaN.
+
+    Notes
+    -----
     T4.2.3.4 does not give the wavelet and the entropy. Here the wavelet is db2 with symmetric borders. The entropy is
-    Shannon's, in nats, of the coefficients' shares of the energy (Coifman and Wickerhauser 1992), 0 if all are zero.
-    Raises ValueError for another shape, fewer cells, or NaN.
+    Shannon's, in nats, of the coefficients' shares of the energy, 0 if all are zero.
+
+    References
+    ----------
+    Coifman and Wickerhauser, Entropy-based algorithms for best basis selection, IEEE Transactions on Information Theory
+    38(2), 1992.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance.know import features
+    >>> features(np.zeros((2, 16, 16))).shape
+    (2, 41)
     """
     images = np.asarray(images, dtype=np.float64)
     if images.ndim != 3 or min(images.shape[1:]) < SMALLEST:
@@ -99,13 +125,42 @@ FLAT = 1e-6  # of the full range: a smaller standard deviation is rounding error
 
 
 def similarity(images: ArrayLike, others: ArrayLike | None = None) -> np.ndarray:
-    """(k, l) f8 normalised cross-correlation in -1..1 of imprints (k, rows, cols) with others (l, rows, cols), or all.
+    """Normalised cross-correlation of imprints, at zero lag.
 
-    At zero lag, of images minus their mean: Pearson's correlation of the cells (Lewis, Fast normalized
-    cross-correlation, 1995, eq. 2). The arrays stand upright on the object, so no shift is searched for. An imprint
-    without relief (all cells equal, such as one without contact) has no correlation. Here it is 1 with another such
-    imprint, since the two are indistinguishable, and 0 with any other.
-    Raises ValueError for other shapes, or for NaN.
+    Parameters
+    ----------
+    images : (k, rows, cols) array_like
+        Imprints.
+    others : (l, rows, cols) array_like, optional
+        Imprints to compare with. None: `images`.
+
+    Returns
+    -------
+    (k, l) array of float
+        Correlations in -1..1.
+
+    Raises
+    ------
+    ValueError
+        For other shapes, or for NaN.
+
+    Notes
+    -----
+    The value is Pearson's correlation of the cells. The arrays stand upright on the object, so no shift is searched
+    for. An imprint without relief (all cells equal, such as one without contact) has no correlation. Here it is 1 with
+    another such imprint, since the two are indistinguishable, and 0 with any other.
+
+    References
+    ----------
+    Lewis, Fast normalized cross-correlation, 1995, eq. 2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance.know import similarity
+    >>> ramp = np.arange(16.0).reshape(1, 4, 4)
+    >>> similarity(ramp, -ramp).round(6).tolist()
+    [[-1.0]]
     """
     first, flat = _unit(images)
     second, second_flat = (first, flat) if others is None else _unit(others)
@@ -115,10 +170,28 @@ def similarity(images: ArrayLike, others: ArrayLike | None = None) -> np.ndarray
 
 
 def confusable(similarities: np.ndarray, labels: ArrayLike, among: ArrayLike | None = None) -> np.ndarray:
-    """(k,) boolean: the imprints with a correlation of 0.85 or more with an imprint of another object.
+    """Finds the imprints with a correlation of 0.85 or more with an imprint of another object (T4.2.4).
 
-    similarities: (k, k) from `similarity`; labels: (k,) objects; among: indices of the imprints to compare with, or
-    all.
+    Parameters
+    ----------
+    similarities : (k, k) array of float
+        From `similarity`.
+    labels : (k,) array_like
+        Object of each imprint.
+    among : (l,) array_like of int, optional
+        Imprints to compare with. None: all.
+
+    Returns
+    -------
+    (k,) array of bool
+        Whether an imprint can be confused.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance.know import confusable
+    >>> confusable(np.array([[1.0, 0.9, 0.2], [0.9, 1.0, 0.1], [0.2, 0.1, 1.0]]), ["cup", "mug", "pen"]).tolist()
+    [True, True, False]
     """
     labels = np.asarray(labels)
     among = np.arange(len(labels)) if among is None else np.asarray(among)

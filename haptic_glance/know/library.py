@@ -117,12 +117,39 @@ AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three width
 
 
 def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned: bool = False) -> "Library":
-    """The Library of meshes {name: mesh} that `normalise` has scaled; a mesh that was learned before costs nothing.
+    """Learns objects by touch; a mesh that was learned before costs nothing.
 
-    placed: the objects stand where they were learned; otherwise they stand upright at an unknown place. turned: each
-    array is turned at random about its normal, as it lies on an object that may also be turned. So a pose of which
-    nothing is known needs placed=False and turned=True.
-    Raises ValueError for fewer than two, and for a mesh that cannot be touched or has another scale, with its name.
+    Parameters
+    ----------
+    meshes : mapping of str to Mesh
+        Two or more meshes that `normalise` has scaled, by name.
+    placed : bool
+        True: the objects stand where they were learned. False: they stand upright at an unknown place.
+    seed : int
+        Seed of the places that are touched.
+    turned : bool
+        Whether each array is turned at random about its normal, as it lies on an object that may also be turned. A pose
+        of which nothing is known needs placed=False and turned=True.
+
+    Returns
+    -------
+    Library
+        The objects, with a calibrated belief.
+
+    Raises
+    ------
+    ValueError
+        For fewer than two meshes, and for a mesh that cannot be touched or has another scale; the message names the
+        mesh.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance.know import Exploration, learn, primitives
+    >>> shapes = primitives()
+    >>> library = learn({name: shapes[name] for name in ("box", "cylinder")}, placed=False)
+    >>> Exploration(library, shapes["cylinder"], np.random.default_rng(0)).finish()
+    'cylinder'
     """
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
@@ -149,10 +176,24 @@ class Expected:
 class Library:
     """Objects known by touch.
 
-    names: of the objects; samples (classes, touches, 41) their features; positions (classes, touches, 3) where they
-    were touched. The likelihood of an imprint is that of T4.2: a kernel density of its components; if the
-    objects are `placed`, that is, stand as they were learned, of the touches near its place. A learned touch is used
-    like a new one when it is compared with all others but itself; that calibrates the belief.
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the objects.
+    samples : (classes, touches, 41) array of float
+        Features of their touches.
+    positions : (classes, touches, 3) array of float
+        Places of the touches, in units of the normalised mesh.
+    placed : bool
+        Whether the objects stand as they were learned.
+    seed : int
+        Seed of the calibration.
+
+    Notes
+    -----
+    The likelihood of an imprint is that of T4.2: a kernel density of its components; if the objects are `placed`, of
+    the touches near its place. A learned touch is used like a new one when it is compared with all others but itself;
+    that calibrates the belief.
     """
 
     def __init__(
@@ -306,9 +347,21 @@ def primitives() -> dict[str, Mesh]:
 
 
 def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], list[str]]:
-    """({name: normalised mesh}, what was left out) of the first `most` meshes of a folder, in alphabetical order.
+    """Reads the meshes of a folder, normalised.
 
-    The folder holds files of meshes, or is data/SET/meshes of the pipeline; one that is not there holds none.
+    Parameters
+    ----------
+    folder : path
+        A folder of mesh files, or data/SET/meshes of the pipeline; a folder that is absent holds none.
+    most : int
+        Number of meshes at most, in alphabetical order.
+
+    Returns
+    -------
+    meshes : dict of str to Mesh
+        Normalised meshes by name.
+    left_out : list of str
+        Names of the files that were left out, with the reasons.
     """
     files = sorted(path for path in Path(folder).glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
     stems = {path.stem for path in files}

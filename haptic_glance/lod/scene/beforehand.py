@@ -40,9 +40,21 @@ class Profile:
 
 
 def profile(chain: Sequence[Level], directions: int = DIRECTIONS, rows: int = ROWS) -> Profile:
-    """The Profile of an object's levels, finest first, rendered without perspective from directions all around.
+    """Renders the errors of an object's levels once, without perspective, from directions all around.
 
-    directions: how many; rows: pixels a side of each picture.
+    Parameters
+    ----------
+    chain : sequence of Level
+        The levels, finest first, from `build_lod_chain`.
+    directions : int
+        Number of directions.
+    rows : int
+        Pixels a side of each picture.
+
+    Returns
+    -------
+    Profile
+        The errors by direction, for `by_profiles`.
     """
     low, high = chain[0].box
     middle, radius = (low + high) / 2, np.linalg.norm(high - low) / 2
@@ -66,9 +78,23 @@ def profile(chain: Sequence[Level], directions: int = DIRECTIONS, rows: int = RO
 
 
 def by_profiles(frames: Frames, chains: Sequence[Sequence[Level]], profiles: Sequence[Profile], price: float) -> Plan:
-    """The Plan of each frame by itself, by the errors rendered beforehand.
+    """Plans the levels of each frame by itself, by errors rendered beforehand.
 
-    chains, profiles: of each object. price: faces that one pixel displaced by one pixel is worth, above 0.
+    Parameters
+    ----------
+    frames : Frames
+        The frames of a scene.
+    chains : sequence of sequence of Level
+        Levels of each object.
+    profiles : sequence of Profile
+        Profile of each object, from `profile`.
+    price : float
+        Faces that one pixel displaced by one pixel is worth, above 0.
+
+    Returns
+    -------
+    Plan
+        The level of each object in each frame.
     """
     columns = []
     for item, (chain, record) in enumerate(zip(chains, profiles, strict=True)):

@@ -56,10 +56,30 @@ class Level:
 
 
 def build_lod_chain(mesh: Mesh, seed: int = 0, **options: Any) -> tuple[Level, ...]:
-    """The Levels of a mesh, most faces first, two per halving down to COARSEST; the first is the mesh itself.
+    """The levels of detail of a mesh, most faces first, two per halving of the faces; the first is the mesh itself.
 
-    options: those of haptic_glance.lod.simplify, for example the salient vertices to keep; their neighbourhoods shrink
-    from the least salient on where there are too few faces for them. A count without a sound mesh is left out.
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    seed : int
+        Seed of the points that the errors are measured at.
+    **options
+        Options of `haptic_glance.lod.simplify`, for example the salient vertices to keep; their neighbourhoods shrink,
+        the least salient first, where there are too few faces for them.
+
+    Returns
+    -------
+    tuple of Level
+        The levels with their errors. A count without a sound mesh is left out.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from haptic_glance import as_mesh
+    >>> from haptic_glance.lod.scene import build_lod_chain
+    >>> [level.faces for level in build_lod_chain(as_mesh(trimesh.creation.icosphere(2)))][:3]
+    [320, 226, 160]
     """
     levels = [finest(mesh)]
     for count in face_counts(len(mesh.faces)):
