@@ -1,4 +1,4 @@
-"""Docstrings are plain prose with `code` in single backticks: this makes reStructuredText of them."""
+"""Makes reStructuredText of docstrings with `code` in single backticks; napoleon reads their sections afterwards."""
 
 import inspect
 import re

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 COLUMNS = {
-    "classifier": "a name of stages.sensor_size.CLASSIFIERS",
+    "classifier": "a name of stages.sensor_size.protocol.CLASSIFIERS",
     "cells": "sensels along each side of the array",
     "pitch": "distance of two sensels, in units of the mesh",
     "fine": "CELLS-PITCH of a second, finer array that is pressed at the same place; empty: none",
