@@ -143,7 +143,7 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
     if unit not in METRES:
         got = "" if unit is None else f", not {unit!r}"
         named = ", ".join(METRES)
-        raise ValueError(f"{name}={value!r} needs unit, what the coordinates of the mesh are in: {named}{got}")
+        raise ValueError(f"{name}={value!r} needs unit, the unit of its coordinates: {named}{got}")
     return float(amount) / METRES[unit]
 
 

@@ -173,7 +173,7 @@ def _check_load(options):
     real = [f"--{name}" for name in ("pitch", "depth") if isinstance(getattr(options, name), Metres)]
     real += ["--load"] if options.load is not None else []
     if real and options.unit is None:
-        raise ValueError(f"{real[0]} needs --unit, what the file is in: {', '.join(METRES)}")
+        raise ValueError(f"{real[0]} needs --unit, the unit of the file: {', '.join(METRES)}")
     if options.unit is not None and not real:
         raise ValueError("--unit applies to --load, and to a --pitch or --depth such as 1mm")
 

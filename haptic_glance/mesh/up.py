@@ -24,7 +24,7 @@ def add_up(command: argparse.ArgumentParser, remark: str = "") -> None:
 
     Its value may begin with a minus, which argparse alone takes for another option.
     """
-    text = f"the axis that points up: {ALLOWED} (default: what the file says, as every glTF does, else auto: y or z"
+    text = f"the axis that points up: {ALLOWED} (default: as the file states, which every glTF does, else auto: y or z"
     command.add_argument("--up", metavar="AXIS", type=_axis, help=f"{text}, by the shape{remark and '; '}{remark})")
     parse = command.parse_known_args
 

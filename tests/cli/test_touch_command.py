@@ -226,7 +226,7 @@ def test_place_behind_another_part_is_out_of_sight():
         (["--at", "0", "--skin", "blur"], "is not a number"),
         (["--at", "0", "--skin", "dead=2"], "dead must be"),
         (["--at", "0", "--load", "0", "--unit", "m"], "--load 0: give a positive number"),
-        (["--at", "0", "--load", "5"], "--load needs --unit, what the file is in: mm, cm, in, m"),
+        (["--at", "0", "--load", "5"], "--load needs --unit, the unit of the file: mm, cm, in, m"),
         (["--at", "0", "--layer", "modulus=1"], "--layer applies to --load only"),
         (["--at", "0", "--unit", "mm"], "--unit applies to --load, and to a --pitch or --depth such as 1mm"),
         (["--at", "0", "--pitch", "1mm"], "--pitch needs --unit"),
