@@ -249,7 +249,7 @@ def least_alike(objects: Sequence[str], likeness: np.ndarray, count: int) -> lis
         others = np.where(np.eye(len(kept), dtype=bool), -np.inf, part)
         pair = np.unravel_index(others.argmax(), others.shape)
         kept = np.delete(kept, max(pair, key=lambda place: part[place].sum()))
-    return [objects[place] for place in kept]
+    return [objects[int(place)] for place in kept]
 
 
 def set_of(name: str) -> dict[str, str | int | None]:

@@ -94,7 +94,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
     readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
     section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
-    sets = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
+    sets: dict[str, Any] = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end], stage=STAGE, phrases=PHRASES,
         note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (), **sets,
@@ -246,8 +246,8 @@ def by_classifier(results: Results) -> Figure:
 def by_features(results: Results) -> Figure:
     """Accuracy against seconds over features, classifiers and the number of touches."""
     frame = _timed(results, ["variant", "classifier"], method=MODEL, variant=list(KINDS))
-    making = results.measured(STAGE, group="six", method=MODEL, metric="features").set_index("variant")["seconds"]
-    frame["seconds"] += frame["variant"].replace(MADE_OF).map(making).fillna(0.0)
+    making = results.measured(STAGE, group="six", method=MODEL, metric="features").groupby("variant")["seconds"].mean()
+    frame["seconds"] += frame["variant"].replace(MADE_OF).map(making).fillna(0.0)  # the mean of several random sets
     frame["samples"] = frame["variant"].map(KINDS)
     title = f"Recognising {results.group_text('six')} by one touch and more"
     by = ["classifier", "samples"]
