@@ -55,10 +55,11 @@ def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, 
     """
     by_set = everywhere(results, STAGE, **where)
     by_set = {name: part for name, rows in by_set.items() if not (part := scaled(rows, scaling)).empty}
+    by_set = {name: rows for name, rows in by_set.items() if on_sets or name not in SETS_4_2}
     some(by_set, f"no rows of the scaling {scaling}", STAGE)
     if PRINTED in by_set:
         yield Protocol(PRINTED, by_set.pop(PRINTED), "as printed", EQUAL)
-    if (drawn := {name: by_set.pop(name) for name in SETS_4_2 if name in by_set}) and on_sets:
+    if drawn := {name: by_set.pop(name) for name in SETS_4_2 if name in by_set}:
         rows = pd.concat(drawn.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
         count = len(rows[["dataset", "set"]].drop_duplicates())
         yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", EQUAL)
