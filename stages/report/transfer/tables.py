@@ -289,10 +289,10 @@ CHANGES = Claim(
            "passes": "printed"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
-OTHERS = ("alexnet", "mobilenet_v2", "vgg16")  # networks beside ResNet50
+BESIDE = ("alexnet", "mobilenet_v2", "vgg16")  # networks beside ResNet50
 BEST = [  # of the networks at the thesis's size
     replace(claim(key, "T5.4", "ResNet50 outperforms the other architectures in all cases.", "method", "resnet50",
-                  highest_of(*OTHERS), split="random", mode=mode), dataset=THEIRS, of=of)
+                  highest_of(*BESIDE), split="random", mode=mode), dataset=THEIRS, of=of)
     for key, mode, of in (("resnet_best_tuned", "finetuned", ""), ("resnet_best_frozen", "frozen", "resnet_best_tuned"))
 ]  # fmt: skip
 RANGES = ("1:150", "1:144", "1:134", "10:150", "10:144", "16:138")  # T table 5.6, but for 18:139
@@ -302,10 +302,10 @@ LESS = [  # at the thesis's size, by networks or by layers
         claim("mobile_near_resnet", "T5.4", "Fine-tuned, MobileNetV2 comes within 3.33 points of ResNet50.", "method",
               NETWORK, "resnet50", 3.33, split="random", mode="finetuned"),
         replace(claim("resnet_smallest_updates", "T5.4", "ResNet50 has the smallest updates of its weights.", "method",
-                      lowest_of(*OTHERS), "resnet50", split="random", mode="finetuned", metric="weight_change",
+                      lowest_of(*BESIDE), "resnet50", split="random", mode="finetuned", metric="weight_change",
                       readings=CONVERGED[:1]), relative=True, unit="% of the mean of both"),
         replace(claim("resnet_gains_least", "T5.4", "ResNet50 has the smallest updates of its accuracy.", "method",
-                      OTHERS, "resnet50", split="random", note="what tuning gains over frozen filters"),
+                      BESIDE, "resnet50", split="random", note="what tuning gains over frozen filters"),
                 contrast=({"mode": "finetuned"}, {"mode": "frozen"}), of="resnet_smallest_updates"),
         claim("early_and_late_best", "T5.5", "Frozen in layers 18 to 139, a network comes closest to one that is tuned "
               "whole.", "mode", "18:139", highest_of(*RANGES), split="random", note="of T table 5.6's ranges"),
