@@ -303,7 +303,7 @@ LESS = [  # at the thesis's size, by networks or by layers
               NETWORK, "resnet50", 3.33, split="random", mode="finetuned"),
         replace(claim("resnet_smallest_updates", "T5.4", "ResNet50 has the smallest updates of its weights.", "method",
                       lowest_of(*BESIDE), "resnet50", split="random", mode="finetuned", metric="weight_change",
-                      readings=CONVERGED[:1]), relative=True, unit="% of the mean of both"),
+                      readings=CONVERGED[:1]), scale=1e6, unit="millionths, of squared weights"),
         replace(claim("resnet_gains_least", "T5.4", "ResNet50 has the smallest updates of its accuracy.", "method",
                       BESIDE, "resnet50", split="random", note="what tuning gains over frozen filters"),
                 contrast=({"mode": "finetuned"}, {"mode": "frozen"}), of="resnet_smallest_updates"),
