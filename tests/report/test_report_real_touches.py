@@ -173,7 +173,7 @@ def test_grasps_are_told_by_task_with_their_drift(every):
     assert shown["values"].tolist() == ["12 components", "electrodes"] * 2
     notes = " ".join(made.notes)
     assert "palm 45 0.5, palm down 3.0" in notes
-    assert "drawn at random, by palm 45 0.4, palm down 1.2 at most" in notes
+    assert "random training objects it moves by palm 45 0.4, palm down 1.2 at most" in notes
     assert "by palm and scale: palm down, each part by its own 1 of 2." in notes
 
 

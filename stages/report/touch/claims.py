@@ -22,7 +22,7 @@ from .rows import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE
 
 RIGHT: dict[str, Any] = {"metric": "accuracy", "split": Split.RANDOM} | SCALE
 EVERY, KNN = {"group": "six"} | RIGHT, {"classifier": "knn"} | RIGHT  # EVERY: the mean of all classifiers
-SIX: dict[str, Any] = {"group": "six"} | KNN
+SIX: dict[str, Any] = {"classifier": "knn"} | EVERY
 FOUR, APART, NETWORK = SIX | {"group": "four"}, SIX | {"split": Split.REGIONS}, SIX | {"classifier": "deep_learning"}
 SETS: dict[str, Any] = {"dataset": SETS_4_2, "over": ("set",), "printed": 2}  # as printed, on random sets of objects
 PLAIN, FEW = dict[str, Any](variant="plain"), dict[str, Any](variant="first_15")
