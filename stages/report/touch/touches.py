@@ -105,7 +105,9 @@ def table_4_6(results: Results) -> Table:
     means = {name: thesis.loc[list(several)].mean() for name, several in MEANS.items()}
     thesis = pd.concat([thesis, pd.DataFrame(means).T]).rename_axis("classifier").reset_index()
     thesis = thesis.melt("classifier", var_name="touches", value_name="thesis")
-    versions = [*protocols(results, on_sets=True, group="six"), *readings(results, group="six")]
+    joined = [name for name in results.measured(STAGE)["variant"].dropna().unique() if "touches_" in name]
+    where = {"group": "six", "variant": joined or ["touches"]}  # sets of single touches alone do not count
+    versions = [*protocols(results, on_sets=True, **where), *readings(results, **where)]
     frame = pd.concat([_by_touches(version, thesis) for version in versions], ignore_index=True)
     some(frame, "no several touches", STAGE)
     scaled = frame["protocol"].str.contains(": ")
