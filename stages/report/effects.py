@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from functools import cached_property
 from importlib import import_module
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -63,27 +64,28 @@ def side(
 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
-    rows, several = _side_rows(results, claim, selection, other, extra)
-    keys = [*claim.over, *claim.within]
+    part, keys = _side_rows(results, claim, selection, other, extra), [*claim.over, *claim.within]
     if not keys:
-        return rows["value"]
-    if several:
-        table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
-        values = table.dropna().mean(axis=1)
+        return part.rows["value"]
+    if part.several:
+        cells = part.rows.groupby([*keys, *part.several], sort=False)["value"].mean()
+        values = cells.unstack(part.several, sort=False).dropna().mean(axis=1)
     else:
-        values = rows.groupby(keys, sort=False)["value"].mean()
-    return values.drop(invalid_pairs(results, claim, rows).index, errors="ignore")
+        values = part.rows.groupby(keys, sort=False)["value"].mean()
+    return values.drop(invalid_pairs(part.rows, part.reasons, keys).index, errors="ignore")
 
 
-def invalid_pairs(results: Results, claim: Claim, rows: pd.DataFrame, keys: Sequence[str] = ()) -> pd.Series:
-    """Causes of the pairs of a claim of which one of the rows is invalid, indexed by keys, else by over and within."""
+def invalid_pairs(rows: pd.DataFrame, reasons: pd.Series, keys: Sequence[str]) -> pd.Series:
+    """Causes of the pairs of which one of the rows is invalid, indexed by the columns `keys`; reasons: as `SideRows`."""
+    bad = reasons[reasons != ""]
+    return bad if bad.empty else bad.groupby([rows[key] for key in keys], sort=False).first()
+
+
+def reasons_of(results: Results, claim: Claim, rows: pd.DataFrame) -> pd.Series:
+    """The cause why a row is invalid, empty text for a valid row; no rows where a claim is not checked."""
     if not claim.checked or claim.stage not in CHECKS:
         return pd.Series(dtype=object)
-    reasons = causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
-    reasons = reasons[reasons != ""]
-    if reasons.empty:
-        return reasons
-    return reasons.groupby([rows[key] for key in keys or (*claim.over, *claim.within)], sort=False).first()
+    return causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
 
 
 def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
@@ -101,9 +103,10 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     sides = [side for name, side in named.items() if isinstance(side, Mapping) and name != claim.mean_of]
     contrasts: list[tuple[list[pd.DataFrame], pd.Series]] = []
     for extra in claim.contrast or ({},):
-        parts = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)[0]
+        found = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)
                  for k, selection in enumerate(sides)]  # fmt: skip
-        bad = [invalid_pairs(results, claim, part, keys) for part in parts]
+        parts = [part.rows for part in found]
+        bad = [invalid_pairs(part.rows, part.reasons, keys) for part in found]
         if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
             first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
             joined = pd.concat({"first": first, "second": second}, axis=1, join="inner")
@@ -129,12 +132,31 @@ def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
     return (joined["first"] == joined["second"]) & (joined["first"] > 0)
 
 
+class SideRows(NamedTuple):
+    """The rows of one side of a claim; several: the columns over whose several values the side is a mean.
+
+    reasons: the cause why a row is invalid, empty text for a valid row; empty where a claim is not checked.
+    """
+
+    rows: pd.DataFrame
+    several: list[str]
+    reasons: pd.Series
+
+
 def _side_rows(
     results: Results, claim: Claim, selection: Side, other: Side | float | None, extra: Side | None
-) -> tuple[pd.DataFrame, list[str]]:
-    """(rows of one side, columns over whose several values the side is a mean)."""
+) -> SideRows:
+    """The SideRows of a selection, which the check of a claim and its difference both ask for."""
     where = {**claim.where, **(extra or {}), **selection}
     dataset = where.pop("dataset", claim.sets[0])
+    keys = (*claim.over, *claim.within)
+    query = (claim.stage, dataset, keys, claim.checked, repr(where), repr(other))
+    return results.recently(query, lambda: _select(results, claim, where, dataset, other))
+
+
+def _select(
+    results: Results, claim: Claim, where: dict[str, object], dataset: str | None, other: Side | float | None
+) -> SideRows:
     picks = {column: value for column, value in where.items() if isinstance(value, Pick)}
     patterns = {column: value for column, value in where.items() if isinstance(value, str) and "*" in value}
     plain = {column: value for column, value in where.items() if column not in picks | patterns}
@@ -147,7 +169,8 @@ def _side_rows(
     for column in keys:
         if column not in rows:
             raise NotRun(f"no column {column} in the rows of {claim.stage}", claim.stage)
-    return rows, [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
+    several = [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
+    return SideRows(rows, several, reasons_of(results, claim, rows))
 
 
 def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:

@@ -115,7 +115,7 @@ class Results:
         self.sources: dict[str, list[pd.DataFrame]] = {}  # SET/STAGE or bench/NAME -> rows that were read since then
         self._tables: dict[Path, pd.DataFrame] = {}
         self._known: dict[Hashable, Any] = {}
-        self._recent: dict[Hashable, pd.DataFrame] = {}  # the answers to the last queries, oldest first
+        self._recent: dict[Hashable, Any] = {}  # the answers to the last queries, oldest first
 
     def unread(self) -> "Results":
         """The same results, of which nothing was read yet."""
@@ -127,6 +127,7 @@ class Results:
         """Begins anew to note what is read."""
         self.read.clear()
         self.sources.clear()
+        self._recent.clear()  # or an answer to an older query would not be noted
 
     @classmethod
     def published(cls, workspace: Workspace, settings: Params) -> "Results":
@@ -164,11 +165,7 @@ class Results:
         """
         dataset = self._first(stage, dataset)
         query = stage, dataset, *((column, value is None, *listed(value)) for column, value in where.items())
-        if query not in self._recent:
-            self._recent[query] = self._filtered(stage, dataset, where)
-            if len(self._recent) > RECENT:
-                del self._recent[next(iter(self._recent))]
-        frame = self._recent[query].copy(deep=False)
+        frame = self.recently(query, lambda: self._filtered(stage, dataset, where)).copy(deep=False)
         self.read.add(dataset)
         self.sources.setdefault(f"{dataset}/{stage}", []).append(frame)
         return frame
@@ -263,6 +260,14 @@ class Results:
         if name not in self._known:
             self._known[name] = work()
         return self._known[name]
+
+    def recently(self, query: Hashable, work: Callable[[], Found]) -> Found:
+        """The result of some work on the rows, computed anew once RECENT others were asked for."""
+        if query not in self._recent:
+            self._recent[query] = work()
+            if len(self._recent) > RECENT:
+                del self._recent[next(iter(self._recent))]
+        return self._recent[query]
 
     def bench(self, name: str) -> pd.DataFrame:
         """Rows of reports/bench/NAME.csv (or .csv.gz): what `make bench` measured; times are ratios to a named peer."""

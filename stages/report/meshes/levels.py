@@ -14,7 +14,7 @@ from matplotlib.figure import Figure as Drawing
 from stages.engine.statistics import interval
 from stages.report.claims import Claim
 from stages.report.drawing import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
-from stages.report.effects import invalid_pairs, statistic
+from stages.report.effects import invalid_pairs, reasons_of, statistic
 from stages.report.items import Figure
 from stages.report.pareto import ON, attention_seconds, noise_by, placed
 from stages.report.results import NotRun, Results, listed, some
@@ -99,7 +99,7 @@ def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: o
 
 def _valid(results: Results, claim: Claim, rows: pd.DataFrame) -> pd.DataFrame:
     """The rows without those of an object and target at which a method's row is invalid."""
-    bad = invalid_pairs(results, claim, rows, CELL).index
+    bad = invalid_pairs(rows, reasons_of(results, claim, rows), CELL).index
     return rows[~pd.MultiIndex.from_frame(rows[CELL]).isin(bad)] if len(bad) else rows
 
 
