@@ -25,15 +25,15 @@ def symmetry(samples: Samples) -> tuple[np.ndarray, np.ndarray]:
     amounts = _amounts(np.arctan2(y, x), np.hypot(x, y).round(DIGITS), z.round(DIGITS), samples.shares)
     amounts = ndimage.gaussian_filter(ndimage.gaussian_filter1d(amounts, BLUR, axis=0, mode="wrap"), (0, BLUR, BLUR))
     waves = np.fft.rfft(amounts, axis=0)
-    alike = np.fft.irfft((waves**2).sum(axis=(1, 2)), TURNS) / (amounts**2).sum()
-    fits = np.exp((alike - 1) / EQUAL)
+    correlation = np.fft.irfft((waves**2).sum(axis=(1, 2)), TURNS) / (amounts**2).sum()
+    fits = np.exp((correlation - 1) / EQUAL)
     share = fits / fits.sum()
     score = max(float(share @ fits - fits.mean()), 0.0)
-    kept = np.flatnonzero(share > LEAST * share.max())
-    angles = np.pi * (kept + 1) / TURNS - np.pi  # bin k of one image lies over bin j of the other: half of their sum
-    away = np.abs(np.outer(x, np.sin(angles)) - np.outer(y, np.cos(angles)))
-    share = share[kept] / share[kept].sum()
-    return score * (away @ share), score * (np.exp(-((away / NARROW) ** 2)) @ share)
+    peaks = np.flatnonzero(share > LEAST * share.max())
+    angles = np.pi * (peaks + 1) / TURNS - np.pi  # bin k of one image lies over bin j of the other: half of their sum
+    distances = np.abs(np.outer(x, np.sin(angles)) - np.outer(y, np.cos(angles)))
+    share = share[peaks] / share[peaks].sum()
+    return score * (distances @ share), score * (np.exp(-((distances / NARROW) ** 2)) @ share)
 
 
 def _amounts(turn, radius, z, shares):
