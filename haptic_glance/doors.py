@@ -141,9 +141,9 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
     if not isinstance(amount, Metres):
         return amount * diameter
     if unit not in METRES:
-        got = "" if unit is None else f", not {unit!r}"
-        named = ", ".join(METRES)
-        raise ValueError(f"{name}={value!r} needs unit, the unit of its coordinates: {named}{got}")
+        unit_text = "" if unit is None else f", not {unit!r}"
+        unit_names = ", ".join(METRES)
+        raise ValueError(f"{name}={value!r} needs unit, the unit of its coordinates: {unit_names}{unit_text}")
     return float(amount) / METRES[unit]
 
 
@@ -281,8 +281,8 @@ def simplify(
         borders.append(True)
     failures = []
     # vertex by vertex, which repairs would renumber
-    named = isinstance(free_borders, np.ndarray) and free_borders.ndim > 0
-    for whole, settings in [(mesh, arguments)] if named else _as_given_and_mended(mesh, arguments):
+    has_border_ids = isinstance(free_borders, np.ndarray) and free_borders.ndim > 0
+    for whole, settings in [(mesh, arguments)] if has_border_ids else _as_given_and_mended(mesh, arguments):
         for free in borders:
             try:
                 return _around_folds(work, whole, count, free_borders=free, **settings)

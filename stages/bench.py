@@ -142,10 +142,10 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
         row: dict[str, Any] = {"item": name, "method": OWN, "clock": clock()}
         scores: dict[str, float] = {}
         try:
-            others = [  # copies: a method may change what it is given
+            training = [  # copies: a method may change what it is given
                 (replace(mesh), truth.density.copy()) for other, (mesh, truth) in objects.items() if other != name
             ]
-            saliency, fresh = method(others) if train else method, replace(mesh)  # without what the truth has cached
+            saliency, fresh = method(training) if train else method, replace(mesh)  # without what the truth has cached
             with Stopwatch() as watch:
                 values = saliency(fresh)
             scores = agreement(np.asarray(values, dtype=np.float64), truth)
@@ -203,19 +203,19 @@ def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
     methods = []
     for method in table[by].columns:
         rows = scores[scores["method"] == method]
-        measured = rows.dropna(subset=["value"])
-        row: dict[str, Any] = {"method": method, "has_seen": has_seen(method), "objects": measured["item"].nunique()}
+        metric_rows = rows.dropna(subset=["value"])
+        row: dict[str, Any] = {"method": method, "has_seen": has_seen(method), "objects": metric_rows["item"].nunique()}
         for metric, better in SCORES.items():
             compared = {metric: table[metric][method]}
             if OWN in table[metric] and method != OWN:
                 compared[f"{metric}_lead"] = better * (table[metric][OWN] - table[metric][method])
             for name, values in compared.items():
                 row |= zip((name, f"{name}_low", f"{name}_high"), interval(values), strict=True)
-        row["seconds"] = float(measured["seconds"].median())
-        row["clock"] = np.nan if np.isnan(row["seconds"]) else next(iter(measured["clock"].dropna()), WALL)
+        row["seconds"] = float(metric_rows["seconds"].median())
+        row["clock"] = np.nan if np.isnan(row["seconds"]) else next(iter(metric_rows["clock"].dropna()), WALL)
         row["values"] = {
             item: _without_nan(dict(zip(part["metric"], part["value"], strict=True), seconds=part["seconds"].iloc[0]))
-            for item, part in measured.groupby("item")
+            for item, part in metric_rows.groupby("item")
         }
         row["failed"] = rows[rows["value"].isna()].groupby("item")["note"].first().to_dict()
         methods.append(_without_nan(row))
@@ -237,11 +237,11 @@ def as_text(methods: Sequence[dict[str, Any]], by: str = "nss") -> str:
         name = f"{row['method']} *" if row["has_seen"] else row["method"]
         cells = [f"{_bracketed(row, metric):>20}" for metric in SCORES]
         cost = "" if row["seconds"] is None else f"{row['seconds']:.3g}"
-        measured = (row["clock"] or "").partition(",")[0].partition(" ")[0]
+        timer = (row["clock"] or "").partition(",")[0].partition(" ")[0]
         lead = "" if row.get(f"{by}_lead") is None else f"  {_bracketed(row, f'{by}_lead', '+')}"
-        lines.append(f"{place:>3} {name:26} {row['objects']:7} {' '.join(cells)} {cost:>8} {measured:9}{lead}".rstrip())
+        lines.append(f"{place:>3} {name:26} {row['objects']:7} {' '.join(cells)} {cost:>8} {timer:9}{lead}".rstrip())
     clocks = dict.fromkeys(row["clock"] for row in methods if row["clock"])
-    return "\n".join([*lines, *(f"clock: {measured}" for measured in clocks), COST])
+    return "\n".join([*lines, *(f"clock: {timer}" for timer in clocks), COST])
 
 
 def objects_text(methods: Sequence[dict[str, Any]]) -> str:

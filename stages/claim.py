@@ -45,7 +45,7 @@ def run(argv: Sequence[str]) -> int:
     if not verdicts.exists():
         raise ValueError(f"no {verdicts}: run it in a clone of the project")
     committed = read_table(verdicts).set_index("key")
-    moved = []
+    changes = []
     for claim in chosen(CLAIMS, options.keys):
         row = judged_again(workspace, claim)
         if options.measure:
@@ -55,9 +55,9 @@ def run(argv: Sequence[str]) -> int:
         reference = committed.loc[claim.key].to_dict() if claim.key in committed.index else {"verdict": "absent"}
         if not agree(row, reference, COMPARED[:1] if options.measure else COMPARED):
             remedy = "" if options.measure else f": {restore(workspace.root, claim.stage, row['rows'])}"
-            moved.append(f"{claim.key}: {in_short(row)}, in reports/claims.csv {in_short(reference)}{remedy}")
-    print("\n".join(f"claim: {line}" for line in moved), file=sys.stderr, end="\n" if moved else "")
-    return 1 if moved else 0
+            changes.append(f"{claim.key}: {in_short(row)}, in reports/claims.csv {in_short(reference)}{remedy}")
+    print("\n".join(f"claim: {line}" for line in changes), file=sys.stderr, end="\n" if changes else "")
+    return 1 if changes else 0
 
 
 def agree(row: dict[str, Any], reference: dict[str, Any], columns: Sequence[str]) -> bool:
@@ -80,9 +80,9 @@ def in_short(row: dict[str, Any]) -> str:
 
 def restore(root: Path, stage: str, rows: Sequence[str]) -> str:
     """How to bring back the rows of a stage: of the files that git finds missing or changed, else of those read."""
-    listed = ["git", "ls-files", "--modified", "--", f"{PUBLISHED}/measurements/*/{stage}{SUFFIX}"]
+    command = ["git", "ls-files", "--modified", "--", f"{PUBLISHED}/measurements/*/{stage}{SUFFIX}"]
     try:
-        paths = subprocess.run(listed, cwd=root, capture_output=True, text=True).stdout.split()
+        paths = subprocess.run(command, cwd=root, capture_output=True, text=True).stdout.split()
     except OSError:  # no git
         paths = []
     files = paths or list(rows)

@@ -65,8 +65,8 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     _check_run(values)
     for override in overrides:
         if (dataset := _set_of(override)) not in ("", *values["sets"]):
-            on = ",".join([*values["sets"], dataset])
-            raise ParamsError(f"{override}: {dataset} is not switched on: add 'sets=[{on}]'")
+            set_list = ",".join([*values["sets"], dataset])
+            raise ParamsError(f"{override}: {dataset} is not switched on: add 'sets=[{set_list}]'")
     for dataset in common["sets"]:
         special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *special])
@@ -188,9 +188,9 @@ def check_methods(sections: dict[str, Any]) -> None:
                 variant(name) if section == "lod" else method_named(name)
             except ValueError as error:
                 raise ParamsError(f"{section}.methods: {error}") from None
-    known = (("classification", "classifiers", CLASSIFIERS), ("touch_stability", "classifiers", CLASSIFIERS),
+    choices = (("classification", "classifiers", CLASSIFIERS), ("touch_stability", "classifiers", CLASSIFIERS),
              ("conspicuity", "channels", [*CHANNELS, *OTHERS]))  # fmt: skip
-    for section, key, names in known:
+    for section, key, names in choices:
         for name in sections.get(section, {}).get(key, []):
             if name not in names:
                 raise ParamsError(f"{section}.{key}: unknown name {name!r}: {_near(name, list(names))}")
@@ -261,17 +261,17 @@ def _explain(overrides: Sequence[str], error: Exception) -> str:
             if parent in OPEN:
                 return f"{parent} has no {name.rpartition('.')[2]} yet: to add it, write +{override}"
             first, dot, rest = name.partition(".")
-            meant = difflib.get_close_matches(first, groups()["data"], n=1, cutoff=0.8) if rest in keys else []
-            near = f"did you mean {meant[0]}.{rest}?" if meant else _near(name, keys if dot else [*groups(), *config])
-            return f"unknown setting {name}: {near}"
+            match = difflib.get_close_matches(first, groups()["data"], n=1, cutoff=0.8) if rest in keys else []
+            hint = f"did you mean {match[0]}.{rest}?" if match else _near(name, keys if dot else [*groups(), *config])
+            return f"unknown setting {name}: {hint}"
     message = str(error).splitlines()[0]
     section = next((name for name in OPEN if f"'{name}'" in message), None)  # with a name that it does not have
     return message + (f" To add a name, write +{section}.NAME=..." if section else "")
 
 
 def _near(name: str, options: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
-    return f"did you mean {near[0]}?" if near else f"known: {', '.join(options)}"
+    matches = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
+    return f"did you mean {matches[0]}?" if matches else f"known: {', '.join(options)}"
 
 
 def _dotted(values: dict[str, Any], prefix: str = "") -> list[str]:

@@ -91,15 +91,15 @@ def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, other
         raise SystemExit(f"gate: no {path}: --update makes it from the metrics at hand, after a run that you trust")
     baseline = flatten(read_metrics(path))
     tolerances.check([*baseline, *metrics, *others])
-    moved = compare(metrics, baseline, tolerances)
-    if moved:
+    sentences = compare(metrics, baseline, tolerances)
+    if sentences:
         raise SystemExit(
-            "\n".join([f"gate: {len(moved)} of {len(baseline)} metrics left their bounds about {path}", *moved])
+            "\n".join([f"gate: {len(sentences)} of {len(baseline)} metrics left their bounds about {path}", *sentences])
         )
     new = sorted(set(metrics) - set(baseline))
-    more = f" and {len(new) - LISTED} more" if len(new) > LISTED else ""
+    remainder = f" and {len(new) - LISTED} more" if len(new) > LISTED else ""
     message = f"gate: {len(baseline)} metrics within their tolerances about {path}"
-    return f"{message}; not in the baseline yet: {', '.join(new[:LISTED])}{more}" if new else message
+    return f"{message}; not in the baseline yet: {', '.join(new[:LISTED])}{remainder}" if new else message
 
 
 def update(metrics: Mapping[str, float], path: Path) -> str:
@@ -125,24 +125,24 @@ def spread_of(baseline: Path) -> Path:
 
 def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
     """Writes how far each metric moved in the runs; SystemExit where one has none of the metrics."""
-    held = {name: value for name, value in read_json(baseline).items() if not name.startswith(REPORT)}
+    old_values = {name: value for name, value in read_json(baseline).items() if not name.startswith(REPORT)}
     for k, run in enumerate(runs):
-        if not set(held) & set(run):
+        if not set(old_values) & set(run):
             raise SystemExit(f"gate: folder {k + 1} of --spread has none of the metrics of {baseline}")
-    moves = widest_moves(runs, held)
+    moves = widest_moves(runs, old_values)
     write_json(spread_of(baseline), moves)
-    return f"gate: {spread_of(baseline)} written: {len(moves)} of {len(held)} metrics moved in {len(runs)} runs"
+    return f"gate: {spread_of(baseline)} written: {len(moves)} of {len(old_values)} metrics moved in {len(runs)} runs"
 
 
 def hold_rows(revision: str, root: Path = Path()) -> str:
     """The message on rows that all equal those of a git revision. SystemExit names each file with other rows."""
     committed = _git(root, "ls-tree", "-r", "--name-only", revision, "--", ROWS).decode().splitlines()
-    listed = [name for name in committed if name.endswith(SUFFIX)]
+    row_files = [name for name in committed if name.endswith(SUFFIX)]
     present = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob(f"*{SUFFIX}")]
     lines = []
-    for name in sorted({*listed, *present}):
+    for name in sorted({*row_files, *present}):
         try:
-            before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in listed else Counter()
+            before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in row_files else Counter()
             after = _rows_of((root / name).read_bytes()) if name in present else Counter()
         except (EOFError, OSError, ValueError, csv.Error, zlib.error) as error:  # the other files go on
             lines.append(f"  {name}: not a valid table ({error})")
@@ -153,7 +153,7 @@ def hold_rows(revision: str, root: Path = Path()) -> str:
     if lines:
         remedy = f"commit the files if the change is meant, or run `git checkout {revision} -- FILE`"
         raise SystemExit("\n".join([f"gate: {len(lines)} files have other rows than {revision}: {remedy}", *lines]))
-    return f"gate: the rows of {len(listed)} files equal those of {revision}"
+    return f"gate: the rows of {len(row_files)} files equal those of {revision}"
 
 
 def _rows_of(content: bytes) -> Counter:
@@ -179,11 +179,11 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--baseline", type=Path, help="default: reports/baselines/PROFILE.json")
     parser.add_argument("--tolerances", type=Path, help=f"rules (default: {TOLERANCES}; of other files: exact)")
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
-    about = "folders of metrics of runs with other seeds or threads: write how far each metric moves"
-    parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=about)
+    help_text = "folders of metrics of runs with other seeds or threads: write how far each metric moves"
+    parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=help_text)
     parser.add_argument("--markdown", action="store_true", help="print Markdown, for the summary of a run on GitHub")
-    about = "compare each row of every measurement with those of a git revision, times left out"
-    parser.add_argument("--rows", metavar="REVISION", help=about)
+    help_text = "compare each row of every measurement with those of a git revision, times left out"
+    parser.add_argument("--rows", metavar="REVISION", help=help_text)
     options = parser.parse_args(argv)
     if options.rows:
         print(hold_rows(options.rows))
@@ -192,35 +192,35 @@ def run(argv: Sequence[str]) -> None:
         parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
     if options.metrics:
         metrics = flatten({file.stem: read_metrics(file) for file in options.metrics})
-        path, rules, others = options.baseline, options.tolerances, []
+        path, rules, other_names = options.baseline, options.tolerances, []
     else:
         check_clone()
         workspace = Workspace(Path("."))
         metrics, path = measured(workspace), options.baseline or baseline_of(workspace)
         rules = options.tolerances or (TOLERANCES if TOLERANCES.exists() else None)
-        others = [name for file in path.parent.glob("*.json") for name in read_json(file)]
+        other_names = [name for file in path.parent.glob("*.json") for name in read_json(file)]
     if options.spread:
         print(write_spread([measured(workspace, folder) for folder in options.spread], path))
     elif options.update:
         print(update(metrics, path))
     else:
         try:
-            text = hold(metrics, path, allowed(rules, path), others)
-        except SystemExit as moved:
-            raise SystemExit(markdown(str(moved)) if options.markdown else moved.code) from None
+            text = hold(metrics, path, allowed(rules, path), other_names)
+        except SystemExit as failure:
+            raise SystemExit(markdown(str(failure)) if options.markdown else failure.code) from None
         print(markdown(text) if options.markdown else text)
 
 
 def markdown(text: str) -> str:
     """The message of the gate under a heading, with an item for each metric that moved."""
-    first, *moved = text.splitlines()
+    first, *sentences = text.splitlines()
     return "\n".join(
         [
             "## Metrics against their baseline",
             "",
             first.removeprefix("gate: "),
             "",
-            *(f"- {line.strip()}" for line in moved),
+            *(f"- {line.strip()}" for line in sentences),
         ]
     )
 

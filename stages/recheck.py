@@ -60,19 +60,19 @@ def run(argv: Sequence[str]) -> int:
     check_clone()
     write_digests(CODE)
     settings = [word for word in options.files if "=" in word]
-    moved = 0
+    failure_count = 0
     for name in [word for word in options.files if word not in settings]:
         try:
-            rows, ended = recheck(name, options.items, settings)
+            rows, is_complete = recheck(name, options.items, settings)
         except ValueError as error:  # the other files go on
             print(f"recheck: {error}", file=sys.stderr)
-            moved += 1
+            failure_count += 1
             continue
         print(f"{name}:\n{by_method(rows).to_string(index=False)}")
-        if ended:
+        if is_complete:
             keep(name, rows)
-        moved += not (ended and agrees(outcome(rows)))
-    return 1 if moved else 0
+        failure_count += not (is_complete and agrees(outcome(rows)))
+    return 1 if failure_count else 0
 
 
 def recheck(name: str, items: int, settings: Sequence[str] = ()) -> tuple[pd.DataFrame, bool]:
@@ -92,21 +92,21 @@ def recheck(name: str, items: int, settings: Sequence[str] = ()) -> tuple[pd.Dat
     for earlier in chain(stage):
         if dataset in graph.get(earlier, ()):
             _run(earlier, workspace)
-    few, ended = Few(items), True
-    with first_items(few):
+    selection, is_complete = Few(items), True
+    with first_items(selection):
         try:
             _run(stage, workspace)
         except Exception as error:  # what works on all items together may stumble over a few: some rows are there
-            if not few.rows:
+            if not selection.rows:
                 raise ValueError(f"{name}: {stage} needs more than {items} items, or cannot run: {error}") from error
-            ended = False
+            is_complete = False
             print(f"recheck: {name} is not kept, {stage} stopped before its end: {error}", file=sys.stderr)
-    if ended and not few.cut:  # with rows that are about all items together
+    if is_complete and not selection.cut:  # with rows that are about all items together
         return compared(read_rows(_file(name)), read_rows(workspace.measurements / f"{stage}{SUFFIX}")), True
-    again = FOLDER / "rows" / f"{dataset}-{stage}{SUFFIX}"
+    new_file = FOLDER / "rows" / f"{dataset}-{stage}{SUFFIX}"
     columns = getattr(importlib.import_module(f"stages.{stage}"), "COLUMNS", {})
-    write_rows(again, few.rows, columns, dataset, workspace.seed)
-    return compared(read_rows(_file(name)), read_rows(again)), ended
+    write_rows(new_file, selection.rows, columns, dataset, workspace.seed)
+    return compared(read_rows(_file(name)), read_rows(new_file)), is_complete
 
 
 def prepared(dataset: str, settings: Sequence[str] = ()) -> Workspace:
@@ -128,17 +128,17 @@ def prepared(dataset: str, settings: Sequence[str] = ()) -> Workspace:
 def chain(stage: str) -> list[str]:
     """The stages whose folders a stage reads, directly or not, as dvc.yaml has them, each after those it needs."""
     stages = yaml.safe_load(Path("dvc.yaml").read_text(encoding="utf-8"))["stages"]
-    needed: dict[str, None] = {}
+    sources: dict[str, None] = {}
 
     def add(name: str) -> None:
         for dependency in stages[name].get("do", stages[name]).get("deps", ()):
-            read = re.fullmatch(r"data/\$\{(?:item|key)\}/(\w+)", dependency)
-            if read and read[1] not in needed:
-                add(read[1])
-                needed[read[1]] = None
+            match = re.fullmatch(r"data/\$\{(?:item|key)\}/(\w+)", dependency)
+            if match and match[1] not in sources:
+                add(match[1])
+                sources[match[1]] = None
 
     add(stage)
-    return list(needed)
+    return list(sources)
 
 
 def _run(stage: str, workspace: Workspace) -> None:
@@ -156,15 +156,15 @@ def compared(committed: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     keys = [name for name in committed.columns if name in again.columns and name not in MEASURED]
     sides = [_numbered(rows[~rows["metric"].isin(TIMES)], keys) for rows in (committed, again)]
     sides[1] = sides[1].rename(columns={"value": "again"})
-    merged = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
+    pairs = sides[0].merge(sides[1], how="outer", on=[*keys, "number"], indicator="side")
     units = set(_units(sides[1], keys))
-    merged = merged[
-        (merged["side"] != "left_only") | np.array([unit in units for unit in _units(merged, keys)], dtype=bool)
+    pairs = pairs[
+        (pairs["side"] != "left_only") | np.array([unit in units for unit in _units(pairs, keys)], dtype=bool)
     ]
-    pair = merged[["value", "again"]]
+    pair = pairs[["value", "again"]]
     size = pair.abs().max(axis=1)
-    off = ((pair["value"] - pair["again"]).abs() / size.clip(lower=ZERO)).where(~pair.isna().all(axis=1), 0.0)
-    return merged.assign(off=off.fillna(np.inf).where(merged["side"] == "both"))
+    differences = ((pair["value"] - pair["again"]).abs() / size.clip(lower=ZERO)).where(~pair.isna().all(axis=1), 0.0)
+    return pairs.assign(off=differences.fillna(np.inf).where(pairs["side"] == "both"))
 
 
 def _units(rows: pd.DataFrame, keys: list[str]) -> list[tuple[str, ...]]:

@@ -58,17 +58,17 @@ class Schedule:
         """A stage ended well; if it ran, those that need it must be looked at."""
         self.ended.add(name)
         if executed:
-            self.changed |= {stage for stage, needed in self.needs.items() if name in needed}
+            self.changed |= {stage for stage, sources in self.needs.items() if name in sources}
 
     def fail(self, name: str) -> list[str]:
         """A stage failed: returns the stages that cannot run now."""
-        lost = {name}
+        blocked_stages = {name}
         for stage in self.waiting:  # in the order of the graph: what a stage needs stands before it
-            if self.needs[stage] & lost:
-                lost.add(stage)
+            if self.needs[stage] & blocked_stages:
+                blocked_stages.add(stage)
         self.failed.append(name)
-        self.waiting = [stage for stage in self.waiting if stage not in lost]
-        return sorted(lost - {name})
+        self.waiting = [stage for stage in self.waiting if stage not in blocked_stages]
+        return sorted(blocked_stages - {name})
 
 
 def read_graph(root: Path) -> tuple[dict[str, set[str]], set[str]]:
@@ -79,7 +79,7 @@ def read_graph(root: Path) -> tuple[dict[str, set[str]], set[str]]:
     graph = repo.index.graph
     with repo.lock:
         changed = {stage.addressing for stage in graph if stage.cmd and stage.changed()}
-    needs = {stage.addressing: {needed.addressing for needed in graph.successors(stage)} for stage in graph}
+    needs = {stage.addressing: {source.addressing for source in graph.successors(stage)} for stage in graph}
     return {name: needs[name] for name in TopologicalSorter(needs).static_order()}, changed
 
 
@@ -92,8 +92,8 @@ def reproduce(root: Path, name: str, log: Path, send: Any) -> None:
         os.dup2(file.fileno(), 2)
     logging.getLogger("dvc").setLevel(logging.WARNING)  # its advice on git, once a stage, hides what the stage says
     stages = patient(lambda: Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True))  # type: ignore[arg-type] (its decorators)
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    send.send((bool(stages), used.ru_utime + used.ru_stime))
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    send.send((bool(stages), usage.ru_utime + usage.ru_stime))
 
 
 def patient(call: Callable[[], Any]) -> Any:
@@ -167,8 +167,8 @@ def _ended(root, name, process, receive, began, schedule):
     """Takes note of how a stage ended, and prints what it said and took."""
     text = _log(root, name).read_text(errors="replace").strip()
     if process.exitcode:
-        lost = schedule.fail(name)
-        tqdm.write(f"{name} failed:\n{text}" + (f"\nleft out: {', '.join(lost)}" if lost else ""), file=sys.stderr)
+        stages = schedule.fail(name)
+        tqdm.write(f"{name} failed:\n{text}" + (f"\nleft out: {', '.join(stages)}" if stages else ""), file=sys.stderr)
         return
     executed, processor = receive.recv()
     schedule.end(name, executed)

@@ -81,9 +81,9 @@ def sets_there(sets: Mapping[str, Sequence[str]], data: Path) -> dict[str, Seque
     present = sorted(path.stem for path in (data / "meshes").glob("*.npz"))
     if not present:
         return dict(sets)
-    absent = {name: [item for item in objects if item not in present] for name, objects in sets.items()}
-    whole = {name: objects for name, objects in sets.items() if not absent[name]}
-    left_out = "; ".join(f"{name} ({', '.join(missing)})" for name, missing in absent.items() if missing)
+    missing_by_set = {name: [item for item in objects if item not in present] for name, objects in sets.items()}
+    whole = {name: objects for name, objects in sets.items() if not missing_by_set[name]}
+    left_out = "; ".join(f"{name} ({', '.join(missing)})" for name, missing in missing_by_set.items() if missing)
     if not whole:
         raise ParamsError(
             f"{data.name} does not have all objects of any set of classification.sets: {left_out}; "
@@ -163,8 +163,8 @@ def prepare(argv: Sequence[str]) -> None:
                 )
             print(f"sweep: {', '.join(missing)} first: `dvc repro` makes them", file=sys.stderr, flush=True)
             with results_in(OUT.parent):
-                failed = subprocess.run([sys.executable, "-m", "dvc", "repro", *missing]).returncode
-            if failed:
+                exit_status = subprocess.run([sys.executable, "-m", "dvc", "repro", *missing]).returncode
+            if exit_status:
                 raise ParamsError(f"dvc repro {' '.join(missing)} failed, as said above")
     write_json(BASES, bases)
 
@@ -175,12 +175,12 @@ def results_in(folder: Path) -> Iterator[None]:
 
     Settings that a killed sweep has left there are put back first.
     """
-    chosen = f"out: {folder.as_posix()}"
+    out_line = f"out: {folder.as_posix()}"
     text = FILE.read_text()
-    if BEFORE.exists() and chosen in text.splitlines():
+    if BEFORE.exists() and out_line in text.splitlines():
         text = BEFORE.read_text()
     write_text(BEFORE, text)
-    write_text(FILE, re.sub(r"^out: .*$", chosen, text, flags=re.MULTILINE))
+    write_text(FILE, re.sub(r"^out: .*$", out_line, text, flags=re.MULTILINE))
     try:
         yield
     finally:
@@ -250,9 +250,9 @@ def conclude(folder: Path) -> None:
     parts = [read_table(path) for path in sorted(folder.rglob(ROWS))]
     if parts:
         print(table(pd.concat(parts, ignore_index=True)).to_string(index=False))
-    failed = [path.read_text() for path in sorted(folder.rglob(FAILURE))]
-    if failed:
-        sys.exit(f"sweep: {len(failed)} of {number(len(parts) + len(failed), 'job')} failed: {'; '.join(failed)}")
+    texts = [path.read_text() for path in sorted(folder.rglob(FAILURE))]
+    if texts:
+        sys.exit(f"sweep: {len(texts)} of {number(len(parts) + len(texts), 'job')} failed: {'; '.join(texts)}")
 
 
 def table(frame: pd.DataFrame) -> pd.DataFrame:

@@ -158,8 +158,8 @@ def _named(archive: str | Path | IO[bytes]) -> Iterator[None]:
 @contextmanager
 def zipped(archive: str | Path | IO[bytes]) -> Iterator[zipfile.ZipFile]:
     """An open zip archive; whatever is wrong with it inside the block is a FetchError that names it."""
-    with _named(archive), zipfile.ZipFile(archive) as stored:
-        yield stored
+    with _named(archive), zipfile.ZipFile(archive) as zip_file:
+        yield zip_file
 
 
 def debian_files(path: str | Path) -> Iterator[tuple[str, IO[bytes]]]:
@@ -188,16 +188,16 @@ def read_members(archive: str | Path | IO[bytes], names: Iterable[str]) -> Itera
     Raises FetchError, which names the archive, for one that is damaged or misses a member, and for a member that would
     escape a folder, is a link, or states more than LARGEST bytes.
     """
-    with zipped(archive) as stored:
+    with zipped(archive) as zip_file:
         for name in names:
             try:
-                member = stored.getinfo(name)
+                member = zip_file.getinfo(name)
             except KeyError:
                 raise FetchError(f"{archive}: no member {_inside(archive, name, 0)!r}") from None
             _inside(archive, name, member.file_size)
             if stat.S_ISLNK(member.external_attr >> 16):
                 raise FetchError(f"{archive}: member {name!r} is a link")
-            yield name, stored.read(name)
+            yield name, zip_file.read(name)
 
 
 def read_tar_members(archive: str | Path, names: Iterable[str]) -> Iterator[tuple[str, bytes]]:
@@ -206,9 +206,9 @@ def read_tar_members(archive: str | Path, names: Iterable[str]) -> Iterator[tupl
     Raises FetchError as read_members does. A link is no member.
     """
     missing = set(names)
-    with _named(archive), tarfile.open(archive, mode="r|*") as stored:
-        for member in stored:
-            content = stored.extractfile(member) if member.isfile() and member.name in missing else None
+    with _named(archive), tarfile.open(archive, mode="r|*") as tar_file:
+        for member in tar_file:
+            content = tar_file.extractfile(member) if member.isfile() and member.name in missing else None
             if content is not None:
                 missing.remove(_inside(archive, member.name, member.size))
                 yield member.name, content.read()

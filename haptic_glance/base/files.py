@@ -148,8 +148,8 @@ def read_arrays(path: str | Path, prefix: str = "") -> dict[str, np.ndarray]:
     """{name: array} of an .npz whose names begin with `prefix`; never unpickles. ValueError names any other file."""
     with open(path, "rb") as stream:
         try:
-            with np.load(stream, allow_pickle=False) as stored:
-                return {name: stored[name] for name in stored.files if name.startswith(prefix)}
+            with np.load(stream, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files if name.startswith(prefix)}
         except Exception as error:  # zipfile, zlib, tokenize and numpy raise many types; each means a damaged file
             raise ValueError(f"{path} is not a sound .npz file: {' '.join(str(error).split())[:120]}") from None
 
@@ -170,8 +170,8 @@ def read_table(path: str | Path, dtype: Any = None) -> pd.DataFrame:
     """
     try:
         with open(path, "rb") as stream:
-            packed = "gzip" if Path(path).suffix == ".gz" else None
-            return pd.read_csv(stream, dtype=dtype, compression=packed, low_memory=False)  # one guess for a column
+            compression = "gzip" if Path(path).suffix == ".gz" else None
+            return pd.read_csv(stream, dtype=dtype, compression=compression, low_memory=False)  # one guess for a column
     except (ValueError, gzip.BadGzipFile, EOFError, zlib.error) as error:
         raise ValueError(f"{path} is not a valid table: {error}") from None
 

@@ -76,8 +76,8 @@ def viewer_data(
     place, stops = (np.linspace(0, 1, count) for count in (SHADES, len(ERROR_COLOURS)))
     errors = np.stack([np.interp(place, stops, channel) for channel in np.transpose(ERROR_COLOURS)], axis=1)
     shades = np.concatenate([colours, errors]).round().astype(np.uint8)
-    packed = base64.b64encode(shades.tobytes()).decode("ascii")
-    return {"objects": list(objects), "left_out": list(left_out), "colours": packed}
+    shade_text = base64.b64encode(shades.tobytes()).decode("ascii")
+    return {"objects": list(objects), "left_out": list(left_out), "colours": shade_text}
 
 
 def pack(
@@ -93,14 +93,14 @@ def pack(
     store = Store()
     levels = [level for _, ladder in ladders.values() for level in ladder]
     top = max((float(np.quantile(level.error, TOP)) for level in levels), default=0.0)
-    packed: dict[str, Any] = {"name": name, "faces": faces, "full": _mesh(full, store), "error_top": top}
-    packed["saliency"] = {key: {"label": text, "values": store.put_shades(v)} for key, (text, v) in saliency.items()}
-    packed["points"] = {key: {"label": text, "ids": store.put_words(ids)} for key, (text, ids) in points.items()}
-    packed["ladders"] = {
+    record: dict[str, Any] = {"name": name, "faces": faces, "full": _mesh(full, store), "error_top": top}
+    record["saliency"] = {key: {"label": text, "values": store.put_shades(v)} for key, (text, v) in saliency.items()}
+    record["points"] = {key: {"label": text, "ids": store.put_words(ids)} for key, (text, ids) in points.items()}
+    record["ladders"] = {
         key: {"label": text, "levels": [_level(level, top, store) for level in ladder]}
         for key, (text, ladder) in ladders.items()
     }
-    return packed | {"store": store.text()}
+    return record | {"store": store.text()}
 
 
 def _mesh(mesh: Mesh, store: Store) -> dict[str, Any]:

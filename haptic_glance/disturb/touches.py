@@ -133,8 +133,8 @@ def snap_with_blended_normals(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarra
     _, face, weights = closest(mesh, points)
     corners, weights = mesh.faces[face], weights[:, :, None]
     ids, back = np.unique(corners, return_inverse=True)
-    normals, can = np.zeros((len(ids), 3)), touchable(mesh, ids)
-    normals[can] = sensor_normals(mesh, ids[can])
+    normals, is_touchable = np.zeros((len(ids), 3)), touchable(mesh, ids)
+    normals[is_touchable] = sensor_normals(mesh, ids[is_touchable])
     blended = (weights * normals[back.reshape(corners.shape)]).sum(axis=1)
     return (weights * mesh.vertices[corners]).sum(axis=1), unit(blended)
 

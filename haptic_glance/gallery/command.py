@@ -79,8 +79,8 @@ def show(name: str, title: str, options: argparse.Namespace, out: Path) -> int:
                 with WallClock() as watch:
                     exhibits.append(exhibit(file, label, out / label, options.up, options.count, options.levels))
                 report(name, f"{file.name}: {watch.seconds:.1f} s")
-                for target, why in exhibits[-1].missing.items():
-                    report(name, f"{file.name} has no level {target}: {why}")
+                for target, reason in exhibits[-1].missing.items():
+                    report(name, f"{file.name} has no level {target}: {reason}")
             except Exception as error:  # one mesh must not cost the others theirs
                 if os.environ.get(DEBUG):
                     raise
@@ -116,7 +116,7 @@ def figures(exhibits: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[
         }
         for item in exhibits
     ]  # fmt: skip
-    return rows + [{"mesh": name, "error": why} for name, why in failures.items()]
+    return rows + [{"mesh": name, "error": reason} for name, reason in failures.items()]
 
 
 def listing(exhibits: Sequence[Exhibit], out: Path) -> str:

@@ -85,8 +85,8 @@ def exhibit(
     write_text(folder / "points.csv", as_csv(points))
 
     mesh, notes = repaired(original)
-    same = len(mesh.vertices) == len(original.vertices)
-    values = detection.saliency if same else saliency_of(bake_texture(mesh))
+    keeps_vertices = len(mesh.vertices) == len(original.vertices)
+    values = detection.saliency if keeps_vertices else saliency_of(bake_texture(mesh))
     ladder, missing = simplified(mesh, values, levels, folder, file, name, original)
     user_mesh = UserMesh(mesh, name)
     touches, images = touch(user_mesh, points, folder)
@@ -98,8 +98,8 @@ def simplified(
     mesh: Mesh, values: np.ndarray, levels: Sequence[str], folder: Path, file: Path, name: str, original: Mesh
 ) -> tuple[list[Level], dict[str, str]]:
     """(the Levels, written into the folder, {level: why there is none}) of a mesh by its saliency (n,)."""
-    nothing = np.zeros(0, dtype=np.int64)
-    task, parts = SimplificationTask(mesh, values, nothing, nothing, values, BACKEND, False), parts_of(file)
+    no_points = np.zeros(0, dtype=np.int64)
+    task, parts = SimplificationTask(mesh, values, no_points, no_points, values, BACKEND, False), parts_of(file)
     ladder, missing = [], {}
     for target in levels:
         try:
@@ -133,12 +133,12 @@ def touch(
     """
     place = KDTree(user_mesh.source.vertices)
     vertices = np.asarray(place.query(np.array([row[2:5] for row in points]))[1])  # repairs may renumber them
-    can = touchable(user_mesh.mesh, vertices)
-    places = user_mesh.places([str(vertex) for vertex in vertices[can]])
+    is_touchable = touchable(user_mesh.mesh, vertices)
+    places = user_mesh.places([str(vertex) for vertex in vertices[is_touchable]])
     axes = sensor_axes(places.normals)
     raw = distances_at(user_mesh.surface, places.positions, axes, CELLS, PITCH)
     images, rows = as_images(raw, PITCH), places_rows(user_mesh, places, raw)
-    for row, rank in zip(rows, np.flatnonzero(can) + 1, strict=True):
+    for row, rank in zip(rows, np.flatnonzero(is_touchable) + 1, strict=True):
         row["index"] = int(rank)
     write_arrays(folder / ARRAYS, **saved_arrays(user_mesh, places, axes, raw, images, PITCH))
     write_text(folder / TABLE, places_csv(rows, user_mesh.digits))

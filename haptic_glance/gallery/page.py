@@ -114,10 +114,10 @@ def levels_html(item: Exhibit, folder: str) -> str:
             [link, f"{faces:,}", f"{100 * faces / total:.3g}", f"{level.error.mean():.2g}", f"{level.error.max():.2g}"]
         )
     heads = ["file", "faces", "% of all", "mean distance, %", "largest, %"]
-    lost = "".join(f"<li>{escape(f'{target}: {why}')}</li>" for target, why in item.missing.items())
+    failures = "".join(f"<li>{escape(f'{target}: {reason}')}</li>" for target, reason in item.missing.items())
     note = '<p class="help">Distances of the mesh\'s vertices to the level, in % of its diagonal.</p>'
     body = f"{table(heads, rows)}{note}" if rows else ""
-    return f"<h3>With fewer faces</h3>{body}" + (f"<ul>{lost}</ul>" if lost else "")
+    return f"<h3>With fewer faces</h3>{body}" + (f"<ul>{failures}</ul>" if failures else "")
 
 
 def places_html(item: Exhibit) -> str:
@@ -145,20 +145,20 @@ def files_html(item: Exhibit, folder: str) -> str:
 
 def failures_html(failures: Mapping[str, str]) -> str:
     """The files that were left out, and why; empty where none was."""
-    items = "".join(f"<li>{escape(f'{name}: {why}')}</li>" for name, why in failures.items())
+    items = "".join(f"<li>{escape(f'{name}: {reason}')}</li>" for name, reason in failures.items())
     return f'<div class="failures" role="note">Left out:<ul>{items}</ul></div>' if items else ""
 
 
 def data_uri(image: np.ndarray, wide: int | None = None) -> str:
     """A picture (h, w) or (h, w, 3) u1 as WebP, or, with its pixels unchanged, as PNG."""
-    picture, packed = Image.fromarray(image), io.BytesIO()
+    picture, stream = Image.fromarray(image), io.BytesIO()
     if wide:
         picture.thumbnail((2 * wide, 2 * wide), Image.Resampling.LANCZOS)  # fine screens have two pixels for one
-        picture.save(packed, "WEBP", quality=70)
+        picture.save(stream, "WEBP", quality=70)
     else:
-        picture.save(packed, "PNG")
+        picture.save(stream, "PNG")
     kind = "webp" if wide else "png"
-    return f"data:image/{kind};base64,{base64.b64encode(packed.getvalue()).decode('ascii')}"
+    return f"data:image/{kind};base64,{base64.b64encode(stream.getvalue()).decode('ascii')}"
 
 
 def as_script(value: object) -> str:

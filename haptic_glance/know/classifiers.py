@@ -187,6 +187,6 @@ def classifier(name: str, seed: int = 0, kind: str = "features", scaling: str = 
 def check_name(name: str) -> None:
     """Raises ValueError that suggests the nearest name for one that is not in CLASSIFIERS."""
     if name not in CLASSIFIERS:
-        near = difflib.get_close_matches(name, CLASSIFIERS, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(CLASSIFIERS)}"
+        close_names = difflib.get_close_matches(name, CLASSIFIERS, n=1)
+        hint = f"did you mean {close_names[0]}?" if close_names else f"choose one of {', '.join(CLASSIFIERS)}"
         raise ValueError(f"unknown classifier {name}: {hint}")

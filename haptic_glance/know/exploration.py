@@ -69,11 +69,11 @@ class Exploration:
         """
         position, axes = place.positions[:1], sensor_axes(place.normals[:1])
         image = press_at(self.surface, position, axes, CELLS, PITCH)[0]
-        again = (self.positions == position).all(axis=1).any()
+        is_repeat = (self.positions == position).all(axis=1).any()
         self.positions = np.concatenate([self.positions, position])
         self.normals = np.concatenate([self.normals, place.normals[:1]])
         self.images = np.concatenate([self.images, image[None]])
-        self.beliefs.append(self.belief if again else self.belief.after(image, position[0]))
+        self.beliefs.append(self.belief if is_repeat else self.belief.after(image, position[0]))
         return image
 
     @cached_property

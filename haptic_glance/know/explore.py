@@ -48,8 +48,8 @@ def stop(beliefs: np.ndarray, truth: np.ndarray, confidence: float) -> tuple[np.
     object after the last touch. It is below `confidence` if all touches did not suffice.
     """
     best = np.exp(beliefs.max(axis=2))
-    reached = best >= confidence
-    last_index = np.where(reached.any(axis=1), reached.argmax(axis=1), beliefs.shape[1] - 1)
+    is_confident = best >= confidence
+    last_index = np.where(is_confident.any(axis=1), is_confident.argmax(axis=1), beliefs.shape[1] - 1)
     rows = np.arange(len(beliefs))
     return last_index + 1, best[rows, last_index], beliefs[rows, last_index].argmax(axis=1) == truth
 
@@ -89,8 +89,8 @@ def by_gain(state: State) -> np.ndarray:
         state.log_likelihoods[:, None, None, None] + state.predicted, state.touches + 1
     )
     entropy = -np.einsum("eqcoj,eqcoj->eqco", np.exp(log_after), log_after)
-    now = np.exp(state.calibration.log_belief(state.log_likelihoods, max(state.touches, 1)))
-    return -np.einsum("eqco,eqco,ec->eq", entropy, state.probabilities, now)
+    belief = np.exp(state.calibration.log_belief(state.log_likelihoods, max(state.touches, 1)))
+    return -np.einsum("eqco,eqco,ec->eq", entropy, state.probabilities, belief)
 
 
 STRATEGIES = {"saliency": by_saliency, "random": at_random, "gain": by_gain}

@@ -201,10 +201,10 @@ def confusable(similarities: np.ndarray, labels: ArrayLike, among: ArrayLike | N
 
 def as_many(labels: ArrayLike, kept: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """(k,) boolean: of each object as many random imprints as the mask `kept` (k,) has, a control of selection."""
-    labels, chosen = np.asarray(labels), np.zeros(len(kept), dtype=bool)
+    labels, selection = np.asarray(labels), np.zeros(len(kept), dtype=bool)
     for label in np.unique(labels):
-        chosen[random.permutation(np.flatnonzero(labels == label))[: kept[labels == label].sum()]] = True
-    return chosen
+        selection[random.permutation(np.flatnonzero(labels == label))[: kept[labels == label].sum()]] = True
+    return selection
 
 
 def _unit(images):

@@ -226,15 +226,15 @@ class Library:
         outcomes, probabilities = nearest_outcomes(distances, self._owners)
         if not self.placed:
             return Expected(self._own[outcomes], probabilities)
-        predicted = [self._at_place(*at) for at in zip(places.positions, outcomes, strict=True)]
+        predicted = [self._at_place(*place) for place in zip(places.positions, outcomes, strict=True)]
         return Expected(np.stack(predicted), probabilities)
 
     def gains(self, belief: Belief, expected: Expected) -> np.ndarray:
         """(k,) nats by which the entropy of the belief is expected to fall with a touch at each of k places."""
-        nothing = np.zeros((1, len(expected.predicted)))
-        parts = nothing, expected.predicted[None], expected.probabilities[None], self.calibration
-        now = belief.values[belief.values > 0]
-        return by_gain(State(belief.log_likelihoods[None], belief.touches, *parts))[0] - now @ np.log(now)
+        random_scores = np.zeros((1, len(expected.predicted)))
+        parts = random_scores, expected.predicted[None], expected.probabilities[None], self.calibration
+        beliefs = belief.values[belief.values > 0]
+        return by_gain(State(belief.log_likelihoods[None], belief.touches, *parts))[0] - beliefs @ np.log(beliefs)
 
     def _log_likelihood(self, kernel, positions, ids):
         """(k, classes) of touches at positions (k, 3) whose kernel (k, n) with the learned touches `ids` is given.

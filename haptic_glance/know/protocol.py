@@ -246,9 +246,9 @@ def region_holdout(
         order = np.argsort(
             -places[members] @ direction if side else distances[random.integers(len(members))], kind="stable"
         )
-        region, rest = np.split(order, [held_out])
+        region, remaining = np.split(order, [held_out])
         test.append(members[region])
-        train.append(members[rest[(distances[rest][:, region] > min_distance).all(axis=1)]])
+        train.append(members[remaining[(distances[remaining][:, region] > min_distance).all(axis=1)]])
     counts = [len(part) for part in train]
     if min(counts, default=0) == 0 or sum(counts) < COMPONENTS:
         return None
@@ -260,5 +260,5 @@ def _equal_size_holdout(truth, split, random_state):
     counts = np.bincount(truth[split[0]])
     train, test = random_holdout(truth, random_state)
     random = np.random.default_rng(random_state)
-    kept = [random.permutation(train[truth[train] == label])[:count] for label, count in enumerate(counts)]
-    return np.concatenate(kept), test
+    train_ids = [random.permutation(train[truth[train] == label])[:count] for label, count in enumerate(counts)]
+    return np.concatenate(train_ids), test

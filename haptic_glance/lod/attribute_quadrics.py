@@ -20,13 +20,13 @@ SLIVER = 1e-6  # height over length of a face, below which its gradient is round
 
 def check_attributes(mesh: Mesh, weights: Mapping[str, float] | None) -> Attributes:
     """(name, weight) of the attributes that count, by name; raises ValueError for what is no weight of this mesh's."""
-    attributes, absent = dict(weights or {}), {"colors": mesh.colors is None, "uv": mesh.texture is None}
+    attributes, is_absent = dict(weights or {}), {"colors": mesh.colors is None, "uv": mesh.texture is None}
     for name, weight in attributes.items():
         if name not in NAMES:
             raise ValueError(f"unknown attribute {name!r}: choose from {', '.join(NAMES)}")
         if not 0 <= weight < np.inf:
             raise ValueError(f"the weight of {name} must be 0 or more, got {weight}")
-        if weight and absent.get(name):
+        if weight and is_absent.get(name):
             raise ValueError(f"the mesh has no {name}: leave out their weight")
     return tuple(sorted((name, float(weight)) for name, weight in attributes.items() if weight))
 
@@ -63,11 +63,11 @@ def attribute_quadrics(
 def _seams(mesh, opposite):
     """(3 m,) boolean: half-edges across which the texture coordinates or the images differ."""
     uv, image = mesh.texture.uv.reshape(-1, 2), np.repeat(mesh.texture.image, 3)
-    ahead = np.roll(mesh.texture.uv, -1, axis=1).reshape(-1, 2)
+    next_uv = np.roll(mesh.texture.uv, -1, axis=1).reshape(-1, 2)
     end = np.arange(len(uv)).reshape(-1, 3)
     head = np.roll(end, -1, axis=1).ravel()[opposite]
-    off = np.maximum(np.abs(uv - uv[head]), np.abs(ahead - uv[opposite])).max(axis=1)
-    return (opposite >= 0) & ((off > SAME) | (image != image[opposite]))
+    jump = np.maximum(np.abs(uv - uv[head]), np.abs(next_uv - uv[opposite])).max(axis=1)
+    return (opposite >= 0) & ((jump > SAME) | (image != image[opposite]))
 
 
 def _values(mesh, weights):

@@ -49,11 +49,11 @@ def carry_colors(reference: Mesh, points: np.ndarray) -> np.ndarray:
     face, weights = closest(reference, points)
     assert reference.colors is not None
     colors = np.einsum("ij,ijk->ik", weights, reference.colors[reference.faces[face]].astype(np.float64))
-    used = np.unique(reference.faces)
-    ids = np.unique(np.concatenate([reference.vertices[used], points]), axis=0, return_inverse=True)[1].ravel()
+    vertex_ids = np.unique(reference.faces)
+    ids = np.unique(np.concatenate([reference.vertices[vertex_ids], points]), axis=0, return_inverse=True)[1].ravel()
     owner = np.full(ids.max() + 1, -1)
-    owner[ids[: len(used)]] = used
-    vertex = owner[ids[len(used) :]]
+    owner[ids[: len(vertex_ids)]] = vertex_ids
+    vertex = owner[ids[len(vertex_ids) :]]
     colors[vertex >= 0] = reference.colors[vertex[vertex >= 0]]
     return np.rint(colors).astype(np.uint8)
 
@@ -73,25 +73,25 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     corners = mesh.vertices[mesh.faces]
     centres = corners.mean(axis=1)
     index = SurfaceIndex(reference)
-    under = index.nearest(centres)[1]
+    closest_faces = index.nearest(centres)[1]
     inside = corners + INWARDS * (centres[:, None] - corners)
-    nearest = np.repeat(under, 3).reshape(-1, 3)  # in charts of one face; in the others it is searched for
+    nearest = np.repeat(closest_faces, 3).reshape(-1, 3)  # in charts of one face; in the others it is searched for
     sources = _by_value(chart)
-    for number, faces in _by_value(chart[under]).items():
+    for number, faces in _by_value(chart[closest_faces]).items():
         if len(sources[number]) > 1:
-            used, ids = np.unique(reference.faces[sources[number]], return_inverse=True)
-            part = SurfaceIndex(Mesh(reference.vertices[used], ids.reshape(-1, 3)))
+            vertex_ids, ids = np.unique(reference.faces[sources[number]], return_inverse=True)
+            part = SurfaceIndex(Mesh(reference.vertices[vertex_ids], ids.reshape(-1, 3)))
             nearest[faces] = sources[number][part.nearest(inside[faces].reshape(-1, 3))[1]].reshape(-1, 3)
-    nearest, at = nearest.ravel(), corners.reshape(-1, 3)
+    nearest, corner_points = nearest.ravel(), corners.reshape(-1, 3)
     weights = index.weights(inside.reshape(-1, 3), nearest)
-    uv = _extrapolated(reference, nearest, weights, at, BEYOND).reshape(*mesh.faces.shape, 2)
+    uv = _extrapolated(reference, nearest, weights, corner_points, BEYOND).reshape(*mesh.faces.shape, 2)
     # A corner across a seam between two ends of one chart (the back of a cylinder) got the coordinates of the other
     # end.
-    at_centre = np.repeat(index.weights(centres, under), 3, axis=0)
-    ahead = _extrapolated(reference, np.repeat(under, 3), at_centre, at, FAR).reshape(uv.shape)
-    astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[under]][:, None] / 2
+    at_centre = np.repeat(index.weights(centres, closest_faces), 3, axis=0)
+    ahead = _extrapolated(reference, np.repeat(closest_faces, 3), at_centre, corner_points, FAR).reshape(uv.shape)
+    astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[closest_faces]][:, None] / 2
     uv[astray] = ahead[astray]
-    return replace(reference.texture, uv=uv, image=reference.texture.image[under])
+    return replace(reference.texture, uv=uv, image=reference.texture.image[closest_faces])
 
 
 def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
@@ -127,8 +127,8 @@ def _shared_edges(mesh):
     """(first face (e,), second face (e,), length (e,) of the larger jump at the two ends) of the edges of two faces."""
     tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
     at_tail, at_head = mesh.texture.uv.reshape(-1, 2), np.roll(mesh.texture.uv, -1, axis=1).reshape(-1, 2)
-    turned = (tails > heads)[:, None]
-    low, high = np.where(turned, at_head, at_tail), np.where(turned, at_tail, at_head)
+    is_reversed = (tails > heads)[:, None]
+    low, high = np.where(is_reversed, at_head, at_tail), np.where(is_reversed, at_tail, at_head)
     first, second = edge_pairs(mesh.faces, len(mesh.vertices))
     jumps = [np.linalg.norm(ends[first] - ends[second], axis=1) for ends in (low, high)]
     return first // 3, second // 3, np.maximum(*jumps)

@@ -49,9 +49,9 @@ def thinned(
     """
     with ThreadPoolExecutor(cpu_count()) as pool:  # the kernels run side by side
         parts = list(pool.map(lambda members: _thin(mesh, members, share, frozen[members], weights), split(mesh)))
-    joined = _joined(mesh, parts, weights)
-    after = faults(joined[0])
-    return (mesh, frozen, weights) if after != NONE and after.added(faults(mesh)) else joined
+    joint_parts = _joined(mesh, parts, weights)
+    after = faults(joint_parts[0])
+    return (mesh, frozen, weights) if after != NONE and after.added(faults(mesh)) else joint_parts
 
 
 def split(mesh: Mesh) -> list[np.ndarray]:
@@ -71,9 +71,9 @@ def _thin(mesh, members, share, frozen, weights) -> Part:
     surface, source, (middle, size) = half_edge_mesh(block, frozen, None if weights is None else weights[ids])
     least = RIM * int(surface.locked.sum())
     decimate(surface, None, max(int(share * len(members)), least), *ATTEMPTS[0], FOLD)
-    triangles, used = compact(surface.corner, surface.locked, source, len(ids))
-    origin, locked = ids[source[used]], surface.locked[used]
-    vertices = np.where(locked[:, None], mesh.vertices[origin], surface.position[used] * size + middle)
+    triangles, surface_ids = compact(surface.corner, surface.locked, source, len(ids))
+    origin, locked = ids[source[surface_ids]], surface.locked[surface_ids]
+    vertices = np.where(locked[:, None], mesh.vertices[origin], surface.position[surface_ids] * size + middle)
     return vertices, triangles.reshape(-1, 3), origin, locked, frozen[surface.corner[::3] >= 0]
 
 
@@ -94,6 +94,6 @@ def _joined(mesh, parts, weights):
     vertices, origin, locked, frozen = (np.concatenate([part[k] for part in parts]) for k in (0, 2, 3, 4))
     owner = np.zeros(len(mesh.vertices), dtype=np.int64)
     owner[origin[locked]] = np.flatnonzero(locked)
-    used, corners = np.unique(np.where(locked, owner[origin], np.arange(len(origin)))[faces], return_inverse=True)
-    joined = Mesh(vertices[used], corners.reshape(-1, 3))
-    return joined, frozen, None if weights is None else weights[origin[used]]
+    vertex_ids, corners = np.unique(np.where(locked, owner[origin], np.arange(len(origin)))[faces], return_inverse=True)
+    joint_mesh = Mesh(vertices[vertex_ids], corners.reshape(-1, 3))
+    return joint_mesh, frozen, None if weights is None else weights[origin[vertex_ids]]

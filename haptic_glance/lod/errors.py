@@ -109,7 +109,7 @@ def _weighted(weights, distances):
     if weights[0].sum() == 0:
         raise ValueError("no sample of the reference fell where its saliency is above zero: take more samples")
     means = [
-        (weight @ apart) / weight.sum() for weight, apart in zip(weights, distances, strict=True) if weight.sum() > 0
+        (weight @ gaps) / weight.sum() for weight, gaps in zip(weights, distances, strict=True) if weight.sum() > 0
     ]
     return max(means)
 

@@ -106,11 +106,11 @@ def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, 
     if path.suffix.lower() not in SINGLE or not mesh.diagonal:
         return
     with np.errstate(over="ignore", under="ignore"):
-        moved = float(np.abs(mesh.vertices - mesh.vertices.astype(np.float32)).max())
-    if not np.isfinite(moved):
+        rounding_error = float(np.abs(mesh.vertices - mesh.vertices.astype(np.float32)).max())
+    if not np.isfinite(rounding_error):
         raise ValueError(f"{path.name}: its coordinates are too large for single precision: scale it, or write .obj")
-    if moved > MOST_MOVED * mesh.diagonal:
-        share, remedy = 100 * moved / mesh.diagonal, f"move it to the origin{text}"
+    if rounding_error > MOST_MOVED * mesh.diagonal:
+        share, remedy = 100 * rounding_error / mesh.diagonal, f"move it to the origin{text}"
         warnings.warn(
             f"{path.name}: single precision moves vertices by {share:.2g} % of the diagonal: {remedy}", stacklevel=3
         )
@@ -189,9 +189,9 @@ def _converted(mesh, name, parts, carried=None) -> trimesh.Trimesh | trimesh.Sce
 
 
 def _plain_part(mesh, ids, carried):
-    used, faces = np.unique(mesh.faces[ids], return_inverse=True)
-    colors = None if mesh.colors is None else mesh.colors[used]
-    return _made(mesh, used, faces.reshape(-1, 3), carried, vertex_colors=colors)
+    vertex_ids, faces = np.unique(mesh.faces[ids], return_inverse=True)
+    colors = None if mesh.colors is None else mesh.colors[vertex_ids]
+    return _made(mesh, vertex_ids, faces.reshape(-1, 3), carried, vertex_colors=colors)
 
 
 def _made(mesh, vertices, faces, carried, **looks):
@@ -241,9 +241,9 @@ class _File:
 def _picture(picture, glb):
     """The picture of a file's bytes or a PIL image, as a PIL image that has a format, or as a _File."""
     if not isinstance(picture, bytes):
-        packed = io.BytesIO()
-        picture.save(packed, "PNG")
-        picture = packed.getvalue()
+        stream = io.BytesIO()
+        picture.save(stream, "PNG")
+        picture = stream.getvalue()
     return _File(picture) if glb else Image.open(io.BytesIO(picture))
 
 

@@ -80,14 +80,14 @@ def _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, turn, sh
             held(surface) if wedges is None else surface._replace(locked=surface.locked | at_jumps(surface, wedges))
         )
         refit(fitted, points, corner, weight, SAMPLES * count // 2, fold)
-    triangles, used = compact(without_hidden(surface), surface.locked, source, len(mesh.vertices))
-    vertices = surface.position[used] * size + middle
-    locked = surface.locked[used]
-    vertices[locked] = mesh.vertices[source[used[locked]]]
+    triangles, vertex_ids = compact(without_hidden(surface), surface.locked, source, len(mesh.vertices))
+    vertices = surface.position[vertex_ids] * size + middle
+    locked = surface.locked[vertex_ids]
+    vertices[locked] = mesh.vertices[source[vertex_ids[locked]]]
     colors = None
     if wedges is not None and "colors" in dict(attributes):
-        colors = merged_colors(surface, wedges, dict(attributes)["colors"])[used]
-        colors[locked] = mesh.colors[source[used[locked]]]
+        colors = merged_colors(surface, wedges, dict(attributes)["colors"])[vertex_ids]
+        colors[locked] = mesh.colors[source[vertex_ids[locked]]]
     return Mesh(vertices, triangles.reshape(-1, 3), colors), count
 
 
@@ -131,9 +131,9 @@ def _beginning(mesh):
     ids = mesh.faces.ravel().astype(np.int32)
     opposite = opposites(ids, len(mesh.vertices), True)[0]
     corner, start, source, boundary = fans(ids, opposite)
-    used = mesh.vertices[source]
-    low, high = used.min(axis=0), used.max(axis=0)
+    points = mesh.vertices[source]
+    low, high = points.min(axis=0), points.max(axis=0)
     middle, size = (low + high) / 2, float((high - low).max()) or 1.0
-    position = (used - middle) / size
+    position = (points - middle) / size
     quadric = vertex_quadrics(position, corner, np.ones(len(source)))
     return opposite, corner, start, source, boundary, position, (middle, size), quadric

@@ -140,6 +140,6 @@ def smallest_with(mesh: Mesh, frozen: np.ndarray, free_borders: bool = False) ->
         open_edges = int((half_edges(mesh.faces)[1].reshape(-1, 3)[~frozen] < 0).sum())
         edges -= max(open_edges - LEAST_LOOP * shape.boundary_loops, 0)
     tiles = max(edges + 2 * shape.boundary_loops - 4 * open_components, 0)
-    needed = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * shape.closed_components + FACES_PER_GENUS * shape.genus
-    least = int(frozen.sum() + np.ceil(needed))
-    return min(least + (len(mesh.faces) - least) % 2, len(mesh.faces))  # each collapse removes two faces
+    free_count = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * shape.closed_components + FACES_PER_GENUS * shape.genus
+    smallest = int(frozen.sum() + np.ceil(free_count))
+    return min(smallest + (len(mesh.faces) - smallest) % 2, len(mesh.faces))  # each collapse removes two faces

@@ -141,12 +141,12 @@ WHITE = 255.0  # the measure is defined on 0 to 1
 
 def laplacian_pyramid(picture: np.ndarray) -> list[np.ndarray]:
     """Six bands, fine to coarse, of a picture (rows, columns), 0 to 255; the last is a small picture."""
-    bands, rest = [], np.asarray(picture, dtype=np.float32) / np.float32(WHITE)
+    bands, image = [], np.asarray(picture, dtype=np.float32) / np.float32(WHITE)
     for _ in range(SCALES - 1):
-        small = cv2.pyrDown(rest)
-        bands.append(rest - _enlarge(small, rest.shape))
-        rest = small
-    return [*bands, rest]
+        small = cv2.pyrDown(image)
+        bands.append(image - _enlarge(small, image.shape))
+        image = small
+    return [*bands, image]
 
 
 def _enlarge(small, shape):

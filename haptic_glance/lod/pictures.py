@@ -56,9 +56,9 @@ def mark(image: np.ndarray, column: int, row: int, text: str) -> None:
     top, left = max(row - OUTER, 0), max(column - OUTER, 0)
     part = image[top : row + OUTER + 1, left : column + OUTER + 1]
     rows, columns = np.ogrid[top : top + len(part), left : left + part.shape[1]]
-    away = np.hypot(rows - row, columns - column)[..., None]
+    distance = np.hypot(rows - row, columns - column)[..., None]
     for radius, colour in ((OUTER - 1, RIM), (OUTER - 3, DOT)):
-        cover = np.clip(radius + 0.5 - away, 0, 1)  # of each pixel by the disc: its rim is smooth
+        cover = np.clip(radius + 0.5 - distance, 0, 1)  # of each pixel by the disc: its rim is smooth
         part[:] = np.rint(cover * colour + (1 - cover) * part)
     canvas = Image.fromarray(image)
     ImageDraw.Draw(canvas).text((column, row), text, RIM, ImageFont.load_default(12), anchor="mm")

@@ -116,8 +116,8 @@ def _smallest_sound(mesh, backend, frozen, weights, smallest, free=None):
     factors = None if weights is None else np.frombuffer(weights)
     borders = {} if free is None else {"free": np.frombuffer(free, dtype=bool)}
     try:
-        reached = len(BACKENDS[backend](mesh, smallest, np.frombuffer(frozen, dtype=bool), factors, **borders).faces)
-        return reached if free is None else smallest  # with moving borders another target takes other collapses
+        face_count = len(BACKENDS[backend](mesh, smallest, np.frombuffer(frozen, dtype=bool), factors, **borders).faces)
+        return face_count if free is None else smallest  # with moving borders another target takes other collapses
     except InfeasibleTarget as error:
         higher = max(error.smallest, smallest + 1)
     except SimplifyError:

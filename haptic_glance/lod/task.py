@@ -104,8 +104,8 @@ class SimplificationTask:
 
     def plain(self, faces: int) -> Mesh:
         """As `simplified`, by plain quadric edge collapse: no points, no weights."""
-        nothing = np.zeros(0, dtype=np.int64)
-        task = replace(self, points=nothing, rings=nothing, weights=None, shrink=False, attributes={})
+        no_points = np.zeros(0, dtype=np.int64)
+        task = replace(self, points=no_points, rings=no_points, weights=None, shrink=False, attributes={})
         return task.simplified(faces)
 
     def points_kept(self, mesh: Mesh) -> np.ndarray:
@@ -170,10 +170,10 @@ def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
         return cleaned, notes
     first, ids = merge_equal_rows(mesh.vertices)
     colors = None if mesh.colors is None else mesh.colors[first]
-    joined, remarks = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
-    if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(cleaned.faces)[1] < 0).sum():
+    joint_mesh, remarks = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
+    if (half_edges(joint_mesh.faces)[1] < 0).sum() >= (half_edges(cleaned.faces)[1] < 0).sum():
         return cleaned, notes
-    return joined, [f"{len(ids) - len(first):,} coincident vertices merged", *remarks]
+    return joint_mesh, [f"{len(ids) - len(first):,} coincident vertices merged", *remarks]
 
 
 PLAIN, QSLIM = "qem", "qslim"  # quadric edge collapse by the backend of the settings, and without its fit
@@ -205,8 +205,8 @@ def variant(name: str) -> Variant:
     suffixes = [suffix for suffix in (*NEIGHBOURHOODS, SOFT) if suffix != "fixed"]
     methods = (PLAIN, QSLIM, *METHODS)
     if method not in METHODS:
-        near = meant(method.lower(), methods) or f"; methods are {', '.join(methods)}"
-        raise ValueError(f"{name!r}: unknown method {method!r}{near}")
+        hint = meant(method.lower(), methods) or f"; methods are {', '.join(methods)}"
+        raise ValueError(f"{name!r}: unknown method {method!r}{hint}")
     if dash and rule not in suffixes:
         raise ValueError(f"{name!r} ends in {rule!r}; endings are -{', -'.join(suffixes)}, or none")
     return Variant(name, method, rule or "fixed")

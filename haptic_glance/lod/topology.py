@@ -88,9 +88,9 @@ def _joined_ends(fans):
     """
     pairs = np.argsort(fans, axis=None).reshape(-1, 2)
     pairs += pairs // 2  # the ends of edge e become 3 e and 3 e + 1
-    joined = np.full(3 * len(fans), -1, dtype=np.int32)
-    joined[pairs] = pairs[:, ::-1]
-    return joined
+    partners = np.full(3 * len(fans), -1, dtype=np.int32)
+    partners[pairs] = pairs[:, ::-1]
+    return partners
 
 
 def half_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
@@ -186,5 +186,5 @@ def moved_parts(parts: Parts, mesh: Mesh, simplified: Mesh) -> Parts:
     for number, name in enumerate(names):
         owner[parts[name]] = number
     face, _ = closest(mesh, simplified.vertices[simplified.faces].mean(axis=1))
-    moved = {name: np.flatnonzero(owner[face] == number) for number, name in enumerate(names)}
-    return {name: ids for name, ids in moved.items() if len(ids)}
+    faces_by_part = {name: np.flatnonzero(owner[face] == number) for number, name in enumerate(names)}
+    return {name: ids for name, ids in faces_by_part.items() if len(ids)}

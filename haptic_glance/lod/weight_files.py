@@ -76,10 +76,10 @@ def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
 
 
 def _npz(mesh: Mesh, weights: np.ndarray) -> bytes:
-    packed = io.BytesIO()
+    stream = io.BytesIO()
     indices = mesh.faces.astype(np.uint32).ravel()
-    np.savez_compressed(packed, vertices=mesh.vertices.astype(np.float32), indices=indices, saliency=weights)
-    return packed.getvalue()
+    np.savez_compressed(stream, vertices=mesh.vertices.astype(np.float32), indices=indices, saliency=weights)
+    return stream.getvalue()
 
 
 def _usda(mesh: Mesh, weights: np.ndarray) -> bytes:

@@ -84,8 +84,8 @@ def write_marks(
         ]:
             raise MarksChanged(f"{path}: the points of {annotator} have changed since they were read")
         lines = [line for k, (_, line, _) in enumerate(rows) if k not in set(indices)]
-        at = indices[0] if indices else len(lines)
-        write_text(path, "\n".join([",".join(COLUMNS), *lines[:at], *new, *lines[at:]]))
+        position = indices[0] if indices else len(lines)
+        write_text(path, "\n".join([",".join(COLUMNS), *lines[:position], *new, *lines[position:]]))
 
 
 def check_on_mesh(vertices: ArrayLike, positions: ArrayLike, mesh: Mesh, source: str | Path) -> None:
@@ -97,9 +97,9 @@ def check_on_mesh(vertices: ArrayLike, positions: ArrayLike, mesh: Mesh, source:
     outside = vertices[(vertices < 0) | (vertices >= count)]
     if len(outside):
         raise ValueError(f"{source} is of another mesh: vertex {outside[0]} is not in 0..{count - 1}")
-    away = np.linalg.norm(mesh.vertices[vertices] - np.reshape(positions, (-1, 3)), axis=1)
-    if (away > ON_VERTEX).any():
-        off = away[away > ON_VERTEX]
+    distances = np.linalg.norm(mesh.vertices[vertices] - np.reshape(positions, (-1, 3)), axis=1)
+    if (distances > ON_VERTEX).any():
+        off = distances[distances > ON_VERTEX]
         raise ValueError(
             f"{source} is of another mesh: {len(off)} of {len(vertices)} points lie {off.min():.4g} to {off.max():.4g}"
             " units away from their vertices"
@@ -160,8 +160,8 @@ def _row(line):
 
 def _values(marks):
     """The cells of the columns after the annotator, checked by parsing them."""
-    listed = marks if isinstance(marks, Sequence) else marks.to_dict("records")
-    rows = [[utc(mark["time"]), mark["vertex"], *(_decimal(float(mark[axis])) for axis in "xyz")] for mark in listed]
+    records = marks if isinstance(marks, Sequence) else marks.to_dict("records")
+    rows = [[utc(mark["time"]), mark["vertex"], *(_decimal(float(mark[axis])) for axis in "xyz")] for mark in records]
     for row in rows:
         _row(_line(["checked", *row]))
     return rows

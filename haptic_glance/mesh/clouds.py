@@ -60,10 +60,10 @@ class Cloud:
             raise ValueError(f"points must have shape (n, 3), got {points.shape}")
         object.__setattr__(self, "points", points)
         for name, shape in (("normals", points.shape), ("colors", points.shape), ("sensor", (3,))):
-            given = getattr(self, name)
-            if given is None:
+            array = getattr(self, name)
+            if array is None:
                 continue
-            values = whole(name, given, np.uint8) if name == "colors" else np.asarray(given, np.float64)
+            values = whole(name, array, np.uint8) if name == "colors" else np.asarray(array, np.float64)
             if values.shape != shape:
                 raise ValueError(f"{name} must have shape {shape}, got {values.shape}")
             object.__setattr__(self, name, values)
@@ -88,8 +88,8 @@ def usable(cloud: Cloud) -> Cloud:
     if len(cloud.points) > MOST:
         cloud = cloud.part(np.linspace(0, len(cloud.points) - 1, MOST).astype(int))
     if len(cloud.points) >= LEAST:
-        away = KDTree(cloud.points).query(cloud.points, NEIGHBOURS + 1)[0][:, -1]
-        cloud = cloud.part(away <= STRAY * np.median(away))
+        distances = KDTree(cloud.points).query(cloud.points, NEIGHBOURS + 1)[0][:, -1]
+        cloud = cloud.part(distances <= STRAY * np.median(distances))
     if len(cloud.points) < LEAST:
         raise MeshError(f"a point cloud of {total} points, {len(cloud.points)} of them usable: a surface needs {LEAST}")
     extents = np.linalg.svd(cloud.points - cloud.points.mean(axis=0), compute_uv=False)
@@ -125,9 +125,9 @@ def normals_of(points: np.ndarray, sensor: np.ndarray | None = None) -> np.ndarr
     if len(voters) < len(points):
         nearest = KDTree(points[voters]).query(points)[1]
         votes = votes[nearest] * _sign(np.einsum("ij,ij->i", normals, normals[voters][nearest]))
-    alike, side = np.einsum("ni,nki->nk", normals, normals[near]), np.tanh(votes)
+    cosines, side = np.einsum("ni,nki->nk", normals, normals[near]), np.tanh(votes)
     for _ in range(ROUNDS):
-        side = np.tanh(votes + PULL * (alike * side[near]).mean(axis=1))
+        side = np.tanh(votes + PULL * (cosines * side[near]).mean(axis=1))
     return normals * _sign(side)[:, None]
 
 
@@ -147,10 +147,10 @@ def _votes(points, normals):
     votes = np.zeros(len(points))
     for direction in directions(VIEWS):
         eye = centre + DISTANCE * radius * direction
-        seen = visible(points, eye)
-        ray = eye - points[seen]
-        along = np.einsum("ij,ij->i", normals[seen], ray) / np.linalg.norm(ray, axis=1)
-        votes[seen] += along * np.abs(along)  # a point seen at a slant says little
+        is_visible = visible(points, eye)
+        ray = eye - points[is_visible]
+        along = np.einsum("ij,ij->i", normals[is_visible], ray) / np.linalg.norm(ray, axis=1)
+        votes[is_visible] += along * np.abs(along)  # a point seen at a slant says little
     return votes
 
 
@@ -204,19 +204,19 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
     if not (all(0 < value < np.inf for value in (fx, fy, scale)) and 0 <= cx <= columns and 0 <= cy <= rows):
         raise MeshError(f"fx={fx}, fy={fy}, cx={cx}, cy={cy}, scale={scale} cannot be of {columns} x {rows} pixels: "
                         "focal lengths and scale are above 0, finite, and the centre lies in the image")  # fmt: skip
-    read = np.isfinite(depth) & (depth > 0)
-    if not read.any():
+    has_depth = np.isfinite(depth) & (depth > 0)
+    if not has_depth.any():
         raise MeshError("the depth image holds no reading: all is 0 or not finite")
-    filled = np.where(read, depth, np.inf)
-    solid = read.copy()
+    filled_depth = np.where(has_depth, depth, np.inf)
+    solid = has_depth.copy()
     for axis in (0, 1):
         with np.errstate(invalid="ignore"):
-            jump = ~(np.abs(np.diff(filled, axis=axis)) <= JUMP * np.minimum.reduce(_pairs(filled, axis)))
+            jump = ~(np.abs(np.diff(filled_depth, axis=axis)) <= JUMP * np.minimum.reduce(_pairs(filled_depth, axis)))
         for part in _pairs(solid, axis):
             part &= ~jump
     v, u = np.nonzero(solid)
-    away = depth[v, u]
-    return Cloud(np.stack([(u - cx) / fx * away, away, (cy - v) / fy * away], axis=1), sensor=np.zeros(3))
+    distance = depth[v, u]
+    return Cloud(np.stack([(u - cx) / fx * distance, distance, (cy - v) / fy * distance], axis=1), sensor=np.zeros(3))
 
 
 def read_depth(content: bytes, read: Callable[[str], bytes] | None) -> Cloud:
@@ -290,25 +290,25 @@ def surface_of(cloud: Cloud) -> Mesh:
     points = (cloud.points - centre) / extent  # far from the origin, digits would be lost
     sensor = None if cloud.sensor is None else (cloud.sensor - centre) / extent
     tree = KDTree(points)
-    away = tree.query(points, NEIGHBOURS + 1)[0][:, -1]
+    spacing = tree.query(points, NEIGHBOURS + 1)[0][:, -1]
     normals = normals_of(points, sensor) if cloud.normals is None else cloud.normals
     work = pymeshlab.MeshSet()
     work.add_mesh(pymeshlab.Mesh(vertex_matrix=points, v_normals_matrix=normals))
-    work.generate_surface_reconstruction_screened_poisson(depth=_depth(away), preclean=True, threads=1)
+    work.generate_surface_reconstruction_screened_poisson(depth=_depth(spacing), preclean=True, threads=1)
     solid = work.current_mesh()
     vertices, faces = solid.vertex_matrix(), solid.face_matrix().astype(np.int64)
     distance, nearest = tree.query(vertices)
-    near = np.asarray(distance <= GAP * away[nearest])
-    faces = faces[near[faces].all(axis=1)]
-    used, ids = np.unique(faces, return_inverse=True)
-    colors = None if cloud.colors is None else cloud.colors[np.asarray(nearest)[used]]
-    return Mesh(vertices[used] * extent + centre, ids.reshape(-1, 3), colors)
+    is_near = np.asarray(distance <= GAP * spacing[nearest])
+    faces = faces[is_near[faces].all(axis=1)]
+    vertex_ids, ids = np.unique(faces, return_inverse=True)
+    colors = None if cloud.colors is None else cloud.colors[np.asarray(nearest)[vertex_ids]]
+    return Mesh(vertices[vertex_ids] * extent + centre, ids.reshape(-1, 3), colors)
 
 
 def _depth(away):
     """The depth of the octree whose cells are as wide as points are apart; away: distance to the eighth neighbour."""
-    apart = np.median(away) * np.sqrt(np.pi / NEIGHBOURS)  # on a surface, eight points share a disc of that radius
-    return int(np.clip(np.ceil(np.log2(SIDE / apart)), *DEPTHS))
+    spacing = np.median(away) * np.sqrt(np.pi / NEIGHBOURS)  # on a surface, eight points share a disc of that radius
+    return int(np.clip(np.ceil(np.log2(SIDE / spacing)), *DEPTHS))
 
 
 TEXT = (".xyz", ".pts", ".asc")
@@ -335,8 +335,8 @@ def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
     table = loaded.metadata.get("_ply_raw", {}).get("vertex", {}).get("data")
     normals = _columns(table, ("nx", "ny", "nz")) if table is not None else None
     colors = np.asarray(loaded.colors)
-    named = colors[:, :3].astype(np.uint8) if colors.shape == (len(loaded.vertices), 4) else None
-    return Cloud(np.asarray(loaded.vertices, np.float64), _units(normals), named)
+    rgb = colors[:, :3].astype(np.uint8) if colors.shape == (len(loaded.vertices), 4) else None
+    return Cloud(np.asarray(loaded.vertices, np.float64), _units(normals), rgb)
 
 
 def _text(content, suffix):
@@ -361,27 +361,27 @@ def _pcd(content):
     with from_extra():
         from pypcd4.pypcd4 import PointCloud
 
-    read = PointCloud.from_fileobj(io.BufferedReader(io.BytesIO(content)))
-    data, fields = read.pc_data, read.fields
-    if np.size(data) < read.metadata.points:
-        raise MeshError(f"truncated: its header states {read.metadata.points} points, {np.size(data)} follow")
+    pcd = PointCloud.from_fileobj(io.BufferedReader(io.BytesIO(content)))
+    data, fields = pcd.pc_data, pcd.fields
+    if np.size(data) < pcd.metadata.points:
+        raise MeshError(f"truncated: its header states {pcd.metadata.points} points, {np.size(data)} follow")
     points = _columns(data, ("x", "y", "z"))
     if points is None:
         raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
     normals = _columns(data, ("normal_x", "normal_y", "normal_z")) if "normal_x" in fields else None
-    colors = read.decode_rgb(np.ascontiguousarray(data["rgb"])) if "rgb" in fields else None
-    return Cloud(points, _units(normals), colors, _sensor(points, np.array(read.metadata.viewpoint[:3])))
+    colors = pcd.decode_rgb(np.ascontiguousarray(data["rgb"])) if "rgb" in fields else None
+    return Cloud(points, _units(normals), colors, _sensor(points, np.array(pcd.metadata.viewpoint[:3])))
 
 
 def _las(content):
     with from_extra():
         import laspy
 
-    read = laspy.read(io.BytesIO(content))
-    points = np.stack([np.asarray(column, np.float64) for column in (read.x, read.y, read.z)], axis=1)
-    if "red" not in set(read.point_format.dimension_names):
+    las = laspy.read(io.BytesIO(content))
+    points = np.stack([np.asarray(column, np.float64) for column in (las.x, las.y, las.z)], axis=1)
+    if "red" not in set(las.point_format.dimension_names):
         return Cloud(points)
-    colors = np.stack([np.asarray(column) for column in (read.red, read.green, read.blue)], axis=1)
+    colors = np.stack([np.asarray(column) for column in (las.red, las.green, las.blue)], axis=1)
     wide = colors.max(initial=0) > 255  # sixteen bits as the format says, which many writers fill with eight
     return Cloud(points, colors=(colors >> 8 if wide else colors).astype(np.uint8))
 

@@ -190,12 +190,12 @@ def _open(content, suffix, resolver, **options):
     if suffix not in parsers:
         return trimesh.load(stream, file_type=suffix[1:], resolver=resolver, process=False, **options)
     # colours may be of any kind
-    read = parsers[suffix](stream, resolver=resolver, **options)
-    parts = list(read["geometry"].values()) if "geometry" in read else [read]
+    parser_output = parsers[suffix](stream, resolver=resolver, **options)
+    parts = list(parser_output["geometry"].values()) if "geometry" in parser_output else [parser_output]
     for part in parts:
         part["process"] = False
     scale_colors(parts)
-    scene = trimesh.load_scene(read)
+    scene = trimesh.load_scene(parser_output)
     return next(iter(scene.geometry.values())) if len(scene.geometry) == 1 else scene
 
 

@@ -38,15 +38,15 @@ def _glb(content):
         tree = json.loads(content[20 : 20 + chunk])
         check_extensions(tree)
         counts = [accessor["count"] for accessor in tree.get("accessors", [])]
-        stated = max((int(count) for count in counts), default=0)
+        stated_count = max((int(count) for count in counts), default=0)
         sizes = [len(mesh["primitives"]) for mesh in tree.get("meshes", [])]
         primitives = sum(sizes[node["mesh"]] for node in tree.get("nodes", []) if "mesh" in node)
     except MeshError:
         raise
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
-    if stated > len(content):
-        raise MeshError(f"truncated: its header states {stated} numbers, the file has {len(content)} bytes")
+    if stated_count > len(content):
+        raise MeshError(f"truncated: its header states {stated_count} numbers, the file has {len(content)} bytes")
     if any("sparse" in accessor for accessor in tree.get("accessors", [])):
         raise MeshError("has sparse accessors, which are not read: export it without morph targets, or as .ply")
     if primitives > MOST_PRIMITIVES:
@@ -59,9 +59,9 @@ def _glb(content):
 
 def check_extensions(tree: dict[str, Any]) -> None:
     """Raises MeshError for a glTF whose shape only an extension tells: the parser would read zeros, or nothing."""
-    needed = [name for name in map(str, tree.get("extensionsRequired") or ()) if not name.startswith(EXTENSIONS)]
-    if needed:
-        raise MeshError(f"needs {', '.join(needed)}, which is not read: export it without compression")
+    extensions = [name for name in map(str, tree.get("extensionsRequired") or ()) if not name.startswith(EXTENSIONS)]
+    if extensions:
+        raise MeshError(f"needs {', '.join(extensions)}, which is not read: export it without compression")
 
 
 def _colour_pictures(tree):
@@ -97,9 +97,9 @@ def _stl(content):
         return
     if len(content) < 84:
         raise MeshError(f"truncated: {len(content)} bytes are fewer than an STL header")
-    stated, follow = struct.unpack("<I", content[80:84])[0], (len(content) - 84) // 50
-    if stated > follow:
-        raise MeshError(f"truncated or not an STL: the header states {stated} faces, {follow} follow")
+    stated_count, actual_count = struct.unpack("<I", content[80:84])[0], (len(content) - 84) // 50
+    if stated_count > actual_count:
+        raise MeshError(f"truncated or not an STL: the header states {stated_count} faces, {actual_count} follow")
 
 
 def stated_faces(content: bytes) -> bytes:
@@ -109,8 +109,8 @@ def stated_faces(content: bytes) -> bytes:
     """
     if _in_words(content):
         return content
-    stated = struct.unpack("<I", content[80:84])[0] or (len(content) - 84) // 50
-    return content[:80] + struct.pack("<I", stated) + content[84 : 84 + 50 * stated]
+    face_count = struct.unpack("<I", content[80:84])[0] or (len(content) - 84) // 50
+    return content[:80] + struct.pack("<I", face_count) + content[84 : 84 + 50 * face_count]
 
 
 def _in_words(content):
@@ -120,16 +120,16 @@ def _in_words(content):
 def _ply(content):
     header, _, body = content.partition(b"end_header")
     binary = b"format binary" in header
-    stated = count = least = 0  # rows of all elements, of this one, and the bytes that they need
+    rows = count = byte_count = 0  # rows of all elements, of this one, and the bytes that they need
     for words in map(bytes.split, header.splitlines()):
         if words[:1] == [b"element"] and len(words) == 3 and words[2].isdigit():
             count = int(words[2][:18])
-            stated += count
+            rows += count
         elif binary and words[:1] == [b"property"] and len(words) > 2:
-            least += count * PLY_BYTES.get(words[2 if words[1] == b"list" else 1], 1)  # a list may be empty
-    if max(stated, least) > len(body):
-        needed = f", {least} bytes or more" if least else ""
-        raise MeshError(f"truncated: its header states {stated} vertices and faces{needed}, {len(body)} bytes follow")
+            byte_count += count * PLY_BYTES.get(words[2 if words[1] == b"list" else 1], 1)  # a list may be empty
+    if max(rows, byte_count) > len(body):
+        minimum = f", {byte_count} bytes or more" if byte_count else ""
+        raise MeshError(f"truncated: its header states {rows} vertices and faces{minimum}, {len(body)} bytes follow")
 
 
 def _obj(content):
@@ -141,21 +141,21 @@ def _obj(content):
 
 def _pcd(content):
     header, _, body = content.partition(b"\nDATA ")
-    stated = re.search(rb"^\W*points\s+(\d+)", header, re.M | re.I)
+    point_match = re.search(rb"^\W*points\s+(\d+)", header, re.M | re.I)
     if any(
         len(number) > 3 for line in re.findall(rb"^\W*count\s(.*)$", header, re.M | re.I) for number in line.split()
     ):
         raise MeshError("unreadable as PCD (more than 999 numbers in one field of a point)")
     kind, _, data = body.partition(b"\n")
-    most = len(data)
+    byte_count = len(data)
     if kind.strip() not in (b"ascii", b"binary", b"binary_compressed"):
         raise MeshError("unreadable as PCD (its data are neither ascii nor binary nor binary_compressed)")
     if kind.strip() == b"binary_compressed" and len(data) >= 8:
-        most = struct.unpack("<4xI", data[:8])[0]
-        if most > DENSEST * len(data):
-            raise MeshError(f"truncated: its header states {most} bytes, {len(data)} compressed ones follow")
-    if stated and int(stated[1]) > most:
-        raise MeshError(f"truncated: its header states {int(stated[1])} points, {most} bytes follow")
+        byte_count = struct.unpack("<4xI", data[:8])[0]
+        if byte_count > DENSEST * len(data):
+            raise MeshError(f"truncated: its header states {byte_count} bytes, {len(data)} compressed ones follow")
+    if point_match and int(point_match[1]) > byte_count:
+        raise MeshError(f"truncated: its header states {int(point_match[1])} points, {byte_count} bytes follow")
 
 
 def _las(content):
@@ -163,8 +163,8 @@ def _las(content):
         raise MeshError("unreadable as LAS (no LASF header)")
     size, start, records, length, points = struct.unpack("<HIIxHI", content[94:111])
     if content[25] >= 4 and len(content) >= 375:  # version 1.4 has wider numbers besides
-        more, points = struct.unpack("<IQ", content[243:255])
-        records += more
+        extended_count, points = struct.unpack("<IQ", content[243:255])
+        records += extended_count
     if size + 54 * records > len(content) or start + length * points > len(content):
         raise MeshError(f"truncated: its header states {points} points, {records} records, the file has {len(content)}"
                         " bytes")  # fmt: skip

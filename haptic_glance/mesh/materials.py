@@ -86,8 +86,8 @@ def not_read(content: bytes) -> list[str]:
     """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
     tree = _header(content)
     names = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
-    used = tree.get("extensionsUsed") if isinstance(tree, dict) else None
-    whole = map(str, used) if isinstance(used, list) else ()  # extensions of the scene
+    extensions = tree.get("extensionsUsed") if isinstance(tree, dict) else None
+    whole = map(str, extensions) if isinstance(extensions, list) else ()  # extensions of the scene
     names += [name for name in whole if name.startswith(("KHR_lights_", "KHR_xmp"))]
     names += [f"picture {entry[ABSENT]}, not beside it" for entry in _stated_in(tree, "images") if ABSENT in entry]
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
@@ -191,11 +191,11 @@ def scale_colors(parts: list[dict[str, Any]]) -> None:
     The others, bytes and floats of 0..1, stay as they are: trimesh takes all colours for one of these.
     """
     for name in ("vertex_colors", "face_colors"):
-        given = [part for part in parts if part.get(name) is not None]
-        most = max((np.max(part[name], initial=0) for part in given), default=0)
-        for part in given:
+        coloured_parts = [part for part in parts if part.get(name) is not None]
+        highest = max((np.max(part[name], initial=0) for part in coloured_parts), default=0)
+        for part in coloured_parts:
             floats = part[name].dtype.kind == "f"
-            if most > (BRIGHT if floats else 255):
+            if highest > (BRIGHT if floats else 255):
                 scaled = np.nan_to_num(part[name]) * (1 if floats else 255 / 65535)
                 part[name] = np.clip(np.rint(scaled), 0, 255).astype(np.uint8)
 
@@ -235,8 +235,8 @@ def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
         for part, material in zip(parts, properties, strict=True)
     ):
         return None
-    known = {}
-    images = [_image(part, known) for part in parts]
+    image_cache = {}
+    images = [_image(part, image_cache) for part in parts]
     uv = [_corners(part) for part in parts]
     sizes = [len(part.faces) for part in parts]
     names = {}

@@ -272,8 +272,8 @@ def whole(name: str, values: Any, kind: type) -> np.ndarray:
     Raises ValueError for numbers that the type does not hold.
     """
     array, limits = np.asarray(values), np.iinfo(kind)
-    held = array.dtype == kind or not array.size or limits.min <= array.min() <= array.max() <= limits.max
-    if not held or (array.dtype != kind and (array % 1 != 0).any()):
+    in_range = array.dtype == kind or not array.size or limits.min <= array.min() <= array.max() <= limits.max
+    if not in_range or (array.dtype != kind and (array % 1 != 0).any()):
         raise ValueError(f"{name} must be whole numbers of {limits.dtype}, got {array.dtype} of others")
     shared = array.dtype == kind and array.flags.c_contiguous and _frozen(values)
     return array if shared else _own(values, kind)

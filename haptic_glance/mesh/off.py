@@ -26,9 +26,9 @@ def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]
     if not header:
         raise MeshError("unreadable as OFF: it does not begin with the word OFF")
     texture, colored, normals, homogeneous, dimensional, binary = header.groups()
-    read = _binary if binary else _text
+    reader = _binary if binary else _text
     spans = {"texture": 2 * bool(texture), "normals": 3 * bool(normals), "place": 3 + bool(homogeneous)}
-    table, polygons = read(content[header.end() :], bool(dimensional), sum(spans.values()), bool(colored))
+    table, polygons = reader(content[header.end() :], bool(dimensional), sum(spans.values()), bool(colored))
     vertices = table[:, :3]
     if homogeneous:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -66,17 +66,17 @@ def _binary(content, dimensional, width, colored):
         _three(words[0] if len(words) else "")
         words = words[1:]
     n, m = words[:2].tolist() if len(words) > 2 else (-1, -1)
-    wide, at = width + 4 * colored, 3
-    if min(n, m) < 0 or n * wide + 2 * m > len(words) - at:
+    wide, offset = width + 4 * colored, 3
+    if min(n, m) < 0 or n * wide + 2 * m > len(words) - offset:
         raise MeshError(f"truncated: the header states {n} vertices and {m} faces, {4 * len(words)} bytes follow")
-    table = words[at : at + n * wide].view(">f4").astype(np.float64).reshape(n, wide)
-    at, words, polygons = at + n * wide, words.tolist(), []
+    table = words[offset : offset + n * wide].view(">f4").astype(np.float64).reshape(n, wide)
+    offset, words, polygons = offset + n * wide, words.tolist(), []
     for _ in range(m):
-        end = at + 1 + max(words[at], 0) if at < len(words) else len(words)
+        end = offset + 1 + max(words[offset], 0) if offset < len(words) else len(words)
         if end >= len(words) or words[end] < 0:
             raise MeshError("truncated: a face has fewer vertices than it states")
-        polygons.append(words[at + 1 : end])
-        at = end + 1 + words[end]
+        polygons.append(words[offset + 1 : end])
+        offset = end + 1 + words[end]
     return table, polygons
 
 

@@ -169,6 +169,6 @@ def _is_table(mesh, plane, table, remaining, tolerance):
 
 def _submesh(mesh, faces):
     """The Mesh of the faces (m,) boolean, with only their vertices."""
-    used, ids = np.unique(mesh.faces[faces], return_inverse=True)
-    colors, texture = (None if mesh.colors is None else mesh.colors[used]), mesh.texture and mesh.texture.of(faces)
-    return Mesh(mesh.vertices[used], ids.reshape(-1, 3), colors, texture, mesh.up)
+    vertices, ids = np.unique(mesh.faces[faces], return_inverse=True)
+    colors, texture = (None if mesh.colors is None else mesh.colors[vertices]), mesh.texture and mesh.texture.of(faces)
+    return Mesh(mesh.vertices[vertices], ids.reshape(-1, 3), colors, texture, mesh.up)

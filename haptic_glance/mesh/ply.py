@@ -31,14 +31,14 @@ def triangulated(content: bytes) -> bytes:
     lines = content[: end.end()].decode("latin-1").splitlines() if end else ["", "ascii"]
     if not end or "ascii" in lines[1]:
         return content
-    order, at = ">" if "big" in lines[1] else "<", end.end()
+    order, offset = ">" if "big" in lines[1] else "<", end.end()
     for name, rows, properties in _elements(lines):
         lists = [words for words in properties if words[0] == "list"]
         if name == "face" and len(lists) == 1 and lists[0][-1] in CORNERS and rows:
-            return _fans(content, lines, end.end(), at, rows, properties, order)
+            return _fans(content, lines, end.end(), offset, rows, properties, order)
         if lists:  # what follows begins at a place that is not known
             break
-        at += rows * sum(np.dtype(TYPES[words[0]]).itemsize for words in properties)
+        offset += rows * sum(np.dtype(TYPES[words[0]]).itemsize for words in properties)
     return content
 
 

@@ -72,8 +72,8 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
         raise MeshError("the surface has no area")
     if area <= MIN_VISIBLE_AREA * square:
         raise MeshError("the surface is too small for its extent: are there stray parts far from the object?")
-    cleaned, turned = orient(cleaned)
-    return cleaned, notes + turned
+    cleaned, orient_notes = orient(cleaned)
+    return cleaned, notes + orient_notes
 
 
 def _repeats(rows):
@@ -119,12 +119,12 @@ def orient(mesh: Mesh) -> tuple[Mesh, list[str]]:
     closed part of negative volume is flipped with all parts inside its bounding box. One that lies inside the box of
     another closed part stays, since it may be the wall of a cavity.
     """
-    first, second, alike, closed_edges = _neighbours(mesh)
-    flips = _minority_faces(len(mesh.faces), first, second, alike)
-    turned = flips.sum()
+    first, second, is_alike, closed_edges = _neighbours(mesh)
+    flips = _minority_faces(len(mesh.faces), first, second, is_alike)
+    flip_count = flips.sum()
     mesh = _flipped(mesh, flips)
     inverted = _inverted(mesh, first, second, closed_edges, flips)
-    notes = [f"{turned} faces turned to agree with their neighbours"] if turned else []
+    notes = [f"{flip_count} faces turned to agree with their neighbours"] if flip_count else []
     notes += [f"{inverted.sum()} faces turned outwards"] if inverted.any() else []
     return _flipped(mesh, inverted), notes
 
@@ -239,11 +239,11 @@ def normalise(mesh: Mesh) -> Mesh:
 
 def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     """(centre (3,) of the bounding box, radius of the bounding sphere about it), in the units of the mesh."""
-    used = mesh.vertices[mesh.used]
-    if len(used) == 0:
+    vertices = mesh.vertices[mesh.used]
+    if len(vertices) == 0:
         raise ValueError("the mesh has no faces, so that it cannot be normalised")
-    centre = (used.min(axis=0) + used.max(axis=0)) / 2
-    radius = np.linalg.norm(used - centre, axis=1).max()
+    centre = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    radius = np.linalg.norm(vertices - centre, axis=1).max()
     if radius == 0:
         raise ValueError("the mesh has no extent: all vertices coincide")
     return centre, radius

@@ -107,5 +107,5 @@ def upright_for(path: Path, mesh: Mesh) -> tuple[Mesh, str]:
     up = UP_OF_FORMAT.get(path.suffix.lower(), mesh.up)
     if up == mesh.up:
         return mesh, ""
-    turned = replace(mesh, vertices=rotate_to_z_up(mesh).vertices @ Y_UP.T, up=up)
-    return turned, f"{path.name} is {up} up, as every {path.suffix[1:].upper()}: turned from {mesh.up} up"
+    upright_mesh = replace(mesh, vertices=rotate_to_z_up(mesh).vertices @ Y_UP.T, up=up)
+    return upright_mesh, f"{path.name} is {up} up, as every {path.suffix[1:].upper()}: turned from {mesh.up} up"

@@ -76,9 +76,9 @@ def features(mesh: Mesh, axes: tuple[str, ...] = CANDIDATES) -> dict[str, dict[s
     by_axis = {}
     for axis in axes:
         turn = to_z_up(axis).astype(np.float64)
-        turned, steep = np.column_stack([faces[:, :3] @ turn.T, faces[:, 3]]), np.abs(normals @ turn[2]) < STEEP
+        hull_planes, is_steep = np.column_stack([faces[:, :3] @ turn.T, faces[:, 3]]), np.abs(normals @ turn[2]) < STEEP
         means = cells[0] @ turn.T, cells[1]
-        by_axis[axis] = _of_axis(points @ turn.T, areas, steep, means, corners @ turn.T, turned)
+        by_axis[axis] = _of_axis(points @ turn.T, areas, is_steep, means, corners @ turn.T, hull_planes)
     return by_axis
 
 

@@ -19,12 +19,12 @@ def draw_array(scene: Scene, name: str, felt: Felt) -> None:
 
 def draw_cells(scene: Scene, name: str, felt: Felt) -> None:
     """The cells alone, where they met the object."""
-    places, pressed = felt.contacts
+    places, values = felt.contacts
     if not len(places):
         scene.clear(name)
         return
     scene.api.add_point_cloud(
-        name, places, viridis(pressed), point_size=DOT * felt.pitch, point_shape="square", precision="float32",
+        name, places, viridis(values), point_size=DOT * felt.pitch, point_shape="square", precision="float32",
         point_shading="flat",
     )  # fmt: skip
 

@@ -98,8 +98,8 @@ def feel(surface: Surface, place: Places, sensor: Sensor, unit: float = 1.0) -> 
         contact = "rigid" if sensor.kind == RIGID else "tangent"
         distances = distances_at(surface, centre, axes, sensor.array, sensor.pitch, contact=contact)
         images, span, name = normalise(distances, sensor.pitch), (unit * float(np.ptp(distances)), 0.0), UNIT
-    pressed = 1 - Skin(blur=sensor.blur, noise=sensor.noise)(images)[0]
-    return Felt(pressed, span, name, centre[0], axes[0], sensor.pitch, _depths(surface, centre, axes, sensor))
+    imprint = 1 - Skin(blur=sensor.blur, noise=sensor.noise)(images)[0]
+    return Felt(imprint, span, name, centre[0], axes[0], sensor.pitch, _depths(surface, centre, axes, sensor))
 
 
 def _depths(surface, centre, axes, sensor):

@@ -21,6 +21,6 @@ def as_bytes(mesh: Mesh, suffix: str, weights: np.ndarray | None = None) -> byte
     """
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"mesh{suffix}"
-        turned, _ = upright_for(path, bake_texture(mesh) if suffix == ".obj" else mesh)
-        write_any(path, turned) if weights is None else write_weights(path, turned, weights)
+        upright_mesh, _ = upright_for(path, bake_texture(mesh) if suffix == ".obj" else mesh)
+        write_any(path, upright_mesh) if weights is None else write_weights(path, upright_mesh, weights)
         return path.read_bytes()

@@ -44,11 +44,11 @@ def pair_html(picture: np.ndarray, imprint: np.ndarray) -> str:
 def bars_html(probabilities: Mapping[str, float], sure: str) -> str:
     """A bar for each of the likeliest objects, those first; sure: the one that is known, or empty."""
     likeliest = list(probabilities.items())[:BARS]
-    rest = len(probabilities) - len(likeliest)
+    remaining = len(probabilities) - len(likeliest)
     lines = [_bar(name, value, SURE if name == sure else MAYBE) for name, value in likeliest]
-    if rest > 0:
+    if remaining > 0:
         share = max(1 - sum(value for _, value in likeliest), 0.0)
-        lines.append(f'<div style="font-size:0.8em">and {rest} more, {share:.0%} together</div>')
+        lines.append(f'<div style="font-size:0.8em">and {remaining} more, {share:.0%} together</div>')
     return '<div class="bars" style="padding:0 0.6em 0.6em">' + "".join(lines) + "</div>"
 
 

@@ -50,14 +50,14 @@ class Levels:
     def tasks(self) -> dict[str, SimplificationTask]:
         """{SOFT, HARD: the SimplificationTask}."""
         mesh, _ = repaired(self.specimen.given)
-        same = len(mesh.vertices) == len(self.specimen.given.vertices)
-        values = self.looked.saliency if same else saliency(mesh, self.looked.method)
+        keeps_vertices = len(mesh.vertices) == len(self.specimen.given.vertices)
+        values = self.looked.saliency if keeps_vertices else saliency(mesh, self.looked.method)
         places = np.array([row[2:5] for row in self.looked.points]).reshape(-1, 3)
         points = np.unique(KDTree(mesh.vertices).query(places)[1]).astype(np.int64)
-        none = np.zeros(0, dtype=np.int64)
+        no_points = np.zeros(0, dtype=np.int64)
         rings = neighbourhoods(mesh, points, "adaptive")
         return {
-            SOFT: SimplificationTask(mesh, values, none, none, values, BACKEND, False),
+            SOFT: SimplificationTask(mesh, values, no_points, no_points, values, BACKEND, False),
             HARD: SimplificationTask(mesh, values, points, rings, None, BACKEND, True),
         }
 
@@ -85,9 +85,9 @@ class Levels:
         report(0.6, "measuring the error")
         errors = metro(task.mesh, mesh, SAMPLES)
         report(0.8, "measuring the error at each vertex")
-        apart = 100 * vertex_errors(mesh, task.mesh) / task.mesh.diagonal
+        percents = 100 * vertex_errors(mesh, task.mesh) / task.mesh.diagonal
         around = np.zeros(len(mesh.vertices))
-        np.maximum.at(around, KDTree(mesh.vertices).query(task.mesh.vertices)[1], apart)
+        np.maximum.at(around, KDTree(mesh.vertices).query(task.mesh.vertices)[1], percents)
         nearest = task.saliency[KDTree(task.mesh.vertices).query(mesh.vertices)[1]]
         return Level(mesh, rotate_to_z_up(mesh), 100 * errors["mean"], 100 * errors["max"], around, nearest)
 

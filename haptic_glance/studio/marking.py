@@ -48,15 +48,15 @@ class Marking:
 
         Raises ValueError or OSError where nothing can be written; the marks stay, and the next save tries again.
         """
-        met = False
+        was_merged = False
         while not self.saved:
             try:
                 write_marks(self.path, self.annotator, [self._row(mark) for mark in self.marks], self.seen)
                 self.seen = list(self.marks)
             except MarksChanged:
                 self._merge(self._stored())
-                met = True
-        return met
+                was_merged = True
+        return was_merged
 
     def _merge(self, stored):
         """Merges the stored marks with those that this window added and removed."""
@@ -79,6 +79,6 @@ class Marking:
     def _stored(self):
         if not self.path.exists():
             return []
-        stored = read_rows(self.path)
-        check_on_mesh([mark.vertex for mark in stored], [mark[3:] for mark in stored], self.mesh, self.path)
-        return [(mark.time, mark.vertex) for mark in stored if mark.annotator == self.annotator]
+        marks = read_rows(self.path)
+        check_on_mesh([mark.vertex for mark in marks], [mark[3:] for mark in marks], self.mesh, self.path)
+        return [(mark.time, mark.vertex) for mark in marks if mark.annotator == self.annotator]

@@ -77,9 +77,9 @@ def _on_surface(rays, corners, outward, knots, along):
     hits = rays.cast(line + height[:, None] * normals, -normals)
     positions = line + (height - np.minimum(hits.distance, 2 * height))[:, None] * normals
     steps = np.linalg.norm(np.diff(positions, axis=0, prepend=positions[:1]), axis=1)
-    lost = steps > JUMP + knots[-1] / len(along)  # a ray that misses ends at least ABOVE below the line
-    if lost.any():
-        at = int(leg[lost.argmax()])
+    is_jump = steps > JUMP + knots[-1] / len(along)  # a ray that misses ends at least ABOVE below the line
+    if is_jump.any():
+        at = int(leg[is_jump.argmax()])
         raise ValueError(f"the path leaves the mesh between places {at + 1} and {at + 2}: click a place between them")
     return positions, hits.face, normals
 

@@ -42,13 +42,13 @@ class Scene:
 
     def aim(self, wide: bool = False) -> None:
         """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
-        middle, away = (BESIDE / 2, 1.7) if wide else (MIDDLE, 1.0)
+        middle, scale = (BESIDE / 2, 1.7) if wide else (MIDDLE, 1.0)
         if self.covered:
-            away *= 0.8 / self.client.camera.aspect
-            middle = middle - (0, 0, 0.33 * away)
+            scale *= 0.8 / self.client.camera.aspect
+            middle = middle - (0, 0, 0.33 * scale)
         else:  # beside the panel little room may be left
-            away *= max(1, LEAST_ASPECT / self.client.camera.aspect)
-        self.turn(middle + EYE * away, middle)
+            scale *= max(1, LEAST_ASPECT / self.client.camera.aspect)
+        self.turn(middle + EYE * scale, middle)
 
     def turn(self, position: np.ndarray, middle: np.ndarray) -> None:
         """Puts the camera at a position (3,), from which it looks at the middle (3,)."""
@@ -61,11 +61,11 @@ class Scene:
     def face(self, place: np.ndarray, normal: np.ndarray) -> None:
         """Turns the camera about the middle, where it would see the place (3,) with its normal (3,) from behind."""
         camera = self.client.camera
-        away = np.asarray(camera.position) - camera.look_at
+        offset = np.asarray(camera.position) - camera.look_at
         if (np.asarray(camera.position) - place) @ normal > 0:
             return
-        distance = np.linalg.norm(away)
-        towards = normal + 0.5 * away / distance  # not quite along the normal, which may be the up axis
+        distance = np.linalg.norm(offset)
+        towards = normal + 0.5 * offset / distance  # not quite along the normal, which may be the up axis
         self.turn(camera.look_at + towards / np.linalg.norm(towards) * distance, camera.look_at)
 
     def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:

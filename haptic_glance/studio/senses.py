@@ -83,13 +83,13 @@ def ask(trained: Trained, picture: np.ndarray, imprint: np.ndarray, dark: float,
         from haptic_glance.disturb.imprint import disturb
         from haptic_glance.disturb.picture import damage_pictures
     network, random = trained.network, rng(0, "studio")
-    seen = damage_pictures(picture[None], "darkness", dark, random)
-    felt = disturb(imprint[None], "dead_cells", dead, random) if dead < 1 else np.ones((1, *imprint.shape), np.float32)
-    images = join_senses(as_images(seen, SIZE), as_images(felt, SIZE))
+    pictures = damage_pictures(picture[None], "darkness", dark, random)
+    cells = disturb(imprint[None], "dead_cells", dead, random) if dead < 1 else np.ones((1, *imprint.shape), np.float32)
+    images = join_senses(as_images(pictures, SIZE), as_images(cells, SIZE))
     scores = [part[0] / t for part, t in zip(network.separate_scores(images), network.temperature, strict=True)]
     vision, touch = (_shares(part.softmax(0).numpy(), trained.classes) for part in scores)
     trusted = int(network.predict(images).sense[0])
-    return Answer(seen[0], felt[0], vision, touch, SENSES[trusted] if trusted >= 0 else "")
+    return Answer(pictures[0], cells[0], vision, touch, SENSES[trusted] if trusted >= 0 else "")
 
 
 def _shares(values: np.ndarray, classes: list[str]) -> dict[str, float]:

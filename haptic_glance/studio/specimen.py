@@ -133,19 +133,19 @@ class Specimen:
         if detection.saliency is None:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
         earlier = next((look.drawn for (name, _), look in self._looks.items() if name == method), None)
-        drawn = earlier or finely(self.mesh, detection.saliency, method)
-        return Look(method, detection.saliency, points_of(self.given, detection), drawn)
+        fine_mesh = earlier or finely(self.mesh, detection.saliency, method)
+        return Look(method, detection.saliency, points_of(self.given, detection), fine_mesh)
 
 
 def files_at(place: Path) -> list[Path]:
     """The file itself, or what a folder holds: its meshes, or else those that the pipeline stored there. MeshError."""
-    stored = sorted(place.glob(f"*{STORED}")) if place.is_dir() else []
+    stored_files = sorted(place.glob(f"*{STORED}")) if place.is_dir() else []
     try:
         return mesh_files(place)
     except MeshError:
-        if not stored:
+        if not stored_files:
             raise
-        return stored
+        return stored_files
 
 
 def open_file(path: Path, up: str | None = None) -> Specimen:

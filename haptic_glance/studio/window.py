@@ -154,15 +154,15 @@ class Window:
 
     def choose(self, title: str) -> None:
         """Shows one panel alone."""
-        chosen = next(panel for panel in self.panels if panel.title == title)
-        if chosen is not self.panel:
+        new_panel = next(panel for panel in self.panels if panel.title == title)
+        if new_panel is not self.panel:
             self.run(self.panel.title, self.panel.on_hide)
-        self.panel = chosen
+        self.panel = new_panel
         for panel, folder in zip(self.panels, self.folders, strict=True):
-            folder.visible = panel is chosen
+            folder.visible = panel is new_panel
         self.session.panel = title
-        if chosen.target() is not None:
-            self.run(chosen.title, chosen.on_show)
+        if new_panel.target() is not None:
+            self.run(new_panel.title, new_panel.on_show)
 
     def close(self) -> None:
         """The window is gone: its work ends, and the session keeps its controls and its view."""

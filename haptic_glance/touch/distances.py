@@ -59,19 +59,19 @@ def distances(
     vertices = check_vertices(surface.mesh, vertices)
     (rows, columns), pitch, max_distance = check_array(cells, pitch, max_distance)
     axes = sensor_axes(sensor_normals(surface.mesh, vertices), surface.mesh.up) if axes is None else axes
-    measured = distances_at(
+    cell_distances = distances_at(
         surface, surface.mesh.vertices[vertices], axes, (rows, columns), pitch, max_distance, contact
     )
-    missed = vertices[(measured == max_distance).all(axis=(1, 2))]
+    missed = vertices[(cell_distances == max_distance).all(axis=(1, 2))]
     if len(missed):
-        others = f" and {len(missed) - 1} others" if len(missed) > 1 else ""
+        rest_text = f" and {len(missed) - 1} others" if len(missed) > 1 else ""
         warnings.warn(
-            f"the array touches nothing at vertex {missed[0]}{others}: the faces there look inwards "
+            f"the array touches nothing at vertex {missed[0]}{rest_text}: the faces there look inwards "
             "(`haptic_glance.repair` turns them), or the place is narrower than a cell", stacklevel=3,
         )  # fmt: skip
     if contact == "tangent" and rows % 2 and columns % 2:
-        measured[:, rows // 2, columns // 2] = 0.0
-    return measured
+        cell_distances[:, rows // 2, columns // 2] = 0.0
+    return cell_distances
 
 
 def distances_at(

@@ -285,8 +285,8 @@ def _press_paths(surface, paths, cells, pitch):
     """The Sequences of some ContourPaths, all their frames pressed at once."""
     positions = np.concatenate([path.positions for path in paths])
     axes = np.concatenate([path.axes for path in paths])
-    pitches, measured = adaptive_distances(surface, positions, axes, cells, pitch)
-    images = normalise(measured, pitches)
+    pitches, cell_distances = adaptive_distances(surface, positions, axes, cells, pitch)
+    images = normalise(cell_distances, pitches)
     sequences, start = [], 0
     for path in paths:
         span = slice(start, start := start + len(path.positions))

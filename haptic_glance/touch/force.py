@@ -213,10 +213,10 @@ def forces(
         _check_contact(facing)
         depths = depths_of_loads(rows, weights, loads, layer.thickness)
     _check_thickness(depths, layer)
-    pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
-    np.maximum(pressed, 0.0, out=pressed)
-    pressed *= layer.stiffness * areas * cosines
-    return pressed
+    normal_forces = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
+    np.maximum(normal_forces, 0.0, out=normal_forces)
+    normal_forces *= layer.stiffness * areas * cosines
+    return normal_forces
 
 
 def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) -> np.ndarray:
@@ -263,8 +263,8 @@ def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) 
     _check_areas(areas := np.asarray(areas, dtype=np.float64))
     slips = slips.reshape(len(normal), *(normal.shape[1:] if slips.ndim > 2 else [1] * (normal.ndim - 1)), 2)
     distance = np.linalg.norm(slips, axis=-1)
-    held = np.minimum(layer.shear_stiffness * areas * distance, layer.friction * normal)
-    return held[..., None] * np.divide(slips, distance[..., None], out=np.zeros_like(slips), where=slips != 0)
+    magnitude = np.minimum(layer.shear_stiffness * areas * distance, layer.friction * normal)
+    return magnitude[..., None] * np.divide(slips, distance[..., None], out=np.zeros_like(slips), where=slips != 0)
 
 
 def _check_areas(areas):

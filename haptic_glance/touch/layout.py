@@ -42,8 +42,8 @@ class Layout:
             raise ValueError("layout: there are no taxels; give one a row")
         _, first, place = np.unique(self.positions, axis=0, return_index=True, return_inverse=True)
         earlier = first[place.ravel()]
-        if len(again := np.flatnonzero(earlier < np.arange(len(earlier)))):
-            raise ValueError(f"layout: taxels {earlier[again[0]] + 1} and {again[0] + 1} are at one place; remove one")
+        if len(twins := np.flatnonzero(earlier < np.arange(len(earlier)))):
+            raise ValueError(f"layout: taxels {earlier[twins[0]] + 1} and {twins[0] + 1} are at one place; remove one")
         if len(wrong := np.flatnonzero(self.areas <= 0)):
             raise ValueError(f"layout: taxel {wrong[0] + 1} has an area of {self.areas[wrong[0]]:g}; give m2 above 0")
         object.__setattr__(self, "normals", unit(self.normals))
@@ -98,9 +98,9 @@ def read_layout(path: str | Path) -> Layout:
     """
     with open(path, newline="", encoding="utf-8-sig") as file:
         reader = csv.DictReader(file, skipinitialspace=True)
-        absent = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
-        if absent:
-            raise ValueError(f"{path}: no column {', '.join(absent)}; a layout has {','.join(COLUMNS)}")
+        absent_columns = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+        if absent_columns:
+            raise ValueError(f"{path}: no column {', '.join(absent_columns)}; a layout has {','.join(COLUMNS)}")
         rows = [_numbers(path, reader.line_num, row) for row in reader]
     table = np.array(rows).reshape(len(rows), len(COLUMNS))
     try:

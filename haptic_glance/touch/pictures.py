@@ -71,9 +71,9 @@ def draw(
     is_visible = [visible(mesh, positions, axes[:, 2], view) for view in views]
     for panel, view, mask in zip(panels, views, is_visible, strict=True):
         _draw_view(panel, mesh, view, positions[mask], axes[mask], half, numbers[mask])
-    hidden = numbers[~np.any(is_visible, axis=0)]
-    if len(hidden):
-        note = f"not visible: {', '.join(map(str, hidden))}"
+    hidden_numbers = numbers[~np.any(is_visible, axis=0)]
+    if len(hidden_numbers):
+        note = f"not visible: {', '.join(map(str, hidden_numbers))}"
         left.text(0.02, 0.015, note, fontsize=8.5, color=GREY, va="bottom")
     reliefs = np.asarray(reliefs)[:count]
     tiles = as_shown(images, reliefs, pitch) if scale == RELIEF else images
@@ -95,8 +95,8 @@ def best_views(mesh: Mesh, positions: np.ndarray, normals: np.ndarray) -> list[V
 def visible(mesh: Mesh, positions: np.ndarray, normals: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
     """(k,) boolean: the places face the viewer and nothing of the mesh hides them."""
     back = viewpoint.axes[2]
-    hidden = RayScene(mesh).cast(positions + RAY_OFFSET * normals, np.broadcast_to(back, positions.shape)).hit
-    return ~hidden & (normals @ back > 0.05)
+    is_hidden = RayScene(mesh).cast(positions + RAY_OFFSET * normals, np.broadcast_to(back, positions.shape)).hit
+    return ~is_hidden & (normals @ back > 0.05)
 
 
 def _draw_view(panel, mesh, view, positions, axes, half, numbers):
@@ -110,13 +110,13 @@ def _draw_view(panel, mesh, view, positions, axes, half, numbers):
         panel.plot(columns, rows, color=MARK, lw=0.9, alpha=0.85)
     rows, columns, _ = project(positions, view, (ROWS, ROWS))
     span = max(bottom - top, end - start)
-    for number, row, column, at in zip(
+    for number, row, column, label in zip(
         numbers, rows, columns, _label_positions(rows, columns, LABEL_GAP * span), strict=True
     ):
-        panel.plot([column, at[1]], [row, at[0]], color=MARK, lw=0.8)
+        panel.plot([column, label[1]], [row, label[0]], color=MARK, lw=0.8)
         panel.plot(column, row, "o", color=MARK, ms=2.5)
         box = {"boxstyle": "circle,pad=0.18", "fc": "white", "ec": MARK, "lw": 0.9}
-        panel.text(at[1], at[0], str(number), ha="center", va="center", fontsize=7.5, color=INK, bbox=box)
+        panel.text(label[1], label[0], str(number), ha="center", va="center", fontsize=7.5, color=INK, bbox=box)
     panel.set_xlim(start, end)
     panel.set_ylim(bottom, top)
     panel.set_axis_off()
@@ -130,13 +130,13 @@ def _label_positions(rows, columns, min_gap):
     outward = spots - spots.mean(axis=0)
     length = np.linalg.norm(outward, axis=1, keepdims=True)
     fallback = np.stack([-np.ones(len(spots)), np.zeros(len(spots))], axis=1)
-    at = spots + min_gap * np.where(length > 1e-9, outward / np.maximum(length, 1e-9), fallback)
+    labels = spots + min_gap * np.where(length > 1e-9, outward / np.maximum(length, 1e-9), fallback)
     for _ in range(200):
-        gaps = at[:, None] - at[None]
-        distances = np.linalg.norm(gaps, axis=2) + np.eye(len(at)) * 2 * min_gap
+        gaps = labels[:, None] - labels[None]
+        distances = np.linalg.norm(gaps, axis=2) + np.eye(len(labels)) * 2 * min_gap
         push = np.maximum(min_gap - distances, 0) / np.maximum(distances, 1e-6)
-        at = at + 0.5 * (gaps * push[..., None]).sum(axis=1)
-    return at
+        labels = labels + 0.5 * (gaps * push[..., None]).sum(axis=1)
+    return labels
 
 
 def _draw_imprints(figure, images, reliefs, scale, total):

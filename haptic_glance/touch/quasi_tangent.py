@@ -124,9 +124,9 @@ def touch(surface: Surface, vertices: ArrayLike, cells: tuple[int, int], pitch: 
     mesh, (_, _, reach) = surface.mesh, check_array(cells, pitch)
     vertices = np.asarray(vertices)
     if sensor == CONTOURS:
-        can = spans_plane(mesh, vertices)
-        images, reach = contour_imprints(surface, vertices[can], cells, pitch), DEPTH * max(cells) * pitch
-        return Touched(can, images * reach, images, reach)
-    can = touchable(mesh, vertices)
-    depths = distances(surface, vertices[can], cells, pitch, contact=sensor)
-    return Touched(can, depths, normalise(depths, pitch), reach)
+        is_touchable = spans_plane(mesh, vertices)
+        images, reach = contour_imprints(surface, vertices[is_touchable], cells, pitch), DEPTH * max(cells) * pitch
+        return Touched(is_touchable, images * reach, images, reach)
+    is_touchable = touchable(mesh, vertices)
+    depths = distances(surface, vertices[is_touchable], cells, pitch, contact=sensor)
+    return Touched(is_touchable, depths, normalise(depths, pitch), reach)

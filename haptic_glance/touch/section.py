@@ -133,8 +133,8 @@ def _close_cracks(partner, points, gap):
     neighbours = np.asarray(KDTree(points[ends]).query(points[ends], k=2, distance_upper_bound=gap)[1])
     # At one position either of the two may come first.
     nearest = np.where(neighbours[:, 0] == indices, neighbours[:, 1], neighbours[:, 0])
-    joined = np.append(nearest, -1)[nearest] == indices  # an end without a neighbour within the gap points to the -1
-    partner[ends[joined]] = ends[nearest[joined]]
+    is_mutual = np.append(nearest, -1)[nearest] == indices  # an end without a neighbour within the gap points to the -1
+    partner[ends[is_mutual]] = ends[nearest[is_mutual]]
     return partner
 
 

@@ -36,8 +36,8 @@ def process(name: str, folder: Path, data: Path, marks: Path, gaze: bool, settin
     marked = passes(marks / f"{name}.csv", mesh)
     rows = agreement_of_passes(name, mesh, marked, settings, seed)
     if gaze:
-        stored = read_arrays(data / "weights/ground_truth" / f"{name}.npz")
-        rows += agreement_with_gaze(mesh, marked, GroundTruth(stored["amounts"], stored["density"], stored["areas"]))
+        arrays = read_arrays(data / "weights/ground_truth" / f"{name}.npz")
+        rows += agreement_with_gaze(mesh, marked, GroundTruth(arrays["amounts"], arrays["density"], arrays["areas"]))
     return [{"item": name} | row for row in rows]
 
 

@@ -52,14 +52,14 @@ def process_nested(method: str, folder: Path, data: Path, names: list[str]) -> R
     column chosen names the features.
     """
     gaze = {name: read_arrays(data / "weights/ground_truth" / f"{name}.npz") for name in names}
-    seen = {name: _seen(entry) for name, entry in gaze.items()}
+    seen_entries = {name: _seen(entry) for name, entry in gaze.items()}
     rows = []
     for name, arrays in gaze.items():
-        others = {other: entry for other, entry in seen.items() if other != name}
+        other_entries = {other: entry for other, entry in seen_entries.items() if other != name}
         truth = GroundTruth(arrays["amounts"], arrays["density"], arrays["areas"])
-        fit = functools.cache(functools.partial(_fit, others))  # the fixed choice may be all features
-        chosen = choose(others, fit(tuple(seen[name].features), RIDGE))
-        for way, (features, ridge) in {"once": (FIXED, RIDGE), "nested": chosen}.items():
+        fit = functools.cache(functools.partial(_fit, other_entries))  # the fixed choice may be all features
+        nested_choice = choose(other_entries, fit(tuple(seen_entries[name].features), RIDGE))
+        for way, (features, ridge) in {"once": (FIXED, RIDGE), "nested": nested_choice}.items():
             weights = dict(zip(features, fit(features, ridge).tolist(), strict=True))
             saliency = _saliency(data / "meshes" / f"{name}.npz", weights)
             values = {metric.__name__: float(metric(saliency, truth)) for metric in (nss, auc)}
@@ -77,14 +77,14 @@ def choose(objects: Mapping[str, Seen], around: np.ndarray) -> tuple[tuple[str, 
     """
     names = tuple(next(iter(objects.values())).features)
     slopes, bends = _quadratic(objects, names, around)
-    chosen, steps = [], []
+    ids, steps = [], []
     for _ in names:
-        candidates = [(*_left_out(slopes, bends, [*chosen, k]), k) for k in range(len(names)) if k not in chosen]
+        candidates = [(*_left_out(slopes, bends, [*ids, k]), k) for k in range(len(names)) if k not in ids]
         loss, ridge, best = min(candidates)
-        chosen.append(best)
-        steps.append((loss, len(chosen), ridge))
+        ids.append(best)
+        steps.append((loss, len(ids), ridge))
     _, count, ridge = min(steps)
-    return tuple(names[k] for k in sorted(chosen[:count])), ridge
+    return tuple(names[k] for k in sorted(ids[:count])), ridge
 
 
 def _quadratic(

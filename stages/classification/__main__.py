@@ -51,13 +51,13 @@ def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
     All samplings of a group use equally many imprints of every object. A group with an object that has no imprints is
     left out as a whole, under the name "GROUP.".
     """
-    planned: dict[str, int | str] = {}
+    entries: dict[str, int | str] = {}
     for name, objects in sets.items():
         missing = [item for item in objects if not (folder / f"{item}.npz").exists()]
         if missing:
             names = ", ".join(object_files(folder)) or "nothing"
             remedy = f"name some of these in +classification.sets.NAME=[...]: {names}"
-            planned[f"{name}."] = f"set {name} left out: no imprints of {', '.join(missing)}; {remedy}"
+            entries[f"{name}."] = f"set {name} left out: no imprints of {', '.join(missing)}; {remedy}"
             continue
         counts = {item: _counts(item, folder) for item in objects}
         samplings = sorted({sampling for numbers in counts.values() for sampling in numbers})
@@ -68,9 +68,9 @@ def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
                 check_counts(by_object)
                 usable[f"{name}.{sampling}"] = min(by_object.values())
             except ValueError as error:
-                planned[f"{name}.{sampling}"] = f"{name}, {sampling}: {error}"
-        planned |= dict.fromkeys(usable, min(usable.values(), default=0))
-    return planned
+                entries[f"{name}.{sampling}"] = f"{name}, {sampling}: {error}"
+        entries |= dict.fromkeys(usable, min(usable.values(), default=0))
+    return entries
 
 
 def _counts(name, folder):
@@ -112,12 +112,12 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
 
 def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str], settings: Params, seed: int) -> Rows:
     """Rows of the variants, as far as the settings ask for them."""
-    several = None
+    multi_touch = None
     if sampling in settings.closer and set_of(name)["group"] == set_of(next(iter(settings.sets)))["group"]:
         all_variants = sampling == settings.closer[0]
-        several = MultiTouchTrials(tuple(settings.touches), settings.combinations, all_variants)
+        multi_touch = MultiTouchTrials(tuple(settings.touches), settings.combinations, all_variants)
     closer = sampling in settings.closer
-    return evaluate_variants(touched, classifiers, settings.repetitions, seed, several, closer)
+    return evaluate_variants(touched, classifiers, settings.repetitions, seed, multi_touch, closer)
 
 
 def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> dict[str, Any]:

@@ -42,8 +42,8 @@ class MultiTouchTrials:
             yield from self._split_trials(touched, parts, random_state, Split.REGIONS, ("",))
         if self.all_variants:
             yield from self._mixed_trials("touches_{}_mixed", touched, random_state, validity=VALIDITY[1:])
-            few = touched.first_of_each()
-            yield from self._mixed_trials("first_15_touches_{}_mixed", few, random_state, **CLOSER)
+            first_touches = touched.first_of_each()
+            yield from self._mixed_trials("first_15_touches_{}_mixed", first_touches, random_state, **CLOSER)
 
     def _split_trials(self, touched, parts, random_state, split, variants):
         """Combinations within each side of a split; the map is fitted to the training side."""

@@ -166,8 +166,8 @@ def alike(objects: Sequence[str], folder: Path) -> np.ndarray:
     shared = sorted(set.intersection(*map(set, imprints)))
     shares = np.zeros((len(objects), len(objects)))
     for sampling, (row, first), (column, second) in itertools.product(shared, enumerate(imprints), enumerate(imprints)):
-        same = similarity(first[sampling].images, second[sampling].images) >= SIMILARITY_THRESHOLD
-        shares[row, column] += (same.any(axis=1).mean() + same.any(axis=0).mean()) / 2
+        is_similar = similarity(first[sampling].images, second[sampling].images) >= SIMILARITY_THRESHOLD
+        shares[row, column] += (is_similar.any(axis=1).mean() + is_similar.any(axis=0).mean()) / 2
     return shares / max(1, len(shared))
 
 

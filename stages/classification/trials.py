@@ -129,8 +129,8 @@ def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = Fal
     yield from _both_splits("locations", touched, located, random_state, "located", scalings if closer else (TRAINING,))
     yield _region_trial("plain_side", touched, touched.samples, random_state, "features", side=True)
     parts = random_holdout(touched.truth, random_state)
-    turned = _rotated_positions(touched, parts, random_state)
-    yield Trial("locations_turned", Split.RANDOM, turned, touched.truth, parts, "located")
+    rotated_samples = _rotated_positions(touched, parts, random_state)
+    yield Trial("locations_turned", Split.RANDOM, rotated_samples, touched.truth, parts, "located")
     parts = random_holdout(first_few.truth, random_state)
     few_located = np.hstack([first_few.samples, first_few.places])
     yield Trial("first_15_locations", Split.RANDOM, few_located, first_few.truth, parts, "located")
@@ -149,13 +149,13 @@ def _feature_trials(touched, parts):
 def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
     """Trials without confusable imprints: removed from all data, or from the training part alone."""
     for prefix, part in (("", touched), ("first_15_", touched.first_of_each())):
-        kept = ~part.confusable
+        mask = ~part.confusable
         train, test = random_holdout(part.truth, random_state)
         distinct = ~confusable(part.similarities, part.truth, train)[train]
         random = np.random.default_rng([random_state, len(part.truth)])
         for end, whole, training in (
-            ("", kept, distinct),
-            ("_control", as_many(part.truth, kept, random), as_many(part.truth[train], distinct, random)),
+            ("", mask, distinct),
+            ("_control", as_many(part.truth, mask, random), as_many(part.truth[train], distinct, random)),
         ):
             selected = list(_selected(f"{prefix}selected{end}", part, whole, random_state))
             yield from selected[:1] if end else selected
@@ -203,8 +203,8 @@ def _rotated_positions(touched, parts, random_state):
     angles = np.random.default_rng(random_state).uniform(0, 2 * np.pi, size=touched.truth.max() + 1)[touched.truth]
     angles[parts[0]] = 0
     x, y, z = touched.places.T
-    turned = [np.cos(angles) * x - np.sin(angles) * y, np.sin(angles) * x + np.cos(angles) * y, z]
-    return np.column_stack([touched.samples, *turned])
+    coordinates = [np.cos(angles) * x - np.sin(angles) * y, np.sin(angles) * x + np.cos(angles) * y, z]
+    return np.column_stack([touched.samples, *coordinates])
 
 
 def drawn_sets(
@@ -231,9 +231,9 @@ def drawn_sets(
     sets = {}
     for number, hand in enumerate(hands[:count], 1):
         likeness = alike(hand)
-        for group, named in groups.items():
-            drawn = group.endswith("_drawn")
-            sets[f"{group}.{number:02}"] = hand[: len(named)] if drawn else least_alike(hand, likeness, len(named))
+        for group, names in groups.items():
+            is_drawn = group.endswith("_drawn")
+            sets[f"{group}.{number:02}"] = hand[: len(names)] if is_drawn else least_alike(hand, likeness, len(names))
     return sets
 
 
@@ -243,13 +243,13 @@ def least_alike(objects: Sequence[str], likeness: np.ndarray, count: int) -> lis
     Of the two objects that are most alike the one that is more like all others is left out, again and again.
     likeness: (n, n), symmetric.
     """
-    kept = np.arange(len(objects))
-    while len(kept) > count:
-        part = likeness[np.ix_(kept, kept)]
-        others = np.where(np.eye(len(kept), dtype=bool), -np.inf, part)
-        pair = np.unravel_index(others.argmax(), others.shape)
-        kept = np.delete(kept, max(pair, key=lambda place: part[place].sum()))
-    return [objects[int(place)] for place in kept]
+    ids = np.arange(len(objects))
+    while len(ids) > count:
+        part = likeness[np.ix_(ids, ids)]
+        similarities = np.where(np.eye(len(ids), dtype=bool), -np.inf, part)
+        pair = np.unravel_index(similarities.argmax(), similarities.shape)
+        ids = np.delete(ids, max(pair, key=lambda place: part[place].sum()))
+    return [objects[int(place)] for place in ids]
 
 
 def set_of(name: str) -> dict[str, str | int | None]:

@@ -45,10 +45,10 @@ class Variant:
 
     def images(self, imprints: np.ndarray) -> torch.Tensor:
         """(k, 3, size, size) f4 in 0..1 of imprints (k, cells, cells)."""
-        pressed = self.skin(imprints)
+        pixels = self.skin(imprints)
         if self.blocks:
-            pressed = pressed.repeat(self.size // self.cells, axis=1).repeat(self.size // self.cells, axis=2)
-        images = to_images(pressed, self.size)
+            pixels = pixels.repeat(self.size // self.cells, axis=1).repeat(self.size // self.cells, axis=2)
+        images = to_images(pixels, self.size)
         return images[:, :1].expand(-1, 3, -1, -1) if self.grey else images
 
 
@@ -78,8 +78,8 @@ def process(name: str, folder: Path, made: Path, members: dict[str, list[str]], 
     """Rows of one variant, a row per repetition. made: where press.process has written."""
     variant = VARIANTS[name]
     imprints, labels, objects = read_imprints(made, members, variant.cells)
-    about = {"setting": name, "cells": variant.cells, "weights": variant.weights, "size": variant.size}
-    about |= {"split": Split.RANDOM, "chance": 1 / len(members), "metric": "accuracy"}
+    columns = {"setting": name, "cells": variant.cells, "weights": variant.weights, "size": variant.size}
+    columns |= {"split": Split.RANDOM, "chance": 1 / len(members), "metric": "accuracy"}
     with torch.no_grad():
         images = variant.images(imprints)
     rows, cached = [], None
@@ -94,7 +94,7 @@ def process(name: str, folder: Path, made: Path, members: dict[str, list[str]], 
             if cached is None or variant.own_statistics:
                 cached = features(network, images)
             rate, value = train_head(network.head, cached, labels, objects, split, variant, settings, random)
-        rows.append(about | {"repetition": repetition, "learning_rate": rate, "value": value})
+        rows.append(columns | {"repetition": repetition, "learning_rate": rate, "value": value})
     return rows
 
 
@@ -128,8 +128,8 @@ def process_press(name: str, folder: Path, data: Path, settings: Params, arrays:
     if settings.detector not in points:
         raise ValueError(f"coarse_imprints.detector={settings.detector} is not one of {', '.join(points)}")
     vertices = choose_vertices(mesh, points[settings.detector], settings.touches, rng(seed, f"touches {name}"))
-    pressed = {str(cells): press_many(mesh, vertices, (cells, cells), settings.width / cells) for cells in arrays}
-    write_arrays(folder / f"{name}.npz", **pressed)
+    imprints = {str(cells): press_many(mesh, vertices, (cells, cells), settings.width / cells) for cells in arrays}
+    write_arrays(folder / f"{name}.npz", **imprints)
     return []
 
 

@@ -35,10 +35,10 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     rows = []
     for k, viewpoint in enumerate(viewpoints):
         view = read_view(data / "views" / name / f"{viewpoint}.npz")
-        view_maps, measured = measured_maps(mesh, view, channels, size, filled, settings.symmetry, settings.formulas)
+        view_maps, cost_rows = measured_maps(mesh, view, channels, size, filled, settings.symmetry, settings.formulas)
         maps[k] = [view_maps[channel] for channel in channels]
         mask[k] = mask_at_size(view.mask, size)
-        rows += measured
+        rows += cost_rows
         if k == 0 and settings.compare_background:
             rows += background_rows(mesh, view, channels, size, settings.formulas)
             rows += hue_rows(mesh, view, view_maps, size, filled, settings.formulas)

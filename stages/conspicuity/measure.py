@@ -131,9 +131,9 @@ def _band(mask, shape):
 
 def read_maps(path: str | Path) -> tuple[np.ndarray, np.ndarray, list[Viewpoint], list[str]]:
     """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of a file of data/SET/conspicuity."""
-    stored = read_arrays(path)
-    viewpoints = [parse_viewpoint(name) for name in stored["viewpoints"]]
-    return stored["maps"].astype("f4"), stored["mask"], viewpoints, [str(channel) for channel in stored["channels"]]
+    arrays = read_arrays(path)
+    viewpoints = [parse_viewpoint(name) for name in arrays["viewpoints"]]
+    return arrays["maps"].astype("f4"), arrays["mask"], viewpoints, [str(channel) for channel in arrays["channels"]]
 
 
 def read_view_maps(path: str | Path, mesh: Mesh) -> ViewMaps:

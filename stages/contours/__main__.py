@@ -80,9 +80,9 @@ def run(workspace: Workspace) -> None:
         stage.metrics(summary(rows, stage.seed))
     for note in [row["note"] for row in rows if row["note"]]:
         print(f"contours: {note}")
-    counted = sum(row["value"] for row in rows if row["metric"] == "sequences")
+    sequence_count = sum(row["value"] for row in rows if row["metric"] == "sequences")
     strategies = len(settings.strategies)
-    print(f"contours: {workspace.dataset}, {len(objects)} objects, {strategies} strategies, {counted} sequences")
+    print(f"contours: {workspace.dataset}, {len(objects)} objects, {strategies} strategies, {sequence_count} sequences")
 
 
 if __name__ == "__main__":

@@ -71,8 +71,8 @@ def sample_contours(
     if int(count) != count or count < 1:
         raise ValueError(f"count must be an integer from 1, got {count}")
     vertices = surface.mesh.vertices
-    used = vertices[np.unique(surface.mesh.faces)]
-    centre = (used.min(axis=0) + used.max(axis=0)) / 2
+    surface_points = vertices[np.unique(surface.mesh.faces)]
+    centre = (surface_points.min(axis=0) + surface_points.max(axis=0)) / 2
     pairs_drawn = draw_pairs(points, DRAWS * int(count), generator)
     accepted, attempts = [], 0
     while len(accepted) < count and attempts < len(pairs_drawn):
@@ -117,6 +117,6 @@ def draw_pairs(points: np.ndarray, count: int, generator: np.random.Generator) -
     high -= high * (high - 1) // 2 > numbers  # the root of a large number may be rounded up
     high += high * (high + 1) // 2 <= numbers  # or down
     pairs = np.stack([numbers - high * (high - 1) // 2, high], axis=1)
-    turned = generator.random(len(pairs)) < 0.5
-    pairs[turned] = pairs[turned, ::-1]
+    is_swapped = generator.random(len(pairs)) < 0.5
+    pairs[is_swapped] = pairs[is_swapped, ::-1]
     return points[pairs]

@@ -99,8 +99,8 @@ class _Sender:
         self.code = (stage, stage_digest(stage) if stage else "")
         uses = Counter(digest for task in tasks for digest in set(task.files.values()))
         self.common = {digest for digest, count in uses.items() if count > 1}
-        packed = cloudpickle.dumps(function)
-        self.function = client.submit(_content, packed, key=f"{desc}-function")
+        function_bytes = cloudpickle.dumps(function)
+        self.function = client.submit(_content, function_bytes, key=f"{desc}-function")
         self.sent: dict[str, Future] = {"": self.function}
 
     def send(self, task: Task) -> Future:
@@ -123,8 +123,8 @@ def _result(future: Future, running: Mapping[Any, tuple[Task, Future]]) -> Any:
         return future.result()
     except KilledWorker as error:
         # Items that waited on the same workers are lost as often: all of them are named.
-        lost = [task.name for task, job in running.values() if job.status == "error"]
-        often = f"{', '.join(lost)}: lost {error.allowed_failures + 1} workers"
+        lost_tasks = [task.name for task, job in running.values() if job.status == "error"]
+        often = f"{', '.join(lost_tasks)}: lost {error.allowed_failures + 1} workers"
         raise OSError(f"{often}: is their memory too small? The logs of the workers may tell more") from None
     except CancelledError:
         raise OSError(f"{name}: the scheduler is gone; run the stage again, what is finished is kept") from None

@@ -101,7 +101,7 @@ def local_names(nodes: Iterable[ast.AST]) -> list[str]:
     Parameters are left out, and names that `def`, an import, `global` or `nonlocal` binds.
     """
     bound: dict[str, None] = {}
-    kept: set[str] = set()
+    excluded_names: set[str] = set()
     for node in nodes:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             bound[node.id] = None
@@ -111,16 +111,16 @@ def local_names(nodes: Iterable[ast.AST]) -> list[str]:
             bound |= {argument.arg: None for argument in node.args.args}
         elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             arguments = ast.walk(node.args)
-            kept |= {node.name} | {argument.arg for argument in arguments if isinstance(argument, ast.arg)}
+            excluded_names |= {node.name} | {argument.arg for argument in arguments if isinstance(argument, ast.arg)}
         elif isinstance(node, ast.ClassDef):  # its variables are attributes
-            kept |= {
+            excluded_names |= {
                 part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
             }
         elif isinstance(node, ast.Global | ast.Nonlocal):
-            kept |= set(node.names)
+            excluded_names |= set(node.names)
         elif isinstance(node, ast.Import | ast.ImportFrom):
-            kept |= {alias.asname or alias.name.split(".")[0] for alias in node.names}
-    return [name for name in bound if name not in kept]
+            excluded_names |= {alias.asname or alias.name.split(".")[0] for alias in node.names}
+    return [name for name in bound if name not in excluded_names]
 
 
 @cache
@@ -229,9 +229,9 @@ def _files_of(module: str) -> set[Path]:
 
 def _defined(tree: ast.Module) -> list[str]:
     """The names of the classes, functions and constants that a file defines."""
-    named = {node.name for node in tree.body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
+    definitions = {node.name for node in tree.body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
     assigned = [target for node in tree.body if isinstance(node, ast.Assign) for target in node.targets]
-    return sorted(named | {target.id for target in assigned if isinstance(target, ast.Name)})
+    return sorted(definitions | {target.id for target in assigned if isinstance(target, ast.Name)})
 
 
 def _handed_on(tree: ast.Module, package: str) -> dict[str, tuple[str, str]]:

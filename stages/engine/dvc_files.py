@@ -27,11 +27,11 @@ def forget_killed(path: Path, program: str) -> None:
     DVC itself drops dead processes, but not those that the system has not cleared away yet.
     """
     try:
-        listed = json.loads(path.read_text())
+        locks = json.loads(path.read_text())
         reads = {
-            name: [entry for entry in all_ if entry["cmd"] != program] for name, all_ in listed.get("read", {}).items()
+            name: [entry for entry in all_ if entry["cmd"] != program] for name, all_ in locks.get("read", {}).items()
         }
-        writes = {name: entry for name, entry in listed.get("write", {}).items() if entry["cmd"] != program}
+        writes = {name: entry for name, entry in locks.get("write", {}).items() if entry["cmd"] != program}
     except FileNotFoundError:
         return
     except (ValueError, TypeError, KeyError, AttributeError):

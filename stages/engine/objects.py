@@ -110,20 +110,20 @@ class Objects:
 
 def _unpacked(content, target):
     """{member: bytes} of an archive; ValueError for a member outside `target`."""
-    with zipfile.ZipFile(io.BytesIO(content)) as stored:
-        for member in stored.namelist():
+    with zipfile.ZipFile(io.BytesIO(content)) as zip_file:
+        for member in zip_file.namelist():
             if not (target / member.removeprefix(FILES)).resolve().is_relative_to(target.resolve()):
                 raise ValueError(f"{member} lies outside its folder")
-        return {member: stored.read(member) for member in stored.namelist()}
+        return {member: zip_file.read(member) for member in zip_file.namelist()}
 
 
 def archive(rows: Sequence[Mapping[str, Any]], source: Path) -> bytes:
     """Rows and all files below `source` as one piece; half-written files are left out."""
     stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w") as stored:
-        stored.writestr(ROWS, json.dumps(list(rows)))
+    with zipfile.ZipFile(stream, "w") as zip_file:
+        zip_file.writestr(ROWS, json.dumps(list(rows)))
         for path in files_below(source):
-            stored.write(path, FILES + path.relative_to(source).as_posix())
+            zip_file.write(path, FILES + path.relative_to(source).as_posix())
     return stream.getvalue()
 
 

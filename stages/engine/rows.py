@@ -63,13 +63,13 @@ def write_rows(
     names = [*FIRST, *columns, *LAST]
     with contextlib.ExitStack() as stack:
         file = stack.enter_context(open(stack.enter_context(whole_file(path)), "wb"))
-        packed = stack.enter_context(gzip.GzipFile("", "wb", fileobj=file, mtime=0))  # equal rows give equal bytes
-        table = csv.writer(stack.enter_context(io.TextIOWrapper(packed, newline="")), lineterminator="\n")
+        gzip_file = stack.enter_context(gzip.GzipFile("", "wb", fileobj=file, mtime=0))  # equal rows give equal bytes
+        table = csv.writer(stack.enter_context(io.TextIOWrapper(gzip_file, newline="")), lineterminator="\n")
         table.writerow(names)
         for number, row in enumerate(rows):
             _check(path, number, row, names)
-            measured = None if _empty(row.get("seconds")) else clock()
-            cells = {**row, "dataset": dataset, "clock": measured, "seed": seed}
+            clock_text = None if _empty(row.get("seconds")) else clock()
+            cells = {**row, "dataset": dataset, "clock": clock_text, "seed": seed}
             table.writerow([_cell(name, cells.get(name)) for name in names])
 
 

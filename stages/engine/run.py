@@ -102,8 +102,8 @@ class StageRun:
         else tells its input apart, such as the hash of a source file.
         """
         values: Mapping[str, Any] = names if isinstance(names, Mapping) else {name: name for name in names}
-        few = _few.get()
-        values = few.of(values) if few else values
+        selection = _few.get()
+        values = selection.of(values) if selection else values
         arguments = process.keywords if isinstance(process, functools.partial) else {}
         function = process.func if isinstance(process, functools.partial) else process
         stage = self.stage if _is_of_stages(function) else ""
@@ -120,8 +120,8 @@ class StageRun:
                 if not self._taken(task, objects, rows):
                     raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
         self.rows += rows
-        if few:
-            few.rows += list(rows)
+        if selection:
+            selection.rows += list(rows)
         return rows
 
     def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
@@ -134,10 +134,10 @@ class StageRun:
 
     def _taken(self, task: Task, objects: Objects, rows: ItemRows) -> bool:
         """Whether an item's files and rows are kept; then they are taken from there."""
-        stored = objects.take(task.key, self.folder)
-        if stored is not None:
-            rows.put(task.name, stored)
-        return stored is not None
+        item_rows = objects.take(task.key, self.folder)
+        if item_rows is not None:
+            rows.put(task.name, item_rows)
+        return item_rows is not None
 
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
@@ -244,8 +244,8 @@ def _moved(process, home, root):
     if root == home or not isinstance(process, functools.partial):
         return process
     paths = {name: value for name, value in process.keywords.items() if isinstance(value, Path)}
-    moved = {name: root / path.relative_to(home) for name, path in paths.items() if path.is_relative_to(home)}
-    return functools.partial(process, **moved)
+    new_paths = {name: root / path.relative_to(home) for name, path in paths.items() if path.is_relative_to(home)}
+    return functools.partial(process, **new_paths)
 
 
 _allowed: ContextVar[tuple[list[Path], set[Path]] | None] = ContextVar("allowed", default=None)

@@ -112,11 +112,11 @@ def _check_ranges(where: str, values: dict[str, Any]) -> None:
         if isinstance(value, dict) and key not in RANGES:
             _check_ranges(f"{where}.{key}", value)
             continue
-        least, most = RANGES.get(key, (-np.inf, np.inf))
+        lowest, highest = RANGES.get(key, (-np.inf, np.inf))
         for number in _numbers(value):
-            if not least <= number <= most:
-                low = "above 0" if least == ABOVE_0 else f"{least:g} or more"
-                bounds = low if most == np.inf else f"between {0 if least == ABOVE_0 else least:g} and {most:g}"
+            if not lowest <= number <= highest:
+                low = "above 0" if lowest == ABOVE_0 else f"{lowest:g} or more"
+                bounds = low if highest == np.inf else f"between {0 if lowest == ABOVE_0 else lowest:g} and {highest:g}"
                 raise ParamsError(f"{where}.{key}: {number:g} must be {bounds}")
 
 
@@ -131,8 +131,8 @@ def _check_keys(where: str, values: dict[str, Any], keys: list[Any]) -> None:
     for key in values:
         if key not in keys:
             name = f"{where}.{key}" if where else key
-            near = difflib.get_close_matches(key, keys, n=1, cutoff=0.5)
-            hint = f"did you mean {where + '.' if where else ''}{near[0]}?" if near else f"known: {', '.join(keys)}"
+            match = difflib.get_close_matches(key, keys, n=1, cutoff=0.5)
+            hint = f"did you mean {where + '.' if where else ''}{match[0]}?" if match else f"known: {', '.join(keys)}"
             raise ParamsError(f"unknown setting {name}: {hint}")
 
 

@@ -64,8 +64,8 @@ def _ends(mean: float, resampled: np.ndarray, n: int, shared: float, level: floa
     """The ends of the `interval` of n values, from their mean and the means (r,) of their resamples."""
     tail = (1 + level) / 2
     low, high = np.quantile(resampled, [1 - tail, tail])
-    few = scipy.special.stdtrit(n - 1, tail) / scipy.special.ndtri(tail) * np.sqrt(n / (n - 1))
-    widen = few * np.sqrt(1 + n * shared)
+    t_factor = scipy.special.stdtrit(n - 1, tail) / scipy.special.ndtri(tail) * np.sqrt(n / (n - 1))
+    widen = t_factor * np.sqrt(1 + n * shared)
     return float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
 
 
@@ -131,8 +131,8 @@ def needed(spread: float, distance: float, shared: float = 0.0) -> float:
     `stages.engine.statistics.interval`: of repeated splits that share much even infinitely many may not decide.
     """
     counts = np.arange(2, MOST + 1)
-    enough = _quantiles() * spread * np.sqrt(1 / counts + shared) <= distance
-    return float(counts[enough.argmax()]) if enough.any() else np.inf
+    is_enough = _quantiles() * spread * np.sqrt(1 / counts + shared) <= distance
+    return float(counts[is_enough.argmax()]) if is_enough.any() else np.inf
 
 
 ROUNDS = 1000  # of the search for the variance between sets; tens are enough but where it is next to zero
@@ -235,16 +235,16 @@ def breaking_interval(
     """
     left = np.atleast_2d(np.asarray(left, dtype=np.float64))
     left = left[np.isfinite(left).any(axis=1)]
-    at = float(_first_falls(severities, resampled_means(left, np.ones((1, len(left)))), unharmed)[0])
+    point = float(_first_falls(severities, resampled_means(left, np.ones((1, len(left)))), unharmed)[0])
     if len(left) < 2:
-        return at, at, at
+        return point, point, point
     sign = 1 if severities[-1] >= unharmed else -1  # harsher is more, or less
     points = sign * _first_falls(severities, resampled_means(left, resamples(len(left), seed)), unharmed)
     points[np.isnan(points)] = np.inf
     tail = expanded_levels(len(left))
     low, high = np.quantile(points, tail[0], method="lower"), np.quantile(points, tail[1], method="higher")
     mild, harsh = (sign * float(end) if np.isfinite(end) else float("nan") for end in (low, high))
-    return at, mild, harsh
+    return point, mild, harsh
 
 
 def resamples(units: int, seed: int = 0) -> np.ndarray:
@@ -272,12 +272,12 @@ def expanded_levels(units: int) -> tuple[float, float]:
 
 def _first_falls(severities, left, unharmed):
     """(r,) breaking points of curves (r, s); NaN where a curve never falls below BROKEN, or falls after a NaN."""
-    at = np.array([unharmed, *severities], dtype=np.float64)
+    levels = np.array([unharmed, *severities], dtype=np.float64)
     left = np.hstack([np.ones((len(left), 1)), left])
     k, rows = (left < BROKEN).argmax(axis=1), np.arange(len(left))  # 0 where it never falls
     before, after = left[rows, k - 1], left[rows, k]
     with np.errstate(invalid="ignore", divide="ignore"):
-        points = at[k - 1] + (before - BROKEN) / (before - after) * (at[k] - at[k - 1])
+        points = levels[k - 1] + (before - BROKEN) / (before - after) * (levels[k] - levels[k - 1])
     return np.where(k > 0, points, np.nan)
 
 

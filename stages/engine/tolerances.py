@@ -102,16 +102,16 @@ def read_tolerances(path: Path) -> Tolerances:
 
 def compare(metrics: Mapping[str, float], baseline: Mapping[str, float], tolerances: Tolerances) -> list[str]:
     """Sentences on every metric that left its bounds or is missing; [] when all hold."""
-    metrics, moved = tolerances.with_pairs(metrics), []
+    metrics, sentences = tolerances.with_pairs(metrics), []
     for name, value in tolerances.with_pairs(baseline).items():
-        rule, now = tolerances.of(name), metrics.get(name)
+        rule, new_value = tolerances.of(name), metrics.get(name)
         low, high = rule.bounds(value, tolerances.moves.get(name, 0.0))
-        if now is None:
-            moved.append(f"{name} is missing (baseline {value:g})")
-        elif not low <= now <= high:
-            move = f"{name} moved by {now - value:+.4g} from {value:.4g} to {now:.4g}"
-            moved.append(f"{move}, outside {low:.4g} .. {high:.4g}")
-    return moved
+        if new_value is None:
+            sentences.append(f"{name} is missing (baseline {value:g})")
+        elif not low <= new_value <= high:
+            move = f"{name} moved by {new_value - value:+.4g} from {value:.4g} to {new_value:.4g}"
+            sentences.append(f"{move}, outside {low:.4g} .. {high:.4g}")
+    return sentences
 
 
 def widest_moves(runs: Iterable[Mapping[str, float]], baseline: Mapping[str, float]) -> dict[str, float]:

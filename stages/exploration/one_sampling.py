@@ -40,11 +40,11 @@ def read_set(folder: Path, objects: list[str], method: str) -> tuple[np.ndarray,
         raise ValueError(f"no imprints of {', '.join(missing)}")
     if len(objects) < 2:
         raise ValueError("at least two objects are needed")
-    stored = {entry: read_imprints(folder / f"{entry}.npz") for entry in objects}
-    without = [entry for entry, by_method in stored.items() if method not in by_method]
-    if without:
-        raise ValueError(f"no imprints by {method} of {', '.join(without)}")
-    imprints = [by_method[method] for by_method in stored.values()]
+    imprint_files = {entry: read_imprints(folder / f"{entry}.npz") for entry in objects}
+    names_without = [entry for entry, by_method in imprint_files.items() if method not in by_method]
+    if names_without:
+        raise ValueError(f"no imprints by {method} of {', '.join(names_without)}")
+    imprints = [by_method[method] for by_method in imprint_files.values()]
     count = min(len(entry.images) for entry in imprints)
     samples = np.concatenate([features(entry.images[:count]) for entry in imprints])
     places = np.concatenate([entry.positions[:count] for entry in imprints]).astype(np.float64)

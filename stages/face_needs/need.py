@@ -39,8 +39,8 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
         errors = seen(mesh, chain, size, distance, settings)
         rows.append(row(name, "seen", distance, faces[coarsest(errors <= settings.tolerance)]))
     images = felt(mesh, chain, read_points(data / f"salient_points/{name}.npz")[settings.detector], settings)
-    off = differences(images)
-    rows += [row(name, "felt", reading, faces[coarsest(off <= reading)]) for reading in settings.readings]
+    imprint_errors = differences(images)
+    rows += [row(name, "felt", reading, faces[coarsest(imprint_errors <= reading)]) for reading in settings.readings]
     write_arrays(folder / f"{name}.npz", faces=faces, features=np.stack([features(imprints) for imprints in images]))
     return rows
 
@@ -88,15 +88,15 @@ def recognise(item: str, folder: Path, made: Path, names: Sequence[str], setting
     The last row is of the level at which the mean of all objects is within the slack, far less a matter of chance: the
     median of the objects' faces there. made: the folder with what `process` wrote.
     """
-    stored = {name: read_arrays(made / f"{name}.npz") for name in names}
-    shares = accuracies({name: arrays["features"] for name, arrays in stored.items()}, settings, seed)
+    arrays_by_name = {name: read_arrays(made / f"{name}.npz") for name in names}
+    shares = accuracies({name: arrays["features"] for name, arrays in arrays_by_name.items()}, settings, seed)
     rows = []
     for name, accuracy in shares.items():
-        faces = stored[name]["faces"]
+        faces = arrays_by_name[name]["faces"]
         rows.append(row(name, "recognised", settings.slack, faces[_enough(accuracy[: len(faces)], settings)]))
         rows.append({"item": name, "task": "recognised", "metric": "accuracy", "value": float(accuracy[0])})
     level = _enough(np.mean(list(shares.values()), axis=0), settings)
-    together = np.median([arrays["faces"][min(level, len(arrays["faces"]) - 1)] for arrays in stored.values()])
+    together = np.median([arrays["faces"][min(level, len(arrays["faces"]) - 1)] for arrays in arrays_by_name.values()])
     return [*rows, row(None, "recognised", settings.slack, together) | {"metric": "faces_together"}]
 
 

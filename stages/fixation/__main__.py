@@ -40,9 +40,9 @@ def task_rows(tasks: Mapping[str, Mapping[str, str]], curves: Mapping[str, tuple
         for task, classes in tasks.items()
         for name, label in classes.items()
     ]
-    for task, (curve, chosen) in curves.items():
+    for task, (curve, elbow_count) in curves.items():
         row = {"task": task, "metric": "ssd"}
-        rows += [row | {"clusters": k, "chosen": bool(k == chosen), "value": ssd} for k, ssd in curve.items()]
+        rows += [row | {"clusters": k, "chosen": bool(k == elbow_count), "value": ssd} for k, ssd in curve.items()]
     return rows
 
 

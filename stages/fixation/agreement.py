@@ -145,8 +145,8 @@ def half_share(values: np.ndarray, areas: np.ndarray) -> float:
     if not (above * areas).any():
         return np.nan
     order = np.argsort(-above, kind="stable")
-    held, covered = np.cumsum((above * areas)[order]), np.cumsum(areas[order])
-    return float(np.interp(0.5, held / held[-1], covered / covered[-1]))
+    saliency_sums, area_sums = np.cumsum((above * areas)[order]), np.cumsum(areas[order])
+    return float(np.interp(0.5, saliency_sums / saliency_sums[-1], area_sums / area_sums[-1]))
 
 
 SPREAD = 0.25  # of the image's side: deviation of the Gaussian; half of the object lies within it

@@ -50,35 +50,35 @@ def measure_attention(
     """
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     viewpoints = viewpoint_sphere(settings.parallels, settings.azimuths)
-    seen, evaluated = facing(mesh, viewpoints) > 0, evaluated_views(settings.parallels, settings.azimuths)
-    ground_truth = GroundTruth(data, name, mesh, seen, evaluated)
-    stored, rows = {"seen": seen.any(axis=0), "visible": seen[evaluated]}, []
+    visible, evaluated = facing(mesh, viewpoints) > 0, evaluated_views(settings.parallels, settings.azimuths)
+    ground_truth = GroundTruth(data, name, mesh, visible, evaluated)
+    arrays, rows = {"seen": visible.any(axis=0), "visible": visible[evaluated]}, []
     pictures, rendering_seconds = read_pictures(made, name)
     renders = pictures if settings.projection == "boxes" else None
-    place = partial(to_surface, mesh=mesh, viewpoints=viewpoints, seen=seen, renders=renders)
+    place = partial(to_surface, mesh=mesh, viewpoints=viewpoints, seen=visible, renders=renders)
     for method in methods:
         with Stopwatch() as watch:
             cams, network_seconds = object_cams(made, method, name, list(tasks))
             values, bits = project_maps(cams, place, settings.size, method.network)
-            whole = mean_over_views(values, seen)
+            whole = mean_over_views(values, visible)
         names = [*cams, *(MODELS if set(FUSED_TASKS) & set(cams) else ())]
         seconds = rendering_seconds + network_seconds + watch.seconds
         for k, task in enumerate(names):
-            stored[f"{method.name}.{task}"] = whole[k].astype(np.float16)
-            stored[f"{method.name}.{task}.views"] = values[evaluated, k].astype(np.float16)
+            arrays[f"{method.name}.{task}"] = whole[k].astype(np.float16)
+            arrays[f"{method.name}.{task}.views"] = values[evaluated, k].astype(np.float16)
             rows += ground_truth.rows(method.name, task, values[evaluated, k], whole[k], seconds)
-        stored[f"{method.name}.maps"] = np.stack([cam[evaluated] for cam in cams.values()], axis=1).astype(np.float16)
+        arrays[f"{method.name}.maps"] = np.stack([cam[evaluated] for cam in cams.values()], axis=1).astype(np.float16)
         row = {"item": name, "method": method.name}
         if method.mode != "random" and ITSELF in cams:
             looks = values[evaluated, names.index(ITSELF)].astype(np.float16)
-            apart = nearer(mesh, [viewpoints[view] for view in evaluated], seen[evaluated], looks)
-            rows += [row | {"task": ITSELF, "metric": metric, "value": value} for metric, value in apart.items()]
+            by_metric = nearer(mesh, [viewpoints[view] for view in evaluated], visible[evaluated], looks)
+            rows += [row | {"task": ITSELF, "metric": metric, "value": value} for metric, value in by_metric.items()]
         rows.append(row | {"metric": "views", "value": len(viewpoints), "seconds": network_seconds})
-        rows += [row | cells for cells in task_correlations(values[:, : len(cams)], seen, list(cams))]
+        rows += [row | cells for cells in task_correlations(values[:, : len(cams)], visible, list(cams))]
         row["view"] = ALL_VIEWS
         rows += [row | {"task": task, "metric": "entropy", "value": bit} for task, bit in bits.items()]
         rows += [row | {"task": task, "metric": "alive", "value": alive(cam)} for task, cam in cams.items()]
-    write_arrays(folder / f"{name}.npz", **stored)
+    write_arrays(folder / f"{name}.npz", **arrays)
     return rows + baseline_rows(ground_truth, data, place, settings.size, seed)
 
 

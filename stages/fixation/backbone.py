@@ -55,8 +55,8 @@ def take_pictures(name: str, folder: Path, data: Path, settings: Params) -> list
 
 def read_pictures(folder: Path, name: str) -> tuple[np.ndarray, float]:
     """(the pictures (v, size, size) u1, their seconds)."""
-    stored = read_arrays(folder / ".pictures" / f"{name}.npz")
-    return stored["pictures"], float(stored["seconds"])
+    arrays = read_arrays(folder / ".pictures" / f"{name}.npz")
+    return arrays["pictures"], float(arrays["seconds"])
 
 
 def to_images(pictures: np.ndarray, device: str | torch.device = "cpu") -> torch.Tensor:
@@ -151,9 +151,9 @@ def prepare_random_network(
     """
     with repeatable(seed):
         network = build(method.network, 2, MODES[method.mode], seed, settings.source)
-        few = objects[:: -(-len(objects) // CALIBRATION_PICTURES)]
-        images = network_inputs(np.stack([read_pictures(made, item)[0][0] for item in few]))
-        recalibrate(network, lambda ids: images[ids], np.arange(len(few)))
+        sample = objects[:: -(-len(objects) // CALIBRATION_PICTURES)]
+        images = network_inputs(np.stack([read_pictures(made, item)[0][0] for item in sample]))
+        recalibrate(network, lambda ids: images[ids], np.arange(len(sample)))
     write_state(folder, name, network)
     return []
 
@@ -184,8 +184,8 @@ def folded_network(made: Path, method: Method, source: str, seed: int, state: st
     """
     network = build(method.network, 2, MODES[method.mode], seed, source)
     if state:
-        stored = read_arrays(state_path(made, method.name))
-        network.load_state_dict({key: torch.as_tensor(value) for key, value in stored.items()})
+        arrays = read_arrays(state_path(made, method.name))
+        network.load_state_dict({key: torch.as_tensor(value) for key, value in arrays.items()})
     network.convolutions = fuse(network.convolutions)  # type: ignore[assignment]  # a graph of the same layers
     return network
 
@@ -202,8 +202,8 @@ def last_maps(network: Network, pictures: np.ndarray) -> np.ndarray:
 
 def read_maps(folder: Path, method: str, name: str) -> tuple[np.ndarray, float]:
     """(the maps (v, C, i, j) f2, their seconds)."""
-    stored = read_arrays(folder / ".maps" / method / f"{name}.npz")
-    return stored["maps"], float(stored["seconds"])
+    arrays = read_arrays(folder / ".maps" / method / f"{name}.npz")
+    return arrays["maps"], float(arrays["seconds"])
 
 
 def state_path(folder: Path, name: str) -> Path:

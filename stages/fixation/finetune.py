@@ -89,9 +89,9 @@ def train_network(
     """
     labels = labels_of(objects, tasks[task], settings)
     part, _, test = divided(labels, seed)
-    stored = read_arrays(made / ".rates" / f"{method.name}.npz") if method.mode == OF_LAST_BLOCK else {}
+    rate_arrays = read_arrays(made / ".rates" / f"{method.name}.npz") if method.mode == OF_LAST_BLOCK else {}
     options = {name: getattr(settings, name) for name in ("epochs", "batch", "momentum")}
-    options["rate"] = float(stored.get("rate", settings.rate))
+    options["rate"] = float(rate_arrays.get("rate", settings.rate))
     with repeatable(seed), Stopwatch() as training:
         lesson, trunk, copies = lesson_of(made, method, settings, objects, labels.max() + 1, seed)
         model = train_model(lesson, labels, part, **options, checkpoint=folder / "training.pt")
@@ -100,10 +100,10 @@ def train_network(
     seconds = (looking.seconds + trunk / len(tasks)) / len(objects)
     cams = cams.reshape(len(objects), -1, *cams.shape[1:])
     write_arrays(folder / ".cams" / method.name / f"{task}.npz", cams=cams, objects=np.array(objects), seconds=seconds)
-    paid = training.seconds + (copies + float(stored.get("seconds", 0))) / len(tasks)
+    cost = training.seconds + (copies + float(rate_arrays.get("seconds", 0))) / len(tasks)
     row = {"method": method.name, "task": task, "split": "views"}
     return [
-        row | {"metric": "accuracy", "value": float((predicted[test] == labels[test]).mean()), "seconds": paid},
+        row | {"metric": "accuracy", "value": float((predicted[test] == labels[test]).mean()), "seconds": cost},
         row | {"metric": "chance", "value": majority_accuracy(labels, part, test)},
     ]
 
@@ -166,9 +166,9 @@ def read_cams(made: Path, method: str, name: str, tasks: Sequence[str]) -> tuple
     """(dict task -> (v, i, j) f4 Grad-CAM maps of one object, seconds of its networks)."""
     cams, seconds = {}, 0.0
     for task in tasks:
-        stored = read_arrays(made / ".cams" / method / f"{task}.npz")
-        cams[task] = stored["cams"][stored["objects"].tolist().index(name)]
-        seconds += float(stored["seconds"])
+        arrays = read_arrays(made / ".cams" / method / f"{task}.npz")
+        cams[task] = arrays["cams"][arrays["objects"].tolist().index(name)]
+        seconds += float(arrays["seconds"])
     return cams, seconds
 
 
@@ -302,5 +302,5 @@ def majority_accuracy(labels: np.ndarray, train: np.ndarray, test: np.ndarray) -
 
 def read_head(folder: Path, method: str, task: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(weights (k, C) f4, bias (k,) f4, class names (k,)) of a trained head."""
-    stored = read_arrays(folder / "heads" / method / f"{task}.npz")
-    return stored["weights"], stored["bias"], stored["classes"]
+    arrays = read_arrays(folder / "heads" / method / f"{task}.npz")
+    return arrays["weights"], arrays["bias"], arrays["classes"]

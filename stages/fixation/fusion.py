@@ -89,8 +89,8 @@ def subtractive_clusters(points: np.ndarray, radius: float = 0.5) -> np.ndarray:
         share = potential[best] / first
         if share <= REJECT:
             return np.array(centres, dtype=np.int64)
-        apart = np.linalg.norm(scaled[centres] - scaled[best], axis=1).min(initial=np.inf)
-        if share > ACCEPT or apart / radius + share >= 1:
+        gap = np.linalg.norm(scaled[centres] - scaled[best], axis=1).min(initial=np.inf)
+        if share > ACCEPT or gap / radius + share >= 1:
             centres.append(best)
             potential = potential - potential[best] * _near(scaled[best : best + 1], scaled, SQUASH * radius)[0]
         potential[best] = 0

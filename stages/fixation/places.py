@@ -53,8 +53,8 @@ def _anywhere(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
 
 def _middle(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
     """(1, 3): what a view shows in the middle of the picture."""
-    aside = np.linalg.norm(mesh.vertices @ viewpoint.axes[:2].T, axis=1)
-    return mesh.vertices[[np.where(seen, aside, np.inf).argmin()]]
+    distances = np.linalg.norm(mesh.vertices @ viewpoint.axes[:2].T, axis=1)
+    return mesh.vertices[[np.where(seen, distances, np.inf).argmin()]]
 
 
 def _apart(places: Sequence[np.ndarray]) -> float:
@@ -148,10 +148,10 @@ def curvature_shares(mesh: Mesh) -> tuple[float, float, float]:
     Curvatures within FLAT / diagonal^2 count as zero. These are shares of vertices, as in the thesis, and not of area:
     an object that is meshed finer where it is curved counts as more curved. Raises ValueError for a mesh without area.
     """
-    on = np.unique(mesh.faces[mesh.face_areas > 0])
-    if not len(on):
+    vertex_ids = np.unique(mesh.faces[mesh.face_areas > 0])
+    if not len(vertex_ids):
         raise ValueError("the mesh has no face with an area, so its curvature is not defined: give it faces")
-    relative = gaussian_curvature(mesh)[on] * mesh.diagonal**2
+    relative = gaussian_curvature(mesh)[vertex_ids] * mesh.diagonal**2
     positive, negative = float((relative > FLAT).mean()), float((relative < -FLAT).mean())
     return positive, negative, max(1 - positive - negative, 0.0)
 
@@ -166,8 +166,8 @@ def eccentricity(mesh: Mesh) -> float:
     if not areas.sum() > 0:
         raise ValueError("the mesh has no face with an area, so it has no centre of gravity: give it faces")
     centre = np.average(mesh.vertices[mesh.faces].mean(axis=1), axis=0, weights=areas)
-    on = np.unique(mesh.faces[areas > 0])
-    distances = np.sort(np.linalg.norm(mesh.vertices[on] - centre, axis=1))
+    vertex_ids = np.unique(mesh.faces[areas > 0])
+    distances = np.sort(np.linalg.norm(mesh.vertices[vertex_ids] - centre, axis=1))
     tail = max(round(TAIL * len(distances)), 1)
     a, b = distances[-tail:].mean(), distances[:tail].mean()
     return float(np.sqrt(max(1 - (b / a) ** 2, 0.0)))

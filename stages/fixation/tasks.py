@@ -44,9 +44,9 @@ def cluster_objects(values: Sequence | np.ndarray, seed: int = 0) -> tuple[np.nd
         # scikit-learn's default of n_init is a string, from which its type is inferred
         fits = {k: KMeans(k, n_init=10, random_state=seed).fit(values) for k in numbers}  # pyright: ignore
     curve = {k: float(np.asarray(fit.inertia_)) for k, fit in fits.items()}
-    chosen = fits[elbow(curve)]
-    rank = np.argsort(np.lexsort(chosen.cluster_centers_.T[::-1]))
-    return rank[chosen.labels_].astype(np.int64), curve
+    clustering = fits[elbow(curve)]
+    rank = np.argsort(np.lexsort(clustering.cluster_centers_.T[::-1]))
+    return rank[clustering.labels_].astype(np.int64), curve
 
 
 def elbow(curve: Mapping[int, float]) -> int:

@@ -43,11 +43,11 @@ class Objects:
 
         ValueError for fewer than six.
         """
-        few, uses, sets = self.shapes[:shapes], Counter(), []
-        if len(few) < SIX:
-            raise ValueError(f"{len(few)} shapes to tell apart are too few: {SIX} are needed")
+        shapes_used, uses, sets = self.shapes[:shapes], Counter(), []
+        if len(shapes_used) < SIX:
+            raise ValueError(f"{len(shapes_used)} shapes to tell apart are too few: {SIX} are needed")
         for number in range(count):
-            order = rng(seed, f"six {number}").permutation(few).tolist()
+            order = rng(seed, f"six {number}").permutation(shapes_used).tolist()
             sets.append(sorted(sorted(order, key=lambda name: uses[name])[:SIX]))  # of equals in the order drawn
             uses.update(sets[-1])
         return sets
@@ -97,8 +97,8 @@ def read_objects(data: Path, shapes: str, classes: str) -> tuple[list[str], dict
             raise ValueError(f"{', '.join(shared)}: objects of both {shapes} and {classes}; name other --classes")
         files |= {name: folder / f"{name}.npz" for name in names}
     groups = read_classes(data / classes / "meshes")
-    if few := [name for name, members in groups.items() if len(members) < 2]:
-        raise ValueError(f"{classes}: of class {', '.join(few)} no object can be held out: two are needed")
+    if small_classes := [name for name, members in groups.items() if len(members) < 2]:
+        raise ValueError(f"{classes}: of class {', '.join(small_classes)} no object can be held out: two are needed")
     return shapes_of(object_files(data / shapes / "meshes")), groups, files
 
 
@@ -188,9 +188,9 @@ def _of_objects(senses, objects, choice, effort, seed) -> Iterator[Answers]:
         random = rng(seed, f"objects {fold // turns}")
         orders = [random.permutation(objects.classes[label]).tolist() for label in labels]
         held_out = [order[fold % turns] for order in orders]
-        rest = [(k, felt[name]) for k, order in enumerate(orders) for name in order if name != held_out[k]]
-        learned = np.concatenate([item.learned for _, item in rest])
-        truth = np.repeat([k for k, _ in rest], [len(item.learned) for _, item in rest])
+        learned_items = [(k, felt[name]) for k, order in enumerate(orders) for name in order if name != held_out[k]]
+        learned = np.concatenate([item.learned for _, item in learned_items])
+        truth = np.repeat([k for k, _ in learned_items], [len(item.learned) for _, item in learned_items])
         queries = np.concatenate([felt[name].asked for name in held_out])
         owners = np.repeat(np.arange(len(held_out)), [len(felt[name].asked) for name in held_out])
         random = rng(seed, f"objects {fold}")

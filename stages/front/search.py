@@ -59,13 +59,11 @@ class Search:
         self._check(made_of)
 
     def _check(self, made_of):
-        stored = self.study.user_attrs.get(MADE_OF)
-        if stored is None:
+        parts = self.study.user_attrs.get(MADE_OF)
+        if parts is None:
             self.study.set_user_attr(MADE_OF, made_of)
             return
-        changes = [
-            f"{key} {stored.get(key)}, now {value}" for key, value in made_of.items() if stored.get(key) != value
-        ]
+        changes = [f"{key} {parts.get(key)}, now {value}" for key, value in made_of.items() if parts.get(key) != value]
         if changes:
             raise ValueError(
                 f"{self.folder} holds a study of another version ({'; '.join(changes)}), whose results cannot be "
@@ -208,8 +206,8 @@ def best_share(losses: ArrayLike) -> np.ndarray:
     """Ids of one in SHARE of the choices (at least one), rising: by rank, of equals the least crowded first."""
     losses = np.asarray(losses, dtype=np.float64)
     rank = ranks(losses)
-    apart = np.zeros(len(losses))
+    crowding_distance = np.zeros(len(losses))
     for level in np.unique(rank):
-        apart[rank == level] = crowding(losses[rank == level])
-    order = np.lexsort((-apart, rank))
+        crowding_distance[rank == level] = crowding(losses[rank == level])
+    order = np.lexsort((-crowding_distance, rank))
     return np.sort(order[: max(1, len(losses) // SHARE)])

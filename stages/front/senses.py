@@ -192,8 +192,8 @@ def press_both(
     with Stopwatch() as once:
         surface = Surface(replace(whole))
         near = whole.used[KDTree(whole.vertices[whole.used]).query(mesh.vertices[points])[1]]
-        can = touchable(surface.mesh, near)
-    rank = np.flatnonzero(can & touchable(mesh, points))
+        is_touchable = touchable(surface.mesh, near)
+    rank = np.flatnonzero(is_touchable & touchable(mesh, points))
     with Stopwatch() as pressing:
         queries = features(press_many(surface, near[rank], cells, sensor.pitch, contact=sensor.contact))
     learned = queries

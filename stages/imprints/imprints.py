@@ -77,9 +77,9 @@ class FaceCentres(Surface):
         down = np.where(distances[hit] >= 0, 1.0, -1.0)[:, None] * normals[hit]
         origins = places[hit] - distances[hit][:, None] * normals[hit] + 10 * LIFT * self.mesh.diagonal * down
         face = self._scene.cast(origins, -down).face
-        reached = face >= 0
+        has_face = face >= 0
         exact = distances[hit]
-        exact[reached] = np.einsum("ij,ij->i", places[hit] - self._centres[face], normals[hit])[reached]
+        exact[has_face] = np.einsum("ij,ij->i", places[hit] - self._centres[face], normals[hit])[has_face]
         distances[hit] = exact
         return distances
 

@@ -75,10 +75,10 @@ def measure_cells(inputs: ObjectInputs, method: str, folder: Path, settings: Par
 
     Every cell has at least its row `faces`: where there is no mesh its value is empty and `note` gives the reason.
     """
-    chosen = variant(method)
-    settings = replace(settings, backend=chosen.backend or settings.backend)
+    lod_variant = variant(method)
+    settings = replace(settings, backend=lod_variant.backend or settings.backend)
     try:
-        keep = keep_rule(inputs, chosen, settings.rings)
+        keep = keep_rule(inputs, lod_variant, settings.rings)
     except ValueError as error:
         return [_row(inputs, method, target) | {"note": str(error)} for target in settings.targets]
     smallest = smallest_feasible(inputs.mesh, keep.vertices, keep.rings)
@@ -89,16 +89,16 @@ def measure_cells(inputs: ObjectInputs, method: str, folder: Path, settings: Par
 
 def keep_rule(inputs: ObjectInputs, chosen: Variant, rings: int = 3) -> KeepRule:
     """The KeepRule of a Variant for one object; ValueError where salient_points lacks the points or the saliency."""
-    nothing = np.zeros(0, dtype=np.int64)
+    no_points = np.zeros(0, dtype=np.int64)
     if chosen.method is None:
-        return KeepRule(nothing, nothing)
+        return KeepRule(no_points, no_points)
     if chosen.method not in inputs.points:
         raise ValueError(f"salient_points has no {chosen.method}")
     saliency = inputs.saliency.get(chosen.method)
     if chosen.rule in (SOFT, "area") and saliency is None:
         raise ValueError(f"salient_points has no saliency of {chosen.method} on the vertices")
     if chosen.rule == SOFT:
-        return KeepRule(nothing, nothing, saliency)
+        return KeepRule(no_points, no_points, saliency)
     vertices = inputs.points[chosen.method]
     return KeepRule(vertices, neighbourhoods(inputs.mesh, vertices, chosen.rule or "fixed", saliency, rings))
 
@@ -118,9 +118,9 @@ def _cell_rows(inputs, row, keep, folder, settings, seed):
     except Exception as error:  # whatever pymeshlab raises: noted, and the other cells go on
         return [row | {"note": " ".join(str(error).split()) or type(error).__name__}]
     write_mesh(folder / inputs.name / file_name(row["method"], row["target"]), simplified.mesh)
-    kept, count = rings[rings >= 0], len(simplified.mesh.faces)
-    row |= {"faces": count, "kept": len(kept), "shrunk": bool((rings < keep.rings).any())}
-    row |= {"rings": float(kept.mean()) if len(kept) else None}
+    kept_rings, count = rings[rings >= 0], len(simplified.mesh.faces)
+    row |= {"faces": count, "kept": len(kept_rings), "shrunk": bool((rings < keep.rings).any())}
+    row |= {"rings": float(kept_rings.mean()) if len(kept_rings) else None}
     return [
         row | {"value": count, "seconds": watch.seconds + simplified.seconds},
         *(row | part for part in simplified.errors),

@@ -64,8 +64,8 @@ def run(workspace: Workspace) -> None:
         raise ValueError(f"meshes.source={settings.source!r} is not one of {', '.join(SOURCES)}")
     if settings.colours not in COLOURS:
         raise ValueError(f"meshes.colours={settings.colours!r} is not one of {', '.join(COLOURS)}")
-    chosen = dataclasses.replace(settings, objects=chosen_objects(settings.objects, settings.classes))
-    items = {item.name: item for item in SOURCES[settings.source](chosen)}
+    source_settings = dataclasses.replace(settings, objects=chosen_objects(settings.objects, settings.classes))
+    items = {item.name: item for item in SOURCES[settings.source](source_settings)}
     with StageRun(workspace, "meshes") as stage:
         work = functools.partial(process, without_plane=settings.remove_plane, colours=settings.colours)
         made_of = {name: content_hash(item, settings.colours) for name, item in items.items()}

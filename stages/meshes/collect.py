@@ -34,10 +34,10 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
     """
     try:
         content, painted = item.content(), colours != "vertex"
-        needed = painted or item.suffix in (DEPTH, ".gltf")
-        beside = item.beside() if needed else {}
+        needs_files = painted or item.suffix in (DEPTH, ".gltf")
+        beside = item.beside() if needs_files else {}
         resolver = ZipResolver({name: data for name, data in beside.items() if data})
-        parsed = parse(content, item.suffix, resolver if needed else None, every_colour=painted)
+        parsed = parse(content, item.suffix, resolver if needs_files else None, every_colour=painted)
         raw, notes = clean(settled(parsed if item.up == AUTO else replace(parsed, up=item.up)))
         notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:
@@ -48,9 +48,9 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
             notes.append(f"only {len(mesh.faces)} faces: too few for what is measured on surfaces to say much")
     except (FetchError, ValueError, OSError) as error:
         raise MeshError(str(error)) from error
-    used = np.unique(mesh.faces)
+    vertex_ids = np.unique(mesh.faces)
     counts = mesh.edge_counts[1]
-    components = connected_components(mesh.adjacency[used][:, used])[0]
+    components = connected_components(mesh.adjacency[vertex_ids][:, vertex_ids])[0]
     return mesh, {
         "object": item.name, "file": item.file, "licence": item.licence, "creator": item.creator, "unit": item.unit,
         "up": raw.up, "size": float(np.ptp(raw.vertices[np.unique(raw.faces)], axis=0).max()),

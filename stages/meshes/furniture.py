@@ -74,13 +74,13 @@ def furniture_files(everything: bool = False) -> tuple[Path, dict[str, tuple[str
     scale, and the catalogue states their height. Raises FetchError, saying which file to put where, when the package
     cannot be fetched.
     """
-    listed = "all" if everything else hashlib.sha256(repr(FURNITURE).encode()).hexdigest()[:8]
-    extract = cache_folder() / f"furniture-1.8-1-coloured-{listed}.zip"
+    suffix = "all" if everything else hashlib.sha256(repr(FURNITURE).encode()).hexdigest()[:8]
+    extract = cache_folder() / f"furniture-1.8-1-coloured-{suffix}.zip"
     if not zipfile.is_zipfile(extract):
         _extract(fetch_debian(PACKAGE, HASH), extract, everything)
-    with zipfile.ZipFile(extract) as stored:
+    with zipfile.ZipFile(extract) as archive:
         comments = {
-            entry.filename.removesuffix(".obj"): entry.comment.decode() for entry in stored.infolist() if entry.comment
+            entry.filename.removesuffix(".obj"): entry.comment.decode() for entry in archive.infolist() if entry.comment
         }
     metadata = {name: (comment.split("\n")[0], comment.split("\n")[1]) for name, comment in comments.items()}
     return extract, metadata
@@ -124,9 +124,9 @@ def _copy(archive, entry, name, target):
 
 def material_files(extract: Path, name: str) -> dict[str, bytes]:
     """{name: bytes} of the files of an object's materials in the archive of `furniture_files`."""
-    with zipped(extract) as stored:
-        paths = [path for path in stored.namelist() if path.startswith(f"{name}/")]
-        return {path.removeprefix(f"{name}/"): stored.read(path) for path in paths}
+    with zipped(extract) as zip_file:
+        paths = [path for path in zip_file.namelist() if path.startswith(f"{name}/")]
+        return {path.removeprefix(f"{name}/"): zip_file.read(path) for path in paths}
 
 
 def _entries(catalogue):

@@ -267,13 +267,13 @@ SOURCES = {
 
 
 def _select_objects(available, wanted):
-    names, chosen = set(available), set(wanted)
+    names, wanted_names = set(available), set(wanted)
     missing = [name for name in wanted if name not in names]
     if missing:
         raise MeshError(
             f"meshes.objects names {', '.join(missing)}, which the source does not have. It has {', '.join(available)}"
         )
-    return [name for name in available if not wanted or name in chosen]
+    return [name for name in available if not wanted or name in wanted_names]
 
 
 MATRIX, COMPRESSED, CELLS, TEXT = 14, 15, 1, 4
@@ -292,13 +292,13 @@ def read_mat(content: bytes, names: Sequence[str]) -> list[np.ndarray]:
         raise MeshError("unreadable as a MATLAB file before version 7.3")
     try:
         pairs = _variables(memoryview(content)[128:], order)
-        stored = {name: value for name, value in pairs if value is not None}
+        variables = {name: value for name, value in pairs if value is not None}
     except Exception as error:  # struct, zlib and numpy raise many types
         raise MeshError(f"unreadable as a MATLAB file before version 7.3 ({type(error).__name__}: {error})") from None
-    missing = [name for name in names if name not in stored]
+    missing = [name for name in names if name not in variables]
     if missing:
         raise MeshError(f"the MATLAB file has no variable {', '.join(missing)}")
-    return [stored[name] for name in names]
+    return [variables[name] for name in names]
 
 
 def _variables(content, order):
@@ -311,16 +311,16 @@ def _variables(content, order):
 
 def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
     """Yields (data type, bytes) of the elements one after another."""
-    at = 0
-    while at < len(content):
-        kind, size = struct.unpack_from(f"{order}II", content, at)
-        start = at + 8
+    offset = 0
+    while offset < len(content):
+        kind, size = struct.unpack_from(f"{order}II", content, offset)
+        start = offset + 8
         if kind >> 16:  # a small element: size and type share four bytes, the data have the other four
-            kind, size, start = kind & 0xFFFF, kind >> 16, at + 4
+            kind, size, start = kind & 0xFFFF, kind >> 16, offset + 4
         if start + size > len(content):
             raise ValueError(f"an element of {size} bytes, {len(content) - start} follow")
         yield kind, content[start : start + size]
-        at = start + size if kind == COMPRESSED else max(at + 8, start + size + -(start + size) % 8)
+        offset = start + size if kind == COMPRESSED else max(offset + 8, start + size + -(start + size) % 8)
 
 
 def _matrix(body, order):
@@ -340,10 +340,10 @@ def _value(kind, shape, parts, order):
         cells[:] = [_matrix(body, order)[1] for _, body in parts]
         return cells.reshape(shape, order="F")
     if kind == TEXT:
-        stored, text = parts[0]
-        wide = "" if TEXTS[stored] in ("latin-1", "utf-8") else "-le" if order == "<" else "-be"
-        return np.array([bytes(text).decode(TEXTS[stored] + wide)])
+        data_type, text = parts[0]
+        wide = "" if TEXTS[data_type] in ("latin-1", "utf-8") else "-le" if order == "<" else "-be"
+        return np.array([bytes(text).decode(TEXTS[data_type] + wide)])
     if kind in CLASSES:
-        stored, values = parts[0]
-        return np.frombuffer(values, order + NUMBERS[stored]).reshape(shape, order="F").astype(CLASSES[kind])
+        data_type, values = parts[0]
+        return np.frombuffer(values, order + NUMBERS[data_type]).reshape(shape, order="F").astype(CLASSES[kind])
     return None

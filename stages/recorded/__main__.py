@@ -25,8 +25,8 @@ def run(workspace: Workspace) -> None:
     settings = workspace.settings(Params)
     if settings.kind not in KINDS:
         raise ValueError(f"recorded.kind={settings.kind!r} is not one of {', '.join(KINDS)}")
-    read, kind = KINDS[settings.kind]
-    recording = read(settings.path(workspace.root))
+    reader, kind = KINDS[settings.kind]
+    recording = reader(settings.path(workspace.root))
     with StageRun(workspace, "recorded", COLUMNS) as stage:
         kind.measure(stage, recording, settings.repetitions)
         stage.metrics(kind.summary(stage.rows))

@@ -116,11 +116,11 @@ def recognition_rows(model: Model, grasps: Grasps, repetitions: int, seed: int) 
 
 def summary(rows: Rows) -> dict[str, float]:
     """{metric: number} of a run: the mean accuracy of kNN on all electrodes by task and split."""
-    most = max(row["components"] for row in rows if "components" in row)
+    most_components = max(row["components"] for row in rows if "components" in row)
     return named_means(
         (f"{row['task']}_{row['split']}", row["value"])
         for row in rows
-        if row.get("classifier") == "knn" and row["components"] == most and row["scaled"] == "training"
+        if row.get("classifier") == "knn" and row["components"] == most_components and row["scaled"] == "training"
     )
 
 

@@ -120,12 +120,12 @@ def summary(rows: Rows) -> dict[str, float]:
 
 
 def _set_rows(class_set: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
-    common, chosen = {"group": class_set.group, "classes": len(class_set.classes)}, " ".join(sorted(class_set.classes))
-    kept = ~confusable(touches.alike, touches.labels)
-    share = {"metric": "share_similar", "value": 1 - kept.sum() / len(kept)}
-    yield {**common, "chosen": chosen, "method": "all", **share, "repetition": class_set.repetitions[0]}
-    parts = {"all": touches, "selected": touches.of(kept), "selected_training": touches}
-    for method, part in (parts | {"selected_control": touches.of(kept)}).items():
+    common, names = {"group": class_set.group, "classes": len(class_set.classes)}, " ".join(sorted(class_set.classes))
+    is_distinct = ~confusable(touches.alike, touches.labels)
+    share = {"metric": "share_similar", "value": 1 - is_distinct.sum() / len(is_distinct)}
+    yield {**common, "chosen": names, "method": "all", **share, "repetition": class_set.repetitions[0]}
+    parts = {"all": touches, "selected": touches.of(is_distinct), "selected_training": touches}
+    for method, part in (parts | {"selected_control": touches.of(is_distinct)}).items():
         counts = {name: int((part.labels == name).sum()) for name in sorted(class_set.classes)}
         poorest = min(counts, key=lambda name: counts[name])
         if counts[poorest] < MIN_IMPRINTS:
@@ -136,7 +136,7 @@ def _set_rows(class_set: ClassSet, touches: Touches, seed: int) -> Iterator[dict
         for repetition in class_set.repetitions:
             number = split_number(seed, repetition)
             if method == "selected_control":
-                part = touches.of(as_many(touches.labels, kept, np.random.default_rng(number)))
+                part = touches.of(as_many(touches.labels, is_distinct, np.random.default_rng(number)))
             scalings = (TRAINING,) if class_set.group in COUNTS else SCALINGS if method == "all" else WITHOUT_TWICE
             rows = _split_rows(part, method, number, class_set.folds, scalings)
             yield from ({**common, "method": method, "repetition": repetition, **row} for row in rows)

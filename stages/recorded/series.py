@@ -85,23 +85,23 @@ def read_grasp_series(path: str | Path) -> dict[str, TouchSeries]:
     files = [file for home in homes for file in sorted(home.iterdir(), key=str)]
     if not files or not (listed := root / "_setup/test.list").exists():
         raise ValueError(f"{path} has no {'_setup/test.list' if files else 'grasp'}; expected {GRASPS}")
-    tested = {Path(line).name for line in listed.read_text().splitlines()}
+    test_names = {Path(line).name for line in listed.read_text().splitlines()}
     names = np.array([file.name for file in files])
-    if missing := tested - {*names}:
+    if missing := test_names - {*names}:
         raise ValueError(f"{path} lacks {min(missing)}, which _setup/test.list names: download it again")
     values = np.stack([np.concatenate(fingers(file)) for file in files])
     values = values.clip(0).reshape(len(files), -1, 1, values.shape[-1])
     labels = np.array([home.name for home in homes for _ in home.iterdir()])
-    return {"grasps": TouchSeries(values, labels, names, np.isin(names, [*tested]))}
+    return {"grasps": TouchSeries(values, labels, names, np.isin(names, [*test_names]))}
 
 
 def spread_taxels(count: int) -> np.ndarray:
     """(count,) taxels spread over the fingertip: the one in the middle, then each the farthest from those before."""
-    chosen = [int(np.linalg.norm(TAXELS, axis=1).argmin())]
-    while len(chosen) < count:
-        away = np.linalg.norm(TAXELS[:, None] - TAXELS[chosen], axis=2).min(axis=1)
-        chosen.append(int(away.argmax()))
-    return np.sort(chosen)
+    taxels = [int(np.linalg.norm(TAXELS, axis=1).argmin())]
+    while len(taxels) < count:
+        distances = np.linalg.norm(TAXELS[:, None] - TAXELS[taxels], axis=2).min(axis=1)
+        taxels.append(int(distances.argmax()))
+    return np.sort(taxels)
 
 
 def _events(root: Path | zipfile.Path, folder: str, path: str | Path) -> TouchSeries:
@@ -118,8 +118,8 @@ def _part(root: Path | zipfile.Path, inside: str, path: str | Path) -> Sequence[
     """(label, name, events) of each touch in a folder, in the order of their numbers."""
     folder = root / inside
     files = list(folder.iterdir()) if folder.is_dir() else []
-    named = [(re.fullmatch(r"sample_(\d+)_label_(\d+)\.npy", file.name), file) for file in files]
-    numbered = sorted((int(match[1]), f"{int(match[2]):02}", file) for match, file in named if match)
+    matches = [(re.fullmatch(r"sample_(\d+)_label_(\d+)\.npy", file.name), file) for file in files]
+    numbered = sorted((int(match[1]), f"{int(match[2]):02}", file) for match, file in matches if match)
     if not numbered or [number for number, *_ in numbered] != list(range(len(numbered))):
         gap = next((k for k, (number, *_) in enumerate(numbered) if number != k), len(numbered))
         raise ValueError(f"{path} has no {inside}/sample_{gap}_label_L.npy; expected {EVENTS}")

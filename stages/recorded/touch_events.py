@@ -81,8 +81,8 @@ def disturbed(values: np.ndarray, disturbance: str, severity: float, random: np.
     if disturbance == "dropped_events":
         return values * (random.random(values.shape) >= severity)
     shifted, (*place, step) = np.zeros_like(values), np.nonzero(values)
-    moved = np.rint(step + random.normal(0, severity, len(step))).astype(int).clip(0, values.shape[-1] - 1)
-    np.add.at(shifted, (*place, moved), 1)
+    new_steps = np.rint(step + random.normal(0, severity, len(step))).astype(int).clip(0, values.shape[-1] - 1)
+    np.add.at(shifted, (*place, new_steps), 1)
     return shifted
 
 
@@ -102,9 +102,9 @@ def _published(choice: Choice, training: TouchSeries, test: TouchSeries) -> Iter
 def _within(choice: Choice, training: TouchSeries, seed: int) -> Iterator[dict]:
     """Within the training part, each touch held out one time: by share heard, by taxels, and with disturbances."""
     labels, folds = training.labels, foldings(training.labels, 1, seed)
-    for heard in HEARD:
-        features = binned(training.values, choice.bins, heard)
-        yield from (FOLDED | {"heard": heard} | row for row in _folded(choice, features, labels, folds))
+    for heard_share in HEARD:
+        features = binned(training.values, choice.bins, heard_share)
+        yield from (FOLDED | {"heard": heard_share} | row for row in _folded(choice, features, labels, folds))
     for count in TAXELS[:-1]:  # all of them are what was heard in full
         features = binned(training.values[:, spread_taxels(count)], choice.bins)
         yield from (FOLDED | {"cells": count} | row for row in _folded(choice, features, labels, folds))

@@ -31,11 +31,11 @@ def run(workspace: Workspace) -> None:
     recordings = SOURCES[recorded.kind](recorded.path(workspace.root))
     with StageRun(workspace, "recorded_networks", COLUMNS) as stage:
         check_passes(settings.passes, "recorded_networks.passes")
-        absent = {method: why for method in settings.networks if (why := why_absent(method, settings))}
+        notes = {method: reason for method in settings.networks if (reason := why_absent(method, settings))}
         planned = trials(recordings, settings)
-        possible = {trial.name: trial for trial in planned if trial.weights != "imagenet" or trial.method not in absent}
-        for method, why in absent.items():
-            print(f"recorded_networks: {method}: {why}", file=sys.stderr)
+        possible = {trial.name: trial for trial in planned if trial.weights != "imagenet" or trial.method not in notes}
+        for method, reason in notes.items():
+            print(f"recorded_networks: {method}: {reason}", file=sys.stderr)
         common = dataclasses.replace(
             settings, networks={}, weights=[], repetitions={}, passes=[]
         )  # a trial itself says these
@@ -60,11 +60,11 @@ def why_absent(method: str, settings: Params) -> str:
 def absent_rows(left_out: list[Trial]) -> Rows:
     """A row without a value per network, mode, number of passes and data."""
     columns = ("method", "weights", "mode", "data", "passes")
-    about = dict.fromkeys(
+    runs = dict.fromkeys(
         (trial.method, trial.weights, trial.mode, run.data, run.passes) for trial in left_out for run in trial.runs
     )
     note = {"metric": "accuracy", "value": None, "note": "not run: weights not at hand"}
-    return [dict(zip(columns, values, strict=True)) | note for values in about]
+    return [dict(zip(columns, values, strict=True)) | note for values in runs]
 
 
 def summary(rows: Rows) -> dict[str, float]:

@@ -119,16 +119,16 @@ def finetuned(
     recording: Recording, train: np.ndarray, method: str, weights: str, seed: int, settings: Params
 ) -> tuple[Network, Task]:
     """All layers, on images augmented anew at every step where that makes sense."""
-    where, moved = choose_device(settings.device), augmentation()
-    images = as_images(recording.touches.images, settings.size).to(where)
-    network = build(method, len(recording.touches.classes), weights, seed, settings.source).to(where)
+    device, augment = choose_device(settings.device), augmentation()
+    images = as_images(recording.touches.images, settings.size).to(device)
+    network = build(method, len(recording.touches.classes), weights, seed, settings.source).to(device)
     network.requires_grad_(True)
 
     def inputs(ids):
         return normalise(images[ids])
 
     def drawn(ids):
-        return normalise(moved(images[ids])) if recording.augmented else inputs(ids)
+        return normalise(augment(images[ids])) if recording.augmented else inputs(ids)
 
     if weights == "random":
         recalibrate(network, inputs, train)
@@ -142,18 +142,18 @@ def frozen_features(recording: Recording, method: str, weights: str, draw: int, 
     They are the same for every split. An untrained network is drawn by the method's name and the number of the draw;
     its normalisation has the statistics of some images of all parts, without their labels.
     """
-    where, moved = choose_device(settings.device), augmentation()
-    network = build(method, 2, weights, zlib.crc32(f"{method} {draw}".encode()), settings.source).to(where)
+    device, augment = choose_device(settings.device), augmentation()
+    network = build(method, 2, weights, zlib.crc32(f"{method} {draw}".encode()), settings.source).to(device)
 
     def inputs(ids, change=lambda images: images):
-        return normalise(change(as_images(recording.touches.images[ids.numpy()], settings.size).to(where)))
+        return normalise(change(as_images(recording.touches.images[ids.numpy()], settings.size).to(device)))
 
     ids = torch.arange(len(recording.touches.images))
     if weights == "random":
         recalibrate(network, inputs, ids[:: max(1, len(ids) // SOME)])
-    changes = [{}] + [{"change": moved}] * (settings.copies if recording.augmented else 0)
+    changes = [{}] + [{"change": augment}] * (settings.copies if recording.augmented else 0)
     return torch.stack(
-        [torch.cat([network.features(inputs(part, **how)).cpu() for part in ids.split(32)]) for how in changes]
+        [torch.cat([network.features(inputs(part, **options)).cpu() for part in ids.split(32)]) for options in changes]
     )
 
 
@@ -172,8 +172,8 @@ def parts(recording: Recording, split: str, number: int) -> tuple[np.ndarray, np
     other objects. Raises ValueError where a class has one object or recording alone.
     """
     if split == Split.TEST_OBJECTS:
-        out = np.isin(groups_of(recording), recording.test_objects)
-        train, test, inner = np.flatnonzero(~out), np.flatnonzero(out), str(Split.OBJECTS)
+        in_test = np.isin(groups_of(recording), recording.test_objects)
+        train, test, inner = np.flatnonzero(~in_test), np.flatnonzero(in_test), str(Split.OBJECTS)
     else:
         inner = split
         train, test = _cut(recording, np.arange(len(recording.touches.labels)), split, number)
@@ -186,17 +186,17 @@ def object_split(labels: np.ndarray, groups: np.ndarray, number: int) -> tuple[n
 
     A group with touches of several classes counts for the lowest of them. Raises ValueError where too few are left.
     """
-    random, out = np.random.default_rng(number), []
+    random, test_groups = np.random.default_rng(number), []
     names = np.unique(groups)
     lowest = np.array([labels[groups == name].min() for name in names])
     for label in np.unique(lowest):
         members = names[lowest == label]
-        out.append(random.choice(members, max(1, round(QUARTER * len(members))), replace=False))
-    held = np.isin(groups, np.concatenate(out))
-    for part in (held, ~held):
+        test_groups.append(random.choice(members, max(1, round(QUARTER * len(members))), replace=False))
+    in_test = np.isin(groups, np.concatenate(test_groups))
+    for part in (in_test, ~in_test):
         if missing := set(labels) - set(labels[part]):
             raise ValueError(f"class {min(missing)} has too few groups to hold one out")
-    return np.flatnonzero(~held), np.flatnonzero(held)
+    return np.flatnonzero(~in_test), np.flatnonzero(in_test)
 
 
 def groups_of(recording: Recording) -> np.ndarray:

@@ -66,7 +66,7 @@ class Trial:
 
 def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
     """All that is trained. ValueError for a mode that is not one of MODES."""
-    planned = []
+    trial_list = []
     for method, modes in settings.networks.items():
         for mode, weights, passes in itertools.product(modes, settings.weights, settings.passes):
             if mode not in MODES:
@@ -84,8 +84,8 @@ def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
                 draws = [[run] for run in runs]
             elif weights == "imagenet":
                 draws = [runs]
-            planned += [Trial(method, weights, mode, tuple(together)) for together in draws]
-    return planned
+            trial_list += [Trial(method, weights, mode, tuple(together)) for together in draws]
+    return trial_list
 
 
 @explain_out_of_memory()
@@ -111,9 +111,9 @@ def frozen_features_by_data(
     cached: dict[str, tuple[torch.Tensor, float]] = {}
     for data in dict.fromkeys(run.data for run in trial.runs):
         images = recordings[data].touches.images
-        same = [name for name in cached if np.array_equal(recordings[name].touches.images, images)]
-        if same:
-            cached[data] = cached[same[0]]
+        twins = [name for name in cached if np.array_equal(recordings[name].touches.images, images)]
+        if twins:
+            cached[data] = cached[twins[0]]
             continue
         with repeatable(seed), Stopwatch() as watch:
             features = frozen_features(

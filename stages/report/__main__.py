@@ -118,7 +118,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     items, (claims, differences), meshes = side_by_side(results)
     remove_older(items, out)
     write_records(items, results, out)
-    not_run = {f"{kind}/{name}": why for kind, batch in items.items() for name, why in batch.not_run.items()}
+    not_run = {f"{kind}/{name}": reason for kind, batch in items.items() for name, reason in batch.not_run.items()}
     if own_meshes:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
@@ -134,10 +134,10 @@ def build(results: Results, out: Path) -> dict[str, Any]:
         write_own_page(results, pages, out)
     totals = {kind: len(batch.items) for kind, batch in items.items()}
     reasons: dict[str, list[str]] = {}
-    for name, why in not_run.items():
-        reasons.setdefault(why, []).append(name)
-    for why, names in reasons.items():
-        print(f"report: not run, {why}: {', '.join(names)}")
+    for name, reason in not_run.items():
+        reasons.setdefault(reason, []).append(name)
+    for reason, names in reasons.items():
+        print(f"report: not run, {reason}: {', '.join(names)}")
     print(
         f"report: {totals['tables']} tables, {totals['figures']} figures, {totals['tradeoff']} charts; claims: "
         f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}"
@@ -162,9 +162,9 @@ def side_by_side(
     if where.get("backend") == "dask":  # the files that a topic reads are here alone
         where["backend"] = "loky"
     work = [partial(built, jobs[job], results) for job in anew]
-    for job, (part, read) in zip(anew, parallel_map(call, work, "report", **where), strict=True):
+    for job, (part, file_digests) in zip(anew, parallel_map(call, work, "report", **where), strict=True):
         parts[job] = part
-        keep("-".join(job), keys[job], part, read, results)
+        keep("-".join(job), keys[job], part, file_digests, results)
     if len(anew) < len(jobs):
         print(f"report: {len(jobs) - len(anew)} of {len(jobs)} parts are those of the last run")
     items = {kind: Built() for kind in KINDS}

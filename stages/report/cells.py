@@ -116,13 +116,13 @@ def _cells(path: Path, _changed: int) -> pd.DataFrame:
 
 def number_of(rows: pd.DataFrame, term: str) -> float:
     """A number of the only row, or of all rows, such as `median:seconds`; ValueError where a cell holds a word."""
-    prefix, over, column = COLUMN.fullmatch(term).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    prefix, statistic, column = COLUMN.fullmatch(term).groups()  # pyright: ignore[reportOptionalMemberAccess]
     if column not in rows:
         raise LookupError(f"no column {column}")
-    if not over and len(rows) != 1:
+    if not statistic and len(rows) != 1:
         raise LookupError(f"{len(rows)} rows, where one is wanted")
     values = [float(cell) for cell in rows[column] if cell]
-    value = OVER_ROWS[over](values) if over and values else next(iter(values), float("nan"))
+    value = OVER_ROWS[statistic](values) if statistic and values else next(iter(values), float("nan"))
     return PREFIXES[prefix](value)
 
 

@@ -201,9 +201,9 @@ NAMED = ("method", "classifier", "network")  # columns whose values have a label
 
 def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
     """`household: kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
-    claim, several = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
+    claim, set_names = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
     shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
-    parts = [several, *shared, _sides(claim, results), claim.note]
+    parts = [set_names, *shared, _sides(claim, results), claim.note]
     return ", ".join(part.rstrip(",") for part in parts if part)
 
 

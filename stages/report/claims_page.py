@@ -30,18 +30,18 @@ KINDS = {"sentence": "sentences, each once", "elsewhere": "a sentence tested els
 
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     """The frame of claims as a person reads it; the last column is what `python -m stages.claim` takes."""
-    shown = claims[["section", "verdict", "claim"]].copy()
-    shown["effect"] = [effect(row) for row in claims.itertuples()]
-    shown["holds"] = claims["holds"]
-    shown["tested on"] = claims["tested_on"]
-    shown["on each set"] = [sets_text(row) for row in claims.itertuples()]
-    shown["readings"] = claims["readings"].fillna("")
-    shown["invalid"] = claims["validity"].fillna("")
-    shown["carries over"] = [carries_text(row) for row in claims.itertuples()]
-    shown["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
-    shown["open"] = [open_text(row) for row in claims.itertuples()]
-    shown["key"] = claims["key"]
-    return shown
+    text_table = claims[["section", "verdict", "claim"]].copy()
+    text_table["effect"] = [effect(row) for row in claims.itertuples()]
+    text_table["holds"] = claims["holds"]
+    text_table["tested on"] = claims["tested_on"]
+    text_table["on each set"] = [sets_text(row) for row in claims.itertuples()]
+    text_table["readings"] = claims["readings"].fillna("")
+    text_table["invalid"] = claims["validity"].fillna("")
+    text_table["carries over"] = [carries_text(row) for row in claims.itertuples()]
+    text_table["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
+    text_table["open"] = [open_text(row) for row in claims.itertuples()]
+    text_table["key"] = claims["key"]
+    return text_table
 
 
 def over_text(row: Any) -> str:
@@ -77,9 +77,9 @@ def effect(row: Any) -> str:
 
 def sets_read(claim: Claim, results: Results) -> list[str]:
     """The data sets that a claim is tested on, and those that a side names instead."""
-    named = [side["dataset"] for side in (claim.first, claim.second) if isinstance(side, dict) and "dataset" in side]
+    datasets = [side["dataset"] for side in (claim.first, claim.second) if isinstance(side, dict) and "dataset" in side]
     sets = [name for name in sets_of(claim, results) if name]
-    return list(dict.fromkeys(named or sets)) if sets else []
+    return list(dict.fromkeys(datasets or sets)) if sets else []
 
 
 def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
@@ -93,9 +93,9 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         values["chapter"][chapter] = CHAPTERS.get(chapter, chapter)
         values["verdict"][str(row.verdict).replace(" ", "-")] = str(row.verdict)
         values["set"] |= {name: dataset_text(name) for name in sets}
-        again = command(results.workspace.root / "conf", claim.stage, sets) if sets else ""
+        rerun = command(results.workspace.root / "conf", claim.stage, sets) if sets else ""
         files = [name for name in sets if name in results.datasets(claim.stage)]
-        items.append(_claim_html(row, claim, sets, files, chapter, again))
+        items.append(_claim_html(row, claim, sets, files, chapter, rerun))
     pairs = {
         key: frame[["pair", "difference"]].to_numpy().tolist() for key, frame in differences.groupby("key", sort=False)
     }
@@ -160,13 +160,13 @@ def _claim_html(
         "Measured again": command and f"<code>{escape(command)}</code>",
     }
     terms = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
-    over = escape(over_text(row)) if row.pairs else "none"
-    more = f'<dl>{terms}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{over}</dd></dl>'
+    pair_text = escape(over_text(row)) if row.pairs else "none"
+    details = f'<dl>{terms}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{pair_text}</dd></dl>'
     badge = f'<span class="word {WORDS[row.verdict]}">{row.verdict}</span>'
     summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}</small>"
     marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'
     marks += f' data-kind="{"elsewhere" if row.of else "sentence"}"'
-    return f'<li id="{row.key}" {marks}>{folded(summary, more)}</li>\n'
+    return f'<li id="{row.key}" {marks}>{folded(summary, details)}</li>\n'
 
 
 def _options(choices: dict[str, str]) -> str:

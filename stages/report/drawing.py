@@ -150,9 +150,9 @@ def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     plt.close(figure)
     figure.set_layout_engine("none")  # all has its place now; a chart on the page is drawn again
     with Image.open(buffer) as image:
-        few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
+        indexed = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
     with whole_file(path) as part:
-        few.save(part, "PNG", optimize=True)
+        indexed.save(part, "PNG", optimize=True)
     return path
 
 
@@ -202,11 +202,11 @@ def _surface(mesh: Mesh, viewpoint: Viewpoint, side: int) -> tuple[np.ndarray, n
     down, across = np.mgrid[*box].reshape(2, -1)  # no ray beside the mesh
     origins, directions = pixel_rays(down, across, viewpoint, size)
     hits = _scene(mesh).cast(origins, directions)
-    on = np.flatnonzero(hits.hit)
-    face = hits.face[on]
-    where = origins[on] + directions[on] * hits.distance[on, None]
+    ray_ids = np.flatnonzero(hits.hit)
+    face = hits.face[ray_ids]
+    where = origins[ray_ids] + directions[ray_ids] * hits.distance[ray_ids, None]
     weights = np.clip(barycentric(mesh, face, where), 0, 1)
-    return side * down[on] + across[on], face, weights, _light(mesh, face, weights, viewpoint)
+    return side * down[ray_ids] + across[ray_ids], face, weights, _light(mesh, face, weights, viewpoint)
 
 
 def vivid(values: np.ndarray) -> np.ndarray:
@@ -221,8 +221,8 @@ def visible(
     """(rows (k',), columns (k',)) in the picture of those of the vertices (k,) that the viewer sees."""
     points, normals, back = mesh.vertices[vertices], mesh.vertex_normals[vertices], viewpoint.axes[2]
     start = points + 1e-3 * normals  # off the surface, or each point would hide itself
-    hidden = _scene(mesh).cast(start, np.broadcast_to(back, points.shape)).hit
-    return project(points[~hidden & (normals @ back > 0)], viewpoint, (rows, rows))[:2]
+    is_hidden = _scene(mesh).cast(start, np.broadcast_to(back, points.shape)).hit
+    return project(points[~is_hidden & (normals @ back > 0)], viewpoint, (rows, rows))[:2]
 
 
 def filled(mesh: Mesh) -> float:
@@ -340,24 +340,24 @@ def place_names(
     figure.draw_without_rendering()  # limits are settled only by drawing
     scale = figure.dpi / 72
     to_pixels = axes.transData.transform
-    taken = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
+    boxes = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
     strokes = [_around(to_pixels(ends), scale) for ends in lines]
-    written = []
+    labels = []
     for text, point in names:
         probe, spot = axes.text(0, 0, text, fontsize=SIZE), to_pixels(point)
         extent = probe.get_window_extent()
         probe.remove()
-        best = _nearest(axes, (extent.width, extent.height), spot, taken, strokes, scale)
+        best = _nearest(axes, (extent.width, extent.height), spot, boxes, strokes, scale)
         if best is None:
             continue
         gap, box = best
-        taken.append(box)
+        boxes.append(box)
         place = {"xytext": ((box.x0 - spot[0]) / scale, (box.y0 - spot[1]) / scale), "textcoords": "offset points"}
         if gap >= FAR:
-            taken += _leader(spot, box, scale)
+            boxes += _leader(spot, box, scale)
             place["arrowprops"] = {"arrowstyle": "-", "color": GREY, "lw": 0.6, "shrinkA": 0, "shrinkB": 4}
-        written.append(axes.annotate(text, point, ha="left", va="bottom", fontsize=SIZE, color=INK, zorder=4, **place))
-    return written
+        labels.append(axes.annotate(text, point, ha="left", va="bottom", fontsize=SIZE, color=INK, zorder=4, **place))
+    return labels
 
 
 def _nearest(
@@ -368,8 +368,8 @@ def _nearest(
     for gap, side in product(GAPS, SIDES):
         box = _beside(spot, extent, side, gap * scale)
         inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
-        led = _leader(spot, box, scale) if gap >= FAR else []  # its line would belong to others where it crosses them
-        free_way = not any(part.count_overlaps(taken + strokes) for part in led)
+        line = _leader(spot, box, scale) if gap >= FAR else []  # its line would belong to others where it crosses them
+        free_way = not any(part.count_overlaps(taken + strokes) for part in line)
         if inside and free_way and not box.count_overlaps(taken):
             free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
     return min(free)[2:] if free else None

@@ -99,8 +99,8 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     keys = [*claim.over, *claim.within]
     if claim.statistic != "difference":
         keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
-    named = {"first": claim.first, "second": claim.second}  # a side that counts by its mean has no pairs
-    sides = [side for name, side in named.items() if isinstance(side, Mapping) and name != claim.mean_of]
+    named_sides = {"first": claim.first, "second": claim.second}  # a side that counts by its mean has no pairs
+    sides = [side for name, side in named_sides.items() if isinstance(side, Mapping) and name != claim.mean_of]
     contrasts: list[tuple[list[pd.DataFrame], pd.Series]] = []
     for extra in claim.contrast or ({},):
         found = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)
@@ -109,15 +109,15 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
         bad = [invalid_pairs(part.rows, part.reasons, keys) for part in found]
         if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
             first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
-            joined = pd.concat({"first": first, "second": second}, axis=1, join="inner")
-            bad.append(pd.Series(SAME, index=joined.index[_same_mesh(claim, joined)], dtype=object))
+            pair_means = pd.concat({"first": first, "second": second}, axis=1, join="inner")
+            bad.append(pd.Series(SAME, index=pair_means.index[_same_mesh(claim, pair_means)], dtype=object))
         contrasts.append((parts, pd.concat(bad)))
     if all(bad.empty for _, bad in contrasts):
         return pd.Series(dtype=object), 0
     common = [set.intersection(*(_pairs(part, keys) for part in parts)) for parts, _ in contrasts]
     valid = (bad[~bad.index.duplicated()] for _, bad in contrasts)
-    refused = [bad[[pair in pairs for pair in bad.index]] for pairs, bad in zip(common, valid, strict=True)]
-    return pd.concat(refused), sum(map(len, common))
+    pair_causes = [bad[[pair in pairs for pair in bad.index]] for pairs, bad in zip(common, valid, strict=True)]
+    return pd.concat(pair_causes), sum(map(len, common))
 
 
 def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
@@ -185,13 +185,13 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
         if claim.mean_of:
             values = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
-            joined = pd.concat({"first": first, "second": second}, axis=1, join="inner").dropna()
-            joined = joined[~_same_mesh(claim, joined)]
+            side_values = pd.concat({"first": first, "second": second}, axis=1, join="inner").dropna()
+            side_values = side_values[~_same_mesh(claim, side_values)]
             names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
-            some(joined, f"no pairs of {names}", claim.stage, runnable=False)
-            values = joined["first"] - joined["second"]
+            some(side_values, f"no pairs of {names}", claim.stage, runnable=False)
+            values = side_values["first"] - side_values["second"]
             if claim.relative:
-                middle = (joined["first"] + joined["second"]) / 2
+                middle = (side_values["first"] + side_values["second"]) / 2
                 values /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
     return values.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else values
 
@@ -344,16 +344,16 @@ def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
 
     NotRun where none was: of a set that has rows of the stage, else of one that a run would measure.
     """
-    measured, missing = [], {}
+    set_effects, missing = [], {}
     for name in sets_of(claim, results):
         try:
-            measured.append(_effect(claim.on(name), results, name or ""))
+            set_effects.append(_effect(claim.on(name), results, name or ""))
         except NotRun as error:
             missing[name or ""] = error
-    if not measured:
+    if not set_effects:
         datasets = results.datasets(claim.stage)
         raise max(missing.items(), key=lambda entry: (entry[0] in datasets, entry[1].runnable))[1]
-    return measured, list(missing)
+    return set_effects, list(missing)
 
 
 def _effect(claim: Claim, results: Results, name: str) -> Effect:

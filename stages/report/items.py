@@ -80,12 +80,12 @@ class Table(Item):
         if self.summary:
             yield self.summary
         yield markdown_table(self.first, self.best_rows)
-        rest = len(self.text.columns) - len(self.first.columns)
-        notes = [f"{rest} more columns, on the site; their numbers are in {self.name}.csv."] if rest else []
+        remaining = len(self.text.columns) - len(self.first.columns)
+        notes = [f"{remaining} more columns, on the site; their numbers are in {self.name}.csv."] if remaining else []
         notes = [*notes, *self.notes]
         if notes:
-            listed = "\n".join(f"- {note}" for note in notes)
-            yield f"<details><summary>How to read it</summary>\n\n{listed}\n\n</details>"
+            note_list = "\n".join(f"- {note}" for note in notes)
+            yield f"<details><summary>How to read it</summary>\n\n{note_list}\n\n</details>"
 
 
 @dataclass(eq=False)

@@ -81,10 +81,10 @@ def _axis_name(axes: Axes, plots: Sequence[Axes], side: str) -> str:
     """The label of an axis, or, of panels side by side, the only one that is written."""
     text = getattr(axes, f"get_{side}label")()
     shared = getattr(axes.figure, f"_sup{side}label", None)
-    written = {getattr(panel, f"get_{side}label")() for panel in plots} - {""} | (
+    labels = {getattr(panel, f"get_{side}label")() for panel in plots} - {""} | (
         {shared.get_text()} if shared else set()
     )
-    return " ".join((text or (written.pop() if len(written) == 1 else "")).split())
+    return " ".join((text or (labels.pop() if len(labels) == 1 else "")).split())
 
 
 def _series(axes: Axes) -> Iterator[tuple[str, np.ndarray, bool]]:
@@ -199,12 +199,12 @@ def vector(drawing: Drawing, name: str, alt: str) -> tuple[str, list[Mark]]:
     drawing.set_dpi(72)  # then a pixel is a typographic point, the unit of matplotlib's SVG
     drawing.draw_without_rendering()
     box = drawing.get_tightbbox().padded(PAD)
-    all_marks, written = marks(drawing), io.StringIO()
+    all_marks, buffer = marks(drawing), io.StringIO()
     with plt.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
-        drawing.savefig(written, format="svg", bbox_inches=box, transparent=True, metadata={"Date": None})
+        drawing.savefig(buffer, format="svg", bbox_inches=box, transparent=True, metadata={"Date": None})
     width, height = 72 * box.width, 72 * box.height
     spots = [(mark.spot[0] - 72 * box.x0, height - (mark.spot[1] - 72 * box.y0)) for mark in all_marks]
-    return _inline(written.getvalue(), (width, height), alt, _hits(all_marks, spots)), all_marks
+    return _inline(buffer.getvalue(), (width, height), alt, _hits(all_marks, spots)), all_marks
 
 
 def _hits(all_marks: Sequence[Mark], spots: Sequence[tuple[float, float]]) -> str:
@@ -222,8 +222,8 @@ def _inline(text: str, size: tuple[float, float], alt: str, hits: str) -> str:
     """matplotlib's file as an element of a page: without head, ids that nobody uses, and digits that nobody sees."""
     body = text.partition("<g id=")[1] + text.partition("<g id=")[2].rpartition("</svg>")[0]
     body = re.sub(r"<!--.*?-->|<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
-    used = set(USED.findall(body))
-    body = re.sub(r' id="([^"]+)"', lambda match: match[0] if match[1] in used else "", body)
+    used_ids = set(USED.findall(body))
+    body = re.sub(r' id="([^"]+)"', lambda match: match[0] if match[1] in used_ids else "", body)
     body = re.sub(r'(?<= )(?:d|x|y|width|height|transform|points)="[^"]*"', _shorter, body)
     body = re.sub(r"'DejaVu Sans'(?:, sans-serif)?", FONTS, body)
     body = HEX.sub(_follows_page, re.sub(r"\n\s*", "\n", body)).replace("xlink:href", "href")

@@ -51,17 +51,17 @@ def measured(results: Results, dataset: str | None = None, passes: str = "printe
 def everywhere(results: Results, *passes: str, metric: str = "accuracy", **where: Any) -> dict[str, pd.DataFrame]:
     """{set: accuracies}: of all sets that have them; NotRun where none has. passes: printed without any."""
     by_set = tables.everywhere(results, "transfer", metric=metric, **where)
-    kept = {source: accuracies for source, rows in by_set.items() if len(accuracies := of_passes(rows, *passes))}
-    if not kept:
+    by_dataset = {source: accuracies for source, rows in by_set.items() if len(accuracies := of_passes(rows, *passes))}
+    if not by_dataset:
         raise NotRun(f"no training with passes {' or '.join(passes)}", "transfer", runnable=False)
-    return kept
+    return by_dataset
 
 
 def of_passes(rows: pd.DataFrame, *passes: str) -> pd.DataFrame:
     """The rows of trainings with some of PASSES, printed without any; rows that do not say theirs are printed."""
-    filled = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
-    filled["passes"] = filled["passes"].fillna("printed")
-    return filled[filled["passes"].isin(passes or ("printed",))]
+    padded_rows = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
+    padded_rows["passes"] = padded_rows["passes"].fillna("printed")
+    return padded_rows[padded_rows["passes"].isin(passes or ("printed",))]
 
 
 def shared(split: str, dataset: str | None = None) -> float:

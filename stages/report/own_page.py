@@ -36,9 +36,9 @@ def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
         except NotRun as error:
             missing[name] = str(error)
     links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
-    more = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
+    section = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
     folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
-    text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {folder}"], out, more)
+    text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {folder}"], out, section)
     write_text(out / "index.html", text)
 
 
@@ -64,9 +64,9 @@ def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
         missing["levels"] = str(error)
     with suppress(NotRun, KeyError):
         touched = read_imprints(results.folder("imprints") / f"{name}.npz")[model]
-        felt = dict(zip(touched.vertices.tolist(), touched.images, strict=True))
-        ranks = [rank for rank, vertex in enumerate(vertices.tolist(), 1) if vertex in felt]
-        touches, images = [{"index": rank} for rank in ranks], [felt[vertices[rank - 1]] for rank in ranks]
+        images_by_vertex = dict(zip(touched.vertices.tolist(), touched.images, strict=True))
+        ranks = [rank for rank, vertex in enumerate(vertices.tolist(), 1) if vertex in images_by_vertex]
+        touches, images = [{"index": rank} for rank in ranks], [images_by_vertex[vertices[rank - 1]] for rank in ranks]
     return Exhibit(
         name, folder, folder, UserMesh(mesh, name), "z is up", saliency, points, levels, missing, touches,
         np.array(images), look(mesh, saliency, vertices), UNITS,

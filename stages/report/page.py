@@ -56,8 +56,8 @@ def item_html(item: Table | Figure) -> str:
         body += f"<p>{links(item.paths[:1])}</p>"
     else:
         item.element, numbers = element(item)
-        shown = table(numbers)
-        behind = folded("The numbers behind it", frame_html(shown, f"Numbers: {item.title}")) if len(shown) else ""
+        texts = table(numbers)
+        behind = folded("The numbers behind it", frame_html(texts, f"Numbers: {item.title}")) if len(texts) else ""
         caption = f"<figcaption>{prose(item.caption)} {links(item.paths)}</figcaption>"
         body = f"<figure>{box('wide', item.title, item.element)}{caption}</figure>{behind}"
     body += folded(OLDER, f"<p>{older_text(item.record['older'])}</p>") if "older" in item.record else ""
@@ -67,8 +67,8 @@ def item_html(item: Table | Figure) -> str:
 def older_text(names: Iterable[str]) -> str:
     """HTML: the files SET/STAGE of such rows, in words, and where their commit stands."""
     parts = (name.partition("/") for name in names)
-    listed = "; ".join(f"{dataset_text(dataset)} ({stage.replace('_', ' ')})" for dataset, _, stage in parts)
-    return f"{escape(listed)}. A later change may be one of form alone: provenance.json has the commit of each file."
+    file_text = "; ".join(f"{dataset_text(dataset)} ({stage.replace('_', ' ')})" for dataset, _, stage in parts)
+    return f"{escape(file_text)}. A later change may be one of form alone: provenance.json has the commit of each file."
 
 
 def element(item: Figure) -> tuple[str, list]:
@@ -141,9 +141,9 @@ def small_picture(path: Path, widest: int = WIDEST) -> str:
     with Image.open(path) as opened:
         rgb = opened.convert("RGB")
     rgb.thumbnail((widest, max(widest, rgb.height)), Image.Resampling.LANCZOS)
-    packed = io.BytesIO()
-    rgb.save(packed, "WEBP", quality=60, method=4)  # 6 takes fifteen times as long for one per cent
-    return base64.b64encode(packed.getvalue()).decode("ascii")
+    stream = io.BytesIO()
+    rgb.save(stream, "WEBP", quality=60, method=4)  # 6 takes fifteen times as long for one per cent
+    return base64.b64encode(stream.getvalue()).decode("ascii")
 
 
 METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
@@ -188,10 +188,10 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     `faces` counts those of the object itself; the full mesh has at most `viewer_faces`. A level has `error`, the
     distance of each vertex of the full mesh to it.
     """
-    original, measured = results.mesh(name), results.points(name)
+    original, points_by_method = results.mesh(name), results.points(name)
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
     place = KDTree(full.vertices)
-    methods = [method for method in METHODS if method in measured] or list(measured)
+    methods = [method for method in METHODS if method in points_by_method] or list(points_by_method)
     saliency = {
         method: (label(method), vivid(values)[nearest])
         for method, values in results.saliency(name).items()
@@ -216,8 +216,8 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
 
 def apart(levels: list[Mesh]) -> list[Mesh]:
     """The meshes, most faces first, that have STEP of the faces of the one kept before, or fewer."""
-    kept = []
+    spaced_meshes = []
     for mesh in levels:
-        if not kept or len(mesh.faces) <= STEP * len(kept[-1].faces):
-            kept.append(mesh)
-    return kept
+        if not spaced_meshes or len(mesh.faces) <= STEP * len(spaced_meshes[-1].faces):
+            spaced_meshes.append(mesh)
+    return spaced_meshes

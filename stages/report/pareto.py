@@ -69,14 +69,14 @@ def placed(
     draw, qualities = np.random.default_rng(0), rows[quality].to_numpy(float)
     costs = rows[cost].to_numpy(float) * np.exp(noise * draw.standard_normal((RESAMPLES, len(rows))))
     if units is None:
-        off = draw.standard_normal(costs.shape)
+        deviations = draw.standard_normal(costs.shape)
     else:
         values = units.reindex(columns=rows["name"]).to_numpy(float)
         values = np.nan_to_num(values - np.nanmean(values, axis=0))
-        off = values[draw.integers(len(values), size=(RESAMPLES, len(values)))].mean(axis=1)
-        off /= np.maximum(off.std(axis=0), np.finfo(float).tiny)
+        deviations = values[draw.integers(len(values), size=(RESAMPLES, len(values)))].mean(axis=1)
+        deviations /= np.maximum(deviations.std(axis=0), np.finfo(float).tiny)
     spread = np.ptp(rows.reindex(columns=["low", "high"]).to_numpy(float), axis=1) / (2 * NORMAL)
-    resampled = qualities + off * np.nan_to_num(spread)
+    resampled = qualities + deviations * np.nan_to_num(spread)
     share = np.mean([pareto_front(*pair, better) for pair in zip(costs, resampled, strict=True)], axis=0)
     words = np.select([share >= CERTAIN, share > 1 - CERTAIN], [ON, PERHAPS], OFF)
     return rows.assign(front_share=share, on_front=words)
@@ -138,25 +138,25 @@ def pareto_chart(
         above = axes.secondary_xaxis(
             "top", functions=(lambda ratio: np.multiply(ratio, unit), lambda value: np.divide(value, unit))
         )
-        counted = (legends or {}).get(cost, cost)
-        above.set_xlabel(f"seconds, {clock}" if clock else counted, fontsize=9)
+        cost_name = (legends or {}).get(cost, cost)
+        above.set_xlabel(f"seconds, {clock}" if clock else cost_name, fontsize=9)
         plain_logarithm(above.xaxis)
         for axis in (axes.xaxis, above.xaxis):
             axis.set_major_locator(ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
         if colour:
             _legend(axes, [(legends or {}).get(column, column) for column in (colour, marker) if column])
         if not tints:
-            named = _names(front if colour and marker and len(rows) > FEW else rows, quality, better)
-            place_names(axes, named, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, certain, quality))
+            point_names = _names(front if colour and marker and len(rows) > FEW else rows, quality, better)
+            place_names(axes, point_names, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, certain, quality))
     names, maybe = _listed(certain), _listed(rows.loc[rows["on_front"] == PERHAPS].sort_values("cost_ratio"))
-    moved = f"; the costs vary by {100 * np.mean(noise):.2g} %" if clock else ""
-    first = f"{unit:.3g} s in the median case ({clock})" if clock else f"{unit:,.0f} {counted}"
+    noise_text = f"; the costs vary by {100 * np.mean(noise):.2g} %" if clock else ""
+    first = f"{unit:.3g} s in the median case ({clock})" if clock else f"{unit:,.0f} {cost_name}"
     words = {
         "title": title,
         "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {names}.",
         "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. On the line, with a dark rim: the "
         "choices that no other beats in at least 95 % of the resamples (of the units behind the "
-        f"intervals{moved}): {names}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
+        f"intervals{noise_text}): {names}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
         "Bars: 95 % intervals.",
     }
     return Figure(drawing, words, rows)
@@ -260,8 +260,8 @@ def attention_seconds(results: Results, dataset: str | None = None) -> dict[str,
 
 def _maps(method: str, views: float, channels: pd.Series) -> float:
     """Seconds of the pictures and maps that a method reads; 0 for one that reads none (blind touch)."""
-    read = METHODS[method].channels if method in METHODS else ()
-    missing = [name for name in read if name not in channels]
+    own_channels = METHODS[method].channels if method in METHODS else ()
+    missing = [name for name in own_channels if name not in channels]
     if missing:
         raise NotRun(f"no seconds of the channels {', '.join(missing)}", "conspicuity")
-    return views + sum(channels[name] for name in read) if read else 0.0
+    return views + sum(channels[name] for name in own_channels) if own_channels else 0.0

@@ -42,11 +42,11 @@ def record_of(item: Table | Figure, results: Results, kind: str) -> dict[str, An
         past = {"drawn": "in an earlier run", **earlier(results, kind).get(item.name, {}), "sets": item.sets}
         return {key: value for key, value in past.items() if key != "older"} | _older(results, past.get("files", ()))
     frames = [frame for parts in results.sources.values() for frame in parts]
-    shown = [item.frame] if item.frame is not None else frames
-    named = shown if any("method" in frame for frame in shown) else frames
-    record = {"sets": item.sets, "files": sorted(results.sources), "rows": sum(map(len, shown))}
+    own_frames = [item.frame] if item.frame is not None else frames
+    method_frames = own_frames if any("method" in frame for frame in own_frames) else frames
+    record = {"sets": item.sets, "files": sorted(results.sources), "rows": sum(map(len, own_frames))}
     objects = next(filter(None, (_values(frames, column) for column in OBJECTS)), [])
-    record |= {"objects": len(objects), "methods": _values(named, "method")[:MOST]}
+    record |= {"objects": len(objects), "methods": _values(method_frames, "method")[:MOST]}
     sizes = {name: _values(frames, name)[:MOST] for name in SIZES}
     record |= _older(results, record["files"])
     return record | {"sizes": {name: values for name, values in sizes.items() if values}}
@@ -72,8 +72,8 @@ def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
         records = {item.name: item.record for item in batch.items}
         files |= {name for record in records.values() for name in record.get("files", ())}
         _write_parts(out / kind / FILE, {"items": records})
-    known = commits(results.reports) | commits(results.workspace.published)
-    rows = {name: _file(results, name, known) for name in files}
+    known_commits = commits(results.reports) | commits(results.workspace.published)
+    rows = {name: _file(results, name, known_commits) for name in files}
     _write_parts(out / PROVENANCE_FILE, {"packages": versions(), "files": rows})
 
 
@@ -120,8 +120,8 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
     today = sha256(path)[:DIGITS] if dataset != BENCH and path.is_file() else ""
     entry = results.once("provenance", lambda: _provenance(results)).get(name, {})
     in_run = dataset in results.workspace.params.get("graph", {}).get(stage, ()) and today
-    same = not in_run and entry.get("sha256") == sha256(path_of(results, name))[:DIGITS]
-    return entry.get("code", "") if same else today, today
+    is_unchanged = not in_run and entry.get("sha256") == sha256(path_of(results, name))[:DIGITS]
+    return entry.get("code", "") if is_unchanged else today, today
 
 
 def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
@@ -132,9 +132,9 @@ def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
 
     def is_older(name: str) -> bool:
         code, today = results.once(("code", name), lambda: code_of(results, name))
-        again = rechecked(results, name)
-        same = again.get("code") == today and agrees(again)
-        return bool(code and today) and code != today and not same
+        check = rechecked(results, name)
+        is_equal = check.get("code") == today and agrees(check)
+        return bool(code and today) and code != today and not is_equal
 
     older = [name for name in names if is_older(name)]
     return {"older": older} if older else {}
@@ -158,10 +158,10 @@ def _file(results: Results, name: str, known: Mapping[Path, str]) -> dict[str, s
     path = path_of(results, name)
     entry = {"sha256": sha256(path)[:DIGITS], "commit": known.get(path, ""), "code": code_of(results, name)[0]}
     dataset, _, stage = name.partition("/")
-    if again := rechecked(results, name):
+    if check := rechecked(results, name):
         rows = len(results.rows(stage, dataset))
         entry["rechecked"] = (
-            f"{again['close']} of {again['compared']} compared rows, of {rows} in all, agree with code {again['code']}"
+            f"{check['close']} of {check['compared']} compared rows, of {rows} in all, agree with code {check['code']}"
         )
     if dataset != BENCH and "seconds" in results.rows(stage, dataset):
         entry["clock"] = results.clock(stage, dataset)

@@ -143,10 +143,10 @@ class Results:
     @cached_property
     def _measured(self) -> dict[str, set[str]]:
         """{stage: the sets that have rows of it}."""
-        measured: dict[str, set[str]] = {}
+        sets_by_stage: dict[str, set[str]] = {}
         for path in (self.reports / "measurements").glob(f"*/*{SUFFIX}"):
-            measured.setdefault(path.name.partition(".")[0], set()).add(path.parent.name)
-        return measured
+            sets_by_stage.setdefault(path.name.partition(".")[0], set()).add(path.parent.name)
+        return sets_by_stage
 
     def printed(self, dataset: str, stage: str) -> str | None:
         """The set that follows a protocol as printed, where it has rows of a stage; else None, the first that has."""
@@ -215,12 +215,12 @@ class Results:
         frame = self._read(stage, dataset)
         if "note" not in frame or "value" not in frame:
             return []
-        noted = (frame["value"].isna() & frame["note"].notna()).to_numpy()
+        has_note = (frame["value"].isna() & frame["note"].notna()).to_numpy()
         for column, value in where.items():
             if column in frame:
                 empty = self._accepted(stage, dataset, column, None)
-                noted = noted & (self._accepted(stage, dataset, column, value) | empty)
-        return list(dict.fromkeys(frame.loc[noted, "note"]))
+                has_note = has_note & (self._accepted(stage, dataset, column, value) | empty)
+        return list(dict.fromkeys(frame.loc[has_note, "note"]))
 
     def left_out(self, stage: str, dataset: str | None = None, **where: object) -> str:
         """`notes` as sentences for a table's prose, a line each."""
@@ -367,13 +367,13 @@ class Results:
 
         channels: the channels, in this order; NotRun where one was not computed. None: those that were.
         """
-        maps, mask, viewpoints, stored = read_maps(self._path("conspicuity", name, dataset))
+        maps, mask, viewpoints, map_channels = read_maps(self._path("conspicuity", name, dataset))
         if channels is None:
-            return maps, mask, viewpoints, stored
-        missing = [channel for channel in channels if channel not in stored]
+            return maps, mask, viewpoints, map_channels
+        missing = [channel for channel in channels if channel not in map_channels]
         if missing:
             raise NotRun(f"no maps of {', '.join(missing)}", "conspicuity", runnable=False)
-        return maps[:, [stored.index(channel) for channel in channels]], mask, viewpoints, list(channels)
+        return maps[:, [map_channels.index(channel) for channel in channels]], mask, viewpoints, list(channels)
 
     def ground_truth(self, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
         """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training)."""
@@ -404,8 +404,8 @@ class Results:
 
     def in_order(self, names: set[str]) -> list[str]:
         """Names of data sets: those that are switched on, then the others by the alphabet, but for one's own meshes."""
-        others = set() if self.own_meshes else names - set(self.sets)
-        return [name for name in self.sets if name in names] + sorted(others)
+        other_sets = set() if self.own_meshes else names - set(self.sets)
+        return [name for name in self.sets if name in names] + sorted(other_sets)
 
     def _path(self, stage: str, name: str, dataset: str | None) -> Path:
         path = self.folder(stage, dataset) / f"{name}.npz"

@@ -91,8 +91,8 @@ def built(work: Callable[[Results], Any], results: Results) -> tuple[Any, dict[P
         part = work(results.unread())  # whatever was read before would not be opened
     folders = [os.path.abspath(folder) for folder in _folders(results)]
     paths = sorted({Path(os.path.abspath(path)) for path in opened})
-    read = [path for path in paths if any(path.is_relative_to(folder) for folder in folders) and path.is_file()]
-    return part, {path: sha256(path) for path in read}
+    read_paths = [path for path in paths if any(path.is_relative_to(folder) for folder in folders) and path.is_file()]
+    return part, {path: sha256(path) for path in read_paths}
 
 
 def taken_again(name: str, key: str, results: Results) -> Any:
@@ -102,8 +102,8 @@ def taken_again(name: str, key: str, results: Results) -> Any:
         known_key, files, part = pickle.loads(path.read_bytes())
     except (OSError, ValueError, TypeError, AttributeError, ImportError, EOFError, pickle.UnpicklingError):
         return None
-    same = known_key == key and all(file.is_file() and sha256(file) == digest for file, digest in files.items())
-    return part if same else None
+    is_unchanged = known_key == key and all(file.is_file() and sha256(file) == digest for file, digest in files.items())
+    return part if is_unchanged else None
 
 
 def keep(name: str, key: str, part: Any, read: dict[Path, str], results: Results) -> None:

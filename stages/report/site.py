@@ -222,13 +222,13 @@ def topic_main(module: ModuleType, parts: dict[str, Any], items: Sequence[Table 
     paragraphs = [] if parts["own"] else findings(module, out)  # which are about other data sets
     text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in paragraphs)
     text = f'<section id="found" class="found"><h2>What was found</h2>{text}</section>\n' if text else ""
-    shown = [item for item in items if item not in others]
+    own_items = [item for item in items if item not in others]
     if len(claims):
         verdicts = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
         text += f'<p>{len(claims)} <a href="{CLAIMS}.html">claims</a>: {verdicts}.</p>\n'
-    contents = "".join(f'<li><a href="#{anchor(item)}">{escape(item.title)}</a></li>' for item in [*shown, *others])
+    contents = "".join(f'<li><a href="#{anchor(item)}">{escape(item.title)}</a></li>' for item in [*own_items, *others])
     text += f'<nav aria-label="On this page" class="contents"><ul>{contents}</ul></nav>\n' if len(items) > 2 else ""
-    text += items_html(shown)
+    text += items_html(own_items)
     if others:
         sets = ", ".join(dict.fromkeys(dataset_text(name) for item in others for name in item.sets))
         text += f'<h2 id="others">Measured on other data sets</h2>\n<p>Not part of this run: {escape(sets)}.</p>\n'
@@ -259,9 +259,9 @@ def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, st
     chart = next((figures[name] for name in CHARTS if name in figures), None)
     partly = {f"tables/{item.name}": "in part, as its cells say" for item in parts["tables"].items if lacks_cells(item)}
     reasons: dict[str, list[str]] = {}
-    for name, why in (not_run | partly).items():
-        reasons.setdefault(why, []).append(f"<code>{escape(name)}</code>")
-    missing = "".join(f"<li>{', '.join(names)}: {prose(why)}</li>" for why, names in reasons.items())
+    for name, reason in (not_run | partly).items():
+        reasons.setdefault(reason, []).append(f"<code>{escape(name)}</code>")
+    missing = "".join(f"<li>{', '.join(names)}: {prose(reason)}</li>" for reason, names in reasons.items())
     words = {
         "heading": "Your meshes" if own_meshes else "The pipeline on one object",
         "what": prose(" ".join(WHAT.split())),
@@ -283,8 +283,8 @@ def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, st
 
 def chart_html(chart: Figure) -> str:
     """The chart of the front page with its caption and a link to its page."""
-    more = f'<a href="{FOLDER}/{chart.topic}.html#{anchor(chart)}">Its numbers</a>'
-    caption = f"<figcaption>{prose(chart.caption)} {more}</figcaption>"
+    link = f'<a href="{FOLDER}/{chart.topic}.html#{anchor(chart)}">Its numbers</a>'
+    caption = f"<figcaption>{prose(chart.caption)} {link}</figcaption>"
     body = f'<figure class="beside">{box("wide", chart.title, chart.element)}{caption}</figure>'
     return f'<section id="chart"><h2>{escape(chart.title)}</h2>{body}</section>\n'
 

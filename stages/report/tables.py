@@ -137,14 +137,14 @@ def everywhere(results: Results, stage: str, message: str = "", **where: object)
 
     Raises NotRun where none has: of `message`, or as the last set that was looked at.
     """
-    by_set, absent = {}, NotRun(message or f"no measurements of {stage}", stage)
+    by_set, error = {}, NotRun(message or f"no measurements of {stage}", stage)
     for dataset in results.datasets(stage):
         try:
             by_set[dataset] = results.measured(stage, dataset, **where)
         except NotRun as missing:
-            absent = absent if message else missing
+            error = error if message else missing
     if not by_set:
-        raise absent
+        raise error
     return by_set
 
 

@@ -87,10 +87,10 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     """
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
     converged = rows["passes"] == "converged" if "passes" in rows else False
-    known = _beside(results, stage, dataset, rows, "train_accuracy")
+    train_accuracy = _beside(results, stage, dataset, rows, "train_accuracy")
     doubtful = tuned & ~converged & (rows["value"] < SATURATED)
-    return pd.Series("", index=rows.index).mask(doubtful & (known < SATURATED), UNTRAINED).mask(
-        doubtful & known.isna(), UNMEASURED)  # fmt: skip
+    return pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
+        doubtful & train_accuracy.isna(), UNMEASURED)  # fmt: skip
 
 
 @check("fixation")
@@ -156,17 +156,17 @@ def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
 def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
     """(n,) another metric of the same trials, NaN where it was not measured."""
     try:
-        measured = results.measured(stage, dataset, metric=metric)
+        metric_rows = results.measured(stage, dataset, metric=metric)
     except NotRun:
         return pd.Series(float("nan"), index=rows.index)
 
     def of_all() -> pd.Series:
-        values = measured.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
+        values = metric_rows.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
         all_rows = results.rows(stage, dataset)[keys]
         return pd.Series(all_rows.merge(values, on=keys, how="left")["_beside"].to_numpy(), index=all_rows.index)
 
-    apart = {"metric", "value", "seconds", "note", "imprints", "clock"}
-    keys = [column for column in rows if column in measured and column not in apart]
+    value_columns = {"metric", "value", "seconds", "note", "imprints", "clock"}
+    keys = [column for column in rows if column in metric_rows and column not in value_columns]
     return results.once(("beside", stage, dataset, metric, *keys), of_all)[rows.index]
 
 
@@ -196,6 +196,6 @@ def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
     keys = ["item", "target", "metric"]
     errors = rows[rows["value"].notna() & (rows["metric"] != "faces")]
     plain = errors.loc[errors["method"] == PLAIN, [*keys, "value"]]
-    joined = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
-    same = (joined["value"] == joined["value_plain"]).groupby([joined[key] for key in UNIT]).all()
-    return pd.MultiIndex.from_frame(same.index[same].to_frame())
+    error_pairs = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
+    is_equal = (error_pairs["value"] == error_pairs["value_plain"]).groupby([error_pairs[key] for key in UNIT]).all()
+    return pd.MultiIndex.from_frame(is_equal.index[is_equal].to_frame())

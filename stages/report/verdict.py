@@ -91,9 +91,9 @@ def _row(claim: Claim, results: Results) -> Row:
     pairs = []
     for effect in judgement.found:
         start = f"{effect.dataset}/" if len(claim.sets) > 1 else ""
-        named = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
+        pair_names = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
         decides = effect in judgement.chosen
-        pairs += ((claim.key, name, value, decides) for name, value in zip(named, effect.differences, strict=True))
+        pairs += ((claim.key, name, value, decides) for name, value in zip(pair_names, effect.differences, strict=True))
     return row | _numbers(judgement) | _words(judgement, results) | _readings(judgement, judgements, not_run), pairs
 
 
@@ -118,22 +118,22 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
 
     A reading on data sets of its own was run where the first of them was. Raises NotRun where no reading was run.
     """
-    judgements, absent, not_run = [], [], []
+    judgements, errors, not_run = [], [], []
     for name, variant in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
         try:
-            measured, missing = effects(variant, results)
-        except NotRun as why:
-            absent.append(why)
+            set_effects, missing = effects(variant, results)
+        except NotRun as error:
+            errors.append(error)
             not_run.append(name)
             continue
-        chosen = deciding(variant, measured, results, strict=variant is not claim)
-        judgement = Judgement(name, variant, measured, missing, chosen)
-        if variant is claim or (chosen and np.isfinite(effect_of(chosen).interval[1])):
+        selection = deciding(variant, set_effects, results, strict=variant is not claim)
+        judgement = Judgement(name, variant, set_effects, missing, selection)
+        if variant is claim or (selection and np.isfinite(effect_of(selection).interval[1])):
             judgements.append(judgement)
         else:
             not_run.append(name)
     if not judgements:
-        raise absent[0]
+        raise errors[0]
     return judgements, not_run
 
 
@@ -191,25 +191,25 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
     split = isinstance(effect, Effect) and effect.share > 0
     rank = 2 if effect.most <= FEW else 3 if count < HUNDRED else 4 if np.isfinite(count) else 5 if split else 6
     sets = isinstance(effect, PooledEffect) and effect.pooled.between > 0
-    need = {"needed": count, "needed_of": "data sets" if sets else claim.units} if np.isfinite(count) else {}
-    return {"cause": CAUSES[rank], **need}
+    need_columns = {"needed": count, "needed_of": "data sets" if sets else claim.units} if np.isfinite(count) else {}
+    return {"cause": CAUSES[rank], **need_columns}
 
 
 def _words(judgement: Judgement, results: Results) -> dict[str, str]:
     """Columns tested_on, by_set, carries and validity."""
-    claim, measured, chosen = judgement.claim, judgement.found, judgement.chosen
+    claim, set_effects, selection = judgement.claim, judgement.found, judgement.chosen
     missing = [] if results.own_meshes else judgement.missing
-    words = tested_on(claim, results, [effect.dataset for effect in chosen])
+    words = tested_on(claim, results, [effect.dataset for effect in selection])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
-    refused = [f"{dataset_text(effect.dataset)}: {effect.validity}" for effect in measured if effect.validity]
-    for effect in chosen:
+    invalid_sets = [f"{dataset_text(effect.dataset)}: {effect.validity}" for effect in set_effects if effect.validity]
+    for effect in selection:
         if np.isnan(effect.interval[1]):
             count = len(effect.differences)
-            why = f"all {count} differences are equal" if count > 1 else "fewer than two differences"
-            words += f"; no interval{f' of {dataset_text(effect.dataset)}' if len(measured) > 1 else ''}: {why}"
+            reason = f"all {count} differences are equal" if count > 1 else "fewer than two differences"
+            words += f"; no interval{f' of {dataset_text(effect.dataset)}' if len(set_effects) > 1 else ''}: {reason}"
     return {
-        "tested_on": words, "validity": "; ".join(refused), "carries": _carries(claim, chosen, measured),
-        "by_set": "; ".join(map(_set_text, measured)) if len(measured) > 1 else "",
+        "tested_on": words, "validity": "; ".join(invalid_sets), "carries": _carries(claim, selection, set_effects),
+        "by_set": "; ".join(map(_set_text, set_effects)) if len(set_effects) > 1 else "",
     }  # fmt: skip
 
 
@@ -235,8 +235,8 @@ def _interval_text(effect: Effect | PooledEffect) -> str:
 
 def _set_text(effect: Effect) -> str:
     """`psb +3.1 [1.0, 5.2] (38)`: a set's own effect, and its units."""
-    refused = "" if effect.testable else ", not testable"
-    return f"{dataset_text(effect.dataset)} {_interval_text(effect)} ({len(effect.units)}{refused})"
+    note = "" if effect.testable else ", not testable"
+    return f"{dataset_text(effect.dataset)} {_interval_text(effect)} ({len(effect.units)}{note})"
 
 
 def holding(frame: pd.DataFrame) -> pd.Series:
@@ -245,8 +245,8 @@ def holding(frame: pd.DataFrame) -> pd.Series:
     By Benjamini and Hochberg, at a false discovery rate of 5 %. A chapter is `T3`, say; ours is one by itself.
     """
     chapters = frame["section"].str.partition(".")[0]
-    held = frame["p"].astype(float).groupby(chapters).transform(discoveries)
-    return held.map({True: "yes", False: "no"}).where(frame["verdict"].isin(["supported", "contradicted"]), "")
+    is_discovery = frame["p"].astype(float).groupby(chapters).transform(discoveries)
+    return is_discovery.map({True: "yes", False: "no"}).where(frame["verdict"].isin(["supported", "contradicted"]), "")
 
 
 def counts(claims: pd.DataFrame) -> dict[str, int]:
@@ -263,12 +263,12 @@ def sentences(claims: pd.DataFrame) -> pd.DataFrame:
 def counted(claims: pd.DataFrame) -> str:
     """On a frame of `judge`: how many verdicts there are of each word, how many of them hold, how many sentences."""
     decided = claims["holds"].isin(["yes", "no"]).sum()
-    once = sentences(claims)
-    thesis = once[once["section"] != "ours"]
+    frame = sentences(claims)
+    thesis = frame[frame["section"] != "ours"]
     return (
         f"Sentences of the thesis ({len(thesis)}): {_said(thesis)}. "
-        f"Sentences of this project ({len(once) - len(thesis)}): {_said(once[once['section'] == 'ours'])}. "
-        f"Verdicts, with {len(claims) - len(once)} that test a sentence elsewhere ({len(claims)}): {_said(claims)}. "
+        f"Sentences of this project ({len(frame) - len(thesis)}): {_said(frame[frame['section'] == 'ours'])}. "
+        f"Verdicts, with {len(claims) - len(frame)} that test a sentence elsewhere ({len(claims)}): {_said(claims)}. "
         f"Of the {decided} that are supported or contradicted, {(claims['holds'] == 'yes').sum()} hold among the "
         "claims of their chapter, at a false discovery rate of 5 %."
     )

@@ -33,9 +33,9 @@ def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> 
     title, text = _sections(topic.__name__)[f"{kind}/{name}"]
     item.name, item.title = name, title.format_map(item.words)
     if isinstance(item, Table):
-        summary, *listed = re.split(r"^- ", text, flags=re.MULTILINE)
+        summary, *note_texts = re.split(r"^- ", text, flags=re.MULTILINE)
         item.summary = _joined(summary).replace("{this ", f"{{{kind}/{name} ")
-        notes = (_joined(note).format_map(item.words) for note in listed)
+        notes = (_joined(note).format_map(item.words) for note in note_texts)
         item.notes = [line for note in notes for line in note.splitlines() if line]
     else:
         alt, _, caption = text.removeprefix("Alt: ").partition("\n\n")
@@ -87,9 +87,9 @@ def last_drawn(results: Results, name: str, stage: str) -> Kept:
     """The figure as it was drawn last time; NotRun where it never was."""
     folder = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
     words = folder / f"figures/{name}.json"
-    why = f"no figures/{name}.png: run the stage {stage} on its data set"
-    there(words.with_suffix(".png"), why, stage, runnable=False)
-    return Kept(Drawing(), read_json(there(words, why, stage, runnable=False)))
+    reason = f"no figures/{name}.png: run the stage {stage} on its data set"
+    there(words.with_suffix(".png"), reason, stage, runnable=False)
+    return Kept(Drawing(), read_json(there(words, reason, stage, runnable=False)))
 
 
 def as_printed(build: Callable[[Results], Figure], dataset: str, results: Results, stage: str = "lod") -> Figure:

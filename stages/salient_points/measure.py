@@ -112,5 +112,5 @@ def read_saliency(path: Path) -> dict[str, np.ndarray]:
 
 
 def _read(path, kind):
-    stored = read_arrays(path)
-    return {key.rpartition(".")[0]: stored[key] for key in stored if key.endswith(f".{kind}")}
+    arrays = read_arrays(path)
+    return {key.rpartition(".")[0]: arrays[key] for key in arrays if key.endswith(f".{kind}")}

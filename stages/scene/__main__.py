@@ -68,19 +68,19 @@ def run(workspace: Workspace) -> None:
         scenes = scenes_of(settings, stage.objects, data, stage.seed)
         scene, missing = scene_of(scenes[0], stage.objects)
         report_missing(scenes[0], scene, missing)
-        shown = sorted({placed.name for single in scenes for placed in scene_of(single, stage.objects)[0].objects})
-        others = [name for name in stage.objects if name not in shown]
+        names = sorted({placed.name for single in scenes for placed in scene_of(single, stage.objects)[0].objects})
+        other_objects = [name for name in stage.objects if name not in names]
         chains = functools.partial(levels_of, data=data, method=settings.method, seed=stage.seed)
-        stage.each(chains, shown, reads=(MESH, POINTS))
+        stage.each(chains, names, reads=(MESH, POINTS))
         factors = dict.fromkeys([1.0, *settings.factors])
         cases = {case.name: case for case in (Case(single, factor) for single in scenes for factor in factors)}
         values = {name: repr(case) for name, case in cases.items()}
-        files = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
-        learned_from = [pattern.format(name) for name in others for pattern in (MESH, CURVE)]
-        learned_from += [CURVE.format(name) for name in shown if settings.random]  # a scene has not all that are shown
-        common = {"data": data, "made": stage.folder, "shown": shown, "seed": stage.seed}
+        files = [pattern.format(name) for name in names for pattern in (MESH, POINTS)]
+        learned_from = [pattern.format(name) for name in other_objects for pattern in (MESH, CURVE)]
+        learned_from += [CURVE.format(name) for name in names if settings.random]  # a scene has not all that are shown
+        common = {"data": data, "made": stage.folder, "shown": names, "seed": stage.seed}
         rows = [*stage.each(functools.partial(measure, **common), cases, [*files, LEVELS], values)]
-        network = functools.partial(measure_network, **common, others=others)
+        network = functools.partial(measure_network, **common, others=other_objects)
         rows += stage.each(network, cases, [*files, *learned_from, LEVELS, PLAN], values)
         stage.rows = KeptRows([{"group": settings.name} | row for row in stage.rows])
         if not settings.random:
@@ -89,7 +89,7 @@ def run(workspace: Workspace) -> None:
         numbers = summary(rows)
         stage.metrics(numbers)
     print(
-        f"scene: {workspace.dataset}, {settings.name}, {len(shown)} objects, {len(scene.cameras)} frames: "
+        f"scene: {workspace.dataset}, {settings.name}, {len(names)} objects, {len(scene.cameras)} frames: "
         f"{numbers['faces_ours']:.0f} faces per frame of {numbers['faces_full']:.0f}, "
         f"{numbers['saved_uniform_error']:.0%} fewer than uniform levels at equal error, "
         f"{numbers['held_ours']:.0%} of frames within the tolerance"

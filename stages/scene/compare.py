@@ -77,8 +77,8 @@ def _online(setup, ours):
     plans = []
     for method, rendered in (("online", True), ("online_unrendered", False)):
         fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
-        planned = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
-        plans.append(replace(planned, plan=Plan(planned.plan.levels, planned.plan.chains, setup.frames)))
+        method_plan = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
+        plans.append(replace(method_plan, plan=Plan(method_plan.plan.levels, method_plan.plan.chains, setup.frames)))
     return plans
 
 
@@ -99,8 +99,8 @@ def _beforehand(setup, ours):
     plans = []
     for method, (plan_of, before) in ways.items():
         (tuned,) = _tuned(setup, method, plan_of, ours, ("displacement",))
-        once = _planned(method, lambda plan_of=plan_of: plan_of(1.0))  # the price changes nothing of the cost
-        plans.append(replace(tuned, planning=before + once.seconds))
+        single_plan = _planned(method, lambda plan_of=plan_of: plan_of(1.0))  # the price changes nothing of the cost
+        plans.append(replace(tuned, planning=before + single_plan.seconds))
     return plans
 
 

@@ -40,8 +40,8 @@ def export(folder: Path, data: Path, scene: Scene, settings: Params) -> None:
     chains = {name: read_chain(folder / "levels" / name, OURS, finest(mesh)) for name, mesh in meshes.items()}
     sizes = {placed.name: placed.size for placed in reversed(scene.objects)}  # of several copies the first one's
     for name, chain in chains.items():
-        used = sorted(set(plan.loc[plan["item"] == name, "level"]))
-        levels = [chain[k] for k in used]
+        level_numbers = sorted(set(plan.loc[plan["item"] == name, "level"]))
+        levels = [chain[k] for k in level_numbers]
         entries = [describe(name, level, metres_per_unit(chain[0].mesh, sizes[name]), scene) for level in levels]
         for level, row in zip(levels, entries, strict=True):
             write_glb(folder / FOLDER / row["file"], [to_gltf(level.mesh, row["metres_a_unit"])], [row["file"][:-4]])
@@ -65,11 +65,11 @@ def describe(name: str, level: Level, metres: float, scene: Scene) -> dict[str, 
     """
     error = level.error["q99"] * metres
     longest = metres * float(np.ptp(level.mesh.vertices[np.unique(level.mesh.faces)], axis=0).max())
-    enough = scene.tolerance * longest / error if error > 0 and scene.kind == "pixels" else None
+    size_limit = scene.tolerance * longest / error if error > 0 and scene.kind == "pixels" else None
     return {
         "object": name, "level": f"{name}_{level.faces}", "file": f"{name}_{level.faces}.glb", "faces": level.faces,
         "error": float(f"{error:.6g}"), "size": float(f"{longest:.6g}"), "metres_a_unit": float(f"{metres:.9g}"),
-        "enough_up_to": None if enough is None else float(f"{enough:.6g}"),
+        "enough_up_to": None if size_limit is None else float(f"{size_limit:.6g}"),
     }  # fmt: skip
 
 
@@ -169,8 +169,8 @@ def _fault(loaded, mesh):
         or np.abs(loaded.vertices - mesh.vertices).max(initial=0) > tolerance
     ):
         return "positions"
-    same = mesh.colors is None or np.array_equal(loaded.visual.vertex_colors[:, :3], mesh.colors)
-    return "" if same else "colours"
+    same_colors = mesh.colors is None or np.array_equal(loaded.visual.vertex_colors[:, :3], mesh.colors)
+    return "" if same_colors else "colours"
 
 
 def read_lod(path: Path) -> list[str]:

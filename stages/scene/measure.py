@@ -124,9 +124,9 @@ def _setup(case, data, made, shown):
     """(SceneSetup, dict name -> saliency (n,) or None) of a case."""
     scene, _ = scene_of(case.settings, shown, case.factor)
     names = sorted({placed.name for placed in scene.objects})
-    read = {name: read_object(data, name, case.settings.method) for name in names}
-    setup = load_setup(scene, {name: mesh for name, (mesh, *_) in read.items()}, made / "levels")
-    return setup, {name: values for name, (*_, values) in read.items()}
+    inputs = {name: read_object(data, name, case.settings.method) for name in names}
+    setup = load_setup(scene, {name: mesh for name, (mesh, *_) in inputs.items()}, made / "levels")
+    return setup, {name: values for name, (*_, values) in inputs.items()}
 
 
 def _rows(setup, ours, plans, saliency, case, seed):
@@ -226,8 +226,8 @@ def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> 
 def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> None:
     """Prints which objects are missing, and which take their places where none of the scene's own is present."""
     if missing:
-        named = {item.name for item in settings.objects}
-        stand_ins = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in named))
+        scene_names = {item.name for item in settings.objects}
+        stand_ins = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in scene_names))
         how = f"with {stand_ins} in their places" if stand_ins else "without them"
         print(f"scene: {settings.name} continues {how}; not in data/SET/meshes: {', '.join(missing)}", file=sys.stderr)
 
@@ -236,10 +236,10 @@ def read_object(data: Path, name: str, method: str) -> tuple[Mesh, dict[str, Any
     """(Mesh, options of simplify, saliency (n,) or None) of an object in data/SET, for a method of the lod stage."""
     path = data / POINTS.format(name)
     mesh, saliency = read_mesh(data / MESH.format(name)), read_saliency(path)
-    chosen = variant(method)
-    rule = keep_rule(ObjectInputs(name, mesh, read_strong_points(path), saliency), chosen)
+    lod_variant = variant(method)
+    rule = keep_rule(ObjectInputs(name, mesh, read_strong_points(path), saliency), lod_variant)
     options = {"keep": rule.vertices, "rings": rule.rings, "weights": rule.weights}
-    return mesh, options, saliency.get(chosen.method or "")
+    return mesh, options, saliency.get(lod_variant.method or "")
 
 
 CURVE = "lod/{}/curve.csv"  # of an object, below data/SET

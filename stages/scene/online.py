@@ -140,8 +140,8 @@ def _places(radii: Sequence[float], side: float, random: np.random.Generator) ->
         radius, placed = radii[len(middles)], np.array(radii[: len(middles)])
         reach = max(side / 2 - radius, 0)
         candidates = random.uniform(-reach, reach, (TRIES, 2))
-        apart = np.linalg.norm(candidates[:, None] - middles, axis=2) >= placed + radius + GAP
-        free = np.flatnonzero(apart.all(axis=1))
+        is_free = np.linalg.norm(candidates[:, None] - middles, axis=2) >= placed + radius + GAP
+        free = np.flatnonzero(is_free.all(axis=1))
         if len(free):
             middles = np.vstack([middles, candidates[free[0]]])
         else:
@@ -202,9 +202,9 @@ def equal(plan: Plan, limit: int) -> Plan:
         visible = np.flatnonzero(plan.frames.in_view[frame])
         chains = [[level.faces for level in plan.chains[item]] for item in visible.tolist()]
         for count in sorted({count for counts in chains for count in counts}, reverse=True):
-            chosen = [next((k for k, n in enumerate(counts) if n <= count), len(counts) - 1) for counts in chains]
-            if sum(counts[k] for counts, k in zip(chains, chosen, strict=True)) <= limit:
-                levels[frame, visible] = chosen
+            level_ids = [next((k for k, n in enumerate(counts) if n <= count), len(counts) - 1) for counts in chains]
+            if sum(counts[k] for counts, k in zip(chains, level_ids, strict=True)) <= limit:
+                levels[frame, visible] = level_ids
                 break
     return Plan(levels, plan.chains, plan.frames)
 
@@ -217,13 +217,13 @@ def tune(
     Larger factors must give coarser plans. The coarsest Plan is returned where even it has less error. below: return
     the coarsest Plan found whose `measure` is at most `target`.
     """
-    kept, other = np.log(SPAN) if below else np.log(SPAN)[::-1]
-    best = plan_of(float(np.exp(kept)))
+    valid_end, other_end = np.log(SPAN) if below else np.log(SPAN)[::-1]
+    best = plan_of(float(np.exp(valid_end)))
     for _ in range(HALVINGS):
-        middle = (kept + other) / 2
+        middle = (valid_end + other_end) / 2
         plan = plan_of(float(np.exp(middle)))
         if measure(plan) <= target if below else measure(plan) >= target:
-            kept, best = middle, plan
+            valid_end, best = middle, plan
         else:
-            other = middle
+            other_end = middle
     return best

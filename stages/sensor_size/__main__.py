@@ -82,8 +82,8 @@ def touch(
     if extent:
         saliency = read_saliency(data / f"salient_points/{name}.npz")[settings.method]
         vertices = sample_vertices(mesh, saliency, vertices, extent, rng(seed, f"{extent} {name}"))
-    pressed = [press_many(mesh, vertices, (cells, cells), pitch) for cells, pitch in arrays]
-    return np.concatenate([images.reshape(len(vertices), -1) for images in pressed], axis=1)
+    imprints = [press_many(mesh, vertices, (cells, cells), pitch) for cells, pitch in arrays]
+    return np.concatenate([images.reshape(len(vertices), -1) for images in imprints], axis=1)
 
 
 def chosen_classes(classes: Mapping[str, list[str]], names: Sequence[str]) -> dict[str, list[str]]:
@@ -110,8 +110,8 @@ def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
             arrays["{}-{}".format(*array)] = interval_metrics(accuracies, seed)
         means = {parts(item): value["mean"] for item, value in arrays.items()}
         cells, pitch = smallest_sufficient(means, slack)
-        again = round(choice_repeatability(scores, slack, seed), 6)
-        smallest = {"cells": cells, "pitch": pitch, "accuracy": means[cells, pitch], "again": again}
+        repeatability = round(choice_repeatability(scores, slack, seed), 6)
+        smallest = {"cells": cells, "pitch": pitch, "accuracy": means[cells, pitch], "again": repeatability}
         tree[name] = {"arrays": arrays, "smallest": smallest}
     return tree
 
@@ -132,9 +132,9 @@ def run(workspace: Workspace) -> None:
             {name: entry["arrays"] for name, entry in tree.items()}
         )  # the smallest one is a choice, often luck
         smallest = [{"classifier": name} | entry["smallest"] for name, entry in tree.items()]
-        about = ("classifier", "cells", "pitch")
-        again = [{key: entry[key] for key in about} | {"value": entry["again"]} for entry in smallest]
-        stage.rows += [entry | {"metric": "smallest_chosen_again"} for entry in again]
+        keys = ("classifier", "cells", "pitch")
+        repeat_rows = [{key: entry[key] for key in keys} | {"value": entry["again"]} for entry in smallest]
+        stage.rows += [entry | {"metric": "smallest_chosen_again"} for entry in repeat_rows]
     for entry in smallest:
         print("sensor_size: {classifier} needs {cells} x {cells} cells, {pitch} apart: {accuracy:.3f}".format(**entry))
 

@@ -61,7 +61,7 @@ def evaluate(imprints: dict[str, list[np.ndarray]], names: list[str], seed: int 
 
 def majority(answers: np.ndarray, votes: int) -> np.ndarray:
     """(k // votes,) the most frequent of each `votes` answers (k,), of equals the first."""
-    return np.array([max(some, key=some.count) for some in answers.reshape(-1, votes).tolist()])
+    return np.array([max(group, key=group.count) for group in answers.reshape(-1, votes).tolist()])
 
 
 def _splits(imprints, seed, votes):
@@ -73,9 +73,9 @@ def _splits(imprints, seed, votes):
     train, test = [], []
     for label, index, images in objects:
         order = rng(seed, f"touches of {label} {index}").permutation(len(images) // votes)
-        held_out, kept = np.split(order, [max(1, round(HOLDOUT * len(order)))])
+        held_out, train_ids = np.split(order, [max(1, round(HOLDOUT * len(order)))])
         groups = np.arange(len(images)).reshape(-1, votes)
-        train.append((label, images[groups[kept].ravel()]))
+        train.append((label, images[groups[train_ids].ravel()]))
         test.append((label, index, images[groups[held_out].ravel()]))
     yield Split.RANDOM, 0, train, test
 
@@ -126,15 +126,15 @@ def sample_vertices(
     centres = points[: len(points) // TOUCHES]
     if extent == "points":
         return points[: len(centres) * TOUCHES].reshape(TOUCHES, -1).T.ravel()
-    chosen = []
+    samples = []
     for centre in centres:
         inside = salient_region(mesh, saliency, centre)
         inside = inside if extent == "region" else disc(mesh, centre, mesh.vertex_areas[inside].sum())
         candidates = inside[(inside != centre) & touchable(mesh, inside)]
         weights = mesh.vertex_areas[candidates]
         draws = random.choice(candidates, TOUCHES - 1, replace=len(candidates) < TOUCHES - 1, p=weights / weights.sum())
-        chosen.append([centre, *draws])
-    return np.ravel(chosen)
+        samples.append([centre, *draws])
+    return np.ravel(samples)
 
 
 def salient_region(mesh: Mesh, saliency: np.ndarray, centre: int) -> np.ndarray:
@@ -216,7 +216,7 @@ def choice_repeatability(scores: Mapping[tuple[int, float], ArrayLike], slack: f
     of their intervals, so that a choice without its repeatability could be chance.
     """
     table = np.array(list(scores.values()), dtype=np.float64)
-    chosen = smallest_sufficient(dict(zip(scores, table.mean(axis=1), strict=True)), slack)
+    best_array = smallest_sufficient(dict(zip(scores, table.mean(axis=1), strict=True)), slack)
     resampled = np.random.default_rng(seed).integers(table.shape[1], size=(RESAMPLES, table.shape[1]))
     resamples = (dict(zip(scores, means, strict=True)) for means in table[:, resampled].mean(axis=2).T)
-    return sum(smallest_sufficient(means, slack) == chosen for means in resamples) / RESAMPLES
+    return sum(smallest_sufficient(means, slack) == best_array for means in resamples) / RESAMPLES

@@ -35,9 +35,9 @@ def confusion_rows(folder: Path, trials: list[Trial], classes: list[str]) -> Row
     for trial in trials:
         if trial.size != trials[0].size:
             continue
-        stored = read_arrays(folder / "predictions" / f"{trial.name}.npz")
-        for name in set(stored) - {"test", "true"}:
-            np.add.at(counts[trial.strategy, trial.split, name], (stored["true"], stored[name]), 1)
+        predictions = read_arrays(folder / "predictions" / f"{trial.name}.npz")
+        for name in set(predictions) - {"test", "true"}:
+            np.add.at(counts[trial.strategy, trial.split, name], (predictions["true"], predictions[name]), 1)
     return [
         {"method": method, "split": split, "classifier": name, "group": classes[i], "predicted": classes[j]}
         | {"metric": "confusion", "value": int(counts[method, split, name][i, j])}

@@ -55,8 +55,8 @@ def sequence_features(values: ArrayLike) -> np.ndarray:
 def _statistics(band, least):
     """(n, s, 3): the STATISTICS over the coefficients (n, k, s); least (n, s): the spread of a constant."""
     mean = band.mean(axis=1)
-    apart = band - mean[:, None]
-    std = np.sqrt((apart**2).mean(axis=1))
+    deviations = band - mean[:, None]
+    std = np.sqrt((deviations**2).mean(axis=1))
     varies = std > least
-    skewness = np.divide((apart**3).mean(axis=1), std**3, out=np.zeros_like(std), where=varies)
+    skewness = np.divide((deviations**3).mean(axis=1), std**3, out=np.zeros_like(std), where=varies)
     return np.stack([np.sqrt((band**2).mean(axis=1)), np.where(varies, std, 0), skewness], axis=2)

@@ -80,9 +80,9 @@ class SequenceData:
 
 def count_sequences(path: Path) -> dict[str, int]:
     """{strategy: number of sequences} of a file of data/SET/contours, without reading their images."""
-    with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as stored:
-        names = sorted({name.rpartition(".")[0] for name in stored.files})
-        return {name: len(stored[f"{name}.planes"]) for name in names}
+    with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as archive:
+        names = sorted({name.rpartition(".")[0] for name in archive.files})
+        return {name: len(archive[f"{name}.planes"]) for name in names}
 
 
 def read_sequence_data(folder: Path, members: dict[str, list[str]], strategy: str) -> SequenceData:
@@ -164,21 +164,21 @@ def process(name: str, folder: Path, data: Path, members: dict[str, list[str]], 
     The random numbers of split and training depend on the split and the repetition alone, not on the strategy.
     """
     trial = Trial.parse(name)
-    read = downsample(read_sequence_data(data / "contours", members, trial.strategy), *trial.frames_and_cells)
+    inputs = downsample(read_sequence_data(data / "contours", members, trial.strategy), *trial.frames_and_cells)
     random = rng(seed, f"sequences {SPLITS[trial.split]} {trial.repetition}")
     if trial.split == Split.OBJECTS:
-        parts = split_by_objects(read.labels, read.ranks, trial.repetition % read.folds, read.folds, random)
+        parts = split_by_objects(inputs.labels, inputs.ranks, trial.repetition % inputs.folds, inputs.folds, random)
     else:
-        parts = split_by_sequences(read.labels, random)
+        parts = split_by_sequences(inputs.labels, random)
     with threadpool_limits(1):  # equal sums on any number of cores
         if trial.kind == "networks":
-            results = network_results(read, parts, settings, int(random.integers(2**31)))
+            results = network_results(inputs, parts, settings, int(random.integers(2**31)))
         else:
-            results = conventional_results(read, parts)
+            results = conventional_results(inputs, parts)
     predictions = {classifier: predicted for classifier, (predicted, _, _) in results.items()}
-    truth = read.labels[parts.test]
+    truth = inputs.labels[parts.test]
     write_arrays(folder / "predictions" / f"{name}.npz", test=parts.test, true=truth, **predictions)
-    return _rows(trial, read, truth, results)
+    return _rows(trial, inputs, truth, results)
 
 
 def network_results(data: SequenceData, parts: Parts, settings: Params, seed: int) -> dict[str, Result]:

@@ -30,11 +30,11 @@ def process(name: str, folder: Path, data: Path, counts: dict[str, int], cells: 
     """Presses one object in every way and writes the imprints: an array (counts[name], rows, cols) per simulation."""
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     size = read_table(data / "meshes/manifest.csv").set_index("object").loc[name, "size"]
-    pressed = {
+    imprints = {
         kind: simulate(kind, mesh, counts[name], cells, size, rng(seed, f"{kind} {name}"))  # type: ignore[arg-type]
         for kind in simulations  # the size is a number
     }
-    write_arrays(folder / f"{name}.npz", **pressed)
+    write_arrays(folder / f"{name}.npz", **imprints)
     return []
 
 
@@ -56,9 +56,9 @@ def run(workspace: Workspace) -> None:
     images = read_pressure_images(workspace.settings(RecordedParams).path(workspace.root))
     with StageRun(workspace, "simulated_to_real", COLUMNS, inputs=("meshes",)) as stage:
         members = read_classes(workspace.data / "meshes")
-        absent = sorted(set(members) - set(images))
-        if absent:
-            raise ValueError(f"meshes.classes: {absent[0]} is not a class of the pressure images")
+        absent_objects = sorted(set(members) - set(images))
+        if absent_objects:
+            raise ValueError(f"meshes.classes: {absent_objects[0]} is not a class of the pressure images")
         cells, counts = images[next(iter(members))].shape[1:], shares(members, settings.simulated)
         press = functools.partial(
             process, data=workspace.data, counts=counts, cells=cells, simulations=settings.simulations, seed=stage.seed

@@ -54,8 +54,8 @@ def process(repetition: int, folder: Path, real: Touches, simulated: dict[str, T
     rows = []
     with threadpool_limits(1):  # equal sums on any number of cores
         for count in counts:
-            chosen = _draw(real.labels, pool, count, number)
-            for training in _trainings(real, simulated, chosen, pool):
+            training_ids = _draw(real.labels, pool, count, number)
+            for training in _trainings(real, simulated, training_ids, pool):
                 common = {"split": Split.BLOCKS, "touches": count, "repetition": repetition}
                 rows += [common | row for row in _test(training, real.labels, test, count, number)]
     return rows
@@ -69,12 +69,12 @@ def _trainings(
         yield Training({"training": "real"}, Touches(real.samples[chosen], labels), real.samples)
     for kind, touches in simulated.items():
         for aligned in (False, True):
-            samples, measured = touches.samples, real.samples
+            samples, real_samples = touches.samples, real.samples
             if aligned:
-                samples, measured = _scaled(samples, samples), _scaled(measured, measured[pool])
+                samples, real_samples = _scaled(samples, samples), _scaled(real_samples, real_samples[pool])
             columns = {"training": "both" if len(chosen) else "simulated", "simulation": kind, "aligned": aligned}
-            joined = Touches(np.concatenate([samples, measured[chosen]]), np.concatenate([touches.labels, labels]))
-            yield Training(columns, joined, measured)
+            mixture = Touches(np.concatenate([samples, real_samples[chosen]]), np.concatenate([touches.labels, labels]))
+            yield Training(columns, mixture, real_samples)
 
 
 def _test(training: Training, labels: np.ndarray, test: np.ndarray, count: int, number: int) -> Iterator[dict]:
@@ -141,8 +141,8 @@ def _resting(mesh, count, cells, millimetre, random, pitch=PITCH):
     angles = random.uniform(0, 2 * np.pi, (count, 1))
     cos, sin = np.cos(angles), np.sin(angles)
     axes = np.stack([cos * right + sin * up, cos * up - sin * right, normal], axis=1)
-    aside = (random.uniform(-ASIDE, ASIDE, (count, 2)) * (cells[1], cells[0]) * pitch)[:, :, None]
-    distances = distances_at(Surface(mesh), places + np.sum(aside * axes[:, :2], axis=1), axes, cells, pitch)
+    shifts = (random.uniform(-ASIDE, ASIDE, (count, 2)) * (cells[1], cells[0]) * pitch)[:, :, None]
+    distances = distances_at(Surface(mesh), places + np.sum(shifts * axes[:, :2], axis=1), axes, cells, pitch)
     depths = random.uniform(*DEPTHS, count) * millimetre
     return np.concatenate([indent(distances[k : k + 1], depth) for k, depth in enumerate(depths)])
 
@@ -150,8 +150,8 @@ def _resting(mesh, count, cells, millimetre, random, pitch=PITCH):
 def _stable(mesh):
     """(directions that look down (k, 3), their probabilities (k,)) of the stable poses on a table (Goldberg 1999)."""
     hull = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).convex_hull
-    turned, chances = trimesh.poses.compute_stable_poses(hull, center_mass=hull.center_mass)
-    return -turned[:, 2, :3], chances
+    poses, chances = trimesh.poses.compute_stable_poses(hull, center_mass=hull.center_mass)
+    return -poses[:, 2, :3], chances
 
 
 def _support(mesh, down):

@@ -26,8 +26,8 @@ def pin_holes(mesh: Mesh, generator: np.random.Generator) -> Mesh:
 def wide_holes(mesh: Mesh, generator: np.random.Generator) -> Mesh:
     """Three round holes, of 5, 10 and 20 % of the diagonal."""
     centres = mesh.vertices[generator.choice(np.unique(mesh.faces), 3, replace=False)]
-    apart = np.linalg.norm(mesh.vertices[mesh.faces].mean(axis=1)[:, None] - centres, axis=2)
-    return _without(mesh, (apart < mesh.diagonal * np.array([0.025, 0.05, 0.1])).any(axis=1))
+    distances = np.linalg.norm(mesh.vertices[mesh.faces].mean(axis=1)[:, None] - centres, axis=2)
+    return _without(mesh, (distances < mesh.diagonal * np.array([0.025, 0.05, 0.1])).any(axis=1))
 
 
 def half(mesh: Mesh, _generator: np.random.Generator) -> Mesh:
@@ -38,20 +38,20 @@ def half(mesh: Mesh, _generator: np.random.Generator) -> Mesh:
 
 def fins(mesh: Mesh, generator: np.random.Generator) -> Mesh:
     """Twenty faces are added to edges that already have two: non-manifold edges."""
-    chosen = generator.choice(len(mesh.faces), 20)
-    corners, normals = mesh.vertices[mesh.faces[chosen]], mesh.face_normals[chosen]
+    face_ids = generator.choice(len(mesh.faces), 20)
+    corners, normals = mesh.vertices[mesh.faces[face_ids]], mesh.face_normals[face_ids]
     tips = corners[:, :2].mean(axis=1) + 0.02 * mesh.diagonal * normals
     ids = len(mesh.vertices) + np.arange(20)
-    return Mesh(np.r_[mesh.vertices, tips], np.r_[mesh.faces, np.c_[mesh.faces[chosen][:, [1, 0]], ids]])
+    return Mesh(np.r_[mesh.vertices, tips], np.r_[mesh.faces, np.c_[mesh.faces[face_ids][:, [1, 0]], ids]])
 
 
 def burrs(mesh: Mesh, generator: np.random.Generator) -> Mesh:
     """Twenty small tetrahedra each share one vertex with the surface: non-manifold vertices."""
-    chosen = generator.choice(np.unique(mesh.faces), 20, replace=False)
+    vertex_ids = generator.choice(np.unique(mesh.faces), 20, replace=False)
     shape = 0.01 * mesh.diagonal * (TETRAHEDRON[1:] - TETRAHEDRON[0])
-    tips = mesh.vertices[chosen][:, None] + shape
+    tips = mesh.vertices[vertex_ids][:, None] + shape
     ids = len(mesh.vertices) + np.arange(60).reshape(20, 3)
-    faces = np.c_[chosen, ids][:, TETRAHEDRON_FACES].reshape(-1, 3)
+    faces = np.c_[vertex_ids, ids][:, TETRAHEDRON_FACES].reshape(-1, 3)
     return Mesh(np.r_[mesh.vertices, tips.reshape(-1, 3)], np.r_[mesh.faces, faces])
 
 
@@ -82,8 +82,8 @@ def slivers(mesh: Mesh, generator: np.random.Generator) -> Mesh:
 
 def repeated_index(mesh: Mesh, generator: np.random.Generator) -> Mesh:
     """Fifty faces that name a vertex twice."""
-    chosen = mesh.faces[generator.choice(len(mesh.faces), 50)]
-    return Mesh(mesh.vertices, np.r_[mesh.faces, chosen[:, [0, 1, 1]]])
+    faces = mesh.faces[generator.choice(len(mesh.faces), 50)]
+    return Mesh(mesh.vertices, np.r_[mesh.faces, faces[:, [0, 1, 1]]])
 
 
 def islands(mesh: Mesh, generator: np.random.Generator) -> Mesh:
@@ -96,8 +96,8 @@ def islands(mesh: Mesh, generator: np.random.Generator) -> Mesh:
 
 def mixed_winding(mesh: Mesh, generator: np.random.Generator) -> Mesh:
     """Three in ten faces have the opposite winding."""
-    turned = _some(mesh, generator, 0.3)
-    return Mesh(mesh.vertices, np.where(turned[:, None], mesh.faces[:, ::-1], mesh.faces))
+    is_flipped = _some(mesh, generator, 0.3)
+    return Mesh(mesh.vertices, np.where(is_flipped[:, None], mesh.faces[:, ::-1], mesh.faces))
 
 
 def everything(mesh: Mesh, generator: np.random.Generator) -> Mesh:
@@ -123,12 +123,12 @@ def _joined(first, second):
 
 def _split(mesh, generator, share):
     """A hundred faces split in three by a vertex `share` of the way from the first corner to the face's middle."""
-    chosen = generator.choice(len(mesh.faces), 100, replace=False)
-    (a, b, c), corners = mesh.faces[chosen].T, mesh.vertices[mesh.faces[chosen]]
+    face_ids = generator.choice(len(mesh.faces), 100, replace=False)
+    (a, b, c), corners = mesh.faces[face_ids].T, mesh.vertices[mesh.faces[face_ids]]
     ids = len(mesh.vertices) + np.arange(100)
     new = (1 - share) * corners[:, 0] + share * corners.mean(axis=1)
     parts = [np.stack(part, axis=1) for part in ((a, b, ids), (b, c, ids), (c, a, ids))]
-    return Mesh(np.r_[mesh.vertices, new], np.r_[np.delete(mesh.faces, chosen, axis=0), *parts])
+    return Mesh(np.r_[mesh.vertices, new], np.r_[np.delete(mesh.faces, face_ids, axis=0), *parts])
 
 
 def unreferenced(mesh: Mesh, generator: np.random.Generator) -> Mesh:
@@ -146,8 +146,8 @@ def seam(mesh: Mesh, _generator: np.random.Generator) -> Mesh:
     """Cut in two along edges, with the vertices on the cut duplicated, as at the seam of a texture."""
     left = mesh.vertices[mesh.faces][:, :, 0].mean(axis=1) < np.median(mesh.vertices[:, 0])
     faces = mesh.faces + len(mesh.vertices) * left[:, None]
-    used, renumbered = np.unique(faces, return_inverse=True)
-    return Mesh(mesh.vertices[used % len(mesh.vertices)], renumbered.reshape(-1, 3))
+    vertex_ids, renumbered = np.unique(faces, return_inverse=True)
+    return Mesh(mesh.vertices[vertex_ids % len(mesh.vertices)], renumbered.reshape(-1, 3))
 
 
 def squashed(mesh: Mesh, _generator: np.random.Generator) -> Mesh:
@@ -204,13 +204,13 @@ def grid(columns: int, rows: int, place: Callable[[np.ndarray, np.ndarray], np.n
 
     twisted: the last column is the first one upside down.
     """
-    at = np.arange((columns + 1) * (rows + 1)).reshape(columns + 1, rows + 1)
+    ids = np.arange((columns + 1) * (rows + 1)).reshape(columns + 1, rows + 1)
     u, v = (
         values.ravel() for values in np.meshgrid(*(np.linspace(0, 1, k + 1) for k in (columns, rows)), indexing="ij")
     )
     if twisted:
-        at[-1] = at[0, ::-1]
-    a, b, c, d = at[:-1, :-1].ravel(), at[1:, :-1].ravel(), at[1:, 1:].ravel(), at[:-1, 1:].ravel()
+        ids[-1] = ids[0, ::-1]
+    a, b, c, d = ids[:-1, :-1].ravel(), ids[1:, :-1].ravel(), ids[1:, 1:].ravel(), ids[:-1, 1:].ravel()
     faces = np.r_[np.c_[a, b, c], np.c_[a, c, d]]
     return Mesh(place(u, v)[: int(faces.max()) + 1], faces)
 

@@ -55,8 +55,8 @@ def at_original_vertices(mesh: Mesh, perturbed: Perturbed, saliency: np.ndarray)
     Taken from the nearest vertex by position, since decimation and remeshing change the ids. Vertices that no face uses
     are ignored.
     """
-    used = np.unique(perturbed.mesh.faces)
-    return saliency[used[KDTree(perturbed.original_positions[used]).query(mesh.vertices)[1]]]
+    vertex_ids = np.unique(perturbed.mesh.faces)
+    return saliency[vertex_ids[KDTree(perturbed.original_positions[vertex_ids]).query(mesh.vertices)[1]]]
 
 
 def drift(before: np.ndarray, after: np.ndarray, areas: np.ndarray) -> float:

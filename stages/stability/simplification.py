@@ -61,10 +61,10 @@ class Result:
 def run_case(specimen: Specimen, case: Case, backend: str, target: int | None = None) -> Result:
     """The result of a backend in a case; target: the face count where the case's budget is SMALLEST."""
     target = target or face_count(case.budget, len(specimen.mesh.faces))
-    kept, weights = specimen.kept(case), specimen.weights(case)
+    kept_ids, weights = specimen.kept(case), specimen.weights(case)
 
     def work():
-        return simplify(specimen.mesh, target, kept, RINGS, backend=backend, weights=weights)
+        return simplify(specimen.mesh, target, kept_ids, RINGS, backend=backend, weights=weights)
 
     with warnings.catch_warnings(), Stopwatch() as watch:
         warnings.simplefilter("error", RuntimeWarning)
@@ -74,21 +74,21 @@ def run_case(specimen: Specimen, case: Case, backend: str, target: int | None = 
             simplified, problem = None, error
     if simplified is None:
         return _no_mesh(problem, target, watch.seconds)
-    frozen = specimen.kept_faces(kept)
-    limit, apart = specimen.limit(target, len(frozen)), surface_error(specimen.mesh, simplified)
-    faults = find_faults(specimen.surface, simplified, target, kept, frozen)
-    if not apart <= limit:
-        faults.append(f"mean error {apart:.2g} of the diagonal, more than the {limit:.2g} allowed")
+    frozen = specimen.kept_faces(kept_ids)
+    limit, mean = specimen.limit(target, len(frozen)), surface_error(specimen.mesh, simplified)
+    faults = find_faults(specimen.surface, simplified, target, kept_ids, frozen)
+    if not mean <= limit:
+        faults.append(f"mean error {mean:.2g} of the diagonal, more than the {limit:.2g} allowed")
     if case.budget in REPEATED_BUDGETS and not _same(simplified, work()):
         faults.append("another mesh on the second run")
-    return Result("ruined" if faults else "valid", "; ".join(faults), target, watch.seconds, simplified, apart, limit)
+    return Result("ruined" if faults else "valid", "; ".join(faults), target, watch.seconds, simplified, mean, limit)
 
 
 def cases_for(damage: str) -> list[Case]:
     """The cases run on a damaged mesh."""
     cases = [Case(budget) for budget in BUDGETS]
     if damage in KEPT_ON:
-        cases += [Case(budget, kept) for kept in list(KEPT)[1:] for budget in KEPT_BUDGETS]
+        cases += [Case(budget, kept_set) for kept_set in list(KEPT)[1:] for budget in KEPT_BUDGETS]
     if damage in SOFT_ON:
         cases += [Case(budget, soft=soft) for soft in WEIGHTS for budget in SOFT_BUDGETS]
     return cases
@@ -203,9 +203,9 @@ def summarise_simplification(rows: Sequence[dict]) -> dict[str, dict]:
     for backend in dict.fromkeys(row["method"] for row in rows):
         cases = [row for row in rows if row["method"] == backend]
         outcomes = Counter(row["outcome"] for row in cases)
-        met = [row["outcome"] == "valid" for row in cases if row["budget"] == SMALLEST]
+        is_valid = [row["outcome"] == "valid" for row in cases if row["budget"] == SMALLEST]
         shares[backend] = {outcome: round(outcomes[outcome] / len(cases), 6) for outcome in OUTCOMES[:-1]}
-        shares[backend]["smallest_had"] = round(sum(met) / len(met), 6) if met else None
+        shares[backend]["smallest_had"] = round(sum(is_valid) / len(is_valid), 6) if is_valid else None
         shares[backend]["crashes"] = outcomes[OUTCOMES[-1]]
     return shares
 

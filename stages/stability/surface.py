@@ -47,8 +47,8 @@ class Surface:
     @cached_property
     def welded(self) -> trimesh.Trimesh:
         """The mesh in trimesh with vertices at equal positions merged, without faces that then name a vertex twice."""
-        places, at = np.unique(self.as_trimesh.vertices, axis=0, return_inverse=True)
-        faces = at.ravel()[self.mesh.faces]
+        places, place_ids = np.unique(self.as_trimesh.vertices, axis=0, return_inverse=True)
+        faces = place_ids.ravel()[self.mesh.faces]
         whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
         return trimesh.Trimesh(places, faces[whole], process=False, validate=False)
 
@@ -59,8 +59,8 @@ class Surface:
         This is the boundary in the sense of homology. A collapse inside the surface leaves it unchanged, whatever it
         does to non-manifold edges; a hole that opens, closes or moves changes it.
         """
-        places, at = np.unique(self.mesh.vertices, axis=0, return_inverse=True)
-        ends = np.sort(at.ravel()[self.mesh.faces][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        places, place_ids = np.unique(self.mesh.vertices, axis=0, return_inverse=True)
+        ends = np.sort(place_ids.ravel()[self.mesh.faces][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, count = np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0, return_counts=True)
         return {pair.tobytes() for pair in places[edges[count % 2 == 1]] + 0.0}  # + 0.0: minus zero is zero
 
@@ -105,8 +105,8 @@ class Surface:
             corner = [3 * face + (faces[face] == end[:, None]).argmax(axis=1) for face in pairs.T]
             tails, heads = [*tails, corner[0]], [*heads, corner[1]]
         links = np.ones(2 * len(pairs), dtype=bool)
-        joined = sparse.csr_matrix((links, (np.concatenate(tails), np.concatenate(heads))), shape=(3 * n, 3 * n))
-        return connected_components(joined, directed=False)[0] - len(np.unique(faces))
+        adjacency = sparse.csr_matrix((links, (np.concatenate(tails), np.concatenate(heads))), shape=(3 * n, 3 * n))
+        return connected_components(adjacency, directed=False)[0] - len(np.unique(faces))
 
     @cached_property
     def volume(self) -> float:
@@ -134,8 +134,8 @@ def _folds(scene):
     along = trimesh.util.unitize(ends[:, 1] - ends[:, 0])
     sides = []
     for tip in scene.face_adjacency_unshared.T:
-        to = scene.vertices[tip] - ends[:, 0]
-        sides.append(trimesh.util.unitize(to - np.einsum("ij,ij->i", to, along)[:, None] * along))
+        offset = scene.vertices[tip] - ends[:, 0]
+        sides.append(trimesh.util.unitize(offset - np.einsum("ij,ij->i", offset, along)[:, None] * along))
     return int((np.einsum("ij,ij->i", *sides) > FOLDED).sum())
 
 
@@ -163,12 +163,12 @@ def find_faults(
     before, new, faults = old.mesh, Surface(simplified), []
     if len(simplified.faces) > faces:
         faults.append(f"{len(simplified.faces)} faces, {faces} asked")
-    lost = _missing(before.vertices[kept_vertices], simplified.vertices[np.unique(simplified.faces)])
-    if lost:
-        faults.append(f"{lost} kept vertices lost")
-    lost = _missing(_triples(before.vertices[kept_faces]), _triples(simplified.vertices[simplified.faces]))
-    if lost:
-        faults.append(f"{lost} kept faces lost")
+    lost_count = _missing(before.vertices[kept_vertices], simplified.vertices[np.unique(simplified.faces)])
+    if lost_count:
+        faults.append(f"{lost_count} kept vertices lost")
+    lost_count = _missing(_triples(before.vertices[kept_faces]), _triples(simplified.vertices[simplified.faces]))
+    if lost_count:
+        faults.append(f"{lost_count} kept faces lost")
     if new.boundary_edges not in (old.boundary_edges, old.deduplicated.boundary_edges):
         faults.append(f"boundary changed in {len(new.boundary_edges ^ old.boundary_edges)} edges")
     if new.components not in (old.components, old.deduplicated.components):
@@ -200,14 +200,14 @@ def _mean_distance(source, target):
     has_area = source.area > FLAT**2
     points = trimesh.sample.sample_surface(source, SAMPLES, seed=0)[0] if has_area else source.triangles.reshape(-1, 3)
     faces = np.ascontiguousarray(target.faces, dtype=np.int64)
-    apart = pcu.closest_points_on_mesh(np.ascontiguousarray(points), np.ascontiguousarray(target.vertices), faces)[0]
-    return float(np.mean(apart))
+    gaps = pcu.closest_points_on_mesh(np.ascontiguousarray(points), np.ascontiguousarray(target.vertices), faces)[0]
+    return float(np.mean(gaps))
 
 
 def _missing(rows, among):
     """How many of the rows (k, d) are not bit for bit among the others."""
-    have = {row.tobytes() for row in np.ascontiguousarray(among)}
-    return sum(row.tobytes() not in have for row in np.ascontiguousarray(rows))
+    row_bytes = {row.tobytes() for row in np.ascontiguousarray(among)}
+    return sum(row.tobytes() not in row_bytes for row in np.ascontiguousarray(rows))
 
 
 def _triples(corners):

@@ -70,8 +70,8 @@ class Uses:
     def _touch(self, method, perturbation, points):
         images = press_many(self.surface, points[touchable(self.mesh, points)])
         noise = rng(self.subject.options.seed, f"{self.subject.options.name} {perturbation} {method} touch")
-        felt = images + SENSOR_NOISE * noise.standard_normal(images.shape)
-        self.touches[f"{method}.{perturbation}"] = features(felt.clip(0, 1))
+        noisy_images = images + SENSOR_NOISE * noise.standard_normal(images.shape)
+        self.touches[f"{method}.{perturbation}"] = features(noisy_images.clip(0, 1))
 
 
 def _errors(mesh: Mesh, points: np.ndarray, saliency: np.ndarray | None) -> dict[str, float]:

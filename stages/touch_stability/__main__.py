@@ -44,8 +44,8 @@ def summary(rows: Rows) -> dict[str, dict[str, Any]]:
         tree["accuracy"][model] = round(clean, 6)
         for perturbation, by_severity in by_perturbation.items():
             shares = lead_left([np.mean(numbers) for numbers in by_severity.values()], clean, chances[model])
-            at = breaking_point(list(by_severity), shares.tolist(), TOUCH_PERTURBATIONS[perturbation].unharmed)
-            tree["breaking_point"][f"{model}.{perturbation}"] = round(at, 6) if np.isfinite(at) else None
+            severity = breaking_point(list(by_severity), shares.tolist(), TOUCH_PERTURBATIONS[perturbation].unharmed)
+            tree["breaking_point"][f"{model}.{perturbation}"] = round(severity, 6) if np.isfinite(severity) else None
     return tree
 
 
@@ -76,8 +76,8 @@ def left_out(settings: Params, objects: list[str], folder: Path) -> tuple[str | 
     missing = [name for name in objects if not (folder / f"{name}.npz").exists()]
     if missing:
         return f"set {settings.set} left out: no imprints of {', '.join(missing)}", 0, 0.0
-    stored = [read_imprints(folder / f"{name}.npz") for name in objects]
-    imprints = [by_method[settings.method] for by_method in stored if settings.method in by_method]
+    imprint_files = [read_imprints(folder / f"{name}.npz") for name in objects]
+    imprints = [by_method[settings.method] for by_method in imprint_files if settings.method in by_method]
     if len(imprints) < len(objects):
         return f"set {settings.set} left out: no imprints by {settings.method}", 0, 0.0
     return None, min(len(entry.images) for entry in imprints), max(entry.width for entry in imprints)
@@ -106,9 +106,9 @@ def run(workspace: Workspace) -> None:
         metrics = summary(stage.rows)
         stage.metrics(metrics)
     broken = sum(value is not None for value in metrics["breaking_point"].values())
-    measured = note or f"{len(objects)} objects, {len(settings.severities)} perturbations"
+    extent = note or f"{len(objects)} objects, {len(settings.severities)} perturbations"
     breaking = f"{broken} of {len(metrics['breaking_point'])} break within range"
-    print(f"touch_stability: {workspace.dataset}, {measured}; {breaking}")
+    print(f"touch_stability: {workspace.dataset}, {extent}; {breaking}")
 
 
 if __name__ == "__main__":

@@ -32,15 +32,15 @@ from .denoisers import DENOISERS
 def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Params, width: float, seed: int) -> Rows:
     """The rows of one repetition; the item's name ends with its number. made: the folder of the objects' touches."""
     repetition = int(item.rpartition(" ")[2])
-    stored = [read_arrays(made / f"{name}.npz") for name in objects]
+    object_arrays = [read_arrays(made / f"{name}.npz") for name in objects]
 
     def gathered(key):
-        return np.concatenate([arrays[key] for arrays in stored])
+        return np.concatenate([arrays[key] for arrays in object_arrays])
 
     def perturbed_features(perturbation, severity, features, denoise):
         draw = repetition % DRAWS if TOUCH_PERTURBATIONS[perturbation].random_draws else 0
         key = f"{perturbation}.{severity:g}.{draw}"
-        if not all(key in arrays for arrays in stored):
+        if not all(key in arrays for arrays in object_arrays):
             return None
         if features in denoise:
             return features_of(denoise[features](gathered(f"images.{key}")))
@@ -89,8 +89,8 @@ def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -
 def process(name: str, folder: Path, data: Path, settings: Params, count: int, seed: int) -> Rows:
     """Writes all disturbed touches of one object; returns a row per severity that is not available."""
     touches, rows = touches_of(name, data, settings, count, seed), []
-    stored = {"clean": features(touches.images), "positions": touches.positions}
-    stored |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
+    arrays = {"clean": features(touches.images), "positions": touches.positions}
+    arrays |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
     for key, severity in perturbation_severities(settings.severities):
         perturbation = TOUCH_PERTURBATIONS[key]
         for draw in range(DRAWS if perturbation.random_draws else 1):
@@ -103,14 +103,14 @@ def process(name: str, folder: Path, data: Path, settings: Params, count: int, s
                 where = {"item": name, "perturbation": key, "severity": severity}
                 rows.append(where | {"metric": "accuracy", "value": None, "note": note})
                 break
-            stored[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
+            arrays[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
             if settings.denoisers:
-                stored[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
+                arrays[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
             if perturbed.positions is not None:
-                stored[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
+                arrays[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
             if draw == 0:
-                stored[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
-    write_arrays(folder / f"{name}.npz", **stored)
+                arrays[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
+    write_arrays(folder / f"{name}.npz", **arrays)
     return rows
 
 

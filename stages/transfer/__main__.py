@@ -75,7 +75,7 @@ def run(workspace: Workspace) -> None:
         for _, note in planned.notes:
             print(f"transfer: {note}", file=sys.stderr)
         stage.metrics(train_all(stage, planned, settings) if planned.trials else {})
-        stage.rows += [about | {"metric": "accuracy", "value": None, "note": note} for about, note in planned.notes]
+        stage.rows += [columns | {"metric": "accuracy", "value": None, "note": note} for columns, note in planned.notes]
     print(f"transfer: {workspace.dataset}, {len(planned.members['random'])} classes, {len(planned.trials)} trainings")
 
 

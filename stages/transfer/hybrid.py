@@ -105,13 +105,13 @@ def process(
             rows += onnx_rows(hybrid, senses, settings, folder / "hybrid" / f"{name}.onnx")
     if trial.repetition:
         (folder / "hybrid" / "networks" / f"{name}.npz").unlink()
-    about = {
+    columns = {
         "data": "hybrid",
         "weights": "imagenet",
         "pretrained": available_weights("mobilenet_v2", settings.source),
         "mode": trial.layers,
     }
-    return [about | {"split": trial.split, "repetition": trial.repetition} | row for row in rows]
+    return [columns | {"split": trial.split, "repetition": trial.repetition} | row for row in rows]
 
 
 def object_names(members: Mapping[str, Sequence[str]]) -> dict[int, str]:
@@ -140,9 +140,9 @@ def split_sense(items: Touches, trial: HybridTrial, settings: Params, random: np
     else:
         split = by_touches(items.objects, settings.train_share, settings.validation_share, random)
     # Not the split's own validation part, one object per class: of three objects one would be left for training.
-    validation, rest = stratified_split(items.objects[split.train], settings.validation_share, random)
+    validation, remaining = stratified_split(items.objects[split.train], settings.validation_share, random)
     images = as_images(items.images, settings.size)
-    ids = split.train[rest], split.train[validation], split.test
+    ids = split.train[remaining], split.train[validation], split.test
     return SenseData(items.images, images, items.labels, items.objects, *ids)
 
 
@@ -191,14 +191,14 @@ def confusion_rows(predictions: Path, classes: Sequence[str]) -> list[dict]:
 
     A touch without contact has no prediction and is not counted.
     """
-    stored, rows = read_arrays(predictions), []
+    arrays, rows = read_arrays(predictions), []
     for sense in SENSES:
-        scores, counts = stored[f"{sense}_scores"], np.zeros((len(classes), len(classes)), dtype=int)
+        scores, counts = arrays[f"{sense}_scores"], np.zeros((len(classes), len(classes)), dtype=int)
         answered = np.isfinite(scores).all(axis=1)
-        np.add.at(counts, (stored[f"{sense}_true"][answered], scores[answered].argmax(axis=1)), 1)
-        about = {"method": "hybrid", "sense": sense, "metric": "confusion"}
+        np.add.at(counts, (arrays[f"{sense}_true"][answered], scores[answered].argmax(axis=1)), 1)
+        columns = {"method": "hybrid", "sense": sense, "metric": "confusion"}
         rows += [
-            about | {"group": classes[i], "predicted": classes[j], "value": int(counts[i, j])}
+            columns | {"group": classes[i], "predicted": classes[j], "value": int(counts[i, j])}
             for i, j in np.argwhere(counts)
         ]
     return rows
@@ -224,7 +224,7 @@ def comparison_rows(
         yield row("hybrid", "max_difference", float(np.nanmax(np.abs(separate - tested[kind]))), kind)
         yield from calibration_rows(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
     files = [paths / f"{name}.{kind}.npz" for kind in range(2)]
-    apart = sum(path.stat().st_size for path in files)
+    separate_size = sum(path.stat().st_size for path in files)
     for kind, path in enumerate(files):
         yield row(SENSES[kind], "size_bytes", path.stat().st_size, kind)
         yield row(SENSES[kind], "parameters", count_parameters(networks[kind]), kind)
@@ -237,7 +237,7 @@ def comparison_rows(
         method = "hybrid" if number == "float32" else f"hybrid_{number}"
         loaded = load(paths / f"{name}.npz")[0].to(device_of(hybrid))
         yield row(method, "size_bytes", size)
-        yield row(method, "size_ratio", apart / size)
+        yield row(method, "size_ratio", separate_size / size)
         for kind, sense in enumerate(senses):
             scores = sense_scores(loaded, sense.images[sense.test], kind)
             yield row(method, "accuracy", fusion.accuracy(scores, sense.labels[sense.test]), kind)
@@ -266,9 +266,9 @@ def onnx_rows(hybrid: HybridNet, senses: Sequence[SenseData], settings: Params, 
     for kind, sense in enumerate(senses):
         scores = sense_scores(hybrid, sense.images[sense.test], kind)
         exported = onnx_scores(path, single_sense(sense.images[sense.test], kind))[kind]
-        absent = np.isnan(scores)
-        equal = np.array_equal(np.isnan(exported), absent)
-        worst = max(worst, float(np.abs(exported - scores)[~absent].max(initial=0)) if equal else np.inf)
+        is_absent = np.isnan(scores)
+        equal = np.array_equal(np.isnan(exported), is_absent)
+        worst = max(worst, float(np.abs(exported - scores)[~is_absent].max(initial=0)) if equal else np.inf)
         agree += list(exported.argmax(axis=1) == scores.argmax(axis=1))
     yield row("hybrid_onnx", "max_difference", worst)
     yield row("hybrid_onnx", "agreement", float(np.mean(agree)))

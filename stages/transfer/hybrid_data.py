@@ -95,16 +95,16 @@ def fused_rows(
     clean = [sense_scores(hybrid, stream, kind) for kind, stream in enumerate(undamaged)]
     better = better_sense(hybrid, senses)
     for name, severity in conditions(settings.hybrid_severities):
-        images, apart = list[torch.Tensor | None](undamaged), list(clean)
+        images, scores = list[torch.Tensor | None](undamaged), list(clean)
         if name != UNDAMAGED:
             kind = int(name.startswith(IMPRINT))
             damaged = damage(raw[kind], name, severity, rng(seed, f"{name} {severity}"))
-            images[kind], apart[kind] = None, np.full_like(clean[kind], np.nan)
+            images[kind], scores[kind] = None, np.full_like(clean[kind], np.nan)
             if damaged is not None:
                 images[kind] = changed = as_images(damaged, settings.size)
-                apart[kind] = sense_scores(hybrid, changed, kind)
+                scores[kind] = sense_scores(hybrid, changed, kind)
         summed = in_batches(hybrid, join_senses(*images), device_of(hybrid))
-        for method, probabilities in method_probabilities(apart, summed, hybrid.temperature.tolist(), better).items():
+        for method, probabilities in method_probabilities(scores, summed, hybrid.temperature.tolist(), better).items():
             entry = row(method, "accuracy", fusion.accuracy(probabilities, labels)) | {"sense": "both"}
             yield entry | {"perturbation": name, "severity": severity}
 

@@ -55,17 +55,17 @@ def new_object_rows(
         for learner, count in ((name, count) for name in LEARNERS for count in counts):
             with threadpool_limits(1):  # as torch is limited here: one core, and equal sums everywhere
                 shares, seconds = scores(learner, features, objects, draws, count, max(counts))
-            spent = watch.seconds / len(objects) * count + seconds / len(numbers)
-            about = {"method": f"{source}_{learner}", "sense": "touch", "perturbation": "new_object", "severity": count}
+            seconds_spent = watch.seconds / len(objects) * count + seconds / len(numbers)
+            keys = {"method": f"{source}_{learner}", "sense": "touch", "perturbation": "new_object", "severity": count}
             for number in numbers:
-                yield about | {
+                yield keys | {
                     "item": names[int(number)],
                     "metric": METRIC,
                     "value": shares[int(number)],
-                    "seconds": spent,
+                    "seconds": seconds_spent,
                 }
-    about = {"method": "chance", "sense": "touch", "perturbation": "new_object"}
-    yield about | {"metric": METRIC, "value": 1 / len(numbers)}
+    keys = {"method": "chance", "sense": "touch", "perturbation": "new_object"}
+    yield keys | {"metric": METRIC, "value": 1 / len(numbers)}
 
 
 def scores(

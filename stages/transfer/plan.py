@@ -293,11 +293,11 @@ def seen(settings: Params) -> dict:
 def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params) -> dict:
     """A row with the columns of its trial instead of the trial's name. pretrained: as in Plan."""
     trial = Trial.parse(row["trial"])
-    about: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
-    about["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
-    about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition, "passes": trial.passes}
-    about |= seen(settings)
-    return about | {key: value for key, value in row.items() if key != "trial"}
+    columns: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
+    columns["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
+    columns |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition, "passes": trial.passes}
+    columns |= seen(settings)
+    return columns | {key: value for key, value in row.items() if key != "trial"}
 
 
 def summary(rows: list[dict], seed: int) -> dict[str, dict]:

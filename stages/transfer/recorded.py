@@ -314,10 +314,10 @@ def read_vitac(path: str | Path, size: int = SIZE) -> Recorded:
 
 def _cloth(number, homes):
     files = [(file, file.relative_to(home)) for home in homes for file in pictures(home, VITAC_LAYOUT, anywhere=True)]
-    pressed = [pair for pair in files if "press" in str(pair[1]).lower()]
+    press_files = [pair for pair in files if "press" in str(pair[1]).lower()]
     return [
         (file, f"{number}/{inside.with_name(file.stem.rpartition('_')[0] or file.stem).as_posix()}")
-        for file, inside in pressed or files
+        for file, inside in press_files or files
     ]
 
 

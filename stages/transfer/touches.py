@@ -65,8 +65,8 @@ def count_touchable_vertices(mesh: Mesh) -> int:
 
 def press_touches(mesh: Mesh, vertices: np.ndarray, cells: int, pitch: float) -> np.ndarray:
     """(k, cells, cells) u1: the imprints at k vertices in 256 grey values."""
-    pressed = np.asarray(press_many(mesh, vertices, cells=(cells, cells), pitch=pitch))
-    return np.round(np.clip(pressed, 0, 1) * 255).astype(np.uint8)
+    imprints = np.asarray(press_many(mesh, vertices, cells=(cells, cells), pitch=pitch))
+    return np.round(np.clip(imprints, 0, 1) * 255).astype(np.uint8)
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, seed: int) -> list[dict]:
@@ -92,10 +92,10 @@ def read_touches(folder: Path, members: Mapping[str, Sequence[str]], data: str) 
     images, labels, ranks, vertices = [], [], [], []
     for label, objects in enumerate(members.values()):
         for rank, name in enumerate(objects):
-            stored = read_arrays(folder / "imprints" / f"{name}.npz")
-            images.append(stored[data])
-            vertices.append(stored["vertices"])
-            labels += [label] * len(stored["vertices"])
-            ranks += [rank] * len(stored["vertices"])
+            arrays = read_arrays(folder / "imprints" / f"{name}.npz")
+            images.append(arrays[data])
+            vertices.append(arrays["vertices"])
+            labels += [label] * len(arrays["vertices"])
+            ranks += [rank] * len(arrays["vertices"])
     parts = np.concatenate(images), np.array(labels), np.array(ranks), np.concatenate(vertices)
     return Touches(*parts, list(members))

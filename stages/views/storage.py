@@ -43,19 +43,19 @@ def write_view(path: str | Path, view: View) -> None:
 
 def read_view(path: str | Path) -> View:
     """Reads a view written by write_view."""
-    stored = read_arrays(path)
-    h, w = stored["rgb"].shape[:2]
-    size = tuple(int(side) for side in stored["size"])
-    inside = np.unpackbits(stored["mask"], count=h * w).reshape(h, w).astype(bool)
-    rgb = np.broadcast_to(stored["background"], (*size, 3)).copy()
+    arrays = read_arrays(path)
+    h, w = arrays["rgb"].shape[:2]
+    size = tuple(int(side) for side in arrays["size"])
+    inside = np.unpackbits(arrays["mask"], count=h * w).reshape(h, w).astype(bool)
+    rgb = np.broadcast_to(arrays["background"], (*size, 3)).copy()
     depth = np.full(size, np.inf, dtype=np.float32)
     face = np.full(size, -1, dtype=np.int32)
-    top, left = stored["origin"]
+    top, left = arrays["origin"]
     box = slice(top, top + h), slice(left, left + w)
-    rgb[box] = _summed(stored["rgb"])
-    unfold_depth(stored["depth"], inside, DISTANCE, DEPTH_STEP, depth[box])
-    face[box][inside] = np.repeat(np.cumsum(_from_bytes(stored["run_face"])), _from_bytes(stored["run_length"]))
-    return View(rgb, depth, face, Viewpoint(*(float(angle) for angle in stored["viewpoint"])))
+    rgb[box] = _summed(arrays["rgb"])
+    unfold_depth(arrays["depth"], inside, DISTANCE, DEPTH_STEP, depth[box])
+    face[box][inside] = np.repeat(np.cumsum(_from_bytes(arrays["run_face"])), _from_bytes(arrays["run_length"]))
+    return View(rgb, depth, face, Viewpoint(*(float(angle) for angle in arrays["viewpoint"])))
 
 
 def _box(mask):

@@ -95,10 +95,10 @@ def _check_matches(unmatched, distance):
     if len(off) == 0 and unmatched.mean() <= 1 - MIN_MATCHED:
         return
     worst = np.argsort(-distance, kind="stable")[:3]
-    named = ", ".join(f"line {row + 1}: {distance[row]:.2%}" for row in worst)
+    lines = ", ".join(f"line {row + 1}: {distance[row]:.2%}" for row in worst)
     raise ValueError(
         f"{unmatched.sum()} of {len(unmatched)} gaze rows match no vertex and {len(off)} are off the mesh; distances as"
-        f" shares of its diagonal: median {np.median(distance[unmatched]):.2%}, largest {named}. Is it the file of this"
+        f" shares of its diagonal: median {np.median(distance[unmatched]):.2%}, largest {lines}. Is it the file of this"
         " mesh, in the units of the mesh file?"
     )
 
@@ -119,13 +119,13 @@ def annotations_on_vertices(mesh: Mesh, path: str | Path, content: bytes | None 
     outside = np.flatnonzero((vertex < 0) | (vertex >= n))
     if len(outside):
         raise ValueError(f"{path}, row {outside[0] + 1}: vertex {vertex[outside[0]]} is not in 0..{n - 1}")
-    away = np.linalg.norm(marks[["x", "y", "z"]].to_numpy() - mesh.vertices[vertex], axis=1)
-    distance = away / max(mesh.diagonal, np.finfo(float).tiny)
+    lengths = np.linalg.norm(marks[["x", "y", "z"]].to_numpy() - mesh.vertices[vertex], axis=1)
+    distance = lengths / max(mesh.diagonal, np.finfo(float).tiny)
     far = np.flatnonzero(distance > TOLERANCE)
     if len(far):
-        named = ", ".join(f"row {row + 1}: {distance[row]:.2%}" for row in far[:5])
+        lines = ", ".join(f"row {row + 1}: {distance[row]:.2%}" for row in far[:5])
         raise ValueError(
-            f"{path}: {len(far)} of {len(marks)} marks are off the mesh, as shares of its diagonal {named}; they belong"
+            f"{path}: {len(far)} of {len(marks)} marks are off the mesh, as shares of its diagonal {lines}; they belong"
             " to another mesh or to an earlier version, and are not used: mark this mesh in the studio"
         )
     distinct = marks.drop_duplicates(["annotator", "vertex"])

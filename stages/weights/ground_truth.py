@@ -87,7 +87,7 @@ def ground_truth_files(
 
 def digest(files: Files) -> str:
     """The hash of the content of files."""
-    return hashlib.sha256(b"".join(hashlib.sha256(read()).digest() for _, read in files)).hexdigest()
+    return hashlib.sha256(b"".join(hashlib.sha256(reader()).digest() for _, reader in files)).hexdigest()
 
 
 def published_files(source: str, folder: str | Path) -> dict[str, Files]:
@@ -119,11 +119,11 @@ def _gaze(files, _):
     unmatched = np.flatnonzero(vertex < 0)
     amounts = gaze_on_vertices(mesh, positions, seconds)
     if len(unmatched):
-        off, lines = distance[unmatched] / mesh.diagonal, ", ".join(str(row + 1) for row in unmatched[:3])
+        shares, lines = distance[unmatched] / mesh.diagonal, ", ".join(str(row + 1) for row in unmatched[:3])
         print(
             f"{path}: {len(unmatched)} of {len(positions)} rows match no vertex and are left out, with"
-            f" {seconds[unmatched].sum():.0f} of {seconds.sum():.0f} s of gaze; they are {off.min():.2%} to"
-            f" {off.max():.2%} of the diagonal off; lines {lines}{', ...' if len(unmatched) > 3 else ''}",
+            f" {seconds[unmatched].sum():.0f} of {seconds.sum():.0f} s of gaze; they are {shares.min():.2%} to"
+            f" {shares.max():.2%} of the diagonal off; lines {lines}{', ...' if len(unmatched) > 3 else ''}",
             file=sys.stderr,
         )
     return amounts
@@ -256,13 +256,13 @@ def spread_on_surface(mesh: Mesh, amounts: np.ndarray, sigma: float) -> np.ndarr
         return density
     size = mesh.diagonal or 1.0  # lengths relative to the diagonal, so that the result does not depend on the unit
     positions, position, faces = _surface(mesh, size)
-    used = np.unique(faces)
+    ids = np.unique(faces)
     heat = np.bincount(position, amounts, minlength=len(positions))
-    bare = np.setdiff1d(np.flatnonzero(heat), used)
+    bare = np.setdiff1d(np.flatnonzero(heat), ids)
     if len(bare):
         raise ValueError(f"amounts at {len(bare)} positions in no face, the first at {positions[bare[0]] * size}")
     density = np.zeros(len(positions))
-    density[used] = _flow(positions[used], np.searchsorted(used, faces), heat[used], (sigma / size) ** 2 / 2)
+    density[ids] = _flow(positions[ids], np.searchsorted(ids, faces), heat[ids], (sigma / size) ** 2 / 2)
     return density[position] / size**2
 
 

@@ -49,9 +49,9 @@ def collect_training_data(
     """
     density = spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal)
     points, shares = ground_truth_points(mesh, amounts, density)
-    maps, mask, viewpoints, stored = read_maps(path)
-    channels = [channel for channel in CHANNELS if channel in stored]
-    maps = maps[:, [stored.index(channel) for channel in channels]]
+    maps, mask, viewpoints, map_channels = read_maps(path)
+    channels = [channel for channel in CHANNELS if channel in map_channels]
+    maps = maps[:, [map_channels.index(channel) for channel in channels]]
     samples = samples_of_mesh(mesh)
     glance = standardised(samples)
     views = [
@@ -148,9 +148,9 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
     features, labels, views = (record[f"{PIXELS[trained_on]}{key}"] for key in ("pixels", "labels", "views"))
     most = MAX_ROWS if trained_on == "object" else len(labels)
     per_view = [_fit(features[views == k], labels[views == k], seed, most) for k in range(len(record["distances"]))]
-    others = [arrays for other, arrays in training_data.items() if other != name]
-    without = [_fit(*_joined_rows(others), seed)] if others else []
-    models = {"object": [_fit(features, labels, seed, most)], "view": per_view, "without": without}
+    other_arrays = [arrays for other, arrays in training_data.items() if other != name]
+    other_svms = [_fit(*_joined_rows(other_arrays), seed)] if other_arrays else []
+    models = {"object": [_fit(features, labels, seed, most)], "view": per_view, "without": other_svms}
     write_models(folder / "svm" / f"{name}.npz", models)
     rows = []
     for area, prefix in AREAS.items():
@@ -213,12 +213,12 @@ def cross_validated(
     """
     features, labels = checked_rows(features, labels, max_rows)
     generator = rng(seed, "svm folds")
-    chosen = balanced_rows(labels, generator, max_rows)
+    row_ids = balanced_rows(labels, generator, max_rows)
     fold = np.zeros(len(labels), dtype=np.int64)
     for value in (True, False):
-        ids = generator.permutation(chosen[labels[chosen] == value])
+        ids = generator.permutation(row_ids[labels[row_ids] == value])
         fold[ids] = np.arange(len(ids)) % FOLDS
-    return _validated(features[chosen], labels[chosen], fold[chosen])
+    return _validated(features[row_ids], labels[row_ids], fold[row_ids])
 
 
 def grouped_validated(
@@ -240,10 +240,10 @@ def grouped_validated(
     if len(members) < 2:
         raise ValueError(f"only {len(members)} groups hold both salient and other rows: at least 2 are needed")
     share = max(max_rows // len(members), 2)
-    chosen = [ids[balanced_rows(labels[ids], generator, share)] for ids in members]
+    group_rows = [ids[balanced_rows(labels[ids], generator, share)] for ids in members]
     part = generator.permutation(len(members)) % FOLDS
-    rows = np.concatenate(chosen)
-    return _validated(features[rows], labels[rows], np.repeat(part, [len(ids) for ids in chosen]))
+    rows = np.concatenate(group_rows)
+    return _validated(features[rows], labels[rows], np.repeat(part, [len(ids) for ids in group_rows]))
 
 
 def _validated(features, labels, fold):

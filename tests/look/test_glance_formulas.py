@@ -180,6 +180,21 @@ def test_a_mirror_plane_counts_by_the_correlation_of_both_halves(few):
     assert on == pytest.approx(score * (np.exp(-((away / 0.05) ** 2)) @ share), abs=1e-9)
 
 
+def test_rounding_moves_no_place_into_another_bin_and_a_symmetric_surface_stays_its_own_mirror_image():
+    random = np.random.default_rng(0)
+    quarter = np.radians(np.r_[3:90:3, 45, 45])  # on the walls between the bins
+    turn = np.concatenate([quarter, np.pi - quarter, -quarter, quarter - np.pi])
+    radius, height, areas = (np.tile(random.random(len(quarter)), 4) for _ in range(3))
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
+    values = []
+    for jitter in (0, 1e-14, -1e-14):
+        moved = points * [1, 1 + jitter, 1] + jitter * random.normal(size=points.shape)
+        values.append(symmetry(Samples(moved, unit(points), areas, np.eye(3))))
+    assert values[0][1].max() > 0.1  # the planes of the axes are found
+    assert np.ptp(values, axis=0) == pytest.approx(0, abs=1e-9)
+    assert np.ptp(np.reshape(values[0], (2, 4, -1)), axis=1) == pytest.approx(0, abs=1e-9)
+
+
 def test_each_feature_is_its_formula():
     samples = samples_of_mesh(as_mesh(bean()), 3000)
     columns, (seen, side, above, below) = features(samples), visibility(samples)

@@ -99,8 +99,8 @@ def by_profiles(frames: Frames, chains: Sequence[Sequence[Level]], profiles: Seq
     columns = []
     for item, (chain, record) in enumerate(zip(chains, profiles, strict=True)):
         pose = frames.poses[item]
-        away = np.array([camera.eye for camera in frames.scene.cameras]) - pose.corners().mean(axis=0)
-        views = np.argmax(unit(away) @ pose.turn @ record.directions.T, axis=1)
+        directions = np.array([camera.eye for camera in frames.scene.cameras]) - pose.corners().mean(axis=0)
+        views = np.argmax(unit(directions) @ pose.turn @ record.directions.T, axis=1)
         cubes = [_cube(camera, pose, record.points) for camera in frames.scene.cameras]
         columns.append(cheapest_at(chain, record.sums[views] * np.array(cubes)[:, None], price))
     return Plan(np.stack(columns, axis=1), chains, frames)
@@ -146,8 +146,8 @@ def _cube(camera: Camera, pose: Pose, points: np.ndarray) -> float:
 def _hits(level: Level, origins: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(numbers (k,) of the rays that hit a level, points (k, 3) that they hit)."""
     hits = level.rays.cast(origins, rays)
-    on = np.flatnonzero(hits.hit)
-    return on, origins[on] + rays[on] * hits.distance[on, None]
+    ray_ids = np.flatnonzero(hits.hit)
+    return ray_ids, origins[ray_ids] + rays[ray_ids] * hits.distance[ray_ids, None]
 
 
 def _spread(count: int) -> np.ndarray:

@@ -110,10 +110,10 @@ class _Search:
         least = np.zeros(self.frames.shape, dtype=np.int64)
         while True:
             levels = np.stack([self._one(item, least[:, item]) for item in range(len(self.chains))], axis=1)
-            over = np.flatnonzero(self._total(levels) > self.scene.limit) if self.scene.limit else ()
-            if not len(over):
+            crowded_frames = np.flatnonzero(self._total(levels) > self.scene.limit) if self.scene.limit else ()
+            if not len(crowded_frames):
                 return levels
-            for frame in over:  # none twice: no level is finer than its `least`
+            for frame in crowded_frames:  # none twice: no level is finer than its `least`
                 counts = [
                     faces * visible for faces, visible in zip(self.faces, self.frames.in_view[frame], strict=True)
                 ]
@@ -200,8 +200,8 @@ def cheapest(faces: np.ndarray, errors: np.ndarray, jumps: np.ndarray, tolerance
     frames, count = errors.shape
     cost = faces + _penalty(errors, tolerance)
     jump = _penalty(jumps, tolerance)
-    same = np.arange(count)
-    jump[:, same, same] = np.inf  # staying is not a switch
+    diagonal = np.arange(count)
+    jump[:, diagonal, diagonal] = np.inf  # staying is not a switch
     best = np.full((hold, count), np.inf)
     best[-1] = cost[0]
     previous = np.zeros((frames, count), dtype=np.int64)  # the level before a switch

@@ -32,8 +32,8 @@ def shaded(frames: "Frames", frame: int, levels: Sequence[Level], only: int | No
             continue
         rendering = frames.rendering(frame, item, level)
         nearer = rendering.depth < depth[rendering.pixels]
-        at = rendering.pixels[nearer]
-        depth[at], image[at] = rendering.depth[nearer], frames.colors(frame, item, level)[nearer]
+        pixels = rendering.pixels[nearer]
+        depth[pixels], image[pixels] = rendering.depth[nearer], frames.colors(frame, item, level)[nearer]
     return image.reshape(h, w, 3)
 
 
@@ -81,9 +81,9 @@ def _lost(frames, frame, item, before, after, pixels):
     if not len(pixels):
         return 0.0
     box = _padded(frames, frame, item)
-    lost = np.zeros(before.shape)
-    lost[box] = 1 - ssim_map(before[box], after[box])
-    return float(lost.ravel()[pixels].mean())
+    dissimilarity = np.zeros(before.shape)
+    dissimilarity[box] = 1 - ssim_map(before[box], after[box])
+    return float(dissimilarity.ravel()[pixels].mean())
 
 
 def _padded(frames, frame, item):
@@ -141,10 +141,10 @@ def render_level(level: Level, camera: Camera, pose: Pose) -> Rendering:
     along = world @ pose.turn
     eye = pose.to_mesh(np.array([camera.eye]))
     hits = level.rays.cast(np.broadcast_to(eye, along.shape), along)
-    on = np.flatnonzero(hits.hit & (hits.distance > 0))
-    depth = hits.distance[on] * pose.scale * (world[on] @ camera.axes[2])
-    pixels = rows[on] * camera.size[1] + columns[on]
-    return Rendering(pixels.astype(np.int32), depth, hits.face[on].astype(np.int32))
+    ray_ids = np.flatnonzero(hits.hit & (hits.distance > 0))
+    depth = hits.distance[ray_ids] * pose.scale * (world[ray_ids] @ camera.axes[2])
+    pixels = rows[ray_ids] * camera.size[1] + columns[ray_ids]
+    return Rendering(pixels.astype(np.int32), depth, hits.face[ray_ids].astype(np.int32))
 
 
 def rays_of(rendering: Rendering, camera: Camera, pose: Pose) -> tuple[np.ndarray, np.ndarray]:

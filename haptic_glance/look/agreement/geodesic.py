@@ -46,16 +46,16 @@ def _across(places, edges, opposite):
     low, high = edges.min(axis=1), edges.max(axis=1)
     order = np.lexsort((high, low))
     first, second = order[:-1], order[1:]
-    same = (low[first] == low[second]) & (high[first] == high[second])
-    first, second = first[same], second[same]
+    is_shared = (low[first] == low[second]) & (high[first] == high[second])
+    first, second = first[is_shared], second[is_shared]
     start, along = places[low[first]], places[high[first]] - places[low[first]]
     x_c, y_c = _unfold(places[opposite[first]] - start, along)
     x_d, y_d = _unfold(places[opposite[second]] - start, along)
-    apart = y_c + y_d
-    crossing = (x_c * y_d + x_d * y_c) / np.where(apart > 0, apart, 1.0)
-    inside = (apart > 0) & (crossing > 0) & (crossing < np.linalg.norm(along, axis=1))
+    total_height = y_c + y_d
+    crossing = (x_c * y_d + x_d * y_c) / np.where(total_height > 0, total_height, 1.0)
+    inside = (total_height > 0) & (crossing > 0) & (crossing < np.linalg.norm(along, axis=1))
     pairs = np.stack([opposite[first], opposite[second]], axis=1)
-    return pairs[inside], np.hypot(x_c - x_d, apart)[inside]
+    return pairs[inside], np.hypot(x_c - x_d, total_height)[inside]
 
 
 def _unfold(offsets, along):

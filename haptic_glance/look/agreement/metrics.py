@@ -113,8 +113,8 @@ def kl(saliency: np.ndarray, truth: GroundTruth) -> float:
     """
     predicted = as_density(checked_saliency(saliency, truth), truth.shares, "saliency")
     observed = as_density(truth.density, truth.shares, "density")
-    lost = truth.shares @ (observed * np.log(EPSILON + observed / (predicted + EPSILON)))
-    return float(max(lost, 0.0))  # rounding leaves -1e-16 for equal distributions
+    divergence = truth.shares @ (observed * np.log(EPSILON + observed / (predicted + EPSILON)))
+    return float(max(divergence, 0.0))  # rounding leaves -1e-16 for equal distributions
 
 
 def nss(saliency: np.ndarray, truth: GroundTruth) -> float:

@@ -114,9 +114,9 @@ def _box(mask):
     """Slices of the object's bounding box with a margin, starting on the grid."""
     slices = []
     for axis in (1, 0):
-        on = np.flatnonzero(mask.any(axis=axis))
-        start = max(on[0] - MARGIN, 0) // GRID * GRID
-        slices.append(slice(start, min(on[-1] + 1 + MARGIN, len(mask) if axis else mask.shape[1])))
+        indices = np.flatnonzero(mask.any(axis=axis))
+        start = max(indices[0] - MARGIN, 0) // GRID * GRID
+        slices.append(slice(start, min(indices[-1] + 1 + MARGIN, len(mask) if axis else mask.shape[1])))
     return tuple(slices)
 
 

@@ -46,14 +46,14 @@ def visible_surface(view: View, mesh: Mesh) -> VisibleSurface:
         )
     box, step = cropped_view(view).box, 2**SCALE
     face = view.face[box][::step, ::step]
-    known = face >= 0
-    rows, columns = np.nonzero(known)
+    mask = face >= 0
+    rows, columns = np.nonzero(mask)
     rows, columns = rows * step + box[0].start, columns * step + box[1].start
     right, up = screen_position(rows, columns, view.face.shape)
     heights, axes = DISTANCE - view.depth[rows, columns].astype(np.float64), view.viewpoint.axes
     geometry = mesh.vertices, mesh.faces, mesh.face_crosses
-    points, weights = locate_pixels(right, up, heights, axes, face[known], *geometry)
-    return VisibleSurface(known, face[known], weights, points, axes[2])
+    points, weights = locate_pixels(right, up, heights, axes, face[mask], *geometry)
+    return VisibleSurface(mask, face[mask], weights, points, axes[2])
 
 
 def surface_conspicuity(
@@ -64,10 +64,10 @@ def surface_conspicuity(
     on_centre: see haptic_glance.look.channels.operators.centre_surround. The values extend into the background; with
     filled=False it is zero.
     """
-    image, known = cropped_view(view), visible_surface(view, mesh).known
-    image_values = np.zeros(known.shape, dtype=np.float32)
-    image_values[known] = values
-    image_values = fill(image_values, known) if filled else image_values
+    image, mask = cropped_view(view), visible_surface(view, mesh).known
+    image_values = np.zeros(mask.shape, dtype=np.float32)
+    image_values[mask] = values
+    image_values = fill(image_values, mask) if filled else image_values
     summed = centre_surround(pyramid(image_values, SCALE), image.cover, FLOOR, on_centre)
     return image.place_in_view(normalise(summed, image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
 
@@ -90,8 +90,8 @@ def smoother(mesh: Mesh, confidence: np.ndarray, length: float = SMOOTHING) -> C
     which keeps the result between zero and the largest value.
     """
     area = np.maximum(mesh.vertex_areas, MIN_AREA)
-    hidden = np.where(confidence > MIN_CONFIDENCE, 0, max(length / FILL_DISTANCE, MIN_FILL) ** 2)
-    system = sparse.diags((confidence + hidden) * area) + length**2 * laplacian(mesh)
+    fill_weight = np.where(confidence > MIN_CONFIDENCE, 0, max(length / FILL_DISTANCE, MIN_FILL) ** 2)
+    system = sparse.diags((confidence + fill_weight) * area) + length**2 * laplacian(mesh)
     solver = splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
     return lambda values: solver.solve(((confidence * area) * np.asarray(values).T).T)
 
@@ -105,8 +105,8 @@ def laplacian(mesh: Mesh) -> sparse.csr_matrix:
     half_cotangents = np.clip(np.einsum("mki,mki->mk", a, b) / double_area, 0, MAX_COTANGENT).ravel() / 2
     tails, heads = np.roll(mesh.faces, -1, axis=1).ravel(), np.roll(mesh.faces, -2, axis=1).ravel()
     one_way = sparse.coo_matrix((half_cotangents, (tails, heads)), shape=(n, n))
-    joined = one_way + one_way.T
-    return sparse.diags(np.asarray(joined.sum(axis=1)).ravel()) - joined
+    weights = one_way + one_way.T
+    return sparse.diags(np.asarray(weights.sum(axis=1)).ravel()) - weights
 
 
 def nearest_corners(mesh: Mesh, faces: np.ndarray, positions: np.ndarray) -> np.ndarray:

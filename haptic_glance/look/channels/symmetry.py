@@ -102,11 +102,11 @@ def sample_surface(mesh: Mesh, count: int) -> np.ndarray:
 
     Stratified over the cumulative area of the faces; within the faces the points follow the R2 sequence (Roberts 2018).
     """
-    passed = np.cumsum(mesh.face_areas)
-    faces = np.searchsorted(passed, (np.arange(count) + 0.5) / count * passed[-1])
+    cumulative_areas = np.cumsum(mesh.face_areas)
+    faces = np.searchsorted(cumulative_areas, (np.arange(count) + 0.5) / count * cumulative_areas[-1])
     u, v = (0.5 + np.outer([0.7548776662466927, 0.5698402909980532], np.arange(count))) % 1
-    over = u + v > 1
-    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+    is_outside = u + v > 1
+    u, v = np.where(is_outside, 1 - u, u), np.where(is_outside, 1 - v, v)
     a, b, c = mesh.vertices[mesh.faces[faces]].transpose(1, 0, 2)
     return a + u[:, None] * (b - a) + v[:, None] * (c - a)
 
@@ -118,18 +118,18 @@ def mirror(points: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
 
 def rotate(points: np.ndarray, axis: np.ndarray, angle: float, centre: np.ndarray) -> np.ndarray:
     """Points (k, 3) rotated by an angle in degrees about an axis through the centre (Rodrigues)."""
-    away = points - centre
+    offsets = points - centre
     cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    along = (away @ axis)[:, None] * axis
-    return centre + along + cosine * (away - along) + sine * np.cross(axis, away)
+    along = (offsets @ axis)[:, None] * axis
+    return centre + along + cosine * (offsets - along) + sine * np.cross(axis, offsets)
 
 
 def _mirror_planes(surface, principal):
     directions = np.concatenate([principal, _half_sphere(DIRECTIONS)])
-    few = surface.sparse[:: max(len(surface.sparse) // SEARCH, 1)]
-    errors = surface.error(np.stack([mirror(few, n, n @ surface.centre) for n in directions]))
+    points = surface.sparse[:: max(len(surface.sparse) // SEARCH, 1)]
+    errors = surface.error(np.stack([mirror(points, n, n @ surface.centre) for n in directions]))
     starts = _distinct(directions[np.argsort(errors, kind="stable")])[:STARTS]
-    refined = [_refine(surface, few, normal) for normal in [*principal, *starts]]
+    refined = [_refine(surface, points, normal) for normal in [*principal, *starts]]
     scores = [surface.score(mirror(surface.sparse, n, d)) for n, d in refined]
     ranked = [(*refined[k], scores[k]) for k in np.argsort(scores, kind="stable")[::-1]]
     distinct = _distinct([n for n, _, _ in ranked], positions=True)
@@ -175,11 +175,11 @@ def _rotation_score(surface, axis, angle):
 
 def _distinct(directions, positions=False):
     """The directions (or their positions) that are not near an earlier one, up to sign."""
-    kept = []
+    distinct_ids = []
     for k, direction in enumerate(directions):
-        if all(abs(direction @ directions[earlier]) < SEPARATION for earlier in kept):
-            kept.append(k)
-    return kept if positions else [directions[k] for k in kept]
+        if all(abs(direction @ directions[earlier]) < SEPARATION for earlier in distinct_ids):
+            distinct_ids.append(k)
+    return distinct_ids if positions else [directions[k] for k in distinct_ids]
 
 
 def _half_sphere(count):
@@ -235,10 +235,10 @@ def symmetric_points(
     response = np.zeros(len(points))
     for normal, offset, weight in weighted_planes(symmetries, back) if "lateral" in kinds else ():
         np.maximum(response, weight * np.exp(-((points @ normal - offset) ** 2) / spread), out=response)
-    away = points - symmetries.centre
-    square = np.einsum("ij,ij->i", away, away)
+    offsets = points - symmetries.centre
+    square = np.einsum("ij,ij->i", offsets, offsets)
     for axis, weight in weighted_axes(symmetries, back) if "radial" in kinds else ():
-        distance = square - (away @ axis) ** 2
+        distance = square - (offsets @ axis) ** 2
         np.maximum(response, weight * np.exp(-distance / (4 * spread)), out=response)
     return response
 

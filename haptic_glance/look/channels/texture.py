@@ -75,10 +75,10 @@ def local_entropy(image: np.ndarray, counted: np.ndarray, rows: np.ndarray, colu
     windows.sort(axis=1)
     ends = np.ones(windows.shape, dtype=bool)
     np.not_equal(windows[:, 1:], windows[:, :-1], out=ends[:, :-1])
-    at = np.flatnonzero(ends)
-    runs = np.diff(at, prepend=-1)
-    runs[windows.ravel()[at] < 0] = 0
-    firsts = np.searchsorted(at, np.arange(len(windows)) * SIDE * SIDE)
+    run_ends = np.flatnonzero(ends)
+    runs = np.diff(run_ends, prepend=-1)
+    runs[windows.ravel()[run_ends] < 0] = 0
+    firsts = np.searchsorted(run_ends, np.arange(len(windows)) * SIDE * SIDE)
     counts = np.maximum(np.add.reduceat(runs, firsts), 1) if len(firsts) else np.ones(0)
     summed = np.add.reduceat(PLOGP[runs], firsts) if len(firsts) else np.zeros(0)
     return (np.log2(counts) - summed / counts).astype(np.float32).clip(0)

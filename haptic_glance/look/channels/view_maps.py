@@ -135,8 +135,8 @@ class ViewMaps:
         weight = self.facing[view, ids, None] * np.divide(
             weight, total, out=np.zeros_like(weight), where=total > MIN_WEIGHT
         )
-        kept = weight > 0
-        return np.broadcast_to(ids[:, None], kept.shape)[kept], pixel[kept], weight[kept]
+        is_positive = weight > 0
+        return np.broadcast_to(ids[:, None], is_positive.shape)[is_positive], pixel[is_positive], weight[is_positive]
 
 
 def _check_maps(maps, views):

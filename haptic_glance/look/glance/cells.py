@@ -130,14 +130,14 @@ def visibility(samples: "Samples") -> tuple[np.ndarray, np.ndarray, np.ndarray, 
     pictures = np.stack([right, np.cross(eyes, right), eyes], axis=1) @ samples.axes
     group = np.digitize(eyes[:, 2], [-SIDE, SIDE])
     places = (samples.points - samples.middle) / samples.spacing
-    away = np.sqrt((places**2).sum(axis=1).max(initial=0))
-    places /= max(away / (FARTHEST * PIXEL), 1)  # a stray part far away would make pictures of any size
-    count, width = len(places), 2 * int(min(away / PIXEL, FARTHEST)) + 5
+    radius = np.sqrt((places**2).sum(axis=1).max(initial=0))
+    places /= max(radius / (FARTHEST * PIXEL), 1)  # a stray part far away would make pictures of any size
+    count, width = len(places), 2 * int(min(radius / PIXEL, FARTHEST)) + 5
     sums, scratch = np.zeros((4, count)), (np.empty((count, 2), dtype=np.int64), np.empty(count))
     _seen(places, samples.normals, pictures, group, sums, np.empty((width, width)), *scratch)
     sums[:3] /= np.bincount(group)[:, None]
-    below, side, above, seen = sums
-    return seen / len(eyes), side, above, below
+    below, side, above, visible = sums
+    return visible / len(eyes), side, above, below
 
 
 def _directions():

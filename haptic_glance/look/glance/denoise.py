@@ -34,14 +34,14 @@ def denoised(samples: Samples) -> Samples:
 
 
 def _on_patches(samples, normals):
-    distance, near = nearest(samples.tree, samples.points, PATCH)
-    aside = np.where(np.abs(normals[:, :1]) < 0.9, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    right = unit(np.cross(normals, aside))
+    distance, neighbours = nearest(samples.tree, samples.points, PATCH)
+    reference_axis = np.where(np.abs(normals[:, :1]) < 0.9, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    right = unit(np.cross(normals, reference_axis))
     frame = np.stack([right, np.cross(normals, right), normals], axis=1)
-    x, y, z = np.einsum("nij,nkj->ink", frame, samples.points[near] - samples.points[:, None]) / samples.spacing
+    x, y, z = np.einsum("nij,nkj->ink", frame, samples.points[neighbours] - samples.points[:, None]) / samples.spacing
     weight = np.exp(-((distance / (WIDTH * samples.spacing)) ** 2) / 2)
-    weight *= np.einsum("nkj,nj->nk", normals[near], normals) > SAME_SIDE
-    weight *= np.sqrt(samples.areas[near]) / samples.spacing
+    weight *= np.einsum("nkj,nj->nk", normals[neighbours], normals) > SAME_SIDE
+    weight *= np.sqrt(samples.areas[neighbours]) / samples.spacing
     terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2) * weight[:, :, None]
     inner = np.einsum("nki,nkj->nij", terms, terms) + RIDGE * np.eye(terms.shape[2])
     fit = np.linalg.solve(inner, np.einsum("nki,nk->ni", terms, z * weight)[:, :, None])[:, :, 0]

@@ -49,8 +49,8 @@ def samples_of_points(points: np.ndarray, normals: np.ndarray, count: int = COUN
 
     Raises ValueError for fewer than two points at different places.
     """
-    apart = KDTree(points).query(points, 2)[0][:, 1] ** 2
-    area, count = float(apart.sum()) * np.pi / 2, min(count, max(len(points) // 2, 1))  # of evenly spread points
+    square_gaps = KDTree(points).query(points, 2)[0][:, 1] ** 2
+    area, count = float(square_gaps.sum()) * np.pi / 2, min(count, max(len(points) // 2, 1))  # of evenly spread points
     if not 0 < area < np.inf:  # a point alone has its neighbour at infinity
         raise ValueError("the points of a cloud must lie at different places")
     axes, middle = object_axes(points, np.ones(len(points)), points)
@@ -68,17 +68,17 @@ def _gathered(cells, places, normals, areas, axes):
     bent = np.flatnonzero((length < BENT)[cell])
     rough = False
     if len(bent):
-        few, of = np.unique(cell[bent], return_inverse=True)
-        off = normals[bent] - normal[cell[bent]]
-        spread = _means(of, np.einsum("ni,nj->nij", off, off).reshape(-1, 9), areas[bent])[1].reshape(-1, 3, 3)
-        apart = np.einsum("ij,ij->i", off, np.linalg.eigh(spread)[1][of, :, 2]) > 0
-        two = 2 * of + apart
-        halves = np.linalg.norm(_means(two, normals[bent], areas[bent], 2 * len(few))[1], axis=1).reshape(-1, 2)
+        bent_ids, owner = np.unique(cell[bent], return_inverse=True)
+        tilt = normals[bent] - normal[cell[bent]]
+        spread = _means(owner, np.einsum("ni,nj->nij", tilt, tilt).reshape(-1, 9), areas[bent])[1].reshape(-1, 3, 3)
+        is_second = np.einsum("ij,ij->i", tilt, np.linalg.eigh(spread)[1][owner, :, 2]) > 0
+        slots = 2 * owner + is_second
+        halves = np.linalg.norm(_means(slots, normals[bent], areas[bent], 2 * len(bent_ids))[1], axis=1).reshape(-1, 2)
         plain = halves.min(axis=1) > PLAIN
-        rough = bool(total[few] @ ~plain > ROUGH_SHARE * total.sum())
+        rough = bool(total[bent_ids] @ ~plain > ROUGH_SHARE * total.sum())
         if not rough:
             side = np.zeros(len(cells), dtype=np.int64)
-            side[bent] = apart & (plain | (length[few] < TWO_SIDES))[of]
+            side[bent] = is_second & (plain | (length[bent_ids] < TWO_SIDES))[owner]
             cell = 2 * cell + side
             cell = (np.cumsum(np.bincount(cell) > 0) - 1)[cell]
             total, normal = _means(cell, normals, areas)

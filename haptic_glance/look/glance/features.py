@@ -27,20 +27,20 @@ LIMIT = 4.0  # standard deviations; what lies farther out counts as this
 
 def features(samples: Samples) -> dict[str, np.ndarray]:
     """dict name -> (s,) f8: the features, not yet standardised."""
-    seen, side, above, below = visibility(samples)
+    visible_share, side, above, below = visibility(samples)
     convexity, detail, around = relief(samples)
     off_plane, on_plane = symmetry(samples)
-    away, upward = samples.local, samples.normals[:, 2]
-    height, distance = away[:, 2], np.linalg.norm(away, axis=1)
+    positions, upward = samples.local, samples.normals[:, 2]
+    height, distance = positions[:, 2], np.linalg.norm(positions, axis=1)
     rank = _rank(height, samples.shares)
     return {
         "rank": rank, "middle": np.sin(np.pi * rank), "upward": upward, "upward_high": height * upward,
-        "seen": seen, "above": above, "above_high": above * height, "below": below,
+        "seen": visible_share, "above": above, "above_high": above * height, "below": below,
         "log_below": np.log(below + 0.02), "log_side": np.log(side + 0.01),
         "convexity": convexity, "detail": detail, "relief": around,
         **{f"fullness_{radius}": fullness(samples, radius) for radius in RADII},
         "distance": distance, "distance_squared": distance**2,
-        "outward": np.einsum("ij,ij->i", samples.normals @ samples.axes.T, away) / np.maximum(distance, 1e-9),
+        "outward": np.einsum("ij,ij->i", samples.normals @ samples.axes.T, positions) / np.maximum(distance, 1e-9),
         "off_plane": off_plane, "on_plane": on_plane,
     }  # fmt: skip
 

@@ -10,6 +10,7 @@ BLUR = 1.0  # deviation of the Gaussian over the bins
 EQUAL = 0.1  # lack of correlation at which a plane counts 1 / e as much as a perfect one
 LEAST = 0.1  # of the share of the best plane, below which one is left out
 NARROW = 0.05  # distance from the plane, in units of the size, at which its effect has fallen to 1 / e
+WALL, DIGITS = 1e-9, 12  # radians from a wall between two bins of turn, and digits of a length: less is rounding
 
 
 def symmetry(samples: Samples) -> tuple[np.ndarray, np.ndarray]:
@@ -21,18 +22,29 @@ def symmetry(samples: Samples) -> tuple[np.ndarray, np.ndarray]:
     revolution, which has no plane of its own, has 0.
     """
     x, y, z = samples.local.T
-    radius, turn = np.hypot(x, y), np.arctan2(y, x)
-    ranges = (-np.pi, np.pi), (0, max(radius.max(), 1e-9)), (z.min() - 1e-9, z.max() + 1e-9)
-    places, bins = np.stack([turn, radius, z], axis=1), (TURNS, RADII, HEIGHTS)
-    amounts = np.histogramdd(places, bins, ranges, weights=samples.shares)[0]
+    amounts = _amounts(np.arctan2(y, x), np.hypot(x, y).round(DIGITS), z.round(DIGITS), samples.shares)
     amounts = ndimage.gaussian_filter(ndimage.gaussian_filter1d(amounts, BLUR, axis=0, mode="wrap"), (0, BLUR, BLUR))
     waves = np.fft.rfft(amounts, axis=0)
-    alike = np.fft.irfft((waves**2).sum(axis=(1, 2)), TURNS) / (amounts**2).sum()
-    fits = np.exp((alike - 1) / EQUAL)
+    correlation = np.fft.irfft((waves**2).sum(axis=(1, 2)), TURNS) / (amounts**2).sum()
+    fits = np.exp((correlation - 1) / EQUAL)
     share = fits / fits.sum()
     score = max(float(share @ fits - fits.mean()), 0.0)
-    kept = np.flatnonzero(share > LEAST * share.max())
-    angles = np.pi * (kept + 1) / TURNS - np.pi  # bin k of one image lies over bin j of the other: half of their sum
-    away = np.abs(np.outer(x, np.sin(angles)) - np.outer(y, np.cos(angles)))
-    share = share[kept] / share[kept].sum()
-    return score * (away @ share), score * (np.exp(-((away / NARROW) ** 2)) @ share)
+    peaks = np.flatnonzero(share > LEAST * share.max())
+    angles = np.pi * (peaks + 1) / TURNS - np.pi  # bin k of one image lies over bin j of the other: half of their sum
+    distances = np.abs(np.outer(x, np.sin(angles)) - np.outer(y, np.cos(angles)))
+    share = share[peaks] / share[peaks].sum()
+    return score * (distances @ share), score * (np.exp(-((distances / NARROW) ** 2)) @ share)
+
+
+def _amounts(turn, radius, z, shares):
+    """(TURNS, RADII, HEIGHTS) the share of the surface in each bin.
+
+    A point on the wall between two bins of turn counts half in both. Rounding would put it into either, and a symmetric
+    surface would no longer be its own mirror image.
+    """
+    bins, amounts = (TURNS, RADII, HEIGHTS), np.zeros((TURNS, RADII, HEIGHTS))
+    ranges = (-np.pi, np.pi), (0, max(radius.max(), 1e-9)), (z.min() - 1e-9, z.max() + 1e-9)
+    for side in (-WALL, WALL):
+        places = np.stack([(turn + side + np.pi) % (2 * np.pi) - np.pi, radius, z], axis=1)
+        amounts += np.histogramdd(places, bins, ranges, weights=shares / 2)[0]
+    return amounts

@@ -63,11 +63,11 @@ class Samples:
         left, right = np.ascontiguousarray(self.tree.query_pairs(REACH * self.spacing, output_type="ndarray").T)
         # By columns, in a third of the time of sums over rows of three.
         x, y, z = (column[left] - column[right] for column in self.points.T.copy())
-        apart = x * x + y * y + z * z
+        square_distances = x * x + y * y + z * z
         x, y, z = (column[left] * column[right] for column in self.normals.T.copy())
         cosine = x + z + y  # the order of the sums decides the last digit
         low, high = OTHER_SIDE
-        weight = np.exp(-apart / (WIDTH * self.spacing) ** 2) * ((cosine - low) / (high - low)).clip(0, 1)
+        weight = np.exp(-square_distances / (WIDTH * self.spacing) ** 2) * ((cosine - low) / (high - low)).clip(0, 1)
         itself = np.arange(len(self.points))
         rows, columns = np.concatenate([left, right, itself]), np.concatenate([right, left, itself])
         amounts = np.concatenate([weight, weight, np.ones(len(itself))]) * self.areas[columns]
@@ -85,11 +85,11 @@ class Samples:
 
         Nearer and larger points, and those that face the same way, weigh more.
         """
-        distance, near = nearest(self.tree, positions, NEAREST)
-        alike = np.einsum("nkj,nj->nk", self.normals[near], normals)
+        distance, neighbours = nearest(self.tree, positions, NEAREST)
+        cosines = np.einsum("nkj,nj->nk", self.normals[neighbours], normals)
         farther = (distance**2 - distance[:, :1] ** 2) / (SHARP * self.spacing) ** 2
-        weights = (alike + TURNED).clip(0.01) * self.areas[near] * np.exp(-farther)
-        return near, weights / weights.sum(axis=1, keepdims=True)
+        weights = (cosines + TURNED).clip(0.01) * self.areas[neighbours] * np.exp(-farther)
+        return neighbours, weights / weights.sum(axis=1, keepdims=True)
 
 
 def object_axes(points: np.ndarray, areas: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -105,8 +105,8 @@ def object_axes(points: np.ndarray, areas: np.ndarray, ends: np.ndarray) -> tupl
     axes = np.eye(3)
     axes[:2, :2] = horizontal.T
     if lengths[1] - lengths[0] <= ROUND * abs(lengths[0]):
-        away = np.linalg.norm(ends[:, :2] - middle[:2], axis=1)
-        farthest = (ends[:, :2] - middle[:2])[away >= away.max() * (1 - ROUNDING)]
+        distances = np.linalg.norm(ends[:, :2] - middle[:2], axis=1)
+        farthest = (ends[:, :2] - middle[:2])[distances >= distances.max() * (1 - ROUNDING)]
         x, y = farthest[np.lexsort(farthest.round(9).T[::-1])[-1]]
         axes[:2, :2] = np.array([[x, y], [-y, x]]) / max(np.hypot(x, y), 1e-300) if x or y else np.eye(2)
     return axes, middle

@@ -140,12 +140,12 @@ class FarthestPoints:
         """A Detection of vertices; the first is the one farthest from the centre, ties go by position."""
         if count is None:
             raise ValueError("farthest points have no threshold to stop at: give a count")
-        used = np.flatnonzero(mesh.vertex_normals.any(axis=1))
-        positions = mesh.vertices[used].round(9)
-        order = used[np.lexsort((*positions.T[::-1], -(positions**2).sum(axis=1)))]
+        vertex_ids = np.flatnonzero(mesh.vertex_normals.any(axis=1))
+        positions = mesh.vertices[vertex_ids].round(9)
+        order = vertex_ids[np.lexsort((*positions.T[::-1], -(positions**2).sum(axis=1)))]
         far = select_far_points(mesh.vertices[order], count)
-        rest = np.setdiff1d(np.arange(len(order)), far)  # at the positions of others
-        return Detection(order[np.r_[far, rest][:count]], None, None)
+        extras = np.setdiff1d(np.arange(len(order)), far)  # at the positions of others
+        return Detection(order[np.r_[far, extras][:count]], None, None)
 
 
 ROUNDS = 100  # of drawing; only a mesh with hardly more vertices than points asked for needs more than one
@@ -181,8 +181,8 @@ def random_vertices(mesh: Mesh, count: int, generator: np.random.Generator) -> n
         vertices = vertices[np.sort(np.unique(vertices, return_index=True)[1])]
         if len(vertices) >= count:
             return vertices[:count]
-    rest = np.setdiff1d(np.flatnonzero(mesh.vertex_normals.any(axis=1)), vertices)  # of faces too small to be drawn
-    return np.r_[vertices, generator.permutation(rest)][:count]
+    extras = np.setdiff1d(np.flatnonzero(mesh.vertex_normals.any(axis=1)), vertices)  # of faces too small to be drawn
+    return np.r_[vertices, generator.permutation(extras)][:count]
 
 
 def _draw(mesh, probabilities, size, generator):
@@ -248,9 +248,9 @@ def centre_distance(mesh: Mesh) -> np.ndarray:
 
 def _in_faces(mesh, values):
     """The values (n,), 0 for a vertex in no face, which may lie anywhere."""
-    kept = np.zeros(len(values))
-    kept[mesh.used] = values[mesh.used]
-    return kept
+    face_values = np.zeros(len(values))
+    face_values[mesh.used] = values[mesh.used]
+    return face_values
 
 
 def facing_viewer(mesh: Mesh) -> np.ndarray:

@@ -309,9 +309,9 @@ def check_name(method: str, first: Sequence[str] = (), points_alone: bool = Fals
     if method in usable:
         return
     spelling = method.lower().replace("-", "_").replace(" ", "_")
-    near = meant(spelling, usable)
-    reason = f"there is no such method{near}"
+    hint = meant(spelling, usable)
+    reason = f"there is no such method{hint}"
     if method in METHODS:
         reason = "its weights are learned in the pipeline" if method in learned else "it has no saliency"
-    advice = "" if near and method not in METHODS else f"; choose one of {', '.join([*first, *MAIN])}"
+    advice = "" if hint and method not in METHODS else f"; choose one of {', '.join([*first, *MAIN])}"
     raise ValueError(f"--method {method}: {reason}{advice}")

@@ -113,8 +113,8 @@ def select_by_centroid(image: np.ndarray, count: int | None = None, share: float
     if not 0 < share <= 1:
         raise ValueError(f"share must be above 0 and at most 1, got {share}")
     if not image.any():
-        none = np.zeros(0, dtype=np.int64)
-        return SelectedPixels(none, none, np.zeros(0), 0)
+        no_pixels = np.zeros(0, dtype=np.int64)
+        return SelectedPixels(no_pixels, no_pixels, np.zeros(0), 0)
     region = (image > 0) & (image >= np.quantile(image[image > 0], 1 - share))
     labels = cv2.connectedComponents(region.astype(np.uint8), connectivity=8)[1]
     rows, columns = np.nonzero(region)
@@ -157,8 +157,8 @@ def merge_views(
     feature as often as it is seen.
     """
     order = np.lexsort((-values, ~strong))
-    kept = spaced(mesh.vertices[vertices[order]], radius, 0, len(order))
-    return vertices[order][kept], int(strong[order][kept].sum())
+    spaced_ids = spaced(mesh.vertices[vertices[order]], radius, 0, len(order))
+    return vertices[order][spaced_ids], int(strong[order][spaced_ids].sum())
 
 
 def continue_on_surface(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, radius: float, count: int) -> np.ndarray:
@@ -169,10 +169,10 @@ def continue_on_surface(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, ra
     """
     if len(points) >= count:
         return points[:count]
-    used = np.flatnonzero(mesh.vertex_normals.any(axis=1))
-    x, y, z = mesh.vertices[used].round(9).T
-    ranked = used[np.lexsort((z, y, x, -saliency[used]))]
-    while len(points) < min(count, len(used)):
+    vertex_ids = np.flatnonzero(mesh.vertex_normals.any(axis=1))
+    x, y, z = mesh.vertices[vertex_ids].round(9).T
+    ranked = vertex_ids[np.lexsort((z, y, x, -saliency[vertex_ids]))]
+    while len(points) < min(count, len(vertex_ids)):
         queue = np.r_[points, ranked[~np.isin(ranked, points)]]
         if radius < SAME_PLACE * mesh.diagonal:  # only coincident vertices are left
             return queue[:count]

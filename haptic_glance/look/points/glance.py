@@ -107,8 +107,8 @@ class SampledDetector(ABC):
         peaks = peaks[by_place(tied(smooth[peaks]), surface.points[peaks])]
         order = peaks if count is None else visited(surface.points, smooth, options.radius, count)
         is_peak = np.isin(order, peaks)
-        at = surface.vertices[np.r_[order[is_peak], order[~is_peak]]]
-        points = at[np.sort(np.unique(at, return_index=True)[1])]
+        vertex_ids = surface.vertices[np.r_[order[is_peak], order[~is_peak]]]
+        points = vertex_ids[np.sort(np.unique(vertex_ids, return_index=True)[1])]
         if count is not None:
             points = continue_on_surface(mesh, points, surface.smoothed, options.radius, count)
         return Detection(points, min(int(is_peak.sum()), len(points)), surface.saliency)

@@ -86,8 +86,8 @@ MEANT = {  # in other words, and in the thesis's
 def method_named(method: str) -> Detector:
     """The entry of METHODS; ValueError with the nearest name for an unknown one."""
     if method not in METHODS:
-        near = meant(str(method).lower(), list(METHODS))
-        raise ValueError(f"unknown method {method!r}{near or ': choose one of ' + ', '.join(MAIN)}")
+        hint = meant(str(method).lower(), list(METHODS))
+        raise ValueError(f"unknown method {method!r}{hint or ': choose one of ' + ', '.join(MAIN)}")
     return METHODS[method]
 
 

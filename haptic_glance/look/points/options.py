@@ -112,8 +112,8 @@ def visited(points: np.ndarray, values: np.ndarray, radius: float, count: int) -
         best = equal[np.lexsort(places[equal].T[::-1])[-1]]  # as `local_maxima` chooses
         visits.append(best)
         strength.append(remaining[best])
-        away = ((points - points[best]) ** 2).sum(axis=1) / radius**2
-        remaining *= np.where(away <= 1, 0.0, 1 - np.exp(-away / (2 * FADING**2)))
+        square_distances = ((points - points[best]) ** 2).sum(axis=1) / radius**2
+        remaining *= np.where(square_distances <= 1, 0.0, 1 - np.exp(-square_distances / (2 * FADING**2)))
     order, ids = tied(np.array(strength)), np.array(visits, dtype=np.int64)
     return ids[by_place(order, points[ids])]
 

@@ -69,8 +69,8 @@ def reasons(
     names, amounts, sign = list(terms), np.array(list(terms.values())), -1 if against else 1
 
     def said(name: str, amount: float) -> str:
-        much, little = WORDS[name]
-        return much if amount * GLANCES[method][name] > 0 else little
+        high_words, low_words = WORDS[name]
+        return high_words if amount * GLANCES[method][name] > 0 else low_words
 
     return [
         [

@@ -39,10 +39,10 @@ class TouchDetector(SampledDetector):
         depths = pressed(samples.points, samples.normals, radii, axes, places, CELLS, WIDTH)
         values = recurrence(imprints(depths), samples.points[places])
         area = samples.areas.sum() / len(places)
-        few = replace(
+        place_samples = replace(
             samples, points=samples.points[places], normals=samples.normals[places], areas=np.full(len(places), area)
         )
-        return few, values
+        return place_samples, values
 
     def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
         """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
@@ -64,9 +64,9 @@ def spread(samples: Samples, count: int) -> np.ndarray:
     code = sum((steps[:, axis] >> bit & 1) << (3 * bit + axis) for bit in range(BITS) for axis in range(3))
     has_side = np.flatnonzero(samples.normals.any(axis=1))
     order = has_side[np.argsort(np.asarray(code)[has_side], kind="stable")]
-    passed = np.cumsum(samples.shares[order])
-    at = np.searchsorted(passed, (np.arange(count) + 0.5) / count * passed[-1] - ROUNDING)
-    return order[np.unique(at.clip(max=len(order) - 1))]
+    cumulative_shares = np.cumsum(samples.shares[order])
+    ranks = np.searchsorted(cumulative_shares, (np.arange(count) + 0.5) / count * cumulative_shares[-1] - ROUNDING)
+    return order[np.unique(ranks.clip(max=len(order) - 1))]
 
 
 def imprints(depths: np.ndarray) -> np.ndarray:
@@ -84,11 +84,11 @@ def recurrence(imprints: np.ndarray, points: np.ndarray) -> np.ndarray:
     the surface SHARE. 1: it feels the same there.
     """
     square = (imprints**2).sum(axis=1)
-    apart = square[:, None] + square - 2 * imprints @ imprints.T
-    apart = np.sqrt(np.maximum(apart, 0) / imprints.shape[1])
+    imprint_distances = square[:, None] + square - 2 * imprints @ imprints.T
+    imprint_distances = np.sqrt(np.maximum(imprint_distances, 0) / imprints.shape[1])
     square = (points**2).sum(axis=1)
-    near = square[:, None] + square - 2 * points @ points.T <= WIDTH**2
-    apart[near] = 1
+    is_near = square[:, None] + square - 2 * points @ points.T <= WIDTH**2
+    imprint_distances[is_near] = 1
     count = max(round(SHARE * len(points)), 1)
-    nearest = np.partition(apart, min(count, len(points)) - 1, axis=1)[:, :count]
+    nearest = np.partition(imprint_distances, min(count, len(points)) - 1, axis=1)[:, :count]
     return np.exp(-nearest.mean(axis=1).round(6) / ALIKE)

@@ -89,8 +89,8 @@ def _smaller_eigenvalue(mesh, normals):
     """(n, 1): the smaller eigenvalue of the Gram matrix of the normals' derivatives, averaged over the faces around."""
     areas = mesh.face_areas[:, None, None]
     edges = np.roll(mesh.vertices[mesh.faces], 1, axis=1) - np.roll(mesh.vertices[mesh.faces], -1, axis=1)
-    turned = np.cross(mesh.face_normals[:, None], edges)  # over twice the area: the gradients of the hat functions
-    slopes = np.einsum("mci,mcj->mij", turned, normals[mesh.faces])
+    gradients = np.cross(mesh.face_normals[:, None], edges)  # over twice the area: the gradients of the hat functions
+    slopes = np.einsum("mci,mcj->mij", gradients, normals[mesh.faces])
     slopes = np.divide(slopes, 2 * areas, out=np.zeros_like(slopes), where=areas > 0)
     gram = slopes @ slopes.transpose(0, 2, 1)  # its third eigenvalue, across the face, is zero
     trace, squares = np.trace(gram, axis1=1, axis2=2), (gram**2).sum(axis=(1, 2))

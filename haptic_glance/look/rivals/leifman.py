@@ -41,16 +41,16 @@ def saliency(mesh: Mesh) -> np.ndarray:
     unit = unit_mesh(mesh)
     if unit is None:
         return np.zeros(len(mesh.vertices))
-    few = samples(unit.mesh, SAMPLES)
-    reach = dijkstra(few.graph, directed=False)
-    apart = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max())
-    distinct = distinctness(unit.mesh, few, apart)
-    interest = (distinct + association(distinct, apart)) / 2
+    sample_set = samples(unit.mesh, SAMPLES)
+    reach = dijkstra(sample_set.graph, directed=False)
+    distances = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max())
+    distinct = distinctness(unit.mesh, sample_set, distances)
+    interest = (distinct + association(distinct, distances)) / 2
     interest = interest / interest.max() if distinct.max() > FLOOR else np.zeros(len(interest))
     ends = limb_ends(reach)
     if len(ends):
-        interest = np.maximum(interest, _fade(apart[:, ends].min(axis=1)))
-    return unit.to_vertices(few.spread(unit.mesh, interest).clip(0, 1))
+        interest = np.maximum(interest, _fade(distances[:, ends].min(axis=1)))
+    return unit.to_vertices(sample_set.spread(unit.mesh, interest).clip(0, 1))
 
 
 def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
@@ -96,9 +96,9 @@ def association(distinct: np.ndarray, apart: np.ndarray) -> np.ndarray:
 
 def limb_ends(reach: np.ndarray) -> np.ndarray:
     """(e,) samples at the ends of limbs; reach (k, k): geodesic, infinite between parts."""
-    joined = np.isfinite(reach)
-    mean = np.where(joined, reach, 0).sum(axis=1) / joined.sum(axis=1)
-    middle = np.where(joined, mean, np.inf).min(axis=1)
+    is_connected = np.isfinite(reach)
+    mean = np.where(is_connected, reach, 0).sum(axis=1) / is_connected.sum(axis=1)
+    middle = np.where(is_connected, mean, np.inf).min(axis=1)
     farthest = np.where(reach <= ENDS, mean, 0).max(axis=1)
     return np.flatnonzero((mean >= farthest) & (mean > LIMB * middle))
 

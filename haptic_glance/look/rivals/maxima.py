@@ -57,8 +57,8 @@ def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     values = np.asarray(values, dtype=np.float64)
     if not (len(mesh.faces) and values.any()):
         return local_maxima(mesh, values, 1.0)
-    used = mesh.vertices[mesh.used]
-    size = 2 * np.linalg.norm(used - used.mean(axis=0), axis=1).max()
+    vertices = mesh.vertices[mesh.used]
+    size = 2 * np.linalg.norm(vertices - vertices.mean(axis=0), axis=1).max()
     maxima = local_maxima(mesh, values, SPACING * size)
     return maxima[values[maxima] >= values[maxima].mean()] if len(maxima) else maxima
 

@@ -51,11 +51,11 @@ def _displacements(mesh):
     steps = sorted({scale * 2**octave for scale in SCALES for octave in range(OCTAVES)})
     sigmas = [step * EPSILON * mesh.diagonal for step in steps if step >= SMALLEST]
     means = {s: gaussian_average(mesh, surface, s) for s in sorted({k * s for s in sigmas for k in (1, 2)})}
-    used = mesh.vertex_normals.any(axis=1)  # a vertex in no face does not move, and must not set the minimum
+    has_normal = mesh.vertex_normals.any(axis=1)  # a vertex in no face does not move, and must not set the minimum
     scales = {}
     for sigma in sigmas:
-        moved = np.abs(np.einsum("ij,ij->i", mesh.vertex_normals, np.nan_to_num(means[sigma] - means[2 * sigma])))
-        lowest, highest = moved[used].min(), moved.max()
+        shifts = np.abs(np.einsum("ij,ij->i", mesh.vertex_normals, np.nan_to_num(means[sigma] - means[2 * sigma])))
+        lowest, highest = shifts[has_normal].min(), shifts.max()
         if (highest - lowest) / sigma**2 * mesh.diagonal > FLOOR:
-            scales[sigma] = np.where(used, (moved - lowest) / (highest - lowest), 0)
+            scales[sigma] = np.where(has_normal, (shifts - lowest) / (highest - lowest), 0)
     return scales

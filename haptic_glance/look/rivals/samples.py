@@ -58,10 +58,10 @@ def unit_mesh(mesh: Mesh) -> UnitMesh | None:
     if not len(faces):
         return None
     centroid = mesh.face_areas @ mesh.vertices[mesh.faces].mean(axis=1) / mesh.face_areas.sum()
-    used = np.unique(faces)
-    inside = mesh.vertices[used] - centroid
+    vertex_ids = np.unique(faces)
+    inside = mesh.vertices[vertex_ids] - centroid
     inside = (inside / (2 * np.linalg.norm(inside, axis=1).max())).round(DIGITS)
-    positions, place[used] = np.unique(inside, axis=0, return_inverse=True)
+    positions, place[vertex_ids] = np.unique(inside, axis=0, return_inverse=True)
     unit = Mesh(positions, place[faces])
     return UnitMesh(unit, place) if unit.face_areas.any() else None
 
@@ -145,8 +145,8 @@ def _sides(corners):
 
 def _halves(corners, longest):
     """Faces (m, 3, k) bisected at the middle of their longest edge, which runs from corner `longest` to the next."""
-    turned = np.take_along_axis(corners, ((longest[:, None] + np.arange(3)) % 3)[..., None], axis=1)
-    a, b, c = turned.transpose(1, 0, 2)
+    rotated_corners = np.take_along_axis(corners, ((longest[:, None] + np.arange(3)) % 3)[..., None], axis=1)
+    a, b, c = rotated_corners.transpose(1, 0, 2)
     middle = (a + b) / 2
     return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 

@@ -70,8 +70,8 @@ def _nearest(mesh, keypoints):
     """(k,) i8: the vertex nearest to each keypoint; vertices in no face do not count."""
     if not len(keypoints.sigmas):
         return np.zeros(0, dtype=np.int64)
-    used = np.flatnonzero((mesh.vertex_normals != 0).any(axis=1))
-    return used[cKDTree(mesh.vertices[used]).query(keypoints.positions)[1]]
+    vertex_ids = np.flatnonzero((mesh.vertex_normals != 0).any(axis=1))
+    return vertex_ids[cKDTree(mesh.vertices[vertex_ids]).query(keypoints.positions)[1]]
 
 
 @weak_cache

@@ -42,14 +42,14 @@ def saliency(mesh: Mesh) -> np.ndarray:
     unit = unit_mesh(mesh)
     if unit is None:
         return np.zeros(len(mesh.vertices))
-    few, everywhere, logs = samples(unit.mesh, SAMPLES), np.ones(len(unit.mesh.vertices)), {}
+    sample_set, everywhere, logs = samples(unit.mesh, SAMPLES), np.ones(len(unit.mesh.vertices)), {}
     for variance in sorted({factor * scale for scale in SCALES for factor in (1, 2)}):
         length = EPSILON * np.sqrt(variance / 2)  # heat that reaches so far has spread by a Gaussian of this variance
         smooth = smoother(unit.mesh, everywhere, length)(unit.mesh.vertices)
-        values = np.abs(spectral_saliency(smooth[few.ids], few.graph))
+        values = np.abs(spectral_saliency(smooth[sample_set.ids], sample_set.graph))
         logs[variance] = np.log(np.maximum(values, LEAST * np.median(values) or 1))
     change = np.sum([np.abs(logs[2 * scale] - logs[scale]) for scale in SCALES], axis=0)
-    return unit.to_vertices(few.spread(unit.mesh, change).clip(0))
+    return unit.to_vertices(sample_set.spread(unit.mesh, change).clip(0))
 
 
 def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:

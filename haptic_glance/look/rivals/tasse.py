@@ -50,8 +50,8 @@ def saliency(mesh: Mesh) -> np.ndarray:
     variance, spread = _variance(means, chi_squares), _variance(centres, squares)
     if variance < FLOOR:
         return np.zeros(len(mesh.vertices))
-    apart = _to_each(squares, places, centres, near) / spread
-    fit = np.exp(-(apart + ALIKE * _to_each(chi_squares, described, means, near) / variance) / 2)
+    distances = _to_each(squares, places, centres, near) / spread
+    fit = np.exp(-(distances + ALIKE * _to_each(chi_squares, described, means, near) / variance) / 2)
     weights = np.bincount(near.ravel(), fit.ravel(), len(centres))
     fit /= weights[near]
     values = _cluster_saliency(centres, means, weights / weights.sum(), variance)
@@ -91,9 +91,9 @@ def _cluster(places, described):
     variance, spread = _variance(means, chi_squares), _variance(centres, squares)
     for _ in range(ROUNDS):
         near = _nearest(centres, places)
-        apart = _to_each(squares, places, centres, near) / spread
-        apart += ALIKE * _to_each(chi_squares, described, means, near) / max(variance, FLOOR)
-        owner = np.unique(near[np.arange(len(places)), apart.argmin(axis=1)], return_inverse=True)[1]
+        distances = _to_each(squares, places, centres, near) / spread
+        distances += ALIKE * _to_each(chi_squares, described, means, near) / max(variance, FLOOR)
+        owner = np.unique(near[np.arange(len(places)), distances.argmin(axis=1)], return_inverse=True)[1]
         centres, means = _means(places, owner), _means(described, owner)
     return _nearest(centres, places), owner
 
@@ -111,12 +111,12 @@ def _to_each(squared, values, means, near):
 def _cluster_saliency(centres, means, weights, variance):
     """(k,) in 0..1: how unique and how compact each cluster is."""
     unlike = np.stack([chi_squares(mean, means) for mean in means])
-    apart = squares(centres[:, None], centres)
-    close = 1 / (1 + apart)
+    square_distances = squares(centres[:, None], centres)
+    close = 1 / (1 + square_distances)
     unique = (close * unlike) @ weights / close.sum(axis=1)
-    alike = np.exp(-unlike / variance)
-    middle = alike @ centres / alike.sum(axis=1)[:, None]
-    spread = (alike * squares(middle[:, None], centres)) @ weights / alike.sum(axis=1)
+    similarity = np.exp(-unlike / variance)
+    middle = similarity @ centres / similarity.sum(axis=1)[:, None]
+    spread = (similarity * squares(middle[:, None], centres)) @ weights / similarity.sum(axis=1)
     return _stretched(1 - np.exp(-_stretched(unique)) + np.exp(-_stretched(spread)))
 
 

@@ -49,10 +49,10 @@ def best_viewpoints(mesh: Mesh, level: Callable[[Viewpoint], float], seed: int =
     T3.2.4 first describes views added to the best four, then an average over a set with its complementary views. The
     average is implemented, since the section calls its maximum the best set.
     """
-    hidden = dict(zip(CANDIDATES, hidden_surface(mesh, CANDIDATES, seed), strict=True))
+    has_hidden = dict(zip(CANDIDATES, hidden_surface(mesh, CANDIDATES, seed), strict=True))
     sets = []
     for views, between in zip(PERPENDICULAR_SETS, BETWEEN, strict=True):
-        added = [extra for view, extra in zip(views, between, strict=True) if hidden[view]]
+        added = [extra for view, extra in zip(views, between, strict=True) if has_hidden[view]]
         sets.append([*views, *added])
     distinct = dict.fromkeys(view for views in sets for view in views)
     levels = {view: _finite(level(view), view) for view in distinct}
@@ -82,8 +82,8 @@ def _has_hidden_surface(scene, viewpoint, random):
     corners = scene.mesh.vertices[scene.mesh.used] @ right_up.T
     places = corners.min(axis=0) + random.random((DRAWS, 2)) * np.ptp(corners, axis=0)
     origins, directions, _ = sightlines(places @ right_up, viewpoint)
-    on = np.flatnonzero(scene.cast(origins, directions).hit)[:RAYS]
-    return bool((_faces_met(scene, origins[on], directions[on]) > FACES).any())
+    ray_ids = np.flatnonzero(scene.cast(origins, directions).hit)[:RAYS]
+    return bool((_faces_met(scene, origins[ray_ids], directions[ray_ids]) > FACES).any())
 
 
 def _faces_met(scene, origins, directions):
@@ -229,29 +229,29 @@ def _with_viewpoints(chosen, shares):
 def _greedy(seen, share, count):
     """(rows of seen in the order of what each adds (k,) i8, cumulative shares (k,))."""
     unseen = np.ones(seen.shape[1], dtype=bool)
-    chosen, shares = [], []
-    while unseen.any() and len(chosen) < count and (1 - unseen.mean()) < share - ROUNDING:
+    rows, shares = [], []
+    while unseen.any() and len(rows) < count and (1 - unseen.mean()) < share - ROUNDING:
         gains = (seen & unseen).sum(axis=1)
         best = int(gains.argmax())
         unseen &= ~seen[best]
-        chosen.append(best)
+        rows.append(best)
         shares.append(1 - unseen.mean())
-    return np.array(chosen, dtype=np.int64), np.array(shares)
+    return np.array(rows, dtype=np.int64), np.array(shares)
 
 
 def _fewest(seen, share):
     """As few rows of seen as cover the share of its columns, greedy ones if they are: returns as _greedy does."""
-    chosen, shares = _greedy(seen, share, len(seen))
+    rows, shares = _greedy(seen, share, len(seen))
     # Two are optimal when the first greedy view, the best single one, was not enough.
-    while len(chosen) > 2 and len(fewer := _fewer(seen, share, len(chosen) - 1)):
+    while len(rows) > 2 and len(fewer := _fewer(seen, share, len(rows) - 1)):
         order, shares = _greedy(seen[fewer], 1.0, len(fewer))
-        chosen = fewer[order]
-    return chosen, shares
+        rows = fewer[order]
+    return rows, shares
 
 
 def _fewer(seen, share, most):
     """(k,) i8: at most `most` rows of seen that cover the share of its columns; none where no rows do."""
-    packed, counts = np.unique(np.packbits(seen, axis=0).T, axis=0, return_counts=True)  # points seen by the same rows
-    kinds = np.unpackbits(packed, axis=1, count=len(seen)).T
-    need = float(np.ceil((share - ROUNDING) * counts.sum()))
-    return find_cover(np.ascontiguousarray(kinds, dtype=np.float32), counts.astype(np.float32), need, most, NODES)
+    codes, counts = np.unique(np.packbits(seen, axis=0).T, axis=0, return_counts=True)  # points seen by the same rows
+    kinds = np.unpackbits(codes, axis=1, count=len(seen)).T
+    goal = float(np.ceil((share - ROUNDING) * counts.sum()))
+    return find_cover(np.ascontiguousarray(kinds, dtype=np.float32), counts.astype(np.float32), goal, most, NODES)

@@ -55,10 +55,10 @@ def render_pyrender(
     ids, depth = _draw(scene, node, size, FACE_IDS)
     shaded, _ = _draw(scene, node, size, SHADED)
     codes = ids.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
-    on = codes > 0
-    face = np.where(on, (codes - 1) % max(len(mesh.faces), 1), -1).astype(np.int32)
-    rgb = np.where(on[..., None], shaded, view.rgb)
-    return View(rgb, np.where(on, round_depth(_linear(depth)), view.depth), face, viewpoint)
+    mask = codes > 0
+    face = np.where(mask, (codes - 1) % max(len(mesh.faces), 1), -1).astype(np.int32)
+    rgb = np.where(mask[..., None], shaded, view.rgb)
+    return View(rgb, np.where(mask, round_depth(_linear(depth)), view.depth), face, viewpoint)
 
 
 @cache

@@ -42,10 +42,10 @@ def scaled_to_unit_diagonal(mesh: Mesh) -> Mesh:
 
     Vertices in no face do not count. Raises ValueError for a mesh without area.
     """
-    used = mesh.vertices[np.unique(mesh.faces)]
-    size = np.linalg.norm(np.ptp(used, axis=0)) if len(used) else 0.0
+    vertices = mesh.vertices[np.unique(mesh.faces)]
+    size = np.linalg.norm(np.ptp(vertices, axis=0)) if len(vertices) else 0.0
     if size > 0:
-        surface = Mesh((mesh.vertices - (used.min(axis=0) + used.max(axis=0)) / 2) / size, mesh.faces)
+        surface = Mesh((mesh.vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2) / size, mesh.faces)
         if surface.face_areas.sum() > 0:
             return surface
     raise ValueError("the mesh has no visible surface: it needs at least one face with an area")

@@ -182,9 +182,9 @@ def _checked_points(rows, columns, shape):
     if rows.ndim != 1 or rows.shape != columns.shape:
         raise ValueError(f"rows and columns must be two arrays (n,), got {rows.shape} and {columns.shape}")
     points = np.column_stack([rows, columns])
-    off = ~((points >= -0.5) & (points <= np.array(shape) - 0.5)).all(axis=1)
-    if off.any():
-        raise ValueError(f"points off the map of {shape[0]} x {shape[1]} pixels: {points[off][:5].round(1).tolist()}")
+    stray = ~((points >= -0.5) & (points <= np.array(shape) - 0.5)).all(axis=1)
+    if stray.any():
+        raise ValueError(f"points off the map of {shape[0]} x {shape[1]} pixels: {points[stray][:5].round(1).tolist()}")
     return points
 
 

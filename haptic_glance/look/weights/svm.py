@@ -95,8 +95,8 @@ def fit_rows(features: np.ndarray, labels: np.ndarray) -> SVMModel:
     scale = np.divide(gains, spread, out=np.zeros_like(gains), where=spread > 0)
     center = features.mean(axis=0)
     if not scale.any():
-        nothing = np.zeros((0, len(scale)))
-        return SVMModel(center, scale, gains, nothing, np.zeros(0), np.array(0.0), np.array(1.0))
+        no_support = np.zeros((0, len(scale)))
+        return SVMModel(center, scale, gains, no_support, np.zeros(0), np.array(0.0), np.array(1.0))
     scaled = (features - center) * scale
     gamma = 1 / scaled.var(axis=0).sum()
     svc = SVC(kernel="rbf", gamma=gamma, cache_size=100).fit(scaled, labels)
@@ -219,8 +219,8 @@ def select_far_points(points: np.ndarray, count: int = POINTS) -> np.ndarray:
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or not np.isfinite(points).all() or count < 0:
         raise ValueError(f"points must be finite, of shape (n, d), and count not negative, got {points.shape}, {count}")
-    chosen, gap = [], np.full(len(points), np.inf)
-    while len(chosen) < count and (gap > 0).any():
-        chosen.append(int(gap.argmax()))
-        gap = np.minimum(gap, np.linalg.norm(points - points[chosen[-1]], axis=1))
-    return np.array(chosen, dtype=np.int64)
+    ids, gap = [], np.full(len(points), np.inf)
+    while len(ids) < count and (gap > 0).any():
+        ids.append(int(gap.argmax()))
+        gap = np.minimum(gap, np.linalg.norm(points - points[ids[-1]], axis=1))
+    return np.array(ids, dtype=np.int64)

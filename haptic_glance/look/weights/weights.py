@@ -125,14 +125,14 @@ def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWe
     from_all = table[table.left_out == ALL]
     without = table[table.left_out == name]
     overall = _by_method(from_all)
-    learned = overall | _by_method(without)
+    learned_weights = overall | _by_method(without)
     gazed = (Path(folder) / "ground_truth" / f"{name}.npz").exists()  # weights of DEEP that leave it out do not exist
     if without.empty and gazed:
         published = np.allclose([*overall[GLANCE].values()], [*weights(GLANCE).values()])
         usable = {*METHODS} if published else {*METHODS} - {*GLANCES}
-        learned = {method: values for method, values in overall.items() if method in usable}
-    seen = {f"{method}{SEEN_SUFFIX}": values for method, values in overall.items() if method not in METHODS}
-    return LearnedWeights(learned | seen | ({} if gazed else _deep()), _svms(Path(folder), name, mesh))
+        learned_weights = {method: values for method, values in overall.items() if method in usable}
+    seen_weights = {f"{method}{SEEN_SUFFIX}": values for method, values in overall.items() if method not in METHODS}
+    return LearnedWeights(learned_weights | seen_weights | ({} if gazed else _deep()), _svms(Path(folder), name, mesh))
 
 
 def _deep():

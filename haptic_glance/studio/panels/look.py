@@ -110,8 +110,8 @@ class LookPanel(Panel):
 
     def number(self, name: str, mesh: Mesh, look: Look) -> None:
         """Draws the points of a Look with their ranks."""
-        at, ranks = look.vertices, [str(row[0]) for row in look.points]
-        self.window.scene.markers(name, mesh.vertices[at], mesh.vertex_normals[at], ranks)
+        vertex_ids, ranks = look.vertices, [str(row[0]) for row in look.points]
+        self.window.scene.markers(name, mesh.vertices[vertex_ids], mesh.vertex_normals[vertex_ids], ranks)
 
     def explain(self, specimen: Specimen, look: Look) -> None:
         """Lists the points; with the reasons, if the method has some, when they are known."""

@@ -79,8 +79,8 @@ class MarkPanel(Panel):
         marking = self.marking
         marks = marking.marks if marking else []
         numbers = [str(k) for k in range(1, len(marks) + 1)]
-        mesh, at = self.window.session.on_table.mesh, [vertex for _, vertex in marks]
-        self.window.scene.markers(MARKS, mesh.vertices[at], mesh.vertex_normals[at], numbers, BLUE)
+        mesh, vertex_ids = self.window.session.on_table.mesh, [vertex for _, vertex in marks]
+        self.window.scene.markers(MARKS, mesh.vertices[vertex_ids], mesh.vertex_normals[vertex_ids], numbers, BLUE)
         self.undo_button.disabled = self.remove_button.disabled = not marks
         self.number.options = tuple(numbers) or ("-",)
         self.number.value = self.number.options[-1]

@@ -41,9 +41,9 @@ def method_text(method: str) -> str:
 
 def scores(rows: pd.DataFrame, metric: str) -> pd.DataFrame:
     """Frame objects x methods of one metric; NotRun where it was not measured."""
-    judged = rows[rows["metric"] == metric].dropna(subset=["value"])
-    some(judged, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
-    return judged[~judged["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
+    values = rows[rows["metric"] == metric].dropna(subset=["value"])
+    some(values, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
+    return values[~values["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
 
 
 def difference(rows: pd.DataFrame, metric: str, first: str, second: str) -> pd.Series:
@@ -223,8 +223,8 @@ def _table(
     cost: dict[str, float] = {}
     with suppress(NotRun):
         cost = attention_seconds(results, rows["dataset"].iloc[0])
-    shown = rows if more is None else pd.concat([rows, more])
-    frame = agreement(shown, [*ALONE, *beside])
+    table_rows = rows if more is None else pd.concat([rows, more])
+    frame = agreement(table_rows, [*ALONE, *beside])
     names, lines = list(ALONE.values()), {}
     columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside)]
     columns += ["seconds"] if cost else []
@@ -260,12 +260,12 @@ def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
     gains = [f"{name} {signed(*interval(difference(rows, metric, OURS, best)))}" for metric, name in ALONE.items()]
     yield f"The best other method that has not seen the object is {label(best)}: ours − it {_and(gains)}."
     for metric, name in ALONE.items():
-        others = rivals(rows, metric)
-        left = [label(rival) for rival in others if not interval(difference(rows, metric, OURS, rival))[1] > 0]
-        named = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
+        methods = rivals(rows, metric)
+        left = [label(rival) for rival in methods if not interval(difference(rows, metric, OURS, rival))[1] > 0]
+        labels = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
         yield (
-            f"In {name} ours is higher than {len(others) - len(left)} of the {len(others)} others that have not seen "
-            "the object, with an interval that excludes zero" + (f"; not than {_and(named)}." if left else ".")
+            f"In {name} ours is higher than {len(methods) - len(left)} of the {len(methods)} others that have not seen "
+            "the object, with an interval that excludes zero" + (f"; not than {_and(labels)}." if left else ".")
         )
 
 

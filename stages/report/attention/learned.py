@@ -59,21 +59,21 @@ def table_3_1(results: Results) -> Table:
     text = [with_interval(*mean, places=2) for mean in frame[MEAN].itertuples(index=False)]
     wide = frame.assign(text=text).pivot(index="channel", columns=["method", "dataset"], values="text")
     wide = wide.reindex(thesis.index).fillna("not run")
-    shown = pd.DataFrame(index=thesis.index)
+    text_table = pd.DataFrame(index=thesis.index)
     for method, kind in KINDS.items():
         if method in thesis:
-            shown[f"{kind}: thesis"] = thesis[method].map(number)
+            text_table[f"{kind}: thesis"] = thesis[method].map(number)
         for dataset, objects in frame.groupby("dataset")["objects"].max().items():
-            shown[_head(kind, str(dataset), objects)] = wide.get((method, dataset), "not run")
+            text_table[_head(kind, str(dataset), objects)] = wide.get((method, dataset), "not run")
     with suppress(NotRun):
-        shown = shown.assign(**_in_colour(results)).fillna("–")
+        text_table = text_table.assign(**_in_colour(results)).fillna("–")
     tops = ", ".join(f"{label(channel)} in {KINDS[str(method)]}" for method, channel in thesis.idxmax().items())
     first = frame[frame["dataset"] == frame["dataset"].iloc[0]].drop_duplicates("method")
     heads = [_head(KINDS[row.method], row.dataset, row.objects) for row in records(first)]
-    answer = [name for name in map(str, shown) if ": thesis" in name or name in heads or name in LIKENESS.values()]
-    shown = shown.rename(index=label).reset_index()
-    best = Ranking(min(heads, key=list(shown).index))
-    return Table(frame, shown, {"tops": tops, "ranks": _ranks(frame)}, best, ["channel", *answer])
+    answer = [name for name in map(str, text_table) if ": thesis" in name or name in heads or name in LIKENESS.values()]
+    text_table = text_table.rename(index=label).reset_index()
+    best = Ranking(min(heads, key=list(text_table).index))
+    return Table(frame, text_table, {"tops": tops, "ranks": _ranks(frame)}, best, ["channel", *answer])
 
 
 def _head(kind: str, dataset: str, objects: int) -> str:
@@ -156,8 +156,8 @@ def section_3_2_3(results: Results) -> Table:
         f"background alone gives {100 * row.background_alone:.1f} %."
         for row in records(frame.dropna(subset=["thesis_accuracy"]))
     ]
-    shown = pd.DataFrame(map(_shown, records(frame)))
-    return Table(frame, shown, {"said": "\n".join(findings)})  # no ranking: the ways to test differ, not the SVMs
+    text_table = pd.DataFrame(map(_shown, records(frame)))
+    return Table(frame, text_table, {"said": "\n".join(findings)})  # no ranking: the ways to test differ, not the SVMs
 
 
 def _shown(row: Any) -> dict[str, str | int]:
@@ -204,9 +204,9 @@ def nested(results: Results) -> Table:
 
 def _always(rows: pd.DataFrame) -> list[str]:
     """The features that are chosen for each object."""
-    chosen = rows[rows["metric"] == "features"]["chosen"].str.split(", ")
-    counts = Counter(name for names in chosen for name in names)
-    return [label(name) for name, count in counts.items() if count == len(chosen)]
+    feature_lists = rows[rows["metric"] == "features"]["chosen"].str.split(", ")
+    counts = Counter(name for names in feature_lists for name in names)
+    return [label(name) for name, count in counts.items() if count == len(feature_lists)]
 
 
 METRICS = {"found": "marks found again by another pass, %", "nss": "NSS against gaze", "auc": "AUC against gaze"}
@@ -217,7 +217,7 @@ def annotations(results: Results) -> Table:
     """Agreement of the passes beside random points, and with gaze beside height; intervals over the objects."""
     sets = results.datasets("annotations") or [None]  # without any, the reader says what is missing
     rows = pd.concat([results.rows("annotations", dataset) for dataset in sets])
-    entries, shown = [], []
+    entries, text_rows = [], []
     for (dataset, metric), group in grouped(rows, ["dataset", "metric"]):
         table = group.pivot(index="item", columns="method", values="value")
         control = "random" if metric == "found" else "height"
@@ -225,9 +225,9 @@ def annotations(results: Results) -> Table:
             name: dict(zip(MEAN, interval(table[name]), strict=True)) | gain(table, name, control)
             for name in map(str, table)
         }
-        about = {"dataset": dataset, "metric": metric}
-        entries += [about | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
-        shown.append({
+        keys = {"dataset": dataset, "metric": metric}
+        entries += [keys | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
+        text_rows.append({
             "objects": f"{len(table)} {'household objects' if dataset == 'household' else dataset_text(dataset)}",
             "measure": METRICS[metric],
             "three passes": _text(cells.get("passes", {}), metric),
@@ -237,7 +237,7 @@ def annotations(results: Results) -> Table:
             "passes − that": _text(cells.get("passes", {}), metric, GAIN),
         })  # fmt: skip
     # no ranking: a row is a question, not a method
-    return Table(pd.DataFrame(entries), pd.DataFrame(shown), {"extremes": _extremes(rows)})
+    return Table(pd.DataFrame(entries), pd.DataFrame(text_rows), {"extremes": _extremes(rows)})
 
 
 def _text(cell: dict[str, float], metric: str, names: Sequence[str] = MEAN) -> str:

@@ -71,8 +71,8 @@ def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
     row[0].set_ylabel(name)
     regions = []
     for left, right, left_out in ((row[1], row[2], COLOUR), (row[3], row[4], ())):
-        used = zip(channels, maps[view], strict=True)
-        saliency = fuse({channel: values for channel, values in used if channel not in left_out})
+        channel_maps = zip(channels, maps[view], strict=True)
+        saliency = fuse({channel: values for channel, values in channel_maps if channel not in left_out})
         region = mask & (saliency > np.quantile(saliency[mask], 1 - KEPT))
         left.imshow(np.where(mask, saliency, np.nan)[part], cmap=MAP, vmin=0, vmax=saliency[mask].max())
         right.imshow(np.where(region[part][..., None], render, FADED + (1 - FADED) * render))
@@ -84,8 +84,8 @@ def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
 def figure_3_10(results: Results) -> Figure:
     """The nine conspicuity maps of one object beside its render, in the view in which most channels answer."""
     name = results.choose(results.settings.figure_objects, 1, stage="conspicuity")[0]
-    maps, masks, viewpoints, stored = results.maps(name)
-    channels = [channel for channel in CHANNELS if channel in stored]
+    maps, masks, viewpoints, map_channels = results.maps(name)
+    channels = [channel for channel in CHANNELS if channel in map_channels]
     answers = (maps.max(axis=(2, 3)) > 0.02).sum(axis=1)  # below it a map shows nothing
     answers[~masks.any(axis=(1, 2))] = -1
     view = _nearest(viewpoints, masks, np.flatnonzero(answers == answers.max()))
@@ -94,7 +94,7 @@ def figure_3_10(results: Results) -> Figure:
     grid[0, 0].imshow(_render(results.mesh(name), viewpoint, mask)[part])
     grid[0, 0].set_title(name, fontsize=10, loc="center")
     for axes, channel in zip(grid.flat[1:], channels, strict=False):
-        values = maps[view, stored.index(channel)]
+        values = maps[view, map_channels.index(channel)]
         top = float(values[mask].max())
         axes.imshow(np.where(mask, values / (top or 1.0), np.nan)[part], cmap=MAP, vmin=0, vmax=1)
         peak = f"up to {top:.2f}" if top else "nothing: one colour" if channel in COLOUR else "nothing"
@@ -163,8 +163,8 @@ def _nearest(viewpoints: Sequence[Viewpoint], masks: np.ndarray, among: Iterable
 
     Views that show nothing, as of a sheet from its edge, are left out (masks (v, h, w) boolean).
     """
-    shown = [view for view in among if masks[view].any()]
-    return max(shown, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])
+    filled_views = [view for view in among if masks[view].any()]
+    return max(filled_views, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])
 
 
 def _render(mesh: Mesh, viewpoint: Viewpoint, mask: np.ndarray) -> np.ndarray:

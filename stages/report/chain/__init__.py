@@ -30,10 +30,10 @@ def front_table(results: Results) -> Table:
     confirmed = rows[rows["rung"] == CONFIRMED]
     usual = confirmed[confirmed["number"] == named(rows, "default")]
     for split, name in SPLITS.items():
-        over = [effect(usual, confirmed[confirmed["number"] == choice], split) for choice in frame["number"]]
-        frame[[f"{name}_over", f"{name}_over_low", f"{name}_over_high"]] = over
+        intervals = [effect(usual, confirmed[confirmed["number"] == choice], split) for choice in frame["number"]]
+        frame[[f"{name}_over", f"{name}_over_low", f"{name}_over_high"]] = intervals
     frame["role"] = frame["number"].map({named(rows, "default"): DEFAULT, named(rows, "smallest"): SMALLEST}).fillna("")
-    shown = pd.DataFrame(
+    text_table = pd.DataFrame(
         {
             "choice": frame["words"],
             "seconds to know": frame["seconds"],
@@ -47,7 +47,7 @@ def front_table(results: Results) -> Table:
             "which": frame["role"],
         }
     )
-    return Table(frame, shown, _words(rows, frame))
+    return Table(frame, text_table, _words(rows, frame))
 
 
 def smallest_kept(frame: pd.DataFrame) -> pd.Series:
@@ -121,9 +121,9 @@ def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str
     for row in records(pairs):
         ends = [[getattr(row, f"{key}_before"), getattr(row, key)] for key in ("seconds", name)]
         axes.plot(ends[0], [100 * end for end in ends[1]], color=PALE, lw=1.2, zorder=0)
-    others = confirmed[~confirmed["number"].isin(marked)]
+    unmarked = confirmed[~confirmed["number"].isin(marked)]
     for rows, (form, tint, text) in [
-        (others, ("o", CYCLE[0], "confirmed on unseen ones, 95 % interval")),
+        (unmarked, ("o", CYCLE[0], "confirmed on unseen ones, 95 % interval")),
         *((confirmed[confirmed["number"] == key], look) for key, look in marked.items()),
     ]:
         ends = 100 * rows[[f"{name}_low", f"{name}_high"]].to_numpy()

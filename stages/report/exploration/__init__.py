@@ -35,8 +35,8 @@ def build(results: Results) -> Table:
     for key, group in grouped(rows, KEYS):
         line: dict[str, Any] = dict(zip(KEYS, key, strict=True))
         most = int(group.loc[group["stop"] == "fixed", "level"].max())
-        sure = (group["stop"] == "confidence") & np.isclose(group["level"], HEADLINE)
-        stopped = group[sure & (group["metric"] == "accuracy")]
+        is_headline = (group["stop"] == "confidence") & np.isclose(group["level"], HEADLINE)
+        stopped = group[is_headline & (group["metric"] == "accuracy")]
         for name, column in COLUMNS.items():
             ends = (1.0, most) if name == "touches" else (0.0, 1.0)
             values = within(stopped[column], shared_by(line["split"]), *ends)
@@ -45,9 +45,9 @@ def build(results: Results) -> Table:
     frame = pd.DataFrame(lines)
     most = ", ".join(map(str, sorted(set(frame["most"]))))
     words = {"headline": f"{100 * HEADLINE:.0f} %", "most": most, "not_run": results.left_out(STAGE)}
-    shown = _wide(frame, results)
+    text_table = _wide(frame, results)
     # no ranking: fewer touches stand against more right answers, as the chart shows
-    return Table(frame, shown, words, answer=[name for name in map(str, shown) if name not in HIDDEN])
+    return Table(frame, text_table, words, answer=[name for name in map(str, text_table) if name not in HIDDEN])
 
 
 def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
@@ -77,10 +77,10 @@ def curves(rows: pd.DataFrame) -> pd.DataFrame:
 def needed(rows: pd.DataFrame, accuracy: float) -> float:
     """Touches after which the mean accuracy of a fixed number reaches `accuracy`, interpolated; NaN if never."""
     curve = curves(rows).mean()
-    reached = np.flatnonzero(curve >= accuracy)
-    if len(reached) == 0:
+    places = np.flatnonzero(curve >= accuracy)
+    if len(places) == 0:
         return np.nan
-    last = curve.iloc[max(reached[0] - 1, 0) : reached[0] + 1]  # the step that reaches it, or the first touch
+    last = curve.iloc[max(places[0] - 1, 0) : places[0] + 1]  # the step that reaches it, or the first touch
     return float(np.interp(accuracy, last, last.index))
 
 

@@ -18,10 +18,10 @@ def build(results: Results) -> Table:
     answers = (frame["run"] + ": " + frame["differs"]).str.removesuffix(": ").replace(PRINTED, "yes")
     answers = answers.str.replace(r"\b(\w+_\w+)\b", r"`\1`", regex=True)  # names of files and columns
     files = {name: frame[name].map(lambda text: text and f"`{text}`") for name in ("code", "twin", "test")}
-    shown = frame.assign(run=answers, sets=frame["sets"].map(dataset_text), **files).drop(columns="differs")
+    text_table = frame.assign(run=answers, sets=frame["sets"].map(dataset_text), **files).drop(columns="differs")
     counts = {str(name).replace(" ", "_"): count for name, count in frame["run"].value_counts().items()}
     words = dict.fromkeys((run.replace(" ", "_") for run in RUNS), 0) | counts
-    return Table(frame, shown.rename(columns=HEADS), words)  # no ranking: sections do not compete
+    return Table(frame, text_table.rename(columns=HEADS), words)  # no ranking: sections do not compete
 
 
 FORMS = {

@@ -52,16 +52,16 @@ def build(results: Results) -> Table:
     truths = sources(results)
     frame = pd.DataFrame([line for source, rows in truths.items() for line in _lines(source, rows)])
     rows = results.rows("fixation").reindex(columns=["method", "task", "value", "note"])
-    absent = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])  # networks as a whole
+    absent_rows = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])  # networks as a whole
     words = {
         "accuracy": "\n".join(filter(None, starmap(_accuracy, truths.items()))),
         "no_people": no_people(truths).strip(),
-        "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent)),
+        "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent_rows)),
     }
-    shown = _wide(frame)
-    hidden = [METRICS[name] for name in ("pcc_masked", *list(METRICS)[4:])] + ["it − mesh saliency, PCC"]
-    answer = [name for name in map(str, shown) if name not in hidden]
-    return Table(frame, shown, words, Ranking("PCC", among=["truth"]), answer)
+    text_table = _wide(frame)
+    minor_columns = [METRICS[name] for name in ("pcc_masked", *list(METRICS)[4:])] + ["it − mesh saliency, PCC"]
+    answer = [name for name in map(str, text_table) if name not in minor_columns]
+    return Table(frame, text_table, words, Ranking("PCC", among=["truth"]), answer)
 
 
 def _lines(source: str, rows: pd.DataFrame) -> Iterator[dict[str, Any]]:
@@ -72,15 +72,15 @@ def _lines(source: str, rows: pd.DataFrame) -> Iterator[dict[str, Any]]:
         for metric, table in tables.items():
             if name in table:
                 mean, low, high = within(table[name], 0, *RANGES.get(metric, (0, np.inf)))
-                measured = {"metric": metric, "objects": table[name].count(), "mean": mean, "low": low, "high": high}
+                statistics = {"metric": metric, "objects": table[name].count(), "mean": mean, "low": low, "high": high}
                 gains = _gains(table, name) if metric in ("pcc", "distance") else {}
-                yield line | measured | {"seconds": seconds.get(name.method)} | gains
+                yield line | statistics | {"seconds": seconds.get(name.method)} | gains
 
 
 def _looking(rows: pd.DataFrame) -> pd.Series:
     """Seconds of the median object by method: all views drawn, looked at and put on the surface."""
-    paid = rows[rows["metric"] == "pcc"].dropna(subset=["seconds"]).drop_duplicates(["item", "method"])
-    return paid.groupby("method")["seconds"].median()
+    timed_rows = rows[rows["metric"] == "pcc"].dropna(subset=["seconds"]).drop_duplicates(["item", "method"])
+    return timed_rows.groupby("method")["seconds"].median()
 
 
 def _gains(table: pd.DataFrame, name: Detector) -> dict[str, float]:
@@ -122,9 +122,9 @@ def chart(results: Results) -> Figure:
     source, rows = next(iter(sources(results).items()))
     table = scores(rows, "pcc")
     maps = {method: table[method, FUSED] for method in networks(rows) if (method, FUSED) in table}
-    paid = rows.dropna(subset=["seconds"])
-    objects = paid[paid["metric"] == "views"].groupby("method")["item"].nunique()
-    lessons = paid[paid["metric"] == "accuracy"].drop_duplicates(["method", "task", "seconds"])
+    timed_rows = rows.dropna(subset=["seconds"])
+    objects = timed_rows[timed_rows["metric"] == "views"].groupby("method")["item"].nunique()
+    lessons = timed_rows[timed_rows["metric"] == "accuracy"].drop_duplicates(["method", "task", "seconds"])
     teaching = lessons.groupby("method")["seconds"].sum()
     frame = pd.DataFrame(map(interval, maps.values()), list(maps), ["mean", "low", "high"])
     frame = frame.assign(objects=objects, teaching=teaching, looking=_looking(rows))
@@ -175,8 +175,8 @@ def figure_3_28(results: Results) -> Figure:
     grid[0].set_ylabel("sum of squared distances,\nover that of the fewest clusters")
     grid[-1].legend(fontsize=8.5)
     figure.tight_layout()
-    sets = [f"{dataset_text(dataset)}: {', '.join(f'{label(row.task)} {row.clusters:g}' for row in records(chosen))}"
-            for (dataset,), chosen in grouped(rows[rows["chosen"]], ["dataset"])]  # fmt: skip
+    sets = [f"{dataset_text(dataset)}: {', '.join(f'{label(row.task)} {row.clusters:g}' for row in records(elbows))}"
+            for (dataset,), elbows in grouped(rows[rows["chosen"]], ["dataset"])]  # fmt: skip
     return Figure(figure, {"chosen": "; ".join(sets)})
 
 
@@ -209,8 +209,8 @@ def figure_3_31(results: Results) -> Figure:
 
 def _matrix(axes: Axes, means: pd.Series) -> None:
     """The lower triangle of the matrix, with its numbers; means: by `TASK~TASK`."""
-    named = set("~".join(means.index).split("~"))
-    tasks = [task for task in TASKS if task in named]
+    task_names = set("~".join(means.index).split("~"))
+    tasks = [task for task in TASKS if task in task_names]
     matrix = np.full((len(tasks) - 1, len(tasks) - 1), np.nan)
     for pair, value in means.items():
         across, down = sorted(map(tasks.index, str(pair).split("~")))

@@ -45,15 +45,15 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
 def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
     """Draws where a network looks for the object itself, from three sides."""
     mesh, _, maps, words = _look(results, dataset)
-    named = {method: views for method, views in maps.items() if ITSELF in views[0]}
-    some(named, f"no network named {words['name']} itself", "fixation", runnable=False)
+    by_method = {method: views for method, views in maps.items() if ITSELF in views[0]}
+    some(by_method, f"no network named {words['name']} itself", "fixation", runnable=False)
     renders = [picture(mesh, viewpoint=viewpoint, rows=ROWS) for viewpoint in VIEWPOINTS]
     images = {
         network_text(method): [_veiled(render, layers[ITSELF]) for render, layers in zip(renders, views, strict=True)]
-        for method, views in named.items()
+        for method, views in by_method.items()
     }
     figure = _panels(images, 1.9, [0.93, 0.15, 0.014, 0.7], "over its maximum")
-    return Figure(figure, words | {"task": label(ITSELF), "networks": "; ".join(images), "taught": _taught(named)})
+    return Figure(figure, words | {"task": label(ITSELF), "networks": "; ".join(images), "taught": _taught(by_method)})
 
 
 def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
@@ -68,8 +68,8 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
         layers["fused (EWIGC)"] = _fused(views[view])
         images[network_text(method)] = [_veiled(render, layer) for layer in layers.values()]
     figure = _panels(images, 1.6, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum", list(layers))
-    named = {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images), "taught": _taught(maps)}
-    return Figure(figure, words | named, dpi=95)
+    more_words = {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images), "taught": _taught(maps)}
+    return Figure(figure, words | more_words, dpi=95)
 
 
 def figure_3_34(results: Results, dataset: str | None = None) -> Figure:

@@ -170,15 +170,15 @@ def below(results: Results, claim: Claim, share: float) -> pd.Series:
     It is above zero where the first side's own quantile is the lower one. Values at the quantile count half.
     """
     sides = (claim.first, claim.other), (claim.other, claim.first)
-    joined = pd.concat(
+    side_values = pd.concat(
         [side(results, claim, selection, other) for selection, other in sides], axis=1, keys=["first", "second"]
     )
-    joined = joined.dropna()
-    if joined.empty:
-        return joined["first"]
-    edge = joined.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
-    under = (joined < edge) + (joined == edge) / 2
-    return (under["first"] - under["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
+    side_values = side_values.dropna()
+    if side_values.empty:
+        return side_values["first"]
+    edge = side_values.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
+    shares = (side_values < edge) + (side_values == edge) / 2
+    return (shares["first"] - shares["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
 
 
 @statistic(MEDIAN)

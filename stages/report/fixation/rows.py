@@ -94,8 +94,8 @@ def no_people(truths: Iterable[str]) -> str:
 def scores(rows: pd.DataFrame, metric: str, by: Sequence[str] = ("item",)) -> pd.DataFrame:
     """Frame `by` x (method, task) of a metric: means of three views (WHOLE: of all); distances, shares in per cent."""
     whole = rows["view"].astype(str) == ALL_VIEWS
-    measured = rows[(rows["metric"] == metric) & (whole == (metric in WHOLE))]
-    table = measured.pivot_table(index=list(by), columns=["method", "task"], values="value", sort=False)
+    metric_rows = rows[(rows["metric"] == metric) & (whole == (metric in WHOLE))]
+    table = metric_rows.pivot_table(index=list(by), columns=["method", "task"], values="value", sort=False)
     return 100 * table if metric.startswith("distance") or metric == "half_share" else table
 
 

@@ -45,11 +45,11 @@ def section_5_5_table(results: Results) -> Table:
     frame = pd.DataFrame(lines)
     words = {"visual": 100 * thesis["visual_accuracy"], "tactile": 100 * thesis["tactile_accuracy"]}
     words |= {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes), "new": new_object_sentences(results)}
-    shown = _shown(frame)
-    gains = [name for name in map(str, shown) if name.startswith("gain")]
-    shown = shown.fillna(dict.fromkeys(gains, "–")).fillna("not run")
+    text_table = _shown(frame)
+    gains = [name for name in map(str, text_table) if name.startswith("gain")]
+    text_table = text_table.fillna(dict.fromkeys(gains, "–")).fillna("not run")
     # no ranking: size stands against accuracy, as the chart shows
-    return Table(frame, shown, words, answer=[name for name in map(str, shown) if name not in gains])
+    return Table(frame, text_table, words, answer=[name for name in map(str, text_table) if name not in gains])
 
 
 def chart(results: Results) -> Figure:
@@ -65,12 +65,12 @@ def chart(results: Results) -> Figure:
         axes.set_title(ITEMS[split])
     panels[-1].legend(title="recognised", fontsize=9, loc="center left", bbox_to_anchor=(1.01, 0.5))
     figure.tight_layout()
-    others = ", ".join(frame["shared_layers"].unique()[1:])
+    other_layers = ", ".join(frame["shared_layers"].unique()[1:])
     words = {
         "smallest": METHODS[frame.loc[frame["megabytes"].idxmin(), "network"]],
         "megabytes": frame["megabytes"].min(),
         "ratio": frame["size_ratio"].max(),
-        "hollow": HOLLOW.format(others=others, first=first) if others else "",
+        "hollow": HOLLOW.format(others=other_layers, first=first) if other_layers else "",
     }
     return Figure(figure, words, frame)
 
@@ -116,11 +116,11 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
 
 def _note(rows: pd.DataFrame, theirs: float) -> str:
     """Sentences on one middle; every network holds what they say, so that all values stand for an interval."""
-    ratios, lost = _values(rows, "hybrid", "size_ratio"), 100 * abs(_values(rows, "apart") - _values(rows, "hybrid"))
+    ratios, losses = _values(rows, "hybrid", "size_ratio"), 100 * abs(_values(rows, "apart") - _values(rows, "hybrid"))
     note = (
         f"{dataset_text(rows['dataset'].iloc[0])}, layers {rows['mode'].iloc[0]} shared: in every network, scores of "
         f"the hybrid differ from those of the two networks by {number(_values(rows, 'hybrid', 'max_difference').max())}"
-        f" at most, accuracy by {lost.max():.2f} points at most. Size ratio {ratios.mean():.4f}; the thesis's is "
+        f" at most, accuracy by {losses.max():.2f} points at most. Size ratio {ratios.mean():.4f}; the thesis's is "
         f"{theirs:.4f}."
     )
     onnx = rows[rows["network"] == "hybrid_onnx"].groupby("metric")["value"].max()

@@ -61,10 +61,10 @@ def tried(results: Results) -> pd.DataFrame:
 
 def common(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows of the cells that all backends of their task (with points, or without) reached."""
-    reached = rows[rows["outcome"] == "reached"]
+    reached_rows = rows[rows["outcome"] == "reached"]
     total = rows.groupby("with_points")["backend"].nunique()
-    count = reached.groupby(CELL)["backend"].transform("nunique")
-    return reached[count == reached["with_points"].map(total)]
+    count = reached_rows.groupby(CELL)["backend"].transform("nunique")
+    return reached_rows[count == reached_rows["with_points"].map(total)]
 
 
 def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
@@ -80,8 +80,8 @@ def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
             logs = ratios.where(ratios > 0).apply(np.log).groupby(cells["mesh"]).mean()
             line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
         line |= {"slowest": cells["time_ratio"].max(), "seconds": cells["seconds"].median()}
-        reached = group[group["outcome"] == "reached"]
-        line |= {name: reached[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
+        reached_rows = group[group["outcome"] == "reached"]
+        line |= {name: reached_rows[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
         for shape in GROWTHS if fitted else ():
             fit = growth(cells, shape)
             line |= {f"{shape}_{name}": getattr(fit, name, np.nan) for name in ("power", "low", "high")}
@@ -225,8 +225,8 @@ def _plain(rows: pd.DataFrame) -> str:
 
 def _ratio(rows: pd.DataFrame, value: str) -> Interval:
     """(mean, low, high) of ours over the other's: geometric, over the meshes, in the cells that both reached."""
-    reached = rows[rows["outcome"] == "reached"]
-    pairs = reached.pivot(index=["mesh", "full", "target"], columns="backend", values=value)
+    reached_rows = rows[rows["outcome"] == "reached"]
+    pairs = reached_rows.pivot(index=["mesh", "full", "target"], columns="backend", values=value)
     return _over_meshes(pairs[OURS] / pairs[OTHER])
 
 

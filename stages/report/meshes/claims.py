@@ -154,9 +154,9 @@ CLAIMS = [
           RIVALS, COMBINATIONS),
     *(
         lower("T3.1.5", metric, f"attention_rivals_{short}",
-              f"Attention, in all combinations, leads to a lower error than the detectors ({how}).",
+              f"Attention, in all combinations, leads to a lower error than the detectors ({kind}).",
               RIVALS, COMBINATIONS, **printed, of="attention_rivals")
-        for short, metric, how in (("seen", SEEN, "as seen"), ("dlap", "dlap", "Laplacian distance"),
+        for short, metric, kind in (("seen", SEEN, "as seen"), ("dlap", "dlap", "Laplacian distance"),
                                    ("dnor", "dnor", "normalised Laplacian distance"))
     ),
     metro("attention_hks", "HKS is the exception: its error is lower than that of attention.", COMBINATIONS, HKS),
@@ -169,31 +169,31 @@ CLAIMS = [
           **of_3_1),
     *(
         lower("T3.1.3", metric, f"area_{short}",
-              f"Neighbourhoods by the area of the salient region lead to a lower error ({how}).",
+              f"Neighbourhoods by the area of the salient region lead to a lower error ({kind}).",
               BY_AREA, tuple(f"{name}-area" for name in BY_AREA), **printed)
-        for metric, short, how in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))
+        for metric, short, kind in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))
     ),
     # Colour, where objects have several hues.
     *(
         lower("T3.1.5", metric, f"colour_{key}_{short}",
-              f"The colour channels lower the error where objects have colours ({name}, {how}).",
+              f"The colour channels lower the error where objects have colours ({name}, {kind}).",
               f"{name}NoColour", name if name == "VisAttAll" else CLASSICAL, dataset=COLOURED)
         for key, name in (("classical", "VisAtt"), ("all", "VisAttAll"))
-        for metric, short, how in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))
+        for metric, short, kind in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))
     ),
     # Kept neighbourhoods, and points placed by chance.
     *(
-        lower(section, metric, f"{start}_{short}", f"{who} gives a better simplified model than plain QEM ({how}).",
+        lower(section, metric, f"{start}_{short}", f"{way} gives a better simplified model than plain QEM ({kind}).",
               PLAIN, method, **(KEPT | ({"of": "keep_gaze"} if short != "gaze" else {}) if start == "keep" else
                                 {"dataset": dataset or OF_OURS}))
-        for start, section, who, method in KEEPING
-        for short, metric, how, dataset in BETTER
+        for start, section, way, method in KEEPING
+        for short, metric, kind, dataset in BETTER
         if (start, short) != ("keep", "salient")  # our glance's, of which the thesis says nothing
     ),
     *(
-        lower("ours", metric, f"fit_{short}", f"Fitting the vertices to the surface improves on QSlim ({how}).", QSLIM,
+        lower("ours", metric, f"fit_{short}", f"Fitting the vertices to the surface improves on QSlim ({kind}).", QSLIM,
               PLAIN, dataset=dataset or OF_OURS)
-        for short, metric, how, dataset in BETTER
+        for short, metric, kind, dataset in BETTER
         if short in ("metro", "ssim", "gaze")
     ),
     lower("T3.1", METRO, "blind_metro",
@@ -219,9 +219,9 @@ CLAIMS += [
           scale=100.0, unit="hundredths of 1 - SSIM"),
     *(
         claimed(f"adaptive_{UNSEEN[name]}_{short}", ties=True,  # eq. 3.17 may leave three rings everywhere
-                sentence=f"Adaptive neighbourhoods lower the error of {label(UNSEEN[name])} ({how}).", worse=name,
+                sentence=f"Adaptive neighbourhoods lower the error of {label(UNSEEN[name])} ({kind}).", worse=name,
                 better=f"{name}-adaptive")
-        for claimed, short, how in ((metro, "metro", "a little, distance"), (seen, "ssim", "as seen"))
+        for claimed, short, kind in ((metro, "metro", "a little, distance"), (seen, "ssim", "as seen"))
         for name in PRINTED
     ),
     metro("ssim_over_ed", "Weights by similarity are slightly better than by Euclidean distance (distance).", ED, SSIM),

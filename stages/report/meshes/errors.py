@@ -65,9 +65,9 @@ def figure_3_4(results: Results) -> Figure:
         _draw_dots(axes, by_object(rows, methods, metric, target), CYCLE[METRICS.index(metric)], CLASSICAL)
     _dress(drawing, [f"{ERRORS[metric]}\n{said(target)}" for metric, target in cells], methods)
     objects = rows.groupby("target")["item"].nunique()
-    over = ", ".join(f"{said(target)}: {objects[target]} objects" for target in targets)
+    object_counts = ", ".join(f"{said(target)}: {objects[target]} objects" for target in targets)
     words = {"methods": ", ".join(map(short, methods)), "counts": len(targets), "classical": short(CLASSICAL)}
-    return Figure(drawing, words | {"over": over}, dpi=100)
+    return Figure(drawing, words | {"over": object_counts}, dpi=100)
 
 
 def figure_3_5(results: Results) -> Figure:
@@ -91,8 +91,8 @@ def figure_3_5(results: Results) -> Figure:
     panels[0].xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     _dress(drawing, TITLES, methods, pad=20)
     objects = rows.groupby("target")["item"].nunique()
-    over = ", ".join(f"{objects[target]} at {said(target)}" for target in targets)
-    words = {"methods": ", ".join(map(short, methods)), "objects": rows["item"].nunique(), "over": over}
+    object_counts = ", ".join(f"{objects[target]} at {said(target)}" for target in targets)
+    words = {"methods": ", ".join(map(short, methods)), "objects": rows["item"].nunique(), "over": object_counts}
     return Figure(drawing, words, dpi=100)
 
 
@@ -100,15 +100,15 @@ def figure_3_23(results: Results) -> Figure:
     """A row of panels for each data set, a panel for each error and face count, a box for each method."""
     by_set = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, PROPOSED)}
     by_set = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in by_set.items()}
-    shown = {name: rows for name, rows in by_set.items() if PLAIN in set(rows["method"])}
-    some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
-    boxes = {name: [method for method in BOXES if method in set(rows["method"])] for name, rows in shown.items()}
+    groups = {name: rows for name, rows in by_set.items() if PLAIN in set(rows["method"])}
+    some(groups, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
+    boxes = {name: [method for method in BOXES if method in set(rows["method"])] for name, rows in groups.items()}
     heights = [0.9 + 0.17 * len(methods) for methods in boxes.values()]  # of a title, the boxes and an axis
     drawing, grid = plt.subplots(
-        len(shown), 4, figsize=(10.4, sum(heights)), squeeze=False, sharey="row", height_ratios=heights,
+        len(groups), 4, figsize=(10.4, sum(heights)), squeeze=False, sharey="row", height_ratios=heights,
         layout="constrained",
     )  # fmt: skip
-    for row, (name, rows) in zip(grid, shown.items(), strict=True):
+    for row, (name, rows) in zip(grid, groups.items(), strict=True):
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
             errors = by_object(rows, boxes[name], metric, target)
             _draw_boxes(axes, errors)
@@ -117,7 +117,7 @@ def figure_3_23(results: Results) -> Figure:
         row[0].set_title(f"{name}\n{row[0].get_title('left')}", fontsize=8.5, fontweight="normal", pad=4)
         _name_rows(row[0], boxes[name], TINTS, 8)
     methods = [method for method in BOXES if any(method in group for group in boxes.values())]
-    return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
+    return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(groups)}, dpi=95)
 
 
 def _draw_boxes(axes: Axes, errors: pd.DataFrame) -> None:
@@ -213,11 +213,11 @@ def samples(results: Results) -> Figure:
     axes.set_xlabel(f"time, as a ratio to pymeshlab with {USUAL:,} samples")
     axes.set_title(SAMPLES, pad=12)
     axes.grid(True)
-    for line, tint, (name, marker, away, across, up) in zip(lines, CYCLE, METRO.values(), strict=False):
+    for line, tint, (name, marker, text_offset, across, up) in zip(lines, CYCLE, METRO.values(), strict=False):
         axes.vlines(line["cost_ratio"], 100 * line["low"], 100 * line["high"], color=tint, lw=1.2, alpha=0.35)
         axes.plot(line["cost_ratio"], 100 * line["value"], marker=marker, color=tint, mec="white", ms=7, label=name)
         for count, cost, value in line.loc[line.index.isin(NAMED), ["cost_ratio", "value"]].itertuples():
-            axes.annotate(f"{count:,}", (cost, 100 * value), xytext=away, ha=across, va=up,
+            axes.annotate(f"{count:,}", (cost, 100 * value), xytext=text_offset, ha=across, va=up,
                           textcoords="offset points", fontsize=8.5, color=INK)  # fmt: skip
     axes.margins(x=0.1, y=0.1)
     axes.legend(title="samples each way")

@@ -107,8 +107,8 @@ def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.D
     """Frame objects x methods of a column, mean over the targets that all methods reach; no objects without ranks."""
     rows = results.measured(claim.stage, claim.sets[0], **claim.where, metric=metric)
     rows = rows[[name not in (PLAIN, QSLIM) and fixed(name) for name in rows["method"]]]
-    reached = rows.groupby(CELL)["method"].transform("nunique")
-    rows = rows[reached == rows["method"].nunique()]
+    method_counts = rows.groupby(CELL)["method"].transform("nunique")
+    rows = rows[method_counts == rows["method"].nunique()]
     table = rows.pivot_table(index="item", columns="method", values=column)
     return table[table.nunique(axis=1) > 1]
 

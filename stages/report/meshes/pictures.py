@@ -51,17 +51,17 @@ def figure_3_6(results: Results) -> Figure:
     points, mesh = results.strong_points(name), results.mesh(name)
     methods = points.those_of([method for method in NAMES if method != "thesis_ed"])
     drawing, grid = square_grid(-(-len(methods) // COLUMNS), COLUMNS, side=1.6, right=1.1, gap=0.3)
-    apart = against_the_mean(mesh, {method: points[method] for method in methods})
+    ratios = against_the_mean(mesh, {method: points[method] for method in methods})
     for axes, method in zip(grid.flat, methods, strict=False):
-        show(axes, mesh, apart.get(method), points=points[method], tints=TINTS)
+        show(axes, mesh, ratios.get(method), points=points[method], tints=TINTS)
         title = f"{NAMES[method]}: {len(points[method])}"
         axes.set_title(title, fontsize=9, fontweight="normal", loc="center", pad=3)
     for axes in grid.flat[len(methods) :]:
         axes.set_axis_off()
     colour_bar(drawing, [0.94, 0.25, 0.01, 0.5], "of the detector's points", TINTS, ("fewer", "as the mean", "more"))
     ends = (pick(methods, key=lambda method: len(points[method])) for pick in (min, max))
-    few, many = (f"{len(points[method])} ({NAMES[method]})" for method in ends)
-    words = {"name": name, "count": len(methods), "few": few, "many": many, "set": dataset_text(results.sets[0])}
+    fewest, most = (f"{len(points[method])} ({NAMES[method]})" for method in ends)
+    words = {"name": name, "count": len(methods), "few": fewest, "many": most, "set": dataset_text(results.sets[0])}
     return Figure(drawing, words, dpi=95)
 
 
@@ -71,10 +71,10 @@ def figure_3_7(results: Results) -> Figure:
     for name, target, meshes in _simplified(results, DIFFERING, _preferred(results)):
         with suppress(NotRun):
             points = results.strong_points(name)
-            many, middle, few = (len(points[method]) for method in DIFFERING)
-            apart = min(many / max(middle, 1), middle / max(few, 1), ENOUGH)
+            most, middle, fewest = (len(points[method]) for method in DIFFERING)
+            contrast = min(most / max(middle, 1), middle / max(fewest, 1), ENOUGH)
             near = 1 / NEAR < len(meshes[DIFFERING[0]].faces) / FACES < NEAR
-            candidates.append(((near and filled(results.mesh(name)) > THIN, apart), name, target, meshes, points))
+            candidates.append(((near and filled(results.mesh(name)) > THIN, contrast), name, target, meshes, points))
     some(candidates, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
     _, name, target, meshes, points = max(candidates, key=lambda entry: entry[0])  # of equals the first
     drawing, grid = square_grid(1, len(DIFFERING), side=2.9, right=1.1, gap=0.3)
@@ -93,16 +93,16 @@ def figure_3_8(results: Results) -> Figure:
         pairs += islice(_levels(results, (method, PLAIN), objects), 1)
     message = f"no levels of detail of {' or '.join(KEEPING)} beside plain QEM"
     name, levels = some(pairs, message, "lod", runnable=False)[0]
-    (method, kept), (_, plain) = levels.items()
+    (method, salient), (_, even) = levels.items()
     mesh, points, rows = results.mesh(name), results.strong_points(name)[method], ROWS["figure_3_8"]
-    targets = sorted(set(kept) & set(plain), key=lambda target: -len(kept[target].faces))[-LEVELS:]
-    fields = [[errors(mesh, level[target]) for target in targets] for level in (kept, plain)]
+    targets = sorted(set(salient) & set(even), key=lambda target: -len(salient[target].faces))[-LEVELS:]
+    fields = [[errors(mesh, level[target]) for target in targets] for level in (salient, even)]
     top = float(np.quantile(np.concatenate(sum(fields, [])), TOP)) or 1.0
     drawing, grid = square_grid(3, len(targets) + 1, side=1.9, right=0.9, gap=0.25)
     show(grid[0, 0], mesh, points=points, rows=rows)
     for axes, target in zip(grid[0, 1:], targets, strict=True):
-        show(axes, kept[target], wires=True, rows=rows)
-    faces = [f"{len(kept[target].faces):,} faces" for target in targets]
+        show(axes, salient[target], wires=True, rows=rows)
+    faces = [f"{len(salient[target].faces):,} faces" for target in targets]
     name_panels(grid, [f"original: {len(mesh.faces):,} faces, {len(points)} points", *faces], letters=(9.5, 10))
     for row, field, way in zip(grid[1:], fields, (f"{short(method)} kept", label(PLAIN)), strict=True):
         row[0].text(0.95, 0.5, f"error,\n{way}", ha="right", va="center", transform=row[0].transAxes)
@@ -125,10 +125,10 @@ def figure_3_21(results: Results) -> Figure:
     keeping = GUIDED if results.sets[0] == SECTION_3_2 else OURS
     for name, levels in _levels(results, (PLAIN, keeping), preferred, len(preferred)):
         counts = sorted(filter(str.isdigit, levels[PLAIN]), key=size)
-        shown = (counts if len(counts) > 1 else sorted(levels[PLAIN], key=size))[:LEVELS]
+        face_counts = (counts if len(counts) > 1 else sorted(levels[PLAIN], key=size))[:LEVELS]
         # Area for wires, and the most targets within reach of kept points.
-        score = (filled(results.mesh(name)) > THIN, len(set(shown) & set(levels[keeping])))
-        candidates.append((score, name, shown, levels))
+        score = (filled(results.mesh(name)) > THIN, len(set(face_counts) & set(levels[keeping])))
+        candidates.append((score, name, face_counts, levels))
     some(candidates, f"no simplified mesh with the points of {keeping} kept", "lod")
     _, name, targets, levels = max(candidates, key=lambda entry: entry[0])
     original, points = results.mesh(name), results.strong_points(name)[keeping]
@@ -154,15 +154,15 @@ def figure_3_22(results: Results) -> Figure:
     """Two objects with the points of ED, SSIM and SVM kept, with fixed and with adaptive neighbourhoods."""
     printed = {unseen: name for name, unseen in UNSEEN.items()} if results.sets[0] == SECTION_3_2 else {}
     methods = [printed.get(method, method) for method in FIXED_ADAPTIVE]
-    shown = list(islice(_simplified(results, methods, results.settings.figure_objects), 2))
-    some(shown, f"no object simplified by all of {', '.join(methods)}", "lod", runnable=False)
-    drawing, grid = square_grid(len(shown), len(methods), side=1.6, gap=0.15)
-    for row, (*_, meshes) in zip(grid, shown, strict=True):
+    examples = list(islice(_simplified(results, methods, results.settings.figure_objects), 2))
+    some(examples, f"no object simplified by all of {', '.join(methods)}", "lod", runnable=False)
+    drawing, grid = square_grid(len(examples), len(methods), side=1.6, gap=0.15)
+    for row, (*_, meshes) in zip(grid, examples, strict=True):
         for axes, mesh in zip(row, meshes.values(), strict=True):
             show(axes, mesh, wires=True, rows=ROWS["figure_3_22"])
     above = [label(method).replace(", ", ",\n") for method in FIXED_ADAPTIVE]
-    name_panels(grid, above, [f"{name}\n{said(target)}" for name, target, _ in shown], letters=(9.5, 9), away=0.02)
-    words = {"names": " and ".join(name for name, *_ in shown), "set": dataset_text(results.sets[0])}
+    name_panels(grid, above, [f"{name}\n{said(target)}" for name, target, _ in examples], letters=(9.5, 9), away=0.02)
+    words = {"names": " and ".join(name for name, *_ in examples), "set": dataset_text(results.sets[0])}
     return Figure(drawing, words, dpi=85)
 
 

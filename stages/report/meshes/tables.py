@@ -61,19 +61,19 @@ def _wide(frame: pd.DataFrame, targets: list[str]) -> pd.DataFrame:
     """A row a method: its points at the fewest faces, then rings and shares by face count, most faces first."""
     cells = frame.set_index(["method", "target"])
     methods = frame["method"].unique()
-    shown = pd.DataFrame({"kept points": [short(name) for name in methods]})
+    text_table = pd.DataFrame({"kept points": [short(name) for name in methods]})
 
     def column(name: str, target: str, text: str = "{:.1f}", factor: float = 1.0) -> list[str]:
         values = factor * cells.xs(target, level="target")[name].reindex(methods)
         return ["–" if np.isnan(value) else text.format(value) for value in values]
 
-    shown["points"] = column("points", targets[-1])
-    shown[SHARES["without_points"]] = column("without_points", targets[-1], "{:.0f}", 100)
+    text_table["points"] = column("points", targets[-1])
+    text_table[SHARES["without_points"]] = column("without_points", targets[-1], "{:.0f}", 100)
     for target in targets:
-        shown[f"rings, {said(target)}"] = column("rings", target)
+        text_table[f"rings, {said(target)}"] = column("rings", target)
         for name in ("three_rings", "as_plain"):
-            shown[f"{SHARES[name]}, {said(target)}"] = column(name, target, "{:.0f}", 100)
-    return shown
+            text_table[f"{SHARES[name]}, {said(target)}"] = column(name, target, "{:.0f}", 100)
+    return text_table
 
 
 CELL = ["item", "target"]
@@ -118,9 +118,9 @@ def paired_cells(
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
     rows = rows if methods is None else rows[rows["method"].isin(list(methods))]
     rows = rows.merge(times, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
-    counted = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
-    reached = rows.assign(method=counted).groupby([*CELL, "metric"])["method"].transform("nunique")
-    return rows[reached == rows["method"].nunique()]
+    methods_met = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
+    method_counts = rows.assign(method=methods_met).groupby([*CELL, "metric"])["method"].transform("nunique")
+    return rows[method_counts == rows["method"].nunique()]
 
 
 def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFrame:
@@ -142,8 +142,8 @@ def by_object(rows: pd.DataFrame, methods: list[str], metric: str, target: str |
 def face_counts(rows: pd.DataFrame) -> list[str]:
     """The targets of the rows with enough objects, most faces first: counts, or shares where there are no counts."""
     objects = rows.groupby("target")["item"].nunique()
-    enough = sorted(objects.index[objects >= FEWEST], key=size)
-    return [target for target in enough if target.isdigit()] or enough
+    frequent = sorted(objects.index[objects >= FEWEST], key=size)
+    return [target for target in frequent if target.isdigit()] or frequent
 
 
 def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
@@ -227,13 +227,13 @@ def dataset(results: Results) -> Table:
     """The objects of the run: one row per object of the first data set, and what was refused."""
     manifest, refused = (results.table("meshes", f"{name}.csv") for name in ("manifest", "refused"))
     frame = manifest.filter(["object", "vertices", "faces", "parts", "watertight", "repairs", "licence"])
-    named = "; ".join(f"{row.object} ({row.reason})" for row in refused.itertuples())
+    refusals = "; ".join(f"{row.object} ({row.reason})" for row in refused.itertuples())
     words = {
         "count": len(frame), "least": frame["faces"].min(), "most": frame["faces"].max(),
-        "closed": frame["watertight"].sum(), "refused": f"Refused: {named}." if named else "No mesh was refused.",
+        "closed": frame["watertight"].sum(), "refused": f"Refused: {refusals}." if refusals else "No mesh was refused.",
     }  # fmt: skip
-    shown = frame.fillna("").assign(watertight=frame["watertight"].map({True: "yes", False: "no"}))
-    return Table(frame, shown, words)  # no ranking: objects do not compete
+    text_table = frame.fillna("").assign(watertight=frame["watertight"].map({True: "yes", False: "no"}))
+    return Table(frame, text_table, words)  # no ranking: objects do not compete
 
 
 def combinations(results: Results) -> Table:
@@ -248,8 +248,8 @@ def combinations(results: Results) -> Table:
     channels = [", ".join(map(label, METHODS[method].channels)) for method in COMBINATIONS]
     frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
     frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)
-    shown = {metric: (UNITS[metric] * frame[metric]).map(number).replace("–", "not run") for metric in metrics}
-    return Table(frame, frame.assign(**shown).rename(columns=ERRORS), best=Ranking(ERRORS[metrics[0]], lowest=True))
+    columns = {metric: (UNITS[metric] * frame[metric]).map(number).replace("–", "not run") for metric in metrics}
+    return Table(frame, frame.assign(**columns).rename(columns=ERRORS), best=Ranking(ERRORS[metrics[0]], lowest=True))
 
 
 def every_detector(results: Results) -> Table:
@@ -261,12 +261,12 @@ def every_detector(results: Results) -> Table:
     frame = pd.concat(parts, names=["data", None]).reset_index("data")
     frame.insert(3, "objects", frame.pop("objects"))
     counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in by_set.items())
-    shown, answer = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
+    texts, answer = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
     answer = [
-        name for name in map(str, shown) if name in answer or name in COUNTS or name.startswith(ERRORS["gaze_error"])
+        name for name in map(str, texts) if name in answer or name in COUNTS or name.startswith(ERRORS["gaze_error"])
     ]
     best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
-    return Table(frame, shown, {"counts": counts}, best, ["kept points", *answer])
+    return Table(frame, texts, {"counts": counts}, best, ["kept points", *answer])
 
 
 def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
@@ -301,11 +301,11 @@ def table_3_2(results: Results) -> Table:
     cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
     counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
     objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
-    over = "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
-    shown = _blocks_wide(cells)
-    answer = [name for name in map(str, shown) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
+    object_sets = "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
+    text_table = _blocks_wide(cells)
+    answer = [name for name in map(str, text_table) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
     best = Ranking(next(name for name in answer[2:] if not name.endswith("thesis")), True, ["target"], KEEP_NOTHING)
-    return Table(frame, shown, {"objects": over, "fewest": FEWEST}, best, answer)
+    return Table(frame, text_table, {"objects": object_sets, "fewest": FEWEST}, best, answer)
 
 
 def _parts(results: Results) -> Iterator[pd.DataFrame]:

@@ -42,10 +42,10 @@ touches = partial(Claim, section="T4.2.4", stage="recorded", dataset="pressure_i
 
 def on_set(group: str, **fields: Any) -> Claim:
     """A claim on one set of classes; of those that are drawn each repetition has its own."""
-    drawn = group.endswith("drawn")
-    phrases = OF_SETS | ({("over", "repetition"): "sets of classes"} if drawn else {})
+    is_drawn = group.endswith("drawn")
+    phrases = OF_SETS | ({("over", "repetition"): "sets of classes"} if is_drawn else {})
     where = {"group": group} | ALL | fields.pop("where", {})
-    return touches(where=where, shared=0.0 if drawn else None, phrases=phrases, **fields)
+    return touches(where=where, shared=0.0 if is_drawn else None, phrases=phrases, **fields)
 
 
 TOUCHES = [

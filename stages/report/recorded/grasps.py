@@ -55,7 +55,7 @@ def _better(frame: pd.DataFrame) -> str:
     test = (frame["task"] == "slip") & (frame["split"] == Split.TEST_OBJECTS) & (frame["palm"] != "all")
     trials = frame[test].set_index(BY)
     common = trials.loc[trials["classifier"] == "majority", "accuracy"]
-    others = trials[trials["classifier"] != "majority"]
-    counts = (others["low"] > common.reindex(others.index)).groupby(["palm", "scaled"]).agg(["sum", "size"])
+    learners = trials[trials["classifier"] != "majority"]
+    counts = (learners["low"] > common.reindex(learners.index)).groupby(["palm", "scaled"]).agg(["sum", "size"])
     texts = [f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in counts.to_records()]
     return "; ".join(texts)

@@ -66,16 +66,16 @@ def printed(data: str, thesis: str, results: Results) -> Table:
     rows = measured(results, "accuracy")
     trials = rows[(rows["data"] == data) & (rows["split"] == Split.RANDOM) & (rows["weights"] == "imagenet")]
     frame = pd.DataFrame({"network": list(PRINTED)})
-    shown = pd.DataFrame({"network": list(PRINTED.values())})
+    texts = pd.DataFrame({"network": list(PRINTED.values())})
     for mode in MODES:
         group = trials[trials["mode"] == mode]
         spans = [interval(group[group["method"] == network]["value"], shared_by(Split.RANDOM)) for network in PRINTED]
         frame[[mode, f"{mode}_low", f"{mode}_high"]] = spans
-        frame[f"{mode}_thesis"] = figures.loc[shown["network"], f"acc_{mode}"].to_numpy()
+        frame[f"{mode}_thesis"] = figures.loc[texts["network"], f"acc_{mode}"].to_numpy()
         size = "".join(f", {pixels} px" for pixels in group["size"].unique())
-        shown[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in spans]
-        shown[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
-    return Table(frame, shown, {"absent": "" if len(trials) else ABSENT})  # no ranking: the thesis's rows are printed
+        texts[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in spans]
+        texts[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
+    return Table(frame, texts, {"absent": "" if len(trials) else ABSENT})  # no ranking: the thesis's rows are printed
 
 
 def chart(results: Results) -> Figure:
@@ -84,8 +84,8 @@ def chart(results: Results) -> Figure:
     frame = lines[(lines[list(SETTING)] == pd.Series(SETTING)).all(axis=1)].rename(columns={"method": "network"})
     frame = frame.merge(results.bench("networks"), on=["network", "size"])
     some(frame, "no frozen network on the pressure images", "transfer", runnable=False)
-    enough = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
-    smallest = label(enough.loc[enough["parameters"].idxmin(), "network"])
+    near_best = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
+    smallest = label(near_best.loc[near_best["parameters"].idxmin(), "network"])
     figure, panels = plt.subplots(1, len(COSTS), figsize=(11.4, 3.8), sharey=True)
     for axes, (words, _) in zip(panels, COSTS.values(), strict=True):
         axes.set_xlabel(words)

@@ -67,8 +67,8 @@ def measured_lines(results: Results) -> pd.DataFrame:
         lines.append([*line, guess.get((data, split), np.nan)])
     frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES]).join(rows.groupby(KEYS)["pretrained"].first(), on=KEYS)
     order = {name: k for k, name in enumerate([*DATA, *SPLITS, CLASSICAL[0]])}
-    by = {"by": ["data", "split", "method"], "key": lambda names: names.map(order).fillna(len(order))}
-    return frame.sort_values(**by, kind="stable", ignore_index=True)
+    sort_options = {"by": ["data", "split", "method"], "key": lambda names: names.map(order).fillna(len(order))}
+    return frame.sort_values(**sort_options, kind="stable", ignore_index=True)
 
 
 def commonest(results: Results) -> pd.Series:

@@ -54,20 +54,20 @@ def table_4_4(results: Results) -> Table:
     )
     names = {"set": lambda name: CLASSES.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
     cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
-    shown = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
+    text_table = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
     by_metric = dict(list(rows.groupby("metric")))
-    removed = by_metric["share_similar"].groupby("set")["value"].mean()
-    chosen = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
+    removals = by_metric["share_similar"].groupby("set")["value"].mean()
+    class_lists = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
     near, far = (interval(by_metric[f"{kind}_correlation"]["value"]) for kind in ("neighbour", "pair"))
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
-    lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
+    optimism = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
     words = {
-        "removed": ", ".join(f"{text} {100 * removed.get(name, np.nan):.1f} %" for name, text in CLASSES.items()),
-        "four": chosen.get("four_alike", ""), "six": chosen.get("six_alike", ""),
+        "removed": ", ".join(f"{text} {100 * removals.get(name, np.nan):.1f} %" for name, text in CLASSES.items()),
+        "four": class_lists.get("four_alike", ""), "six": class_lists.get("six_alike", ""),
         "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
-        "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
+        "knn": optimism["knn"], "least": optimism.min(), "most": optimism.max(),
     }  # fmt: skip
-    return Table(frame, shown, words, Ranking("kNN, %", among=["set"], exempt=PRINTED.values()))
+    return Table(frame, text_table, words, Ranking("kNN, %", among=["set"], exempt=PRINTED.values()))
 
 
 def _scores(rows: pd.DataFrame) -> dict[tuple, pd.Series]:

@@ -49,8 +49,8 @@ def build(results: Results) -> Table:
         GROUPS[group]: f"{share:.2f}" for group, share in zip(GROUPS, shares, strict=True)
     } for name, shares in PUBLISHED.items()]  # fmt: skip
     ours = [_line(part) for _, part in grouped(frame, ["method"])]
-    shown = pd.DataFrame(ours + published).fillna("–")
-    return Table(frame, shown, {"chosen": _chosen(frame)})
+    text_table = pd.DataFrame(ours + published).fillna("–")
+    return Table(frame, text_table, {"chosen": _chosen(frame)})
 
 
 def conditions(results: Results) -> Table:
@@ -62,12 +62,12 @@ def conditions(results: Results) -> Table:
         for (group, method, level), trials in grouped(rows, ["group", "method", "level"])
     ]
     frame = pd.DataFrame(lines)
-    shown = frame[frame["method"].isin(SHOWN)]
-    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(shown)]
+    subset = frame[frame["method"].isin(SHOWN)]
+    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(subset)]
     names = [
-        f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(shown["group"], shown["method"], strict=True)
+        f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(subset["group"], subset["method"], strict=True)
     ]
-    wide = shown.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
+    wide = subset.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
     wide = wide.pivot(index=["condition", "level"], columns="name", values="cell")
     wide = wide.reindex(frame.set_index(["condition", "level"]).index.unique()).rename_axis(columns=None).reset_index()
     return Table(frame, wide.assign(condition=wide["condition"].map(CONDITIONS), level=wide["level"].map(number)))
@@ -99,8 +99,8 @@ def _chosen(frame: pd.DataFrame) -> str:
 def _varied(results: Results) -> Iterator[tuple[str, pd.DataFrame]]:
     """(condition, its rows within the training part, with the column level); undisturbed for heard and cells."""
     rows = results.rows("recorded", SET, part="training", metric="accuracy")
-    plain, most = rows[rows["disturbance"].isna()], rows["cells"].max()
-    yield "heard", plain[plain["cells"] == most].assign(level=lambda part: part["heard"])
+    plain, max_cells = rows[rows["disturbance"].isna()], rows["cells"].max()
+    yield "heard", plain[plain["cells"] == max_cells].assign(level=lambda part: part["heard"])
     yield (
         "cells",
         plain[plain["heard"] == 1].assign(level=lambda part: part["cells"]).sort_values("level", kind="stable"),
@@ -119,12 +119,12 @@ def grasp_series(results: Results) -> Table:
     scores = {key: trials.set_index("item")["value"] for key, trials in grouped(rows, ["method", "part"])}
     lines = []
     for method in rows["method"].unique():
-        trials, listed = scores[method, "training"], scores[method, "test"]
+        trials, test_hits = scores[method, "training"], scores[method, "test"]
         line = {"method": method, **dict(zip(("accuracy", "low", "high"), within(trials), strict=True))}
         gain = dict(zip(("gain", "gain_low", "gain_high"), interval(scores[OURS, "training"] - trials), strict=True))
-        lines.append(line | gain | {"grasps": len(trials), "listed": int(listed.sum()), "listed_of": len(listed)})
+        lines.append(line | gain | {"grasps": len(trials), "listed": int(test_hits.sum()), "listed_of": len(test_hits)})
     frame = pd.DataFrame(lines)
-    shown = pd.DataFrame({
+    text_table = pd.DataFrame({
         "method": frame["method"].map(label),
         "grasps left out in turn, %": [
             with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(frame)
@@ -137,5 +137,5 @@ def grasp_series(results: Results) -> Table:
     })  # fmt: skip
     counts = rows[rows["part"] == "training"].drop_duplicates("item")["item"].str.split("/").str[0].value_counts()
     return Table(
-        frame, shown, {"grasps": int(counts.sum()), "commonest": 100 * counts.max() / counts.sum()}, BEST_GRASPS
+        frame, text_table, {"grasps": int(counts.sum()), "commonest": 100 * counts.max() / counts.sum()}, BEST_GRASPS
     )

@@ -57,15 +57,15 @@ def counts_table(results: Results) -> Table:
     costs = rows[rows["condition"] == "cost"].pivot(index="method", columns="metric", values="value")
     costs = costs.reindex(list(MODELS), columns=["fit", "ask"]).dropna()
     texts = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in records(costs)]
-    measured, keys = rows[rows["metric"].isin(METRICS)], ["condition", "method"]
-    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(measured)]
-    wide = measured.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
+    subset, keys = rows[rows["metric"].isin(METRICS)], ["condition", "method"]
+    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(subset)]
+    wide = subset.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
     wide = wide.fillna("–").rename(columns={metric: head for metric, (head, *_) in METRICS.items()})
-    wide = wide.join(measured.groupby(keys)[["cases", "objects"]].max().astype(int))
+    wide = wide.join(subset.groupby(keys)[["cases", "objects"]].max().astype(int))
     wide = wide.loc[[key for key in pd.MultiIndex.from_product([CONDITIONS, MODELS]) if key in wide.index]]
     wide = wide.rename(CONDITIONS, level="condition").rename(MODELS, level="method")
-    shown = wide.rename_axis(["asked about", "model"]).reset_index()
-    return Table(rows, shown, {"costs": "; ".join(texts) or "not measured"})
+    text_table = wide.rename_axis(["asked about", "model"]).reset_index()
+    return Table(rows, text_table, {"costs": "; ".join(texts) or "not measured"})
 
 
 def figure(results: Results) -> Figure:
@@ -90,8 +90,8 @@ def _measured(results: Results, conditions: list[str]) -> pd.DataFrame:
 
 def _of(rows: pd.DataFrame, condition: str, metric: str) -> pd.DataFrame:
     """Frame MODELS x (value, low, high), NaN where it was not measured."""
-    measured = rows[(rows["condition"] == condition) & (rows["metric"] == metric)].set_index("method")
-    return measured[["value", "low", "high"]].reindex(list(MODELS))
+    metric_rows = rows[(rows["condition"] == condition) & (rows["metric"] == metric)].set_index("method")
+    return metric_rows[["value", "low", "high"]].reindex(list(MODELS))
 
 
 def _waste(axes: Axes, rows: pd.DataFrame) -> None:
@@ -155,23 +155,23 @@ SMALL = {"fontsize": 9, "fontweight": "normal", "loc": "center"}  # titles
 def frames(results: Results) -> Figure:
     """Rendered frames with their displacement, above the faces and errors of all frames."""
     path = there(results.folder("scene") / "pictures.npz", "no data/scene/pictures.npz", "scene")
-    stored = read_arrays(path)
+    arrays = read_arrays(path)
     rows, scene, tolerance, unit = scene_rows(results, metric=["faces", "error"], factor=1, item=None)
     rows = rows[rows["matched"].isin(["", "error"])]  # plans equal to ours, or for themselves
     rows = rows[rows["frame"] != "all"].astype({"frame": int})
-    methods, frames = [str(method) for method in stored["methods"]], stored["frames"]
+    methods, frames = [str(method) for method in arrays["methods"]], arrays["frames"]
     brightest = tolerance if unit == "pixels" else 1.0  # displacement in pixels
     figure = plt.figure(figsize=(12, ROW * len(frames) + CHART))
     pictures, charts = figure.subfigures(2, 1, squeeze=False, height_ratios=[ROW * len(frames), CHART]).flat
     bare = {"squeeze": False, "gridspec_kw": GRID, "subplot_kw": {"xticks": [], "yticks": []}}
     grid = pictures.subplots(len(frames), 2 * len(methods) - 1, **bare)
-    for line, frame, rgb, displacement in zip(grid, frames, stored["rgb"], stored["displacement"], strict=True):
+    for line, frame, rgb, displacement in zip(grid, frames, arrays["rgb"], arrays["displacement"], strict=True):
         numbers = rows[rows["frame"] == frame].pivot_table(index="method", columns="metric", values="value")
         box = _box(rgb[0])
         for axes, picture, method in zip(line, rgb, methods, strict=False):
             axes.imshow(picture[box])
-            measured = f"{numbers.loc[method, 'faces']:,.0f} faces, error {number(numbers.loc[method, 'error'])}"
-            axes.set_title(f"{NAMES[method]}\n{measured}", **SMALL)
+            caption = f"{numbers.loc[method, 'faces']:,.0f} faces, error {number(numbers.loc[method, 'error'])}"
+            axes.set_title(f"{NAMES[method]}\n{caption}", **SMALL)
         for axes, values, method in zip(line[len(methods) :], displacement[1:], methods[1:], strict=True):
             axes.set_facecolor("#dddddd")
             axes.imshow(values[box].astype(float), cmap="inferno", vmin=0, vmax=brightest, interpolation="nearest")

@@ -26,11 +26,11 @@ def needs(results: Results) -> Table:
     rows, lines, frame = _rows(results), [], []
     full = rows[rows["task"] == "full"].set_index("item")["value"]
     for (task, condition), group in _tasks(rows):
-        need = group.set_index("item")["value"]
-        share = 100 * need / full[need.index]
-        median, low, high = interval(need, statistic=np.median)
-        ends = np.quantile(need, [0.05, 0.95])
-        frame.append({"task": task, "condition": condition, "objects": len(need), "median": median, "low": low,
+        faces = group.set_index("item")["value"]
+        share = 100 * faces / full[faces.index]
+        median, low, high = interval(faces, statistic=np.median)
+        ends = np.quantile(faces, [0.05, 0.95])
+        frame.append({"task": task, "condition": condition, "objects": len(faces), "median": median, "low": low,
                       "high": high, "q05": ends[0], "q95": ends[1], "share": share.median()})  # fmt: skip
         lines.append({
             "task": words_of(task, condition), "faces, median": with_interval(median, low, high, places=0),
@@ -50,12 +50,12 @@ def needs_figure(results: Results) -> Figure:
     tasks = [(("full", np.nan), rows[rows["task"] == "full"]), *_tasks(rows)]
     drawing, axes = plt.subplots(figsize=(7.4, 0.42 * len(tasks) + 1.2))
     for place, ((task, _), group) in enumerate(reversed(tasks)):
-        need = np.sort(group["value"])
+        faces = np.sort(group["value"])
         tint = TASKS[task][-1] if task in TASKS else INK
         axes.plot(
-            need, place + 0.5 * (np.arange(len(need)) / len(need) - 0.5), "o", ms=3.5, mew=0, color=tint, alpha=0.6
+            faces, place + 0.5 * (np.arange(len(faces)) / len(faces) - 0.5), "o", ms=3.5, mew=0, color=tint, alpha=0.6
         )
-        median, low, high = interval(need, statistic=np.median)
+        median, low, high = interval(faces, statistic=np.median)
         axes.plot([low, high], [place] * 2, color=INK, lw=1.6)
         axes.plot(median, place, "|", color=INK, ms=11, mew=2)
     axes.set_yticks(range(len(tasks)), [words_of(*key) for key, _ in reversed(tasks)])
@@ -185,14 +185,14 @@ def random_table(results: Results) -> Table:
         line |= {"worst jump": entry["step_worst"], "planning, ms a frame": entry["planning_ms"]}
         line["drawing time / full"] = with_interval(*times[plan], places=2) if plan in times else "–"
         lines.append(line)
-    shown = pd.DataFrame(lines)
-    shown["faces a frame"] = shown["faces a frame"].round()
+    text_table = pd.DataFrame(lines)
+    text_table["faces a frame"] = text_table["faces a frame"].round()
     words = {
         "scenes": wide.index.get_level_values("group").nunique(),
         "tolerance": amount(first["tolerance"], UNITS[first["kind"]]), "foresight": _foresight(wide),
         "drawing": drawing(results), "planning": planning(results),
     }  # fmt: skip
-    return Table(pd.DataFrame(frame), shown, words)
+    return Table(pd.DataFrame(frame), text_table, words)
 
 
 ALLOWED = 5.0  # per cent more faces that an online planner may need
@@ -268,22 +268,22 @@ def planning(results: Results) -> str:
     except NotRun:
         return ""
     less = with_interval(*interval(times["uniform"] - times[OURS]), places=1)
-    spent = wide.groupby(["method", "matched"])["planning_ms"].median()
-    text = f"Planning our levels costs {number(spent[OURS, ''])} ms a frame, and drawing them is {less} ms faster than "
+    costs = wide.groupby(["method", "matched"])["planning_ms"].median()
+    text = f"Planning our levels costs {number(costs[OURS, ''])} ms a frame, and drawing them is {less} ms faster than "
     text += "drawing uniform ones."
     looked_up = ("beforehand", "displacement")
-    if looked_up in spent and looked_up[0] in times:
+    if looked_up in costs and looked_up[0] in times:
         less = with_interval(*interval(times["uniform"] - times[looked_up[0]]), places=1)
         text += (
-            f" Looking up errors that were rendered beforehand costs {number(spent[looked_up])} ms, and drawing these"
+            f" Looking up errors that were rendered beforehand costs {number(costs[looked_up])} ms, and drawing these"
         )
         text += f" levels is {less} ms faster."
     blind = ("online_unrendered", "")
-    if blind not in spent:
+    if blind not in costs:
         return text
     uniform = wide.xs(UNIFORM_LEVELS, level=["method", "matched"])["faces"]
     saved = 100 * (1 - wide.xs(blind, level=["method", "matched"])["faces"] / uniform).dropna()
-    text += f" The plan that renders nothing costs {number(spent[blind])} ms and saves "
+    text += f" The plan that renders nothing costs {number(costs[blind])} ms and saves "
     return text + f"{with_interval(*interval(saved), places=0)} % of the faces of uniform levels by distance."
 
 

@@ -52,12 +52,12 @@ def scene_table(results: Results) -> Table:
     wide, saved = wide[wide["faces"].notna()], savings(rows)
     text = {(row.rival, row.matched): row.text for row in records(saved)}
     parts = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SAID if key in text]
-    shown = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
-    shown = shown.assign(held=shown["held"].map(percent)).map(number).rename(columns=COLUMNS)
-    shown["faces that ours saves, %"] = [text.get(key, "–") for key in wide.index]
-    shown = shown.assign(seconds=wide["seconds"].map(number)).replace({"0.000": "0"})
-    shown = shown.rename(SPOKEN, level="method").rename(MATCHED, level="matched")
-    shown = shown.rename_axis(["levels chosen by", "equal to ours in"]).reset_index()
+    text_table = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
+    text_table = text_table.assign(held=text_table["held"].map(percent)).map(number).rename(columns=COLUMNS)
+    text_table["faces that ours saves, %"] = [text.get(key, "–") for key in wide.index]
+    text_table = text_table.assign(seconds=wide["seconds"].map(number)).replace({"0.000": "0"})
+    text_table = text_table.rename(SPOKEN, level="method").rename(MATCHED, level="matched")
+    text_table = text_table.rename_axis(["levels chosen by", "equal to ours in"]).reset_index()
     notes = results.rows("scene", frame="all", factor=1).dropna(subset=["note"]).drop_duplicates(["method", "note"])
     words = {
         "scene": scene,
@@ -66,7 +66,7 @@ def scene_table(results: Results) -> Table:
         "left": left_of(saved),
         "noted": "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in records(notes)),
     }
-    return Table(wide.reset_index(), shown, words)
+    return Table(wide.reset_index(), text_table, words)
 
 
 def chart(results: Results) -> Figure:
@@ -119,7 +119,7 @@ def scenes(results: Results) -> Table:
     frame = wide.reindex(lines).reindex(columns=VALUES).dropna(subset=["faces"]).join(saved[[*SAVED.values(), "text"]])
     frame = frame.reset_index()
     limited = (frame["matched"] == "limit") & (frame["method"] == OURS)
-    shown = {
+    text_columns = {
         "scene": frame["scene"],
         "tolerance": [amount(row.tolerance, UNITS[row.kind]) for row in records(frame)],
         "levels chosen by": frame["method"].map(NAMES) + limited.map({True: ", limited", False: ""}),
@@ -135,7 +135,7 @@ def scenes(results: Results) -> Table:
         "left": left_of(savings(rows)),
         "planning": planning(results),
     }
-    return Table(frame.drop(columns="text"), pd.DataFrame(shown), words)
+    return Table(frame.drop(columns="text"), pd.DataFrame(text_columns), words)
 
 
 def _said(rows: pd.DataFrame) -> str:

@@ -41,12 +41,12 @@ def table(results: Results) -> Table:
         thesis=frame["thesis"].where((frame[["split", *EMPTY]] == [Split.OBJECTS, "", ""]).all(axis=1))
     )
     down = ["dataset", "split", "cells", "pitch", "width"]
-    shown = grid(
+    text_table = grid(
         blocks(cells, down, "classifier", {"thesis": lambda dataset: PRINTED}), down, "classifier",
         names={"dataset": dataset_text, "split": SPLITS.get}, head=lambda name: f"{label(name)}, %",
     ).rename(columns={"split": "objects", "pitch": "pitch, units", "width": "width, units"})  # fmt: skip
     words = {"classes": _classes(rows), "smallest": _smallest(smallest)}
-    return Table(frame, shown, words, Ranking("kNN, %", among=["dataset", "objects"], exempt=[PRINTED]))
+    return Table(frame, text_table, words, Ranking("kNN, %", among=["dataset", "objects"], exempt=[PRINTED]))
 
 
 def _arrays(frame: pd.DataFrame) -> list[str]:

@@ -79,8 +79,8 @@ def figure_4_15(results: Results) -> Figure:
 
 def followed(mesh: Mesh, pair: np.ndarray) -> SectionCurve:
     """The curve that was followed on the plane through the object's centre and a pair (2,) of vertices."""
-    used = mesh.vertices[np.unique(mesh.faces)]
-    return contour(mesh, [(used.min(axis=0) + used.max(axis=0)) / 2, *mesh.vertices[pair]])
+    vertices = mesh.vertices[np.unique(mesh.faces)]
+    return contour(mesh, [(vertices.min(axis=0) + vertices.max(axis=0)) / 2, *mesh.vertices[pair]])
 
 
 class Canvas:
@@ -103,9 +103,9 @@ class Canvas:
         points = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
         back = self.viewpoint.axes[2]
         middles = (points[:-1] + points[1:]) / 2 + CLEAR * back
-        hidden = self.scene.cast(middles, np.broadcast_to(back, middles.shape)).hit
+        is_hidden = self.scene.cast(middles, np.broadcast_to(back, middles.shape)).hit
         across, down = self.pixels(points)
-        for mask, style in zip((hidden, ~hidden), STROKES, strict=True):
+        for mask, style in zip((is_hidden, ~is_hidden), STROKES, strict=True):
             # One stroke a run of segments that are alike, so that dashes do not start anew at each.
             bounds = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int)))
             for start, stop in bounds.reshape(-1, 2):
@@ -140,14 +140,14 @@ def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Seq
     folder = results.folder("contours")
     names = some(object_files(folder), "no data/contours", "contours")
     first = [name for name in results.settings.figure_objects if name in names]
-    others = [name for name in names if name not in first]
-    places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []
-    chosen = [*first, *dict.fromkeys(others[place] for place in places)][:count]
+    other_names = [name for name in names if name not in first]
+    places = np.linspace(0, len(other_names) - 1, OBJECTS).round().astype(int) if other_names else []
+    selection = [*first, *dict.fromkeys(other_names[place] for place in places)][:count]
     items = {}
-    for name in chosen:
-        stored = read_sequences(folder / f"{name}.npz")
-        guided = sorted(stored.keys() - {BLIND}, key=lambda method: (method != GUIDED, method))
-        contours = {strategy: stored[strategy] for strategy in (BLIND, *guided[:1]) if strategy in stored}
+    for name in selection:
+        sequences = read_sequences(folder / f"{name}.npz")
+        guided = sorted(sequences.keys() - {BLIND}, key=lambda method: (method != GUIDED, method))
+        contours = {strategy: sequences[strategy] for strategy in (BLIND, *guided[:1]) if strategy in sequences}
         items[name] = results.mesh(name, folder.parent.name), contours
     return items
 

@@ -47,10 +47,10 @@ def table_4_7(results: Results) -> Table:
     frame = rows.rename(columns={"classifier": "network", "value": "parameters"}).astype({"parameters": int})
     frame["thesis"] = [SAID.get(key, "") for key in zip(frame["network"], frame["layer"], strict=True)]
     frame = frame[["network", "layer", "thesis", "kind", "output", "parameters"]]
-    shown = frame.assign(network=frame["network"].map(NETWORKS))
-    shown = shown.rename(columns={"kind": "ours", "output": "output of ours"})
+    text_table = frame.assign(network=frame["network"].map(NETWORKS))
+    text_table = text_table.rename(columns={"kind": "ours", "output": "output of ours"})
     totals = frame.groupby("network")["parameters"].sum()
-    return Table(frame, shown, {name: totals[name] for name in NETWORKS})  # no ranking: layers do not compete
+    return Table(frame, text_table, {name: totals[name] for name in NETWORKS})  # no ranking: layers do not compete
 
 
 def table_4_9(results: Results) -> Table:
@@ -75,13 +75,13 @@ def table_4_9(results: Results) -> Table:
     frame = pd.DataFrame(lines)
     names = {"objects": dataset_text, "split": SPLITS.get, "classifier": CLASSIFIERS.get}
     cells = blocks(frame, KEYS, "strategy", {"thesis": lambda objects: PRINTED})
-    shown = grid(cells, KEYS, "strategy", names, lambda name: f"{label(name)}, %", places=1, printed=PRINTED)
+    text_table = grid(cells, KEYS, "strategy", names, lambda name: f"{label(name)}, %", places=1, printed=PRINTED)
     sizes = frame.groupby("objects", sort=False)[["sequences", "chance"]].max()
-    counted = ", ".join(f"{int(row.sequences):,} ({dataset_text(row.Index)})" for row in records(sizes))
+    count_text = ", ".join(f"{int(row.sequences):,} ({dataset_text(row.Index)})" for row in records(sizes))
     chance = ", ".join(f"{dataset_text(row.Index)} {percent(row.chance, 1)} %" for row in records(sizes))
-    words = {"not_run": results.left_out(STAGE), "counted": counted, "chance": chance, "trained": trained(results)}
-    best = Ranking(shown.columns[-1], among=["objects", "split"], exempt=[PRINTED])
-    return Table(frame, shown, words, best)
+    words = {"not_run": results.left_out(STAGE), "counted": count_text, "chance": chance, "trained": trained(results)}
+    best = Ranking(text_table.columns[-1], among=["objects", "split"], exempt=[PRINTED])
+    return Table(frame, text_table, words, best)
 
 
 def trained(results: Results) -> str:
@@ -92,9 +92,9 @@ def trained(results: Results) -> str:
         rows = rows[rows["metric"].isin(["passes", "train_accuracy"])]
         rows = rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]
         if len(rows):
-            of = rows.groupby(["classifier", "metric"])["value"].median()
+            median = rows.groupby(["classifier", "metric"])["value"].median()
             parts = (
-                f"{of[name, 'passes']:.0f} of the {words[:2]} network ({percent(of[name, 'train_accuracy'])} %)"
+                f"{median[name, 'passes']:.0f} of the {words[:2]} network ({percent(median[name, 'train_accuracy'])} %)"
                 for name, words in NETWORKS.items()
             )
             texts.append(f"{dataset_text(dataset)} {', '.join(parts)}")

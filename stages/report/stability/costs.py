@@ -29,9 +29,9 @@ def kernels(results: Results) -> Figure:
     axes.set(xlim=(-0.5, len(commits) - 0.5), ylabel="time, as a ratio to the peer's")
     axes.grid(axis="y")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
-    named = rows.drop_duplicates("what").set_index("what")["peer"]
+    peers = rows.drop_duplicates("what").set_index("what")["peer"]
     words = {"kernels": len(last), "commits": len(commits), "machine": rows["machine"].iloc[-1]}
-    return Figure(drawing, words | {"names": ", ".join(f"{kernel} ({named[kernel]})" for kernel in last.index)})
+    return Figure(drawing, words | {"names": ", ".join(f"{kernel} ({peers[kernel]})" for kernel in last.index)})
 
 
 def _draw(axes, rows: pd.DataFrame, tint: str, form: str) -> None:

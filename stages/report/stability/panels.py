@@ -64,8 +64,8 @@ def degradation(
 def cell(row: Any, unharmed: float) -> str:
     """A breaking point with its interval, `0.2 [0.1, > 0.3]`; alone where nothing broke, or where both ends are it."""
     beyond = f"{'<' if row.harshest < unharmed else '>'} {row.harshest:g}"
-    at, *interval = (beyond if np.isnan(getattr(row, end)) else number(getattr(row, end), 2) for end in ENDS)
-    return f"{at} [{', '.join(interval)}]" if {*interval} != {at} else at
+    point, *interval = (beyond if np.isnan(getattr(row, end)) else number(getattr(row, end), 2) for end in ENDS)
+    return f"{point} [{', '.join(interval)}]" if {*interval} != {point} else point
 
 
 def broken(frame: pd.DataFrame, heads: Iterable[str], unharmed: Mapping[str, float]) -> pd.DataFrame:

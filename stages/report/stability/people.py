@@ -30,7 +30,7 @@ def people_table(results: Results) -> Table:
         for key, case in grouped(disturbed, ["perturbation", "severity", "method"])
     ])  # fmt: skip
     methods = list(dict.fromkeys(frame["method"]))
-    shown = pd.DataFrame([_line(key, case, methods) for key, case in grouped(frame, ["perturbation", "severity"])])
+    text_table = pd.DataFrame([_line(key, case, methods) for key, case in grouped(frame, ["perturbation", "severity"])])
     start = plain.xs("nss", level="metric").groupby("method").mean()
     items = {name: results.rows(STAGE, name)["item"].nunique() for name in sets}
     words = {
@@ -38,7 +38,7 @@ def people_table(results: Results) -> Table:
         "undisturbed": ", ".join(f"{label(name)} {start[name]:.2f}" for name in methods), "score": _score(rows),
         "not_run": "\n".join(filter(None, (results.left_out(STAGE, name) for name in sets))),
     }  # fmt: skip
-    return Table(frame, shown, words)
+    return Table(frame, text_table, words)
 
 
 def _score(rows: pd.DataFrame) -> str:
@@ -61,21 +61,21 @@ def _cell(case, plain):
     """The numbers of one method under one disturbance: rows with item, method, metric, value."""
     wide = case.pivot(index="item", columns="metric", values="value")
     method = case["method"].iloc[0]
-    again = np.clip(interval(wide["repeatability"], statistic=np.median), 0, 1)
-    numbers = dict(zip(("again", "again_low", "again_high"), again, strict=True)) | {"chance": wide["chance"].mean()}
+    shares = np.clip(interval(wide["repeatability"], statistic=np.median), 0, 1)
+    numbers = dict(zip(("again", "again_low", "again_high"), shares, strict=True)) | {"chance": wide["chance"].mean()}
     for metric in ("nss", "auc"):
-        lost = wide[metric] - plain.xs((method, metric), level=("method", "metric")).reindex(wide.index)
-        numbers |= dict(zip((metric, f"{metric}_low", f"{metric}_high"), interval(lost), strict=True))
+        losses = wide[metric] - plain.xs((method, metric), level=("method", "metric")).reindex(wide.index)
+        numbers |= dict(zip((metric, f"{metric}_low", f"{metric}_high"), interval(losses), strict=True))
     return numbers | {"objects": len(wide)}
 
 
 def _line(key, case, methods):
     perturbation, severity = key
     case = case.set_index("method")
-    again = case[["again", "again_low", "again_high"]]
+    shares = case[["again", "again_low", "again_high"]]
     return {
         "disturbance": label(perturbation), "severity": f"{severity:g} {PERTURBATIONS[perturbation].unit}",
-        **{f"{label(name)}, %": with_interval(*again.loc[name], scale=100, places=0) for name in methods},
+        **{f"{label(name)}, %": with_interval(*shares.loc[name], scale=100, places=0) for name in methods},
         "chance, %": f"{100 * case['chance'].mean():.0f}",
         **{f"{label(name)}, NSS": signed(*case.loc[name, ["nss", "nss_low", "nss_high"]]) for name in methods},
     }  # fmt: skip
@@ -97,7 +97,7 @@ def uses(results: Results) -> Table:
     names = [name for name in dict.fromkeys(frame["perturbation"]) if name != PLAIN]
     names.sort(key=lambda name: name != UNPERTURBED)
     severity = rows.dropna(subset=["severity"]).drop_duplicates("perturbation").set_index("perturbation")["severity"]
-    shown = pd.DataFrame([
+    text_table = pd.DataFrame([
         {"disturbance": label(name),
          "severity": f"{severity[name]:g} {PERTURBATIONS[name].unit}" if name in severity else "–",
          **{f"{label(method)}, salient error, %": _text(cells, name, method, "lod_salient") for method in methods},
@@ -108,7 +108,7 @@ def uses(results: Results) -> Table:
         "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "kept": KEPT,
         "set": SET, "partitions": PARTITIONS, "noise": f"{100 * SENSOR_NOISE:.0f}",
     }  # fmt: skip
-    return Table(frame, shown, words)
+    return Table(frame, text_table, words)
 
 
 def _number(rows, group, method, metric):
@@ -135,18 +135,18 @@ OF_PAIRS = ("glance", "glance_any_pose", "itti", "mesh_saliency", "harris")  # t
 def pairs_table(results: Results) -> Table:
     """A row a pair and method: the share of points lost to each alone, to both, and to both less the sum."""
     rows = results.rows(STAGE, results.printed(BENCHMARK, STAGE), metric=["repeatability", "chance"])
-    lost = points_lost(rows)
-    pairs = [name for name in dict.fromkeys(lost["perturbation"]) if AND in name]
+    lost_shares = points_lost(rows)
+    pairs = [name for name in dict.fromkeys(lost_shares["perturbation"]) if AND in name]
     pairs = some(pairs, "no pairs of disturbances: stability.pairs is empty", STAGE, runnable=False)
-    methods = [method for method in dict.fromkeys(lost["method"]) if method != "random"]
+    methods = [method for method in dict.fromkeys(lost_shares["method"]) if method != "random"]
     middle = middle_of(rows)
     frame = pd.DataFrame([
         {"pair": " and ".join(map(label, pair.split(AND))), "method": method}
-        | compared(lost[lost["method"] == method], pair, middle)
+        | compared(lost_shares[lost_shares["method"] == method], pair, middle)
         for pair in pairs
         for method in methods
     ])  # fmt: skip
-    shown = pd.DataFrame([
+    text_table = pd.DataFrame([
         {"disturbances": row.pair, "method": label(row.method),
          "first alone, %": percent(row.first), "second alone, %": percent(row.second),
          "both, %": percent(row.both),
@@ -155,8 +155,8 @@ def pairs_table(results: Results) -> Table:
         for row in records(frame[frame["method"].isin(OF_PAIRS)])
     ])  # fmt: skip
     words = [verdict(row.beyond_low, row.beyond_high) for row in records(frame)]
-    counted = ", ".join(f"{words.count(word)} {word}" for word in ("milder", "additive", "worse"))
-    return Table(frame, shown, {"objects": rows["item"].nunique(), "counted": counted, "cases": len(words)})
+    word_counts = ", ".join(f"{words.count(word)} {word}" for word in ("milder", "additive", "worse"))
+    return Table(frame, text_table, {"objects": rows["item"].nunique(), "counted": word_counts, "cases": len(words)})
 
 
 def middle_of(rows: pd.DataFrame) -> dict[str, float]:
@@ -177,12 +177,12 @@ def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[st
         for name in pair.split(AND)
     )
     joint = lost[lost["perturbation"] == pair].set_index("item")["value"]
-    joined = pd.concat({"first": first, "second": second, "both": joint}, axis=1, join="inner")
-    beyond = interval(joined["both"] - np.minimum(joined["first"] + joined["second"], 1))
-    independent = joined["both"] - 1 + (1 - joined["first"]) * (1 - joined["second"])
-    numbers = {name: float(joined[name].mean()) for name in ("first", "second", "both")}
+    lost_shares = pd.concat({"first": first, "second": second, "both": joint}, axis=1, join="inner")
+    beyond = interval(lost_shares["both"] - np.minimum(lost_shares["first"] + lost_shares["second"], 1))
+    independent = lost_shares["both"] - 1 + (1 - lost_shares["first"]) * (1 - lost_shares["second"])
+    numbers = {name: float(lost_shares[name].mean()) for name in ("first", "second", "both")}
     numbers |= dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
-    return numbers | {"independent": float(independent.mean()), "objects": len(joined)}
+    return numbers | {"independent": float(independent.mean()), "objects": len(lost_shares)}
 
 
 def verdict(low: float, high: float) -> str:

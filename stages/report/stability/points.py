@@ -41,10 +41,10 @@ def table(results: Results) -> Table:
         })  # fmt: skip
     frame = pd.DataFrame(lines)
     unharmed = {name: entry.unharmed for name, entry in PERTURBATIONS.items()}
-    shown = broken(frame, frame["method"].map(label), unharmed)
-    shown["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
+    text_table = broken(frame, frame["method"].map(label), unharmed)
+    text_table["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
     words = {"objects": ", ".join(dict.fromkeys(points["item"])), "not_run": results.left_out(STAGE)}
-    return Table(frame, shown, words)
+    return Table(frame, text_table, words)
 
 
 def figure(results: Results) -> Figure:
@@ -82,8 +82,8 @@ def failures(results: Results) -> Figure:
         show(before, results.mesh(case["item"]), case["before_saliency"], points=case["before_points"])
         show(after, Mesh(case["vertices"], case["faces"]), case["after_saliency"], points=case["after_points"])
         damage = f"{label(case['perturbation'])} {float(case['severity']):g}"
-        again = f"{100 * float(case['repeatability']):.0f} % found again"
-        for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{damage}\n{again}")):
+        share_text = f"{100 * float(case['repeatability']):.0f} % found again"
+        for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{damage}\n{share_text}")):
             axes.set_title(title, fontsize=9, fontweight="normal", loc="center")
     name_panels(grid, beside=("before", "after"))
     names = dict.fromkeys(str(case["perturbation"]) for case in worst.values())

@@ -117,7 +117,7 @@ def _filled(frame: pd.DataFrame, columns: Sequence[str], names: Sequence[Sequenc
     values = np.full([len(part) for part in names], np.nan)
     places = [{name: place for place, name in enumerate(part)} for part in names]
     for *key, value in frame[[*columns, "value"]].itertuples(index=False, name=None):
-        values[tuple(of[part] for of, part in zip(places, key, strict=True))] = value
+        values[tuple(index[part] for index, part in zip(places, key, strict=True))] = value
     return values
 
 
@@ -131,9 +131,9 @@ def corruption_errors(errors: Errors, reference: str, counts: np.ndarray) -> tup
         raise NotRun(f"{reference}, the reference of the score, is not among stability.methods", STAGE, runnable=False)
     column = errors.methods.index(reference)
     whole = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0, column]
-    kept = np.flatnonzero(whole > LEAST * errors.severities)
-    summed = errors.by_perturbation(errors.means(counts))[..., kept]
-    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in kept]
+    perturbation_ids = np.flatnonzero(whole > LEAST * errors.severities)
+    summed = errors.by_perturbation(errors.means(counts))[..., perturbation_ids]
+    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in perturbation_ids]
 
 
 def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.DataFrame:
@@ -145,18 +145,18 @@ def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.Data
     """
     count = len(errors.objects)
     whole, draws = np.ones((1, count)), resamples(count, seed)
-    at, names = corruption_errors(errors, reference, whole)
+    ce, names = corruption_errors(errors, reference, whole)
     some(names, f"nothing disturbs {reference}", STAGE, runnable=False)
-    drawn = corruption_errors(errors, reference, draws)[0]
-    frame = pd.DataFrame({"method": errors.methods, **_with_ends("mce", at.mean(axis=2), drawn.mean(axis=2), count)})
+    samples = corruption_errors(errors, reference, draws)[0]
+    frame = pd.DataFrame({"method": errors.methods, **_with_ends("mce", ce.mean(axis=2), samples.mean(axis=2), count)})
     for kind, members in KINDS.items():
         places = [place for place, name in enumerate(names) if name in members]
-        frame[kind] = at[0][:, places].mean(axis=1) if places else np.nan
+        frame[kind] = ce[0][:, places].mean(axis=1) if places else np.nan
     beyond = errors.beyond_clean
-    excess, more = (corruption_errors(beyond, reference, counts)[0].mean(axis=2) for counts in (whole, draws))
+    excess, excess_samples = (corruption_errors(beyond, reference, counts)[0].mean(axis=2) for counts in (whole, draws))
     shares = [1 - errors.by_perturbation(errors.means(counts)) / errors.severities for counts in (whole, draws)]
     columns = _with_ends("found", shares[0].mean(axis=2), shares[1].mean(axis=2), count)
-    return frame.assign(**_with_ends("relative", excess, more, count), **columns)
+    return frame.assign(**_with_ends("relative", excess, excess_samples, count), **columns)
 
 
 def _with_ends(name, at, drawn, count):
@@ -180,7 +180,7 @@ def table(results: Results) -> Table:
     """A row a method, the most stable first."""
     rows, frame, errors = _scored(results)
     frame = frame.merge(_accuracy(results), on="method", how="left").sort_values("mce")
-    shown = pd.DataFrame([
+    text_table = pd.DataFrame([
         {
             "method": label(row.method),
             "mCE, %": with_interval(row.mce, row.mce_low, row.mce_high, 100, 0),
@@ -191,7 +191,7 @@ def table(results: Results) -> Table:
         }
         for row in records(frame)
     ])  # fmt: skip
-    return Table(frame, shown, _words(results, rows, errors))
+    return Table(frame, text_table, _words(results, rows, errors))
 
 
 def breaking(results: Results) -> Table:
@@ -201,15 +201,15 @@ def breaking(results: Results) -> Table:
     points = pd.DataFrame([
         {"method": method, "perturbation": name, "unit": PERTURBATIONS[name].unit,
          "harshest": [severity for perturbation, severity in errors.cases if perturbation == name][-1],
-         "breaking_point": at, "low": low, "high": high}
-        for (name, method), (at, low, high) in breaking_points(rows[rows["method"] != CHANCE]).items()
+         "breaking_point": point, "low": low, "high": high}
+        for (name, method), (point, low, high) in breaking_points(rows[rows["method"] != CHANCE]).items()
     ])  # fmt: skip
     points["text"] = [cell(row, PERTURBATIONS[row.perturbation].unharmed) for row in records(points)]
     order = [name for name in frame.sort_values("mce")["method"] if name != CHANCE]
     wide = points.pivot(index="method", columns="perturbation", values="text").loc[order, errors.perturbations]
-    shown = wide.rename(index=label, columns=label).rename_axis(columns=None).reset_index()
+    text_table = wide.rename(index=label, columns=label).rename_axis(columns=None).reset_index()
     units = "; ".join(f"{label(name)}: {PERTURBATIONS[name].unit}" for name in errors.perturbations)
-    return Table(points.drop(columns="text"), shown, _words(results, rows, errors) | {"units": units})
+    return Table(points.drop(columns="text"), text_table, _words(results, rows, errors) | {"units": units})
 
 
 def chart(results: Results) -> Figure:

@@ -31,9 +31,9 @@ def table(results: Results) -> Table:
         {"damage": damage, "backend": backend, **_outcomes(group)}
         for (damage, backend), group in grouped(cases, ["perturbation", "method"])
     ])  # fmt: skip
-    counted = [*OUTCOMES, "smallest_named", "smallest_had"]
-    total = frame.groupby("backend", sort=False)[counted].sum().reset_index().assign(damage="all", least=np.nan)
-    shown = [
+    count_columns = [*OUTCOMES, "smallest_named", "smallest_had"]
+    total = frame.groupby("backend", sort=False)[count_columns].sum().reset_index().assign(damage="all", least=np.nan)
+    text_rows = [
         {"damage": label(row["damage"]), "simplifier": label(row["backend"]), **{name: row[name] for name in OUTCOMES}}
         | {"least": row["least"], "smallest had": f"{row['smallest_had']} of {row['smallest_named']}"}
         for row in pd.concat([frame, total]).to_dict("records")
@@ -44,16 +44,16 @@ def table(results: Results) -> Table:
     times = [f"{label(peer)} {means[peer]:.4f} ({means[peer] / means[backends[0]]:.2g} times)" for peer in backends]
     objects = ", ".join(dict.fromkeys(cases["item"]))
     words = {"ruin": RUIN, "largest": 100 * LARGEST_ERROR, "objects": objects}
-    return Table(frame, pd.DataFrame(shown), words | {"times": ", ".join(times)})
+    return Table(frame, pd.DataFrame(text_rows), words | {"times": ", ".join(times)})
 
 
 def _outcomes(cases: pd.DataFrame) -> dict[str, Any]:
     """One damage and backend: cases by outcome, fewest faces, median seconds, and why the worst case failed."""
-    had = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
+    is_valid = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
     bad = cases.loc[cases["outcome"].isin(OUTCOMES[1:])].sort_values("outcome", ascending=False)
     return {
         **{outcome: (cases["outcome"] == outcome).sum() for outcome in OUTCOMES}, "least": least_valid(cases),
-        "smallest_named": len(had), "smallest_had": sum(had), "seconds": cases["seconds"].median(),
+        "smallest_named": len(is_valid), "smallest_had": sum(is_valid), "seconds": cases["seconds"].median(),
         "worst": next(iter(bad["note"]), ""),
     }  # fmt: skip
 
@@ -80,8 +80,8 @@ def figure(results: Results) -> Figure:
         plain = runs.loc[(runs["kept"] == "none") & runs["soft"].isna()]
         _squares(upper, plain, "perturbation", damages, [*BUDGETS, SMALLEST])
         upper.set_title(label(backend))
-        kept = runs.loc[(runs["kept"] != "none") & (runs["perturbation"] == "sound")]
-        _squares(lower, kept, "kept", list(KEPT)[1:], [*KEPT_BUDGETS, SMALLEST])
+        kept_runs = runs.loc[(runs["kept"] != "none") & (runs["perturbation"] == "sound")]
+        _squares(lower, kept_runs, "kept", list(KEPT)[1:], [*KEPT_BUDGETS, SMALLEST])
         lower.set(ylabel="vertices kept,\nsound object", xlabel="faces asked for")
     curves, legend = grid[:, -1]
     styles = dict(zip(backends, STYLES, strict=False))

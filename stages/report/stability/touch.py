@@ -49,8 +49,8 @@ def curve(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> pd.Data
     clean, runs = (runs.loc[runs["perturbation"] == name] for name in (CLEAN, perturbation))
     points, whole, share = [], clean["value"].mean(), shared_by(line[0])
     for (severity,), group in grouped(runs, ["severity"]):
-        lost, left = clean["value"] - group["value"], lead_left(group["value"], whole, runs["chance"].iloc[0])
-        points.append((severity, whole, lost.mean(), *interval(group["value"], share), *interval(left, share)))
+        losses, left = clean["value"] - group["value"], lead_left(group["value"], whole, runs["chance"].iloc[0])
+        points.append((severity, whole, losses.mean(), *interval(group["value"], share), *interval(left, share)))
     points.sort(key=lambda point: abs(point[0] - UNHARMED[perturbation]))
     return pd.DataFrame(points, columns=["severity", "clean", "lost", *ACCURACY, *LEFT])
 
@@ -72,14 +72,14 @@ def table(results: Results) -> Table:
     blocks = [_block(*_curves(results), "")]
     for behind in list(DENOISERS)[1:] if DENOISED in results.datasets(STAGE) else ():
         blocks.append(_block(*_curves(results, DENOISED, behind), behind))
-    frames, shown, texts = zip(*blocks, strict=True)
+    frames, text_tables, texts = zip(*blocks, strict=True)
     rows = results.measured(STAGE, metric="accuracy")
     group, method = rows[["group", "method"]].iloc[0]
     words = {
         "points": 100 * ENOUGH, "objects": results.group_text(group).capitalize(), "method": label(method),
         "clean": "; ".join(texts), "guessing": 100 * rows["chance"].iloc[0], "not_run": results.left_out(STAGE),
     }  # fmt: skip
-    return Table(pd.concat(frames), pd.concat(shown), words)
+    return Table(pd.concat(frames), pd.concat(text_tables), words)
 
 
 def denoised(results: Results) -> Table:
@@ -93,14 +93,14 @@ def denoised(results: Results) -> Table:
         for line, words in _lines(behind).items() if line in lines
     ])  # fmt: skip
     cells = [signed(100 * row.gain, 100 * row.low, 100 * row.high, 0) for row in records(frame)]
-    shown = frame.assign(cell=cells, gained=frame["classifier"] + ": points gained")
-    shown = shown.pivot(index=["perturbation", "denoiser"], columns="gained", values="cell").reset_index()
+    texts = frame.assign(cell=cells, gained=frame["classifier"] + ": points gained")
+    texts = texts.pivot(index=["perturbation", "denoiser"], columns="gained", values="cell").reset_index()
     behind = {name.removeprefix("_"): words for name, words in DENOISERS.items()}
-    named = shown.assign(
-        perturbation=shown["perturbation"].map(label), denoiser=shown["denoiser"].map(behind).str.removeprefix("after ")
+    labelled = texts.assign(
+        perturbation=texts["perturbation"].map(label), denoiser=texts["denoiser"].map(behind).str.removeprefix("after ")
     )
     group = results.measured(STAGE, DENOISED, metric="accuracy")["group"].iloc[0]
-    return Table(frame, named.rename_axis(columns=None), {"objects": results.group_text(group)})
+    return Table(frame, labelled.rename_axis(columns=None), {"objects": results.group_text(group)})
 
 
 def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFrame, pd.DataFrame, str]:
@@ -114,16 +114,16 @@ def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFram
     frame = pd.DataFrame(entries, columns=COLUMNS)
     labels = _lines(behind)
     heads = {line: f"{words} breaks at" for line, words in labels.items()}
-    shown = broken(frame, frame.set_index(KEYS).index.map(heads), UNHARMED)
+    text_table = broken(frame, frame.set_index(KEYS).index.map(heads), UNHARMED)
     columns = ["perturbation", "unit", *(f"{words} breaks at" for words in LINES.values())]
-    shown = shown.reindex(columns=columns, fill_value="–")
+    text_table = text_table.reindex(columns=columns, fill_value="–")
     first = frame.drop_duplicates("perturbation")["harmless"]
-    shown["harmless to kNN"] = ["none" if np.isnan(severity) else f"{severity:g}" for severity in first]
+    text_table["harmless to kNN"] = ["none" if np.isnan(severity) else f"{severity:g}" for severity in first]
     if behind:
-        shown["perturbation"] += f", {DENOISERS[behind]}"
+        text_table["perturbation"] += f", {DENOISERS[behind]}"
     clean = {key: group["value"].mean() for key, group in grouped(rows.loc[rows["perturbation"] == CLEAN], KEYS)}
     texts = [f"{words} {100 * clean[line]:.0f} %" for line, words in labels.items() if line in clean]
-    return frame, shown, " ".join(filter(None, [DENOISERS[behind], ", ".join(texts)]))
+    return frame, text_table, " ".join(filter(None, [DENOISERS[behind], ", ".join(texts)]))
 
 
 def gain(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> tuple[float, float, float]:
@@ -173,25 +173,25 @@ MOST = 6  # severities
 def build(results: Results) -> Figure:
     """Tactile images of one object's first place, a line a perturbation of what is asked about."""
     [item] = results.choose(results.settings.figure_objects, 1, "touch_stability")
-    stored = read_arrays(results.folder("touch_stability") / f"{item}.npz")
+    arrays = read_arrays(results.folder("touch_stability") / f"{item}.npz")
     names = [name for name, entry in TOUCH_PERTURBATIONS.items() if not entry.in_training]
-    shown = {name: levels for name in names if (levels := severities(stored, name))}
-    half, across = -(-len(shown) // 2), MOST + 2  # beside the images: the name, and no change
+    severity_levels = {name: levels for name in names if (levels := severities(arrays, name))}
+    half, across = -(-len(severity_levels) // 2), MOST + 2  # beside the images: the name, and no change
     unmarked = {"xticks": [], "yticks": []}
     figure, grid = plt.subplots(half, 2 * across, figsize=(12.5, 0.86 * half), squeeze=False, subplot_kw=unmarked)
     for axes in grid.flat:
         axes.set_axis_off()
-    for k, (name, levels) in enumerate(shown.items()):
+    for k, (name, levels) in enumerate(severity_levels.items()):
         words, *row = grid[k % half, across * (k // half) :]
         words.text(1.0, 0.5, label(name), ha="right", va="center", fontsize=9, transform=words.transAxes)
         keys = {"none": "shown.clean"} | {severity: f"shown.{name}.{severity}" for severity in levels[:MOST]}
         for axes, (title, key) in zip(row, keys.items(), strict=False):
             axes.set_axis_on()
-            axes.imshow(stored[key][0], cmap="gray", vmin=0, vmax=1)
+            axes.imshow(arrays[key][0], cmap="gray", vmin=0, vmax=1)
             axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
             axes.set_title(title, fontsize=7, fontweight="normal", loc="center", pad=2)
     figure.subplots_adjust(wspace=0.06, hspace=0.35)
-    return Figure(figure, {"name": item, "perturbations": ", ".join(map(label, shown))})
+    return Figure(figure, {"name": item, "perturbations": ", ".join(map(label, severity_levels))})
 
 
 def severities(keys: Iterable[str], perturbation: str) -> list[str]:

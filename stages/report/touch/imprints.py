@@ -29,26 +29,26 @@ def table(results: Results) -> Table:
     """Imprints per second and how exact they are, beside camera-based simulators."""
     rates, frame = _read(results)
     meshes = rates.dropna(subset=["value"]).drop_duplicates("mesh")
-    absent = rates[rates["value"].isna()].dropna(subset=["note"])
-    why = absent["method"].map(NAMES).fillna(absent["source"]) + ": " + absent["note"] + "."
-    shown = pd.DataFrame({"method": frame["method"].map(NAMES), "cells": frame["cells"]})
+    absent_rows = rates[rates["value"].isna()].dropna(subset=["note"])
+    reasons = absent_rows["method"].map(NAMES).fillna(absent_rows["source"]) + ": " + absent_rows["note"] + "."
+    text_table = pd.DataFrame({"method": frame["method"].map(NAMES), "cells": frame["cells"]})
     numbers = frame.select_dtypes("number")
     numbers = numbers.mask(numbers >= MANY, numbers.round())
     for name, title in TITLES.items():
         ends = numbers[[name, f"{name}_low", f"{name}_high"]].itertuples(index=False)
-        shown[title] = [with_interval(*mean).replace("not run", "–") for mean in ends]
-        shown[f"lowest {name}"] = numbers[f"{name}_least"]
+        text_table[title] = [with_interval(*mean).replace("not run", "–") for mean in ends]
+        text_table[f"lowest {name}"] = numbers[f"{name}_least"]
     errors = 1000 * frame["error"] / frame["pitch"]
-    shown["error, thousandths of a cell"] = ["< 1e-6" if error < 1e-6 else error for error in errors]
-    texts = shown[[*TITLES.values()]].itertuples(index=False, name=None)
+    text_table["error, thousandths of a cell"] = ["< 1e-6" if error < 1e-6 else error for error in errors]
+    texts = text_table[[*TITLES.values()]].itertuples(index=False, name=None)
     lines = [_said(row, *pair) for row, pair in zip(records(frame), texts, strict=True) if row.method == OURS]
     words = {
-        "said": "\n".join(lines), "absent": " ".join(why.unique()),
+        "said": "\n".join(lines), "absent": " ".join(reasons.unique()),
         "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in records(meshes)),
     }  # fmt: skip
     answer = ["method", "cells", *TITLES.values(), "error, thousandths of a cell"]
-    shown = shown.assign(**{"version and renderer": frame["note"]})
-    return Table(frame, shown, words, Ranking(TITLES["rate"], among=["cells"]), answer)
+    text_table = text_table.assign(**{"version and renderer": frame["note"]})
+    return Table(frame, text_table, words, Ranking(TITLES["rate"], among=["cells"]), answer)
 
 
 def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:

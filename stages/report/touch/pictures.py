@@ -96,16 +96,16 @@ def touch_one_mesh(results: Results) -> Figure:
     own_meshes, settings = results.own_meshes, results.settings
     names = results.choose(() if own_meshes else [settings.hero_object], settings.viewer_count if own_meshes else 1)
     figure = plt.figure(figsize=(12, 5.4 * len(names)))
-    most = 0
+    most_points = 0
     for part, name in zip(figure.subfigures(len(names), 1, squeeze=False).flat, names, strict=True):
         mesh, points = results.mesh(name), results.points(name)[MODEL]
         points = points[touchable(mesh, points)][:TOUCHES]
-        most = max(most, len(points))
+        most_points = max(most_points, len(points))
         raw = distances(Surface(mesh), points, CELLS, PITCH)
         axes = sensor_axes(sensor_normals(mesh, points))
         draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
         if own_meshes:
             part.suptitle(name, fontweight="bold", y=0.995)
     title = "Where to touch, and what is felt there" if own_meshes else "Touching one mesh"
-    words = {"title": title, "name": ", ".join(names), "count": most, "rows": CELLS[0], "columns": CELLS[1]}
+    words = {"title": title, "name": ", ".join(names), "count": most_points, "rows": CELLS[0], "columns": CELLS[1]}
     return Figure(figure, words | {"pitch": PITCH}, dpi=110)

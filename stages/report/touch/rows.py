@@ -59,10 +59,10 @@ def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, 
     some(by_set, f"no rows of the scaling {scaling}", STAGE)
     if PRINTED in by_set:
         yield Protocol(PRINTED, by_set.pop(PRINTED), "as printed", EQUAL)
-    if drawn := {name: by_set.pop(name) for name in SETS_4_2 if name in by_set}:
-        rows = pd.concat(drawn.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
+    if printed_sets := {name: by_set.pop(name) for name in SETS_4_2 if name in by_set}:
+        rows = pd.concat(printed_sets.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
         count = len(rows[["dataset", "set"]].drop_duplicates())
-        yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", EQUAL)
+        yield Protocol(next(iter(printed_sets)), rows, f"as printed, {count} random sets", EQUAL)
     for dataset, rows in list(by_set.items())[:1]:
         yield Protocol(dataset, rows, "ours", MODEL)
 
@@ -73,12 +73,12 @@ def accuracies(rows: pd.DataFrame) -> dict[str, float]:
     The interval is over repeated splits of the same objects, or over random sets of objects.
     """
     columns = [column for column in ("dataset", "set", "split", "value") if column in rows]  # of some forty
-    measured = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
-    splits, values = measured["split"].to_numpy(), measured["value"].to_numpy(float)
+    accuracy_rows = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
+    splits, values = accuracy_rows["split"].to_numpy(), accuracy_rows["value"].to_numpy(float)
     at_random, share = values[splits == Split.RANDOM], shared_by(Split.RANDOM)
-    if "set" in measured and measured["set"].notna().any():
-        drawn = measured[splits == Split.RANDOM]
-        at_random, share = drawn.groupby(["dataset", "set"])["value"].mean(), 0.0
+    if "set" in accuracy_rows and accuracy_rows["set"].notna().any():
+        random_rows = accuracy_rows[splits == Split.RANDOM]
+        at_random, share = random_rows.groupby(["dataset", "set"])["value"].mean(), 0.0
     ends = zip(("accuracy", "low", "high"), within(at_random, share), strict=True)
     by_split = {split: values[splits == split] for split in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
     means = {f"accuracy_{split}": group.mean() if len(group) else np.nan for split, group in by_split.items()}
@@ -92,5 +92,5 @@ def fifteen(variant: str) -> str:
 
 def sampling_text(name: str) -> str:
     """A sampling in words; `, 15 imprints` stays behind it."""
-    base, comma, few = name.partition(", ")
-    return label(base) + comma + few
+    base, comma, suffix = name.partition(", ")
+    return label(base) + comma + suffix

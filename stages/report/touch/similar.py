@@ -29,10 +29,10 @@ BY_OBJECT = {
 
 def table_4_3(results: Results) -> Table:
     """The gain from leaving out imprints that another object has too, by protocol."""
-    few = [fifteen(way) for way in WAYS]
+    fifteen_ways = [fifteen(way) for way in WAYS]
     thesis = results.thesis("table_4_3_imprint_selection_virtual").set_index("classifier")
     selected = {version.dataset for version in protocols(results, variant="selected")}
-    versions = protocols(results, group=["six", "four"], variant=[*WAYS, *few])
+    versions = protocols(results, group=["six", "four"], variant=[*WAYS, *fifteen_ways])
     frame = pd.concat(
         [_selections(version, thesis) for version in versions if version.dataset in selected], ignore_index=True
     )
@@ -40,9 +40,9 @@ def table_4_3(results: Results) -> Table:
     cells = frame.assign(thesis=frame["thesis"].mask(few_of))
     cells = cells.assign(head=cells["objects"] + ", " + cells["selection"].map(WAYS))
     cells, names = blocks(cells, down, "head", {"thesis": lambda protocol: THESIS}), {"classifier": sampling_text}
-    shown = grid(cells, down, "head", names, head=lambda name: f"{name}, %", printed=THESIS)
-    words = {"not_run": results.left_out(STAGE, variant=[*WAYS, *few])}
-    return Table(frame, shown, words, Ranking("six, no selection, %", among=["protocol"], exempt=[THESIS]))
+    text_table = grid(cells, down, "head", names, head=lambda name: f"{name}, %", printed=THESIS)
+    words = {"not_run": results.left_out(STAGE, variant=[*WAYS, *fifteen_ways])}
+    return Table(frame, text_table, words, Ranking("six, no selection, %", among=["protocol"], exempt=[THESIS]))
 
 
 def _selections(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
@@ -66,12 +66,12 @@ def section_4_2_4(results: Results) -> Table:
     frame = pd.concat([
         _shares(protocol, thesis) for protocol in protocols(results, group="six", metric="similar_share")
     ], ignore_index=True)  # fmt: skip
-    shown = frame[["protocol", "of"]].assign(
+    text_table = frame[["protocol", "of"]].assign(
         name=frame["name"].where(frame["of"] == "object", frame["name"].map(sampling_text))
     )
     for column, head in (("all", "ours, all, %"), ("first_15", "ours, first 15, %"), ("thesis", "thesis, %")):
-        shown[head] = 100 * frame[column]
-    return Table(frame, shown)  # no ranking: a share of alike imprints is neither good nor bad
+        text_table[head] = 100 * frame[column]
+    return Table(frame, text_table)  # no ranking: a share of alike imprints is neither good nor bad
 
 
 def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:

@@ -40,25 +40,25 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
     """
     thesis = results.thesis(printed).set_index("sampling")
     thesis = thesis.assign(**{name: thesis[list(several)].mean(axis=1) for name, several in MEANS.items()})
-    parts, few = [], []
+    parts, fifteen_parts = [], []
     for protocol in protocols(results, on_sets=True, group=group, variant=variant):
         parts.append(_cells(protocol, thesis, whole=not parts))
     with suppress(NotRun):
         for protocol in protocols(results, on_sets=True, group=group, variant=fifteen(variant)):
-            few.append(_cells(protocol, thesis, ", 15 imprints"))
+            fifteen_parts.append(_cells(protocol, thesis, ", 15 imprints"))
     scaled = [_cells(entry, thesis) for entry in readings(results, group=group, variant=variant)]
-    frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable")
+    frame = pd.concat([*parts, *fifteen_parts]).sort_values("protocol", kind="stable")
     frame = pd.concat([frame, *scaled], ignore_index=True)
     once = frame.assign(thesis=frame["thesis"].mask(frame["sampling"].str.contains(", ")))  # not beside 15 imprints too
     once["accuracy_regions"] = once["accuracy_regions"].mask(once["protocol"].str.contains(": "))
-    shown = grid(
+    text_table = grid(
         blocks(once, DOWN, "classifier", BELOW), DOWN, "classifier",
         names={"sampling": sampling_text}, head=lambda name: f"{label(name)}, %",
     )  # fmt: skip
     words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
-    words |= {"fifteen": shared_notes(__package__, "fifteen") if few else "15 imprints per object: not run."}
+    words |= {"fifteen": shared_notes(__package__, "fifteen") if fifteen_parts else "15 imprints per object: not run."}
     words |= {"group": results.group_text(group), "not_run": results.left_out(STAGE, group=group, variant=variant)}
-    return Table(frame, shown, words, RANKING)
+    return Table(frame, text_table, words, RANKING)
 
 
 def readings(results: Results, **where: Any) -> Iterator[Protocol]:
@@ -66,8 +66,8 @@ def readings(results: Results, **where: Any) -> Iterator[Protocol]:
     for scaling, words in READINGS.items():
         with suppress(NotRun):
             versions = list(protocols(results, True, scaling, **where))
-            chosen = next((version for version in versions if version.dataset in SETS_4_2), versions[0])
-            yield replace(chosen, name=f"{chosen.name}: {words}")
+            base = next((version for version in versions if version.dataset in SETS_4_2), versions[0])
+            yield replace(base, name=f"{base.name}: {words}")
 
 
 def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool = False) -> pd.DataFrame:
@@ -75,9 +75,9 @@ def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool 
     rows, thesis = with_means(protocol.rows), thesis.rename(index=protocol.samplings)
     run = set(rows["method"])
     names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
-    measured = grouped(rows[rows["metric"] == "accuracy"], ["method", "classifier"])
+    groups_by_key = grouped(rows[rows["metric"] == "accuracy"], ["method", "classifier"])
     classifiers = [*thesis.columns, *added(rows["classifier"])]
-    thesis, groups = thesis.reindex(names, columns=classifiers), dict(measured)
+    thesis, groups = thesis.reindex(names, columns=classifiers), dict(groups_by_key)
     return pd.DataFrame(
         [
             {"protocol": protocol.name, "sampling": f"{sampling}{few}", "classifier": classifier}
@@ -105,20 +105,20 @@ def table_4_6(results: Results) -> Table:
     means = {name: thesis.loc[list(several)].mean() for name, several in MEANS.items()}
     thesis = pd.concat([thesis, pd.DataFrame(means).T]).rename_axis("classifier").reset_index()
     thesis = thesis.melt("classifier", var_name="touches", value_name="thesis")
-    joined = [name for name in results.measured(STAGE)["variant"].dropna().unique() if "touches_" in name]
-    where = {"group": "six", "variant": joined or ["touches"]}  # sets of single touches alone do not count
+    variants = [name for name in results.measured(STAGE)["variant"].dropna().unique() if "touches_" in name]
+    where = {"group": "six", "variant": variants or ["touches"]}  # sets of single touches alone do not count
     versions = [*protocols(results, on_sets=True, **where), *readings(results, **where)]
     frame = pd.concat([_by_touches(version, thesis) for version in versions], ignore_index=True)
     some(frame, "no several touches", STAGE)
     scaled = frame["protocol"].str.contains(": ")
     plain = frame["best"] & (frame["way"] == "") & ~scaled
-    judged = (scaled | frame["way"].isin(MIXED)) & frame["best"] & frame["classifier"].isin(JUDGED)
+    is_judged = (scaled | frame["way"].isin(MIXED)) & frame["best"] & frame["classifier"].isin(JUDGED)
     samplings = frame["sampling"].map(label).mask(frame["best"], "")
     words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), samplings, strict=True)
     names = pd.Series([", ".join(filter(None, parts)) for parts in words])
-    named = frame.assign(name=names)
-    down, rest = ["protocol", "name"], named[~plain & (judged | (frame["classifier"].isin(FURTHER) & ~scaled))]
-    cells = pd.concat([blocks(named[plain], down, "touches", BELOW), rest])
+    labelled = frame.assign(name=names)
+    down, extras = ["protocol", "name"], labelled[~plain & (is_judged | (frame["classifier"].isin(FURTHER) & ~scaled))]
+    cells = pd.concat([blocks(labelled[plain], down, "touches", BELOW), extras])
     wide = grid(cells, down, "touches", head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %", printed=PRINTED)
     wide = wide.rename(columns={"name": "classifier"})
     ranking = Ranking(wide.columns[-1], among=["protocol"], exempt=[PRINTED])
@@ -150,8 +150,8 @@ def draw_bars(
 
     frame: the tidy table 4.1 or 4.2. regions: whether accuracies on unseen regions are drawn too.
     """
-    measured = set(frame.dropna(subset=["accuracy"])["sampling"])
-    paint = colours([method for method in DRAWN if method in measured])
+    samplings = set(frame.dropna(subset=["accuracy"])["sampling"])
+    paint = colours([method for method in DRAWN if method in samplings])
     width = 0.8 / max(len(paint), 1)
     places = {method: (k - (len(paint) - 1) / 2) * width for k, method in enumerate(paint)}
     for k, (method, place) in enumerate(places.items()):

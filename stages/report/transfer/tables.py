@@ -59,25 +59,25 @@ def networks(results: Results, data: str) -> Table:
     chance = cases[cases["metric"] == "chance"].groupby(["dataset", "split"])["value"].mean()
     keys = ["dataset", "method", "weights", "mode", "split", "passes"]
     groups, trained = dict(iter(rows.groupby(keys))), _trained(results, keys, data=data)
-    measured = {key[1:4] for key in groups}
+    run_keys = {key[1:4] for key in groups}
     touches = {key: seen(group) for key, group in grouped(of_passes(rows), ["dataset", "split"])}
     settings = product(dict.fromkeys([*PRINTED, *rows["method"]]), STARTS, MODES)
-    kept = [
-        setting for setting in settings if setting in measured or (setting[0] in PRINTED and setting[1] == "imagenet")
+    table_settings = [
+        setting for setting in settings if setting in run_keys or (setting[0] in PRINTED and setting[1] == "imagenet")
     ]
     lines = []
-    for source, (network, weights, mode), split in product(sources, kept, SPLITS):
+    for source, (network, weights, mode), split in product(sources, table_settings, SPLITS):
         cases = {passes: (source, network, weights, mode, split, passes) for passes in PASSES}
         runs = groups.get(cases["printed"], rows[:0])
         cell, guess = accuracy(runs, split), chance.get((source, split), np.nan)
-        printed = weights == "imagenet" and split == "random" and network in PRINTED
+        is_printed = weights == "imagenet" and split == "random" and network in PRINTED
         lines.append({
             "objects": source, "network": network, "weights": weights,
             "pretrained": next(iter(runs["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
             **_other_passes(cases, groups, trained, split), "chance": guess,
             "above_chance": cell["accuracy"] - guess, "seen": touches.get((source, split), ""),
             "precision": next(iter(runs["precision"].dropna()), None) if "precision" in runs else None,
-            "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if printed else np.nan,
+            "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if is_printed else np.nan,
             "seconds": runs["seconds"].median(),
         })  # fmt: skip
     frame = pd.DataFrame(lines)
@@ -108,8 +108,8 @@ def frozen_layers(results: Results) -> Table:
         line |= accuracy(runs, split) | _other_passes(cases, groups, trained, split)
         lines.append(line | {"thesis": printed, "seen": seen(group)})
     frame, heads = pd.DataFrame(lines), _heads(rows)
-    shown = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"], heads)
-    return Table(frame, shown, {"looked": _looked(frame)}, _ranking(frame, heads))
+    text_table = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"], heads)
+    return Table(frame, text_table, {"looked": _looked(frame)}, _ranking(frame, heads))
 
 
 def _trained(results: Results, keys: list[str], **where: str) -> dict[tuple, pd.DataFrame]:
@@ -138,9 +138,9 @@ def _other_passes(
 
 def _precisions(frame: pd.DataFrame) -> str:
     """The networks that computed in other numbers than float32, in a sentence a set; empty for none."""
-    other = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
+    other_rows = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
     parts = []
-    for (source, numbers), group in other.groupby(["objects", "precision"], sort=False):
+    for (source, numbers), group in other_rows.groupby(["objects", "precision"], sort=False):
         names = ", ".join(label(name) for name in dict.fromkeys(group["network"]))
         parts.append(f"On {dataset_text(str(source))}, {names} computed in {numbers}.")
     return " ".join(parts)
@@ -162,13 +162,13 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     parts = [cells.assign(passes="printed", place=place)]
     for passes in OTHERS:
         ends = {"accuracy": "", "low": "_low", "high": "_high", "training": "_training"}
-        listed = cells[passes].notna()
-        if passes == "converged" and listed.any():
+        is_listed = cells[passes].notna()
+        if passes == "converged" and is_listed.any():
             setting = [cells[name] for name in down]
-            measured = cells[["accuracy", passes]].notna().any(axis=1).groupby(setting).transform("any")
-            listed |= measured & cells["thesis"].groupby(setting).transform("max").notna()
-        again = {name: cells[f"{passes}{end}"] for name, end in ends.items()}
-        parts.append(cells.assign(**again, passes=passes, place=place)[listed])
+            is_measured = cells[["accuracy", passes]].notna().any(axis=1).groupby(setting).transform("any")
+            is_listed |= is_measured & cells["thesis"].groupby(setting).transform("max").notna()
+        renamed = {name: cells[f"{passes}{end}"] for name, end in ends.items()}
+        parts.append(cells.assign(**renamed, passes=passes, place=place)[is_listed])
     rows, keys = pd.concat(parts).sort_values("place", kind="stable"), [*down, "passes"]
     head = [heads[key] for key in zip(rows["objects"], rows["split"], strict=True) if key in heads]
     wide = grid(rows.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
@@ -198,8 +198,8 @@ def _head(cells: pd.DataFrame) -> pd.Series:
 
 def _ranking(cells: pd.DataFrame, heads: dict[tuple, str]) -> Ranking:
     """By the column of most measured rows."""
-    measured = cells.dropna(subset=["accuracy"])
-    place = (measured["objects"] + " " + measured["split"]).mode().iloc[0]
+    accuracy_rows = cells.dropna(subset=["accuracy"])
+    place = (accuracy_rows["objects"] + " " + accuracy_rows["split"]).mode().iloc[0]
     return Ranking(heads[tuple(place.rsplit(" ", 1))])
 
 
@@ -344,10 +344,10 @@ def build(results: Results) -> Table:
         lines.append((setting, rates.count(), *interval(rates, share), *interval(gain, share), rows["chance"].iloc[0]))
     gains = ["gain", "gain_low", "gain_high"]
     frame = pd.DataFrame(lines, columns=["setting", "values", "accuracy", "low", "high", *gains, "chance"])
-    shown = {
+    text_columns = {
         "what differs": frame["setting"].map(SETTINGS),
         "accuracy, %": cell_texts(frame, 1),
         "minus the first row, points": [signed(*gain, places=1) for gain in 100 * frame[gains].to_numpy()],
         "chance, %": [percent(guess, 1) for guess in frame["chance"]],
     }
-    return Table(frame, pd.DataFrame(shown), best=Ranking("accuracy, %"))
+    return Table(frame, pd.DataFrame(text_columns), best=Ranking("accuracy, %"))

@@ -52,8 +52,8 @@ def between(curves: Sequence[Curve], seed: int) -> list[Case]:
     cases = []
     for curve, points in _with_points(curves):
         for place in range(1, len(curve)):
-            given = curve.only(np.arange(len(curve)) != place)
-            cases.append(_case(curve, given, curve.errors[place], points, seed))
+            given_curve = curve.only(np.arange(len(curve)) != place)
+            cases.append(_case(curve, given_curve, curve.errors[place], points, seed))
     return _above_floor(cases)
 
 
@@ -65,9 +65,9 @@ def beyond(curves: Sequence[Curve], seed: int, fine: bool) -> list[Case]:
     cases = []
     for curve, points in _with_points(curves):
         outside = side(curve, fine)
-        given = curve.only(~outside)
-        if given is not None:
-            cases += [_case(curve, given, error, points, seed) for error in curve.errors[outside]]
+        given_curve = curve.only(~outside)
+        if given_curve is not None:
+            cases += [_case(curve, given_curve, error, points, seed) for error in curve.errors[outside]]
     return _above_floor(cases)
 
 
@@ -88,10 +88,10 @@ def side(curve: Curve, fine: bool) -> np.ndarray:
 
 
 def _case(curve, given, error, points, seed):
-    needed = curve.faces[curve.errors <= error][0]
-    draw = rng(seed, f"{curve.object} {curve.method} {needed}")
+    needed_faces = curve.faces[curve.errors <= error][0]
+    draw = rng(seed, f"{curve.object} {curve.method} {needed_faces}")
     distance = float(np.exp(draw.uniform(np.log(DISTANCES[0]), np.log(DISTANCES[-1]))))
-    return Case(curve, given, int(needed), float(error), distance, points)
+    return Case(curve, given, int(needed_faces), float(error), distance, points)
 
 
 def _above_floor(cases):
@@ -113,9 +113,9 @@ def power_law(curves: Sequence[Curve]) -> float:
     """
     covariance, variance = 0.0, 0.0
     for curve in curves:
-        used = curve.errors > FLOOR
-        if used.any():
-            errors, faces = np.log(curve.errors[used]), np.log(curve.faces[used])
+        above_floor = curve.errors > FLOOR
+        if above_floor.any():
+            errors, faces = np.log(curve.errors[above_floor]), np.log(curve.faces[above_floor])
             covariance += ((errors - errors.mean()) * (faces - faces.mean())).sum()
             variance += ((errors - errors.mean()) ** 2).sum()
     if variance == 0:
@@ -145,9 +145,9 @@ def _built(case, count, fold):
     mesh, keep = fold.meshes[name], fold.points[name][method]
     with Stopwatch() as watch:
         try:
-            reduced = simplify(mesh, count, keep, shrink=True)
+            simplified = simplify(mesh, count, keep, shrink=True)
         except ValueError:
             return None
-        error = metro(mesh, reduced, seed=fold.seed)["mean"] / case.error
-    ratio = len(reduced.faces) / case.needed
+        error = metro(mesh, simplified, seed=fold.seed)["mean"] / case.error
+    ratio = len(simplified.faces) / case.needed
     return {"object": name, "ratio": ratio, "error": error, "within": error <= 1, "seconds": watch.seconds}

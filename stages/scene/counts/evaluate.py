@@ -73,8 +73,8 @@ def _safety(fold, kind, parts):
     of one object are dependent, so the rate is approximate.
     """
     counts = [predict_counts(kind, training, cases, fold.combinations, fold.seed) for training, cases in parts]
-    needed = np.array([case.needed for _, cases in parts for case in cases])
-    return float(np.quantile(needed / np.concatenate(counts), RATE, method="higher"))
+    needed_faces = np.array([case.needed for _, cases in parts for case in cases])
+    return float(np.quantile(needed_faces / np.concatenate(counts), RATE, method="higher"))
 
 
 def _inner_parts(fold):
@@ -140,17 +140,17 @@ def evaluate_counts(
     to the lookup. With too few objects: one row without a value, with a note. side_by_side: runs the folds.
     """
     curves = [curve for curve in curves if curve.method in COMBINED]
-    used = [curve for curve in curves if is_informative(curve)]
-    objects = sorted({case.curve.object for case in between(used, seed)})
+    informative = [curve for curve in curves if is_informative(curve)]
+    objects = sorted({case.curve.object for case in between(informative, seed)})
     if len(objects) < FEWEST_OBJECTS:
         note = f"{len(objects)} objects have curves to train on: {FEWEST_OBJECTS} are needed to leave some out"
         return [_row("network", "left_out", None, "factor_median") | {"note": note}]
-    combinations = [name for name in COMBINED if any(curve.method == name for curve in used)]
-    folds = list(_folds(used, objects, meshes, points, combinations, seed))
-    frames = [*side_by_side(evaluate_fold, folds), *_single_splits(used, curves, combinations, seed)]
+    combinations = [name for name in COMBINED if any(curve.method == name for curve in informative)]
+    folds = list(_folds(informative, objects, meshes, points, combinations, seed))
+    frames = [*side_by_side(evaluate_fold, folds), *_single_splits(informative, curves, combinations, seed)]
     frame = pd.concat(frames, ignore_index=True)
     rows = [row for key, cases in frame.groupby(KEY, dropna=False, sort=False) for row in _rows(key, cases, seed)]
-    return rows + _costs(used, frame, combinations, seed)
+    return rows + _costs(informative, frame, combinations, seed)
 
 
 def _folds(curves, objects, meshes, points, combinations, seed) -> Iterator[Fold]:
@@ -158,9 +158,9 @@ def _folds(curves, objects, meshes, points, combinations, seed) -> Iterator[Fold
     least = min(len(train) for train, _ in splits)
     sizes = [*(size for size in SIZES if size < least), least]
     for train, test in splits:
-        known, unknown = ({objects[k] for k in part} for part in (train, test))
-        training, left_out = ([curve for curve in curves if curve.object in names] for names in (known, unknown))
-        own_meshes, own_points = ({name: by_name[name] for name in sorted(unknown)} for by_name in (meshes, points))
+        fit_names, test_names = ({objects[k] for k in part} for part in (train, test))
+        training, left_out = ([curve for curve in curves if curve.object in names] for names in (fit_names, test_names))
+        own_meshes, own_points = ({name: by_name[name] for name in sorted(test_names)} for by_name in (meshes, points))
         yield Fold(training, left_out, own_meshes, own_points, combinations, sizes, seed)
 
 

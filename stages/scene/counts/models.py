@@ -172,9 +172,9 @@ def fit_counts(
 
 def _examples(curve, focal):
     """(inputs (k, 4), log shares (k,)) of one curve, at all distances."""
-    used = curve.errors > FLOOR
-    error, distance = (grid.ravel() for grid in np.meshgrid(curve.errors[used], DISTANCES, indexing="ij"))
-    faces = np.repeat(curve.faces[used], len(DISTANCES))
+    above_floor = curve.errors > FLOOR
+    error, distance = (grid.ravel() for grid in np.meshgrid(curve.errors[above_floor], DISTANCES, indexing="ij"))
+    faces = np.repeat(curve.faces[above_floor], len(DISTANCES))
     initial, points = np.full(len(faces), curve.initial_faces), np.full(len(faces), curve.points)
     return _logs(error * focal / distance, distance, initial, points), np.log(faces / curve.initial_faces)
 
