@@ -76,7 +76,7 @@ def side(
 
 
 def invalid_pairs(rows: pd.DataFrame, reasons: pd.Series, keys: Sequence[str]) -> pd.Series:
-    """Causes of the pairs of which one of the rows is invalid, indexed by the columns `keys`; reasons: as `SideRows`."""
+    """Causes of the pairs with an invalid row, indexed by the columns `keys`; reasons: as in `SideRows`."""
     bad = reasons[reasons != ""]
     return bad if bad.empty else bad.groupby([rows[key] for key in keys], sort=False).first()
 
