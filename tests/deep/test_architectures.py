@@ -1,6 +1,7 @@
 """Every network ends at its last maps, starts usable, and refuses what is not its own."""
 
 import sys
+from copy import deepcopy
 from types import SimpleNamespace
 
 import numpy as np
@@ -93,10 +94,9 @@ def middles(network):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NETWORKS)
-def test_a_cell_lies_where_it_looks(name):
-    size = 96
-    network = middles(build(name, 2, "random", 0)).requires_grad_(False)
+def test_a_cell_lies_where_it_looks(untrained):
+    name, network = untrained
+    size, network = 96, middles(deepcopy(network)).requires_grad_(False)
     image = torch.full((1, 3, size, size), 1e-3, requires_grad=True)  # far from what ReLU6 cuts
     maps = network.convolutions(image)
     cell = maps.shape[2] // 2
