@@ -65,7 +65,7 @@ def momenta_of(network):
 @pytest.mark.slow
 @torch.no_grad()
 def test_untrained_networks_tell_images_apart_once_settled(untrained):
-    _, network = untrained
+    network = deepcopy(untrained[1])
     before, momenta = [value.clone() for value in network.parameters()], momenta_of(network)
     images = torch.randn(8, 3, 64, 64, generator=torch.Generator().manual_seed(0))
     images *= torch.linspace(0.2, 2, 8).view(8, 1, 1, 1)
