@@ -103,10 +103,10 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     sides = [side for name, side in named_sides.items() if isinstance(side, Mapping) and name != claim.mean_of]
     contrasts: list[tuple[list[pd.DataFrame], pd.Series]] = []
     for extra in claim.contrast or ({},):
-        found = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)
+        side_rows = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)
                  for k, selection in enumerate(sides)]  # fmt: skip
-        parts = [part.rows for part in found]
-        bad = [invalid_pairs(part.rows, part.reasons, keys) for part in found]
+        parts = [part.rows for part in side_rows]
+        bad = [invalid_pairs(part.rows, part.reasons, keys) for part in side_rows]
         if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
             first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
             pair_means = pd.concat({"first": first, "second": second}, axis=1, join="inner")
