@@ -13,6 +13,7 @@ from scipy import sparse
 
 from .axes import axis_named
 
+CANCELLED = 1e-9  # length of the sum of normals over the sum of their lengths, below which rounding gives the direction
 MOST_UV = float(np.finfo(np.float32).max)  # of a texture coordinate, as files hold it
 
 
@@ -187,8 +188,10 @@ class Mesh:
 
     @cached_property
     def vertex_normals(self) -> np.ndarray:
-        """(n, 3) unit normals, area-weighted over the faces around; zero at a vertex in no face."""
-        return unit(corner_sum(self, np.repeat(self.face_crosses[:, None], 3, axis=1)))
+        """(n, 3) unit normals, area-weighted over the faces around; zero in no face and where the faces cancel out."""
+        sums = corner_sum(self, np.repeat(self.face_crosses[:, None], 3, axis=1))
+        sums[np.linalg.norm(sums, axis=1) <= 6 * CANCELLED * self.vertex_areas] = 0
+        return unit(sums)
 
     @cached_property
     def vertex_areas(self) -> np.ndarray:

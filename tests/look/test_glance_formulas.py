@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import KDTree
 
 from haptic_glance.base.jit import interpreted
 from haptic_glance.look.glance import FEATURES, Samples, cells, samples_of_mesh, standardised
@@ -12,7 +13,7 @@ from haptic_glance.look.glance.cells import cut, visibility
 from haptic_glance.look.glance.denoise import denoised
 from haptic_glance.look.glance.features import features, fullness, relief
 from haptic_glance.look.glance.mirror import symmetry
-from haptic_glance.look.glance.samples import object_axes
+from haptic_glance.look.glance.samples import nearest, object_axes
 from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh.mesh import unit
 
@@ -263,13 +264,20 @@ def test_a_value_between_points_is_the_mean_of_ten_by_distance_area_and_side(few
     places = few.points[:40] + 0.3 * few.spacing * unit(np.random.default_rng(0).normal(size=(40, 3)))
     normals = unit(few.normals[:40] + 0.5 * np.random.default_rng(1).normal(size=(40, 3)))
     ids, weights = few.interpolation(places, normals)
-    for place, normal, nearest, parts in zip(places, normals, ids, weights, strict=True):
+    for place, normal, neighbours, parts in zip(places, normals, ids, weights, strict=True):
         away = np.linalg.norm(few.points - place, axis=1)
         near = np.argsort(away)[:10]
-        assert nearest.tolist() == near.tolist()
+        assert neighbours.tolist() == near.tolist()
         facing = np.maximum(few.normals[near] @ normal + 0.3, 0.01)
         wanted = facing * few.areas[near] * np.exp(-((away[near] / (0.75 * few.spacing)) ** 2))
         assert parts == pytest.approx(wanted / wanted.sum(), abs=1e-12)
+
+
+def test_points_as_far_as_the_next_one_are_left_out_unless_all_are():
+    grid = KDTree([(x, y, 0) for x in range(-2, 3) for y in range(-2, 3)])
+    distances, _ = nearest(grid, np.array([[0.0, 0, 0], [0.5, 0.5, 0]]), 3)
+    assert distances.tolist() == [[0, np.inf, np.inf], [0.5**0.5] * 3]
+    assert np.isfinite(nearest(grid, np.zeros((1, 3)), 25)[0]).all()
 
 
 def rough(few):

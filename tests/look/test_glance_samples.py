@@ -52,6 +52,14 @@ def test_the_two_sides_of_a_thin_plate_stay_apart():
     assert np.abs(up[inner]).min() > 0.99
 
 
+def test_a_rim_between_two_sides_belongs_to_both_alike():
+    plates = [trimesh.creation.box((0.7, 0.5, 0.001)).apply_translation([0, 0, z]) for z in (-0.2, 0.2)]
+    samples = samples_of_mesh(as_mesh(trimesh.util.concatenate(plates)))
+    up = samples.normals[:, 2]
+    assert np.sort(up) == pytest.approx(-np.sort(up)[::-1], abs=1e-9)
+    assert samples.areas[up > 0].sum() == pytest.approx(samples.areas[up < 0].sum(), abs=1e-12)
+
+
 def test_little_surface_has_samples_along_it_and_none_is_an_error():
     needle = samples_of_mesh(Mesh(np.array([[-0.5, 0, 0], [0.5, 0, 0], [0, 1e-14, 0]]), np.array([[0, 1, 2]])))
     assert np.ptp(needle.points[:, 0]) > 0.9 and np.abs(needle.points[:, 1:]).max() < 1e-9

@@ -67,6 +67,33 @@ def test_saliency_and_the_first_places_belong_to_the_surface(name, change, metho
         assert after.points.tolist() == before.points.tolist()
 
 
+def rack() -> Mesh:
+    """Square rods as thick as a cell, between two sheets whose faces lie twice, once for each side."""
+    rods = [trimesh.creation.box((0.01, 0.01, 0.6)).apply_translation([x, y, 0]) for x, y in np.ndindex(6, 4)]
+    sheets = [trimesh.creation.box((6.0, 4.0, 0.004)).apply_translation([2.5, 1.5, z]) for z in (-0.3, 0.3)]
+    flag = Mesh([(0, 0, 0.4), (1, 0, 0.4), (1, 0, 1.1), (0, 0, 1.1)], [(0, 1, 2), (0, 2, 3), (2, 1, 0), (3, 2, 0)])
+    solids = [solid.subdivide_to_size(0.4) for solid in rods + sheets]
+    return normalise(as_mesh(trimesh.util.concatenate([*solids, trimesh.Trimesh(flag.vertices, flag.faces)])))
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        as_mesh(trimesh.creation.cylinder(0.3, 1)),
+        as_mesh(trimesh.creation.box((1, 0.6, 0.3)).subdivide_to_size(0.2)),
+        rack(),
+    ],
+    ids=["cylinder", "box", "rack"],
+)
+def test_rounding_changes_neither_saliency_nor_a_place(mesh):
+    faces = np.roll(rng(0, "order").permutation(mesh.faces), 1, axis=1)
+    before = detect(mesh, "glance", 10)
+    for other in (Mesh(mesh.vertices, faces), Mesh(mesh.vertices * 1e-3 + [3, 2, 1], faces)):
+        after = detect(other, "glance", 10)
+        np.testing.assert_allclose(after.saliency, before.saliency, atol=2e-6)  # saliency has six digits
+        assert after.points.tolist() == before.points.tolist()
+
+
 @pytest.mark.slow
 def test_only_the_glance_for_any_pose_ignores_the_pose():
     head = trimesh.creation.icosphere(3, radius=0.15).apply_translation([0.3, 0, 0.3])

@@ -31,6 +31,13 @@ def test_rings_grow_one_edge_at_a_time():
     assert np.flatnonzero(strip.rings([0], 2)).tolist() == [0, 1, 2, 3, 4]
 
 
+def test_vertex_whose_faces_cancel_out_has_a_zero_normal_whatever_the_rounding():
+    corners = np.array([(0.1, 0.7, 0.3), (1.3, 0.2, 0.9), (0.6, 1.1, -0.4), (0.2, 0.3, 1.7)])
+    mesh = Mesh(corners, np.array([(0, 1, 2), (2, 1, 0), (1, 3, 2)]))
+    np.testing.assert_array_equal(mesh.vertex_normals[0], 0)
+    np.testing.assert_allclose(mesh.vertex_normals[[1, 2, 3]], mesh.face_normals[[2, 2, 2]], atol=1e-9)
+
+
 def test_vertex_in_no_face_has_a_zero_normal():
     mesh = Mesh(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (5, 5, 5)], dtype=float), np.array([(0, 1, 2)]))
     np.testing.assert_array_equal(mesh.vertex_normals[3], 0)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as a loop
 CORNERS, DEPTH = 24, 96  # a triangle that six walls have cut has nine corners; halving 2^30 cells along three axes
-ROUNDING = 1e-9  # in units of a cell: what lies this near to a wall lies on it
+ROUNDING = 1e-5  # in units of a cell: what lies this near to a wall lies on it
 
 
 def cut(corners: np.ndarray) -> np.ndarray:
@@ -115,6 +115,7 @@ SIDE = 0.5  # |z| of a direction from the side: 30 degrees above or below the ho
 PIXEL = 1.4  # side of a pixel in units of the spacing, so that the points leave no holes
 FARTHEST = 1000  # pixels from the middle of a picture: 23 for a ball, 430 for a wire of 1 mm and 50 cm
 NEAR, FAR = 1.8, 2.6  # of the spacing, more on slopes: what is less far behind is the same surface, else it is hidden
+EDGE_ON = 1e-9  # cosine up to which a face is seen edge-on and hence not seen, whatever the rounding
 STEEP = 0.05  # cosine at which a slope counts as no steeper
 
 
@@ -171,7 +172,7 @@ def _seen(places, normals, pictures, group, sums, depth, pixels, near):
             depth[row, column] = max(depth[row, column], near[i])
         for i in range(count):
             cosine = ex * normals[i, 0] + ey * normals[i, 1] + ez * normals[i, 2]
-            if cosine > 0:
+            if cosine > EDGE_ON:
                 front = near[i]
                 for row in range(pixels[i, 0] - 1, pixels[i, 0] + 2):
                     for column in range(pixels[i, 1] - 1, pixels[i, 1] + 2):

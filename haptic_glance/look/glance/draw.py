@@ -20,6 +20,8 @@ BENT, TWO_SIDES, PLAIN = 0.95, 0.3, 0.95
 # share of the surface in bent cells without two plain sides above which it has noise rather than edges and sheets: at
 # most 0.23 of 160 clean objects, 0.43 or more at noise of 0.5 % of the diagonal
 ROUGH_SHARE = 0.25
+NUDGE = 1e-6  # added to the spread of the normals in a cell, so that of two directions alike the same one is taken
+BETWEEN = 1e-5  # component of a normal along that direction below which its piece belongs to both sides alike
 LEAST_FLAT = 0.05  # of the area in a cell: noise may turn all that lies in it
 LEAST = 1e-9  # of the area per sample: a piece below it is rounding
 
@@ -71,13 +73,25 @@ def _gathered(cells, places, normals, areas, axes):
         bent_ids, owner = np.unique(cell[bent], return_inverse=True)
         tilt = normals[bent] - normal[cell[bent]]
         spread = _means(owner, np.einsum("ni,nj->nij", tilt, tilt).reshape(-1, 9), areas[bent])[1].reshape(-1, 3, 3)
-        is_second = np.einsum("ij,ij->i", tilt, np.linalg.eigh(spread)[1][owner, :, 2]) > 0
+        spread += axes.T @ np.diag(NUDGE * np.arange(3)) @ axes
+        along = np.einsum("ij,ij->i", tilt, np.linalg.eigh(spread)[1][owner, :, 2])
+        # the rim of a sheet lies between its two sides: half of each such piece goes to either side
+        between = np.flatnonzero(np.abs(along) <= BETWEEN)
+        halved = bent[between]
+        areas = areas.copy()
+        areas[halved] /= 2
+        bent = np.concatenate([bent, len(cell) + np.arange(len(halved))])
+        cell, places, normals, areas = (
+            np.concatenate([values, values[halved]]) for values in (cell, places, normals, areas)
+        )
+        owner = np.concatenate([owner, owner[between]])
+        is_second = np.concatenate([along > BETWEEN, np.ones(len(halved), dtype=bool)])
         slots = 2 * owner + is_second
         halves = np.linalg.norm(_means(slots, normals[bent], areas[bent], 2 * len(bent_ids))[1], axis=1).reshape(-1, 2)
         plain = halves.min(axis=1) > PLAIN
         rough = bool(total[bent_ids] @ ~plain > ROUGH_SHARE * total.sum())
         if not rough:
-            side = np.zeros(len(cells), dtype=np.int64)
+            side = np.zeros(len(cell), dtype=np.int64)
             side[bent] = is_second & (plain | (length[bent_ids] < TWO_SIDES))[owner]
             cell = 2 * cell + side
             cell = (np.cumsum(np.bincount(cell) > 0) - 1)[cell]

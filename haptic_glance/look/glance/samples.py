@@ -113,7 +113,13 @@ def object_axes(points: np.ndarray, areas: np.ndarray, ends: np.ndarray) -> tupl
 
 
 def nearest(tree: KDTree, positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """(distances (n, k), ids (n, k)) of the nearest of a tree's points; k is less than count where it has fewer."""
-    near = tree.query(positions, min(count, tree.n))
+    """(distances (n, k), ids (n, k)) of the nearest of a tree's points; k is less than count where it has fewer.
+
+    Points as far as the next one have distance inf, unless all are as far: rounding decides which of them come.
+    """
+    near = tree.query(positions, min(count + 1, tree.n))
     distance, ids = (np.reshape(values, (len(positions), -1)) for values in near)
-    return distance, ids
+    if tree.n <= count:
+        return distance, ids
+    at_end = distance[:, :-1] >= distance[:, -1:] * (1 - ROUNDING)
+    return np.where(at_end & ~at_end[:, :1], np.inf, distance[:, :-1]), ids[:, :-1]

@@ -26,8 +26,9 @@ from ..weights.attention import standardise
 from ..weights.weights import MAPS
 from .detectors import scaled
 from .fuse import continue_on_surface
-from .options import Detection, Options, by_place, tied, visited
+from .options import ROUNDING, Detection, Options, by_place, tied, visited
 
+CORNERS = 8  # vertices that may be equally near to a sample: the corners of a face or a box around its middle
 NO_FACES = np.zeros((0, 3), dtype=np.int64)
 Features = Callable[[Mesh, Samples], dict[str, np.ndarray]]
 
@@ -75,7 +76,7 @@ class SampledDetector(ABC):
 
     def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
         """(s,) the vertices that stand for the samples."""
-        return mesh.used[KDTree(mesh.vertices[mesh.used]).query(samples.points)[1]]
+        return nearest_vertices(mesh, mesh.vertices[mesh.used], samples.points)
 
     def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
@@ -128,6 +129,22 @@ class GlanceDetector(SampledDetector):
     def _smooth(self, samples: Samples, values: np.ndarray, options: Options) -> np.ndarray:
         # noise moves this less than a mean
         return np.exp(samples.smoothed(np.log(values), options.smoothing))
+
+
+def nearest_vertices(mesh: Mesh, positions: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """(s,) i8: the used vertices, at positions (v, d), that are nearest to targets (s, d).
+
+    Of equally near vertices the first one by place, since rounding would decide.
+    """
+    distances, near = KDTree(positions).query(targets, min(len(positions), CORNERS))
+    distances, near = distances.reshape(len(targets), -1), near.reshape(len(targets), -1)
+    equal = distances <= distances[:, :1] * (1 + ROUNDING)
+    several = np.flatnonzero(equal.sum(axis=1) > 1)
+    rows, columns = np.nonzero(equal[several])
+    vertex_ids = near[several[rows], columns]
+    order = by_place(rows, mesh.vertices[mesh.used[vertex_ids]])
+    near[several, 0] = vertex_ids[order[np.unique(rows[order], return_index=True)[1]]]
+    return mesh.used[near[:, 0]]
 
 
 def _on_vertices(mesh, samples, *values):

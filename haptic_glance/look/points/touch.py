@@ -7,14 +7,13 @@ another leg, all along a rim) has been met before, wherever the object was learn
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch.surface import sensor_axes
 
 from ..glance import Samples, samples_of_mesh
 from ..kernels import pressed
-from .glance import SampledDetector
+from .glance import SampledDetector, nearest_vertices
 from .options import Options
 
 WIDTH = 0.16  # of the array, in units of the normalised mesh: 16 cells of 0.01 (T4.3.1)
@@ -48,7 +47,7 @@ class TouchDetector(SampledDetector):
         """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
         candidates = np.hstack([mesh.vertices, samples.spacing * mesh.vertex_normals])[mesh.used]
         targets = np.hstack([samples.points, samples.spacing * samples.normals])
-        return mesh.used[KDTree(candidates).query(targets)[1]]
+        return nearest_vertices(mesh, candidates, targets)
 
 
 def spread(samples: Samples, count: int) -> np.ndarray:
