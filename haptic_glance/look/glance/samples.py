@@ -115,7 +115,8 @@ def object_axes(points: np.ndarray, areas: np.ndarray, ends: np.ndarray) -> tupl
 def nearest(tree: KDTree, positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """(distances (n, k), ids (n, k)) of the nearest of a tree's points; k is less than count where it has fewer.
 
-    Points as far as the next one have distance inf, unless all are as far: rounding decides which of them come.
+    Rounding would decide which points come first among those that are as far as the first one left out. All of these
+    have distance inf, unless all k points are as far.
     """
     near = tree.query(positions, min(count + 1, tree.n))
     distance, ids = (np.reshape(values, (len(positions), -1)) for values in near)
