@@ -63,7 +63,7 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
         raise MeshError("no face has three different vertices")
     faces = mesh.faces[ids]
     cleaned = replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.of(ids))
-    spread = np.ptp(mesh.vertices[np.unique(faces)], axis=0)
+    spread = np.ptp(mesh.vertices[cleaned.used], axis=0)
     with np.errstate(over="ignore", invalid="ignore"):
         area, square = cleaned.face_areas.sum(), float(spread @ spread)
     if not np.isfinite([area, square]).all():
@@ -167,13 +167,14 @@ def _inverted(mesh, first, second, closed_edges, flips):
     sizes = np.bincount(part, minlength=parts)
     closed = np.bincount(part, weights=closed_edges, minlength=parts) == sizes
     turn = _undecided(mesh, part, ~closed & (np.bincount(part, weights=flips, minlength=parts) > EVEN * sizes))
-    corners, first_face = mesh.vertices[mesh.faces], np.unique(part, return_index=True)[1]
-    local = corners - corners[first_face, :1][part]  # from afar, small volumes would be lost to rounding
-    volume = np.bincount(part, weights=np.einsum("ij,ij->i", local[:, 0], np.cross(local[:, 1], local[:, 2])))
+    apex = np.empty((parts, 3))
+    apex[part[::-1]] = mesh.vertices[mesh.faces[::-1, 0]]  # of the first face: from afar, rounding takes small volumes
+    local = mesh.vertices[mesh.faces[:, 0]] - apex[part]
+    volume = np.bincount(part, weights=np.einsum("ij,ij->i", local, mesh.face_crosses))
     inside_out = np.flatnonzero(closed & (volume < 0))
     if not len(inside_out):  # nearly always: boxes take a third of the time
         return turn[part]
-    low, high = np.full((parts, 3), np.inf), np.full((parts, 3), -np.inf)
+    corners, low, high = mesh.vertices[mesh.faces], np.full((parts, 3), np.inf), np.full((parts, 3), -np.inf)
     np.minimum.at(low, part, corners.min(axis=1))
     np.maximum.at(high, part, corners.max(axis=1))
     for shell in inside_out:

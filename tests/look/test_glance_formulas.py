@@ -9,6 +9,7 @@ from scipy.spatial import KDTree
 
 from haptic_glance.base.jit import interpreted
 from haptic_glance.look.glance import FEATURES, Samples, cells, samples_of_mesh, standardised
+from haptic_glance.look.glance.averaging import averaging
 from haptic_glance.look.glance.cells import cut, visibility
 from haptic_glance.look.glance.denoise import denoised
 from haptic_glance.look.glance.features import features, fullness, relief
@@ -70,6 +71,20 @@ def test_an_average_weighs_near_points_of_its_side_by_their_area(few, dense):
     values, spacing = few.points, spacing_of(few)
     steps = np.linalg.matrix_power(dense, 7)  # 2.6^2 = 6.76
     assert few.smoothed(values, 2.6 * spacing) == pytest.approx(steps @ values, abs=1e-12)
+
+
+@pytest.mark.parametrize("stray", [0, 1e6])  # in units of the reach: too far for cubes as wide as the reach
+def test_an_average_is_that_of_all_pairs_however_many_are_near(stray):
+    random = np.random.default_rng(0)
+    points, areas = random.random((300, 3)) * 1.5, random.random(300)  # half of all pairs lie within the reach
+    points[7] += stray
+    normals = unit(random.normal(size=(300, 3)))
+    squared = ((points[:, None] - points[None]) ** 2).sum(axis=2)
+    weight = np.exp(-squared / 0.7**2) * np.clip((normals @ normals.T + 0.2) / 0.4, 0, 1) * (squared <= 1)
+    np.fill_diagonal(weight, 1)
+    expected = weight * areas / (weight * areas).sum(axis=1, keepdims=True)
+    found = averaging(points, normals, areas, reach=1.0, width=0.7, sides=(-0.2, 0.2))
+    assert found.toarray() == pytest.approx(expected, abs=1e-12) and found.nnz > 40 * 300
 
 
 def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, dense):

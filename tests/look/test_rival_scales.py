@@ -47,6 +47,10 @@ def test_peaks_are_those_of_a_plain_search_whatever_the_order_of_vertices():
     best = np.where(apart <= 0.3, values, -np.inf).max(axis=1)
     expected = np.flatnonzero((values == best) & (values > 0))
     np.testing.assert_array_equal(local_maxima(MESH, values, 0.3), expected[np.argsort(-values[expected])])
+    among = values < 0.7  # the higher ones still outrank them
+    np.testing.assert_array_equal(
+        local_maxima(MESH, values, 0.15, among), [p for p in local_maxima(MESH, values, 0.15) if among[p]]
+    )
     assert len(local_maxima(MESH, np.ones(len(MESH.vertices)), 0.5)) == 0  # a plateau has no peak
     values = (np.abs(MESH.vertices[:, 0]) > 0.97).astype(float)
     order = np.random.default_rng(1).permutation(len(values))

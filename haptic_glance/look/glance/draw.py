@@ -32,15 +32,18 @@ def samples_of_mesh(mesh: Mesh, count: int = COUNT) -> Samples:
     They depend on the surface alone, not on its faces, their order or the turn about the vertical. Raises ValueError
     for a mesh without area.
     """
-    corners, area = mesh.vertices[mesh.faces], float(mesh.face_areas.sum())
+    area = float(mesh.face_areas.sum())
     if not area > 0:
         raise ValueError("cannot sample a mesh without area")
-    # the second moments of a triangle are those of three points half-way from its corners to its middle
-    middles = corners / 2 + corners.sum(axis=1, keepdims=True) / 6
-    axes, middle = object_axes(middles.reshape(-1, 3), np.repeat(mesh.face_areas / 3, 3), corners.reshape(-1, 3))
+    # the second moments of a triangle are those of its corners, a twelfth of the area each, and its middle
+    middles = mesh.vertices.take(mesh.faces, axis=0).sum(axis=1) / 3
+    corners = mesh.vertices[mesh.used]
+    masses = np.concatenate([mesh.vertex_areas[mesh.used] / 4, mesh.face_areas * 3 / 4])
+    axes, middle = object_axes(np.concatenate([corners, middles]), masses, corners)
     side = max(CELL * np.sqrt(area / count), SMALLEST)
-    pieces = cut((corners - middle) @ (axes.T / side))
-    pieces = pieces[pieces[:, 4] * side**2 > LEAST * area / count]
+    pieces = cut(((mesh.vertices - middle) @ (axes.T / side)).take(mesh.faces, axis=0))
+    if (is_rounding := pieces[:, 4] * side**2 <= LEAST * area / count).any():
+        pieces = pieces[~is_rounding]
     places = pieces[:, 5:] @ (axes * side) + middle
     normals = mesh.face_normals[pieces[:, 0].astype(np.int64)]
     return denoised(_gathered(pieces[:, 1:4].astype(np.int64), places, normals, pieces[:, 4] * side**2, axes))
@@ -63,8 +66,8 @@ def samples_of_points(points: np.ndarray, normals: np.ndarray, count: int = COUN
 
 def _gathered(cells, places, normals, areas, axes):
     """The Samples of pieces (p,): the mean of what lies in a cell, for each side of an edge or a sheet on its own."""
-    key = (cells - cells.min(axis=0)) @ [1 << 40, 1 << 20, 1]
-    _, cell = np.unique(key, return_inverse=True)
+    x, y, z = (cells - cells.min(axis=0)).T
+    _, cell = np.unique((x << 40) + (y << 20) + z, return_inverse=True)
     total, normal = _means(cell, normals, areas)
     length = np.linalg.norm(normal, axis=1)
     bent = np.flatnonzero((length < BENT)[cell])

@@ -48,14 +48,11 @@ def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
 class Seen(NamedTuple):
     """A mesh as a SampledDetector sees it, the same for every count.
 
-    points (s, 3), areas (s,), smooth (s,): of the samples; vertices (s,) i8: the vertex that stands for each sample.
-    saliency, smoothed (n,) f8 in 0..1: the values and the smooth values at the vertices.
+    smooth (s,): of the samples. saliency, smoothed (n,) f8 in 0..1: the values and the smooth values at the vertices.
     """
 
-    points: np.ndarray
-    areas: np.ndarray
+    samples: Samples
     smooth: np.ndarray
-    vertices: np.ndarray
     saliency: np.ndarray
     smoothed: np.ndarray
 
@@ -74,9 +71,9 @@ class SampledDetector(ABC):
         """(s,) the smooth values whose peaks are the points."""
         return values
 
-    def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
-        """(s,) the vertices that stand for the samples."""
-        return nearest_vertices(mesh, mesh.vertices[mesh.used], samples.points)
+    def _vertices(self, mesh: Mesh, samples: Samples, ids: np.ndarray) -> np.ndarray:
+        """(k,) the vertices that stand for the samples of these ids (k,)."""
+        return nearest_vertices(mesh, mesh.vertices[mesh.used], samples.points[ids])
 
     def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
@@ -91,8 +88,7 @@ class SampledDetector(ABC):
             return None
         samples, values = self._values(mesh, options)
         smooth = self._smooth(samples, values, options)
-        return Seen(samples.points, samples.areas, smooth, self._vertices(mesh, samples),
-                    *_on_vertices(mesh, samples, values, smooth))  # fmt: skip
+        return Seen(samples, smooth, *_on_vertices(mesh, samples, values, smooth))
 
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: strong points are high peaks of the smooth values; a count visits more places.
@@ -102,13 +98,13 @@ class SampledDetector(ABC):
         surface = sight if isinstance(sight, Seen) else self.seen(mesh, options)
         if surface is None:
             return Detection(np.zeros(0, dtype=np.int64), 0, np.zeros(len(mesh.vertices)))
-        smooth = surface.smooth
-        peaks = local_maxima(Mesh(surface.points, NO_FACES), smooth, options.radius)
-        peaks = peaks[standardise(smooth, surface.areas)[peaks] > 1]
-        peaks = peaks[by_place(tied(smooth[peaks]), surface.points[peaks])]
-        order = peaks if count is None else visited(surface.points, smooth, options.radius, count)
+        samples, smooth = surface.samples, surface.smooth
+        is_high = standardise(smooth, samples.areas) > 1
+        peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius, is_high)
+        peaks = peaks[by_place(tied(smooth[peaks]), samples.points[peaks])]
+        order = peaks if count is None else visited(samples.points, smooth, options.radius, count)
         is_peak = np.isin(order, peaks)
-        vertex_ids = surface.vertices[np.r_[order[is_peak], order[~is_peak]]]
+        vertex_ids = self._vertices(mesh, samples, np.r_[order[is_peak], order[~is_peak]])
         points = vertex_ids[np.sort(np.unique(vertex_ids, return_index=True)[1])]
         if count is not None:
             points = continue_on_surface(mesh, points, surface.smoothed, options.radius, count)
@@ -136,8 +132,8 @@ def nearest_vertices(mesh: Mesh, positions: np.ndarray, targets: np.ndarray) -> 
 
     Of equally near vertices the first one by place, since rounding would decide.
     """
-    distances, near = KDTree(positions).query(targets, min(len(positions), CORNERS))
-    distances, near = distances.reshape(len(targets), -1), near.reshape(len(targets), -1)
+    count = min(len(positions), CORNERS)
+    distances, near = (found.reshape(len(targets), count) for found in KDTree(positions).query(targets, count))
     equal = distances <= distances[:, :1] * (1 + ROUNDING)
     several = np.flatnonzero(equal.sum(axis=1) > 1)
     rows, columns = np.nonzero(equal[several])

@@ -43,10 +43,10 @@ class TouchDetector(SampledDetector):
         )
         return place_samples, values
 
-    def _vertices(self, mesh: Mesh, samples: Samples) -> np.ndarray:
+    def _vertices(self, mesh: Mesh, samples: Samples, ids: np.ndarray) -> np.ndarray:
         """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
         candidates = np.hstack([mesh.vertices, samples.spacing * mesh.vertex_normals])[mesh.used]
-        targets = np.hstack([samples.points, samples.spacing * samples.normals])
+        targets = np.hstack([samples.points[ids], samples.spacing * samples.normals[ids]])
         return nearest_vertices(mesh, candidates, targets)
 
 

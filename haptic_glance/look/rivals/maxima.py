@@ -22,12 +22,13 @@ def check_values(mesh: Mesh, values: np.ndarray) -> None:
         raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {np.shape(values)}")
 
 
-def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
+def local_maxima(mesh: Mesh, values: np.ndarray, radius: float, among: np.ndarray | None = None) -> np.ndarray:
     """(k,) i8 vertex ids where values (n,) is largest within `radius`, largest value first.
 
     The radius is Euclidean, in units of the mesh. Only values above zero count, and only where some vertex within the
     radius is lower: a plateau has no peak. Of equal values the one that comes last by x, then y, then z is the peak, so
-    that the order of the vertices does not matter. Raises ValueError when values do not fit the mesh or radius <= 0.
+    that the order of the vertices does not matter. among (n,) boolean: only these may be peaks; None: all. Raises
+    ValueError when values do not fit the mesh or radius <= 0.
     """
     levels = _levels(mesh, values)
     if not radius > 0:
@@ -37,7 +38,8 @@ def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
     order = np.lexsort((*-rounded(mesh.vertices).T[::-1], -levels))
     ranks = np.argsort(order)
     tree = cKDTree(mesh.vertices)
-    candidates = _above_nearest(tree, levels, ranks, radius)
+    candidates = np.flatnonzero(levels > 0 if among is None else among & (levels > 0))
+    candidates = _above_nearest(tree, candidates, ranks, radius)
     if len(candidates) == 0:
         return candidates
     near = tree.query_ball_point(mesh.vertices[candidates], radius)
@@ -78,9 +80,8 @@ def _levels(mesh, values):
     return rounded(np.maximum(np.asarray(values, dtype=np.float64), 0))
 
 
-def _above_nearest(tree, levels, ranks, radius):
-    """Vertex ids above zero that none of the nearest vertices within the radius outranks."""
-    candidates = np.flatnonzero(levels > 0)
+def _above_nearest(tree, candidates, ranks, radius):
+    """The candidates that none of the nearest vertices within the radius outranks."""
     count = min(NEAREST, tree.n)
     ids = tree.query(tree.data[candidates], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
     best = np.append(ranks, tree.n)[ids].min(axis=1)  # an empty slot has the id n
