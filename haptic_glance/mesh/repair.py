@@ -167,10 +167,7 @@ def _inverted(mesh, first, second, closed_edges, flips):
     sizes = np.bincount(part, minlength=parts)
     closed = np.bincount(part, weights=closed_edges, minlength=parts) == sizes
     turn = _undecided(mesh, part, ~closed & (np.bincount(part, weights=flips, minlength=parts) > EVEN * sizes))
-    apex = np.empty((parts, 3))
-    apex[part[::-1]] = mesh.vertices[mesh.faces[::-1, 0]]  # of the first face: from afar, rounding takes small volumes
-    local = mesh.vertices[mesh.faces[:, 0]] - apex[part]
-    volume = np.bincount(part, weights=np.einsum("ij,ij->i", local, mesh.face_crosses))
+    volume = np.bincount(part, weights=np.einsum("ij,ij->i", mesh.vertices[mesh.faces[:, 0]], mesh.face_crosses))
     inside_out = np.flatnonzero(closed & (volume < 0))
     if not len(inside_out):  # nearly always: boxes take a third of the time
         return turn[part]

@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import KDTree
 
+from haptic_glance import load
+from haptic_glance.gallery.demo import sample
 from haptic_glance.look.channels.channels import CHANNELS, OTHERS
 from haptic_glance.look.glance import Samples, samples_of_mesh
 from haptic_glance.look.kernels import pressed
@@ -135,3 +138,13 @@ def test_only_what_feels_alike_beyond_the_array_recurs():
     shares = recurrence(felt, points)
     assert shares[0] == shares[1] == 1  # alike and far apart
     assert shares[2:4].max() < 0.01 and shares[4] < 0.01  # alike within the array's width; like no other
+
+
+def test_strong_points_are_the_peaks_more_than_a_deviation_above_the_mean():
+    looked = Looked(load(sample()))
+    values, areas, points = looked.sight.smooth, looked.sight.samples.areas, looked.sight.samples.points
+    near = KDTree(points).query_ball_point(points, looked.options.radius)
+    is_peak = np.array([values[k] >= values[ids].max() for k, ids in enumerate(near)])
+    mean = np.average(values, weights=areas)
+    is_high = values > mean + np.sqrt(np.average((values - mean) ** 2, weights=areas))
+    assert looked.detect().strong == len(looked.detect().points) == (is_peak & is_high).sum() < is_peak.sum()

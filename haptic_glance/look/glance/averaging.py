@@ -8,7 +8,7 @@ from scipy import sparse
 from haptic_glance.base.jit import kernel_of
 
 kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as a loop
-BITS = 20  # of the number of cubes along an axis
+STRIDES = np.array([1 << 42, 1 << 21, 1])  # cubes that follow one another along z have keys that do
 ROOM = 40  # neighbours of a point for which there is room at first
 
 
@@ -21,13 +21,12 @@ def averaging(
     normals (n, 3) lies from sides[0] to sides[1]. Neighbours are looked for in cubes as wide as the reach.
     """
     count = len(points)
-    side = max(reach, np.ptp(points, axis=0).max() / 2**BITS)
-    strides = np.array([1 << 2 * (BITS + 1), 1 << BITS + 1, 1])  # cubes that follow each other along z have such keys
-    keys, cube = np.unique(((points - points.min(axis=0)) / side + 1).astype(np.int64) @ strides, return_inverse=True)
+    cubes = ((points - points.min(axis=0)) / reach).astype(np.int64)
+    keys, cube = np.unique(cubes @ STRIDES, return_inverse=True)
     order = np.argsort(cube, kind="stable").astype(np.int32)
     firsts = np.append(0, np.cumsum(np.bincount(cube)))
     x, y = np.divmod(np.arange(9), 3) - np.int64(1)
-    columns = keys[:, None] + x * strides[0] + y * strides[1]
+    columns = keys[:, None] + x * STRIDES[0] + y * STRIDES[1]
     begins, ends = (firsts[np.searchsorted(keys, columns + step)] for step in (-1, 2))
     ordered = points[order], normals[order], areas[order], order
     starts, row = np.zeros(count + 1, dtype=np.int32), 0
