@@ -33,6 +33,8 @@ def as_floats(images: np.ndarray | Sequence[np.ndarray], name: str) -> torch.Ten
     sizes = [] if hasattr(images, "shape") else sorted({np.shape(image) for image in images})
     if len(sizes) > 1:
         raise ValueError(f"images of several sizes, {', '.join(map(str, sizes))}: resize them to one first")
+    if isinstance(images, np.ndarray):
+        images = np.require(images, requirements="W")  # torch warns of an array that may only be read
     tensor = torch.as_tensor(images)
     tensor = tensor.float() / 255 if tensor.dtype == torch.uint8 else tensor.float()
     if not bool(((tensor >= 0) & (tensor <= 1)).all()):

@@ -17,6 +17,13 @@ def test_grey_goes_to_red_and_the_rest_is_zero():
     assert to_images(IMPRINTS, 8)[:, 0].mean().item() == pytest.approx(IMPRINTS.mean(), abs=0.01)
 
 
+@pytest.mark.filterwarnings("error")
+def test_imprints_that_may_only_be_read_are_taken_without_a_warning():
+    kept = IMPRINTS.copy()
+    kept.setflags(write=False)
+    assert torch.equal(to_images(kept, 24), to_images(IMPRINTS, 24))
+
+
 def test_normalised_photographs_of_imagenets_mean_are_zero_and_one_deviation_is_one():
     image = torch.tensor(MEAN).view(1, 3, 1, 1).expand(1, 3, 4, 4)
     assert normalise(image).abs().max() == 0
