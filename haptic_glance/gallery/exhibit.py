@@ -82,7 +82,7 @@ def exhibit(
     picture = look(finer, shades, nearest_vertices(finer, points))
     folder.mkdir(parents=True, exist_ok=True)
     write_any(folder / "saliency.ply", coloured(finer, shades))
-    write_text(folder / "points.csv", as_csv(points))
+    write_text(folder / "points.csv", as_csv(points, original))
 
     mesh, notes = repaired(original)
     keeps_vertices = len(mesh.vertices) == len(original.vertices)

@@ -55,7 +55,7 @@ class InfeasibleTarget(ValueError):
     def __init__(self, faces: int, smallest: int, frozen: int = 0) -> None:
         self.faces, self.smallest, self.frozen = int(faces), int(smallest), int(frozen)
         super().__init__(
-            f"{faces} faces are infeasible with {frozen} frozen: the smallest feasible count is {smallest}"
+            f"a count of {faces} faces is infeasible with {frozen} frozen: the smallest feasible count is {smallest}"
         )
 
     def __reduce__(self) -> tuple:

@@ -219,7 +219,9 @@ def infeasible(task: SimplificationTask, error: InfeasibleTarget, neighbourhood:
         frozen.append(f"{number(len(task.boundary), 'boundary edge')}")
     reason = f", since {' and '.join(frozen)} are frozen" if frozen else ""
     ways = remedies(task, error, neighbourhood) or ["the mesh cannot be simplified further"]
-    return f"{number(error.faces, 'face')} are infeasible{reason}: {', or '.join(ways)}"
+    return (
+        f"{number(error.faces, 'face')} {'is' if error.faces == 1 else 'are'} infeasible{reason}: {', or '.join(ways)}"
+    )
 
 
 FREE_BORDERS = "let the boundary be simplified with --free-borders"

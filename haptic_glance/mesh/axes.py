@@ -50,7 +50,7 @@ def to_z_up(axis: str) -> np.ndarray:
     if axis in TO_Z_UP:
         return TO_Z_UP[axis]
     if axis == AUTO:
-        raise ValueError("the axis that points up is not known: settle it first (haptic_glance.mesh.upright.settled)")
+        raise ValueError('the axis that points up is not known: name it, such as "y" or "z"')
     up = np.array(axis.split(","), dtype=np.float64)
     up /= np.linalg.norm(up)
     first = np.cross(np.eye(3)[np.abs(up).argmin()], up)

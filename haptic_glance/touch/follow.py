@@ -216,7 +216,8 @@ def follow(
     averages at the vertices would tilt the array on the large faces of flat sides, in their middle by tens of degrees.
 
     Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
-    keeps its heading. So a rotation of the object does not change a sequence, and the frames do not spin where the
+    keeps its heading. So a rotation of the object does not change a sequence, if the pitch stays the same (a share of
+    the diameter changes with the bounding box, a length such as "1mm" does not). The frames do not spin where the
     contour passes a pole, as they would with `sensor_axes`. The thesis does not say this either. The array is smaller
     at saddles, with the same number of cells (T4.4.3, `adaptive_distances`).
 
@@ -267,7 +268,9 @@ def contour(mesh_or_surface: Mesh | Surface, plane_points: ArrayLike) -> Section
 def _check_planes(planes):
     planes = np.asarray(planes, dtype=np.float64)
     if planes.ndim != 3 or planes.shape[1:] != (3, 3) or not np.isfinite(planes).all():
-        raise ValueError(f"planes must be finite points of shape (k, 3, 3): centre and two points, got {planes.shape}")
+        raise ValueError(
+            f"a plane must be three finite points of shape (3, 3), its centre first; got {planes.shape[1:]}"
+        )
     return planes
 
 

@@ -38,7 +38,7 @@ def press_forces(
         Rows and columns.
     pitch : float or str
         Distance of neighbouring cells, in units of the mesh, or a text such as "1mm".
-    load : float, str or (k,) array_like, optional
+    load : float or (k,) array_like, optional
         Newtons on the whole array. Give `load` or `depth`.
     depth : float, str or (k,) array_like, optional
         Approach after the first contact in metres, or a text such as "2mm".

@@ -83,7 +83,7 @@ class UserMesh:
         return Places(np.array(vertices), np.concatenate(positions), np.concatenate(normals))
 
     def _selected(self, method, count, seed):
-        vertices = find_points(self.source, method, count, seed=seed, name=self.name)
+        vertices = find_points(self.source, method, count, seed=seed)
         placed, vertices = len(vertices), vertices[touchable(self.mesh, vertices)]
         note = f"{len(vertices)} of {count} places: the mesh has no more" if placed < count else ""
         note = f"{len(vertices)} of {count} places: the others have no normal" if len(vertices) < placed else note

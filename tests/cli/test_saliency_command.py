@@ -9,10 +9,11 @@ import trimesh
 from PIL import Image
 
 from haptic_glance.cli import points
-from haptic_glance.cli.saliency import COLUMNS, run
+from haptic_glance.cli.saliency import COLUMNS, as_csv, finely, run
 from haptic_glance.lod.pictures import places, visible
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import PLACE, SIZE
 
@@ -130,3 +131,20 @@ def test_the_picture_has_the_ranks_of_the_visible_points_and_the_others_are_coun
     assert 2 <= len(marked) < 8 and marked.items() <= expected.items()
     seen = visible(mesh, ids)
     assert 0 < seen.sum() == len(marked) and f"{(~seen).sum()} of 8 points are behind" in shown.err
+
+
+def test_the_finer_copy_of_long_faces_keeps_the_colours_that_a_method_sees():
+    box = trimesh.creation.box()
+    colors = np.where(box.vertices[:, [0, 0, 0]] > 0, [250, 0, 0], [0, 0, 50]).astype(np.uint8)
+    fine, values = finely(Mesh(box.vertices, box.faces, colors), np.zeros(8), "height")
+    share = fine.vertices[:, :1] + 0.5  # from one side of the box to the other
+    expected = share * [250, 0, 0] + (1 - share) * [0, 0, 50]
+    assert len(values) == len(fine.vertices) > 1000 and np.abs(fine.colors - expected).max() <= 0.5 + 1e-9
+
+
+def test_positions_far_from_the_origin_are_written_in_full():
+    place = np.array([450_000.049522, 5_400_000.031487, 100.009657])  # metres of a map, of an object of ten centimetres
+    ball = trimesh.creation.icosphere(2, radius=0.05)
+    line = as_csv([(1, 7, *place, 0.5)], Mesh(ball.vertices + place, ball.faces)).splitlines()[1]
+    assert np.array(line.split(",")[2:5], dtype=float) == pytest.approx(place, abs=1e-7)
+    assert as_csv([(1, 7, 0.1, 1 / 3, 2, 0.5)], Mesh(ball.vertices, ball.faces)).endswith("1,7,0.1,0.333333333,2,0.5")

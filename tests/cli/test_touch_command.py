@@ -9,6 +9,7 @@ import trimesh
 from PIL import Image
 
 from haptic_glance.cli.touch import POINT, parser, run
+from haptic_glance.look.points import find_points
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import pictures, press_many
@@ -111,12 +112,13 @@ def test_coordinates_come_back_from_the_meshs_frame(up):
     assert np.allclose(model.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
 
 
-def test_random_places_depend_on_the_seed_alone(touched):
+def test_random_places_depend_on_the_seed_alone(touched, file):
     first, table, _, _ = touched("--at", "random", "--count", 3)
     again, _, _, _ = touched("--at", "random", "--count", 3)
     other, _, _, _ = touched("--at", "random", "--count", 3, "--seed", 1)
     assert len(table) == 3 and np.array_equal(first["images"], again["images"])
     assert not np.array_equal(first["vertices"], other["vertices"])
+    assert np.array_equal(first["vertices"], find_points(load(file), "random", 3))
 
 
 def test_salient_places_are_those_of_the_method(touched, file):

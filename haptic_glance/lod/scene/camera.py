@@ -261,7 +261,7 @@ class Scene:
         """One Pose per object; ValueError for an object without a mesh, or an eye inside one."""
         missing = sorted({placed.name for placed in self.objects} - set(meshes))
         if missing:
-            raise ValueError(f"no mesh of {', '.join(missing)}: there are {', '.join(sorted(meshes))}")
+            raise ValueError(f"no mesh of {', '.join(missing)}: there are {', '.join(sorted(meshes)) or 'none'}")
         poses = [placed.pose(meshes[placed.name]) for placed in self.objects]
         for placed, pose in zip(self.objects, poses, strict=True):
             eyes = pose.to_mesh(np.array([camera.eye for camera in self.cameras]))

@@ -108,7 +108,9 @@ def find_points(
     selection : {"suppression", "centroid"}
         For methods that select points in each view: T3.2.5 or T3.1.2.
     radius : float
-        Least distance between points, in units of the normalised mesh. It shrinks only if `count` points do not fit.
+        Least distance between places, in units of the normalised mesh. It shrinks only if `count` places do not fit.
+        The vertices nearest to two places may be closer by an edge. Methods of the literature that select points by a
+        rule of their own keep that rule, and use the radius for further places alone.
     seed : int
         For `random` alone, whose draw depends on seed and name and not on earlier calls.
     name : str

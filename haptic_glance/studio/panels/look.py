@@ -152,7 +152,7 @@ class LookPanel(Panel):
     def save_points(self) -> None:
         """Hands out the points in the file's coordinates."""
         session = self.window.session
-        content = as_csv(session.look().points) + "\n"
+        content = as_csv(session.look().points, session.on_table.given) + "\n"
         self.window.download(f"{session.on_table.name}_points.csv", content.encode())
 
     def save_mesh(self) -> None:
