@@ -78,7 +78,7 @@ def parser(about: str) -> argparse.ArgumentParser:
     help_format = "format of the files in the output folder (default: that of the mesh, or glb)"
     command.add_argument("--format", choices=[suffix[1:] for suffix in FORMATS], help=help_format)
     command.add_argument(
-        "--picture", metavar="FILE", type=Path, help="also draw the saliency, and the mesh before and after"
+        "--picture", metavar="FILE", type=Path, help="for one result: draw the saliency, and the mesh before and after"
     )
     help_method = f"method of saliency and points: {HELP}; qem: none, every place has the same weight"
     command.add_argument("--method", default="glance", help=help_method)
@@ -165,7 +165,7 @@ def check_folder_of_several(options: argparse.Namespace) -> None:
     if options.out.resolve() == (options.mesh if options.mesh.is_dir() else options.mesh.parent).resolve():
         raise ValueError(f"--out {options.out} is the folder of the meshes: name another one")
     if options.picture:
-        raise ValueError("--picture is for one result")
+        raise ValueError("--picture is for one result: use --faces, or leave it out")
 
 
 def check_outputs(mesh: Path, *paths: Path | None) -> None:

@@ -53,7 +53,7 @@ def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
     points = points_of(mesh, Detection(vertices, None, saliency, scores_of(mesh, vertices, saliency)))
     folder.mkdir(parents=True)
     write_any(folder / "saliency.ply", coloured(mesh, saliency))
-    write_text(folder / "points.csv", as_csv(points))
+    write_text(folder / "points.csv", as_csv(points, mesh))
     levels, touches, images, missing = [], [], [], {}
     try:
         for target, level in results.lods(name, f"{model}-soft"):

@@ -25,7 +25,7 @@ def averaging(
     keys, cube = np.unique(cubes @ STRIDES, return_inverse=True)
     order = np.argsort(cube, kind="stable").astype(np.int32)
     firsts = np.append(0, np.cumsum(np.bincount(cube)))
-    x, y = np.divmod(np.arange(9), 3) - np.int64(1)
+    x, y = np.mgrid[-1:2, -1:2].reshape(2, 9)
     columns = keys[:, None] + x * STRIDES[0] + y * STRIDES[1]
     begins, ends = (firsts[np.searchsorted(keys, columns + step)] for step in (-1, 2))
     ordered = points[order], normals[order], areas[order], order
