@@ -154,7 +154,7 @@ def finely(mesh: Mesh, saliency: np.ndarray, method: str = GLANCE) -> tuple[Mesh
     ends = mesh.vertices[mesh.faces]
     if np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=2).max() <= LONG * diameter:
         return mesh, saliency
-    vertices, faces, source = trimesh.remesh.subdivide_to_size(  # pyright: ignore[reportAssignmentType] (of two)
+    vertices, faces, source = trimesh.remesh.subdivide_to_size(  # pyright: ignore[reportAssignmentType] (3, not 2)
         mesh.vertices, mesh.faces, FINE * diameter, max_iter=20, return_index=True
     )
     colors = None if mesh.colors is None else _colours_at(mesh, source, vertices, faces)

@@ -1,4 +1,4 @@
-"""Averages over the points of a surface, in the time that a tree takes to find their neighbours."""
+"""Averages over the points of a surface; a grid of cubes gives the neighbours, faster than a tree."""
 
 import math
 
