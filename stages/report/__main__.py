@@ -56,7 +56,8 @@ interval. The words:
   whether it did; or where both sides are the same mesh, unless the sentence is about when that happens.
 - *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
 
-The set that follows the printed protocol judges a sentence of the thesis. The column *carries over* has the word that
+The set that follows the printed protocol judges a sentence of the thesis, or the first set where none follows it to the
+end (T3.2.4, T3.3). The column *carries over* has the word that
 all sets together come to. A later claim in the same words, or with another set, split, metric or model, is secondary:
 it asks whether the sentence carries over, and does not count as a sentence. So are objects that were never touched,
 where the thesis draws touches at random. Where the thesis names no set (T6.3), all sets judge. Section *ours*:

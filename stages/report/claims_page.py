@@ -23,7 +23,7 @@ from .verdict import counted, open_by_cause, sentences
 
 CHAPTERS = {  # start of a claim's section -> what it is about
     "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",
-    "T6": "chapter 6: conclusions", "ours": "this project's own",
+    "T6": "chapter 6: proposals for future work", "ours": "this project's own",
 }  # fmt: skip
 KINDS = {"sentence": "sentences, each once", "elsewhere": "a sentence tested elsewhere"}
 

@@ -25,7 +25,7 @@ from .page import box, folded, image, lacks_cells, part, prose
 from .results import dataset_text
 from .tables import with_interval
 from .topics import name_of
-from .verdict import DEPENDS, UNTESTABLE, counts, sentences
+from .verdict import DEPENDS, UNTESTABLE, counts, of_thesis
 from .words import findings
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
@@ -78,7 +78,7 @@ def findings_html(claims: pd.DataFrame, differences: pd.DataFrame) -> str:
     cards = [_card(finding, rows[finding.key], differences) for finding in FINDINGS if finding.key in rows]
     if not cards:
         return ""
-    thesis = sentences(claims[claims["section"] != "ours"])
+    thesis = of_thesis(claims)
     tally = counts(thesis)
     unclear = UNCLEAR.format(count=len(thesis), untestable=tally[UNTESTABLE] + tally[DEPENDS], **tally)
     return f'<section id="findings"><h2>Five findings</h2><ul class="cards">{"".join(cards)}{unclear}</ul></section>\n'

@@ -24,6 +24,7 @@ UNMEASURED = "nobody measured whether the training was saturated"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
+CHANGES = ("weight_change", "layer_weight_change")  # of a tuned network
 SEQUENCES, SUM = ("method", "split", "repetition", "training", "frames", "cells"), "cnn"  # trials by contours
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
@@ -83,12 +84,13 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
 def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of tuned networks whose training was stopped after some passes while it still improved, or may have been.
 
-    A network that knows its test part has learned its training part.
+    A network that knows its test part has learned its training part. The changes of its weights are checked alike.
     """
-    tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
+    is_accuracy = rows["metric"] == "accuracy"
+    tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (is_accuracy | rows["metric"].isin(CHANGES))
     converged = rows["passes"] == "converged" if "passes" in rows else False
     train_accuracy = _beside(results, stage, dataset, rows, "train_accuracy")
-    doubtful = tuned & ~converged & (rows["value"] < SATURATED)
+    doubtful = tuned & ~converged & ~(is_accuracy & (rows["value"] >= SATURATED))
     return pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
         doubtful & train_accuracy.isna(), UNMEASURED)  # fmt: skip
 
@@ -117,9 +119,9 @@ def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFra
 
 @check("sequences")
 def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of networks that did not know their training sequences while their loss still fell at the end.
+    """Rows of networks that did not know their training sequences while their loss still fell, or may not have.
 
-    The sum of both networks needs both. Rows whose run measured neither are valid: those of the printed size.
+    The sum of both networks needs both.
     """
 
     def of_all() -> pd.Series:
@@ -130,8 +132,10 @@ def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
         networks = evidence.groupby([*trial, "classifier"], as_index=False)["known"].max()
         sums = networks.groupby(trial, as_index=False)["known"].min().assign(classifier=SUM)
         learned = pd.Series(all_rows[[*trial, "classifier"]].merge(pd.concat([networks, sums]), how="left")["known"])
-        untrained = learned.isin([False]).to_numpy()
-        return pd.Series(untrained, index=all_rows.index).map({True: UNTRAINED, False: ""})
+        reasons = learned.map({True: "", False: UNTRAINED}).fillna(UNMEASURED)
+        return pd.Series(
+            reasons.where(all_rows["classifier"].astype(str).str.startswith(SUM), "").to_numpy(), index=all_rows.index
+        )
 
     return results.once(("settled", dataset), of_all)[rows.index]
 
@@ -165,7 +169,7 @@ def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metr
         all_rows = results.rows(stage, dataset)[keys]
         return pd.Series(all_rows.merge(values, on=keys, how="left")["_beside"].to_numpy(), index=all_rows.index)
 
-    value_columns = {"metric", "value", "seconds", "note", "imprints", "clock"}
+    value_columns = {"metric", "value", "seconds", "note", "imprints", "clock", "layer", "part"}
     keys = [column for column in rows if column in metric_rows and column not in value_columns]
     return results.once(("beside", stage, dataset, metric, *keys), of_all)[rows.index]
 

@@ -24,6 +24,7 @@ WORDS = (*DECIDED, MIXED, DEPENDS, UNTESTABLE, "open")
 # By unit: what nobody would act on. Stated before the claims were judged by it; other units have none.
 NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
 FEW, HUNDRED = 5, 100  # units
+PROPOSED = "T6.3"  # the section that proposes future work, and states no result
 CAUSES = (  # of open verdicts
     "not run", "no spread", f"{FEW} units or fewer a set", f"fewer than {HUNDRED} units needed",
     f"{HUNDRED} units or more needed", "more splits of the same data would not decide", "hardly an effect",
@@ -260,14 +261,21 @@ def sentences(claims: pd.DataFrame) -> pd.DataFrame:
     return claims.loc[primary, ["section", "claim", "verdict", "pairs"]].reset_index(drop=True)
 
 
+def of_thesis(claims: pd.DataFrame) -> pd.DataFrame:
+    """The sentences that the thesis states as results: neither the proposals of PROPOSED nor this project's own."""
+    frame = sentences(claims)
+    return frame[~frame["section"].isin(["ours", PROPOSED])]
+
+
 def counted(claims: pd.DataFrame) -> str:
     """On a frame of `judge`: how many verdicts there are of each word, how many of them hold, how many sentences."""
     decided = claims["holds"].isin(["yes", "no"]).sum()
-    frame = sentences(claims)
-    thesis = frame[frame["section"] != "ours"]
+    frame, thesis = sentences(claims), of_thesis(claims)
+    ours, proposals = (frame[frame["section"] == section] for section in ("ours", PROPOSED))
     return (
         f"Sentences of the thesis ({len(thesis)}): {_said(thesis)}. "
-        f"Sentences of this project ({len(frame) - len(thesis)}): {_said(frame[frame['section'] == 'ours'])}. "
+        f"Its proposals for future work ({PROPOSED}, {len(proposals)}): {_said(proposals)}. "
+        f"Sentences of this project ({len(ours)}): {_said(ours)}. "
         f"Verdicts, with {len(claims) - len(frame)} that test a sentence elsewhere ({len(claims)}): {_said(claims)}. "
         f"Of the {decided} that are supported or contradicted, {(claims['holds'] == 'yes').sum()} hold among the "
         "claims of their chapter, at a false discovery rate of 5 %."

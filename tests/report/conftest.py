@@ -129,9 +129,14 @@ def judged(offsets=None):
     return pd.DataFrame(rows)
 
 
-def learned_weights(count=6):
-    """A table of learned weights, and the values of each object that they are the means of: (frame, (count, 9))."""
+def learned_weights(count=6, **more):
+    """A table of learned weights, and the values of each object that they are the means of: (frame, (count, 9)).
+
+    more: what is added to the values of a channel.
+    """
     values, rows = np.random.default_rng(1).random((count, len(CHANNELS))), []
+    for channel, value in more.items():
+        values[:, list(CHANNELS).index(channel)] += value
     for method in ("guided_ssim", "guided_ed", "guided_ssim_object"):
         for fold in range(-1, count):
             mean = np.delete(values, fold, axis=0).mean(axis=0) if fold >= 0 else values.mean(axis=0)

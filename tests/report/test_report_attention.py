@@ -223,11 +223,27 @@ VERDICTS = {
 }  # fmt: skip
 
 
-def test_claims_on_gaze_follow_from_the_rows(seen):
-    judged = verdicts(CLAIMS, seen, *VERDICTS)
+def test_claims_on_gaze_follow_from_the_rows(root, small):
+    measured = root / "reports/measurements"
+    (measured / "gaze_3_2").mkdir()
+    shutil.copy(measured / "gaze/weights.csv.gz", measured / "gaze_3_2")  # whose weights were learned as printed
+    judged = verdicts(CLAIMS, small.results(root), *VERDICTS)
     assert judged["verdict"].to_dict() == VERDICTS
     assert judged.loc["svm_per_object", "effect"] == pytest.approx(4)  # in the thesis's way
     assert judged.loc["svm_per_object_unseen", "tested_on"].startswith("not run")  # no whole object left out
+
+
+def test_the_largest_and_the_least_weight_are_held_against_the_next_channel_by_object(measure, small):
+    frame, values = small.learned_weights(entropy=1.0, color=-1.0)
+    rows = frame.rename(columns={"weight": "value", "left_out": "item"}).assign(metric="weight")
+    judged = verdicts(CLAIMS, measure("weights", rows, "gaze_3_2"), "entropy_most_ssim", "colour_least_ssim")
+    own = pd.DataFrame(values, columns=frame["channel"].unique()[: values.shape[1]])
+    others = own.drop(columns=["entropy", "color"])
+    leads = {"entropy_most_ssim": own["entropy"] - others[others.mean().idxmax()],
+             "colour_least_ssim": others[others.mean().idxmin()] - own["color"]}  # fmt: skip
+    for key, lead in leads.items():
+        assert judged.loc[key, ["effect", "low", "high"]].tolist() == pytest.approx(interval(lead), abs=1e-4)
+    assert judged["verdict"].tolist() == ["supported", "supported"]
 
 
 def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root, small):

@@ -177,7 +177,13 @@ def test_verdicts_are_counted_with_those_that_hold_among_so_many():
     words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["mixed"] * 2 + ["open"] * 45
     text = counted(frame_of(words, holds=["yes"] * 33 + ["no"] * 7 + [""] * 52))
     words = "30 supported, 10 contradicted, 5 no difference, 2 mixed, 45 open"
-    assert text.startswith(f"Sentences of the thesis (92): {words}. Sentences of this project (0): none.")
+    start = f"Sentences of the thesis (92): {words}. Its proposals for future work (T6.3, 0): none. Sentences of this"
+    assert text.startswith(f"{start} project (0): none.")
+    mixed = counted(frame_of(["supported", "open", "mixed"], section=["T3.1", "T6.3", "ours"], holds=""))
+    assert mixed.startswith(
+        "Sentences of the thesis (1): 1 supported. Its proposals for future work (T6.3, 1): 1 open."
+    )
+    assert "Sentences of this project (1): 1 mixed." in mixed
     assert f"that test a sentence elsewhere (92): {words}." in text
     assert "Of the 40 that are supported or contradicted, 33 hold" in text
 
@@ -241,8 +247,9 @@ def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_ro
     table = judge(claims, results)
     assert table["of"].tolist() == ["", "a", "", "a"]
     assert sentences(table)["verdict"].tolist() == ["supported", "contradicted"]
-    text = "Sentences of the thesis (1): 1 supported. Sentences of this project (1): 1 contradicted. Verdicts, with 2"
-    assert counted(table).startswith(text)
+    text = counted(table)
+    assert text.startswith("Sentences of the thesis (1): 1 supported.")
+    assert "Sentences of this project (1): 1 contradicted. Verdicts, with 2" in text
 
 
 @pytest.mark.parametrize(("words", "word"), [

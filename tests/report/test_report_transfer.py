@@ -58,6 +58,7 @@ def rows(dataset="furniture", turned=False, **levels):
                 values = {"accuracy": value, "chance": 1 / 6, "train_accuracy": 1.0}
                 entries += [setting | {"metric": metric, "value": value} for metric, value in values.items()]
     changed = common | {"data": FINE, "weights": "imagenet", "mode": "finetuned", "split": "random"}
+    changed["pretrained"] = "complete"
     for number in range(5):
         about = changed | {"repetition": number}
         for depth, (layer, part) in enumerate(LAYERS.items()):
@@ -153,7 +154,8 @@ def test_trainings_at_the_printed_rate_are_rows_of_their_own_and_a_reading_of_th
     alone = table("table_5_4", measure("transfer", pd.concat([rows(), objects[objects["epoch"].isna()]]))).shown
     assert set(alone[alone["passes"] == "10, at the printed rate"]["training touches, %"]) == {"–"}
     claim = next(entry for entry in transfer.CLAIMS if entry.key == "tuned_over_frozen_random")
-    assert claim.readings[-1].changes == {"where": {"passes": "printed_rate"}}
+    alone = {side: {"method": "mobilenet_v2"} for side in ("first", "second")}
+    assert claim.readings[-1].changes == {"where": {"passes": "printed_rate"}, **alone}
 
 
 def test_table_5_6_has_frozen_layers_by_the_thesis_s_numbers(run):
@@ -223,10 +225,10 @@ def test_sets_that_contradict_each_other_are_mixed_and_each_is_told(measure):
 
 @pytest.mark.slow
 def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure):
-    others = rows("princeton_six", frozen=0.9).assign(method="resnet50")  # which change no claim
+    others = rows("princeton_six", frozen=0.9).assign(method="googlenet")  # which changes no claim
     frame = pd.concat([rows("princeton_six"), others[others["mode"] == "frozen"]], ignore_index=True)
     results = measure("transfer", frame)
-    where = {"objects": "princeton_six", "network": "resnet50", "mode": "frozen", "weights": "imagenet"}
+    where = {"objects": "princeton_six", "network": "googlenet", "mode": "frozen", "weights": "imagenet"}
     beside = only(table("table_5_4", results).frame, split="objects", **where)
     assert beside["accuracy"] == pytest.approx(0.9, abs=0.01) and beside["values"] == 5
     judged = words(results)
@@ -238,6 +240,26 @@ def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure)
     drawn = figure_5_3.gains(_transfer.everywhere(results)["princeton_six"])
     drawn = only(drawn, network="mobilenet_v2", split="objects", data=FINE)
     assert list(drawn[["mean", "low", "high"]]) == pytest.approx([gain["effect"], gain["low"], gain["high"]])
+
+
+def test_a_sentence_about_all_networks_is_judged_on_their_mean_network_by_network(measure):
+    levels = {"alexnet": 0.7, "vgg16": 0.65, "resnet50": 0.6}
+    more = [rows("princeton_six", finetuned=level).assign(method=name) for name, level in levels.items()]
+    more = pd.concat([frame[frame["data"] == FINE] for frame in more], ignore_index=True)
+    lone = more[(more["method"] == "resnet50") & (more["mode"] == "frozen")]  # one side alone
+    for frame, effect in ((more, 18.75), (more.drop(lone.index), 21.67)):
+        judged = words(measure("transfer", pd.concat([rows("princeton_six"), frame])))
+        assert judged.loc["tuned_over_frozen_random", "effect"] == pytest.approx(effect, abs=0.2)
+        assert judged.loc["tuned_over_frozen_objects", "effect"] == pytest.approx(30, abs=0.2)  # MobileNetV2 alone
+
+
+def test_changes_of_weights_need_a_training_that_was_saturated(measure):
+    frame = rows("princeton_six")
+    keys = ["earlier_change_more", "resnet_smallest_updates"]
+    beside = pd.concat([frame, frame.assign(method="resnet50")], ignore_index=True)
+    assert "not testable" not in set(words(measure("transfer", beside), *keys)["verdict"])
+    beside.loc[beside["metric"] == "train_accuracy", "value"] = 0.5
+    assert set(words(measure("transfer", beside), *keys)["verdict"]) == {"not testable"}
 
 
 def test_networks_that_saw_other_sizes_are_not_compared(measure):

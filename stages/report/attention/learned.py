@@ -6,7 +6,7 @@ passes of marks in data/annotations with each other and with human gaze.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -118,13 +118,23 @@ def own_values(group: pd.DataFrame) -> pd.Series:
 @statistic("least_weight")
 def least_weight(results: Results, claim: Claim) -> pd.Series:
     """The lowest weight of the other channels minus that of the channel of the first side, by object."""
+    return -_over_other(results, claim, pd.Series.idxmin)
+
+
+@statistic("largest_weight")
+def largest_weight(results: Results, claim: Claim) -> pd.Series:
+    """The weight of the channel of the first side minus the largest weight of the other channels, by object."""
+    return _over_other(results, claim, pd.Series.idxmax)
+
+
+def _over_other(results: Results, claim: Claim, extreme: Callable[[pd.Series], Any]) -> pd.Series:
+    """The weight of the channel of the first side minus that of the other channel that `extreme` names, by object."""
     side = {**claim.where, **claim.first}
     channel = side.pop("channel")
     rows = results.measured(claim.stage, claim.sets[0], **side)
     of_all = rows[rows["item"].isna() & (rows["channel"] != channel)].set_index("channel")["value"]
-    weights = {name: own_values(rows[rows["channel"] == name]) for name in (of_all.idxmin(), channel)}
-    lowest, first = weights.values()
-    return lowest - first
+    first, other = (own_values(rows[rows["channel"] == name]) for name in (channel, extreme(of_all)))
+    return first - other
 
 
 def _ranks(frame: pd.DataFrame) -> str:

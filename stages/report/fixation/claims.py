@@ -157,6 +157,11 @@ CLAIMS = [
     *in_each_metric("excluded_least", "Attention is less like people's where a network names the object itself or its "
                     "convexity than in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, tuple(NAMED)),
                     "T3.3.3", within=("method",)),
+    *in_each_metric("excluded_least_vgg16", "Attention is less like people's where a network names the object itself "
+                    "or its convexity than in the tasks that are fused (VGG16).", (VGG, FUSED_TASKS),
+                    (VGG, tuple(NAMED)),
+                    "T3.3.3", within=("method",), of="excluded_least_masked",
+                    **frozen(first="vgg16", second="vgg16")),
     *[entry for task, name in NAMED.items()
       for entry in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
                                   "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
@@ -199,6 +204,11 @@ CLAIMS = [
     *[spreads(f"deep_concentrates{key}{suffix}", task, method, "deep_concentrates" if key or suffix else "")
       for key, task in {"": FUSED, "_narrowed": NARROWED}.items()
       for suffix, method in {"": TUNED, "_frozen": "*-frozen"}.items()],
+    claim(key="noise_concentrates", section="ours", scale=100, unit="% of the surface",
+          sentence="Half of the saliency of noise lies on less of the surface than that of classical attention: this "
+          "measure does not see regions.",
+          where={"metric": "half_share", "view": VIEWS}, first={"task": CLASSICAL, "method": "rival"},
+          second=NOISE._asdict()),
     *each_network("ewigc_over_random_weights", "What a network learned from photographs makes its attention like "
                   "people's.", lambda method: (with_random_weights(method), FUSED), metrics=OUR_METRICS),
     *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",

@@ -37,9 +37,10 @@ ERROR = {"metric": METRO}
 SHARE: dict[str, Any] = {"where": ERROR, "scale": 100.0, "unit": "% of the diagonal"}
 ALL_COUNTS = "mean of the differences at each face count"
 OF_EACH = "mean over the face counts"  # of a correlation at each
-# T3.1.5: "within a difference of 0.0002"; more than many of our errors, and thus read as its share of the thesis's own
-# errors, 0.00267 in the mean of T table 3.2. Likewise "within 0.1" of errors that are far below 0.1.
-MARGIN, MARGIN_SEEN = 7.5, 10.0  # %
+# T3.1.5: "within a difference of 0.0002"; more than many of our errors, and thus read as its share of the error that
+# T3.1.5 itself prints, 0.001 on black with 1,500 faces. NARROW: its share of the errors of T table 3.2, 0.00267 in the
+# mean. Likewise "within 0.1" of errors that are far below 0.1.
+MARGIN, NARROW, MARGIN_SEEN = 20.0, 7.5, 10.0  # %
 # The sets of a claim; None: the first of the others, the household. The first, of T3.1 two, are as the thesis printed.
 MORE = (*GAZED, "princeton")
 OF_3_1, OF_3_2 = (*SETS_3_1, *GAZED), (SECTION_3_2, "gaze_clouds", "household")
@@ -94,6 +95,7 @@ def lower(
 ranks = partial(claim, statistic="ranks_agree", unit="rank correlation")
 same = partial(claim, section="T3.1.5", **of_3_1, where=ERROR | BOTH, statistic="room", relative=True,
                scale=100.0, margin=MARGIN, unit="% of both errors, within the margin",
+               readings=(*FIT, reading("margin of 7.5 %, by the errors of table 3.2", margin=NARROW)),
                note="the largest difference either way, from the margin")  # fmt: skip
 printed: dict[str, Any] = of_3_1 | {"target": (LOW, HIGH)}
 metro, seen = (partial(lower, "T3.1.5", metric, **printed) for metric in (METRO, SEEN))
@@ -140,7 +142,7 @@ CLAIMS = [
          "VisAttSym", CLASSICAL),
     same(key="symmetry_within", sentence="VisAttSym stays within 0.1 of the classical model's perceptual errors.",
          where={"metric": (SEEN, "dlap", "dnor")} | BOTH, first={"method": ("VisAttSym",)},
-         second={"method": CLASSICAL}, margin=MARGIN_SEEN),
+         second={"method": CLASSICAL}, margin=MARGIN_SEEN, readings=FIT),
     same(key="combinations_same", sentence="All combinations but VisAttAll stay within 0.0002 of the classical model.",
          first={"method": OTHERS}, second={"method": CLASSICAL}),
     metro("all_channels", "All channels with equal weights are slightly worse (VisAttAll).", "VisAttAll", CLASSICAL),
@@ -173,9 +175,9 @@ CLAIMS = [
               BY_AREA, tuple(f"{name}-area" for name in BY_AREA), **printed)
         for metric, short, kind in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))
     ),
-    # Colour, where objects have several hues.
+    # Colour, where objects have several hues: the thesis says that colour helps on grey objects.
     *(
-        lower("T3.1.5", metric, f"colour_{key}_{short}",
+        lower("ours", metric, f"colour_{key}_{short}",
               f"The colour channels lower the error where objects have colours ({name}, {kind}).",
               f"{name}NoColour", name if name == "VisAttAll" else CLASSICAL, dataset=COLOURED)
         for key, name in (("classical", "VisAtt"), ("all", "VisAttAll"))
@@ -196,9 +198,9 @@ CLAIMS = [
         for short, metric, kind, dataset in BETTER
         if short in ("metro", "ssim", "gaze")
     ),
-    lower("T3.1", METRO, "blind_metro",
+    lower("ours", METRO, "blind_metro",
           "Attention places the kept points better than chance does (distance).", "random", WEIGHTED),
-    lower("T3.1", SEEN, "blind_ssim",
+    lower("ours", SEEN, "blind_ssim",
           "Attention places the kept points better than chance does (as seen).", "random", WEIGHTED),
     lower("ours", SEEN, "glance_blind_ssim",
           "Our glance places the kept points better than chance does (as seen).", "random", OURS),
@@ -237,5 +239,5 @@ CLAIMS += [
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", SSIM),
     seen("ed_over_all", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.", "VisAttAll", ED),
     lower("T3.2.9.2", SEEN, "learned_weights", "Weights learned from ground truth beat equal weights.",
-          "VisAttAll", WEIGHTED),
+          "VisAttAll", WEIGHTED, of="ssim_over_all"),
 ]  # fmt: skip

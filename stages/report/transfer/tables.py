@@ -209,7 +209,9 @@ def _looked(cells: pd.DataFrame) -> str:
     return "; ".join(heads.unique())
 
 
+FOUR = ("alexnet", "vgg16", "resnet50", NETWORK)  # of the five networks of T table 5.4 and figure 5.3
 PHRASES = {
+    ("method", FOUR): "mean of four networks,",
     ("data", FINE): "imprints of 128 x 128", ("data", COARSE): "imprints of 16 x 16",
     ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
     ("mode", "finetuned"): "fine-tuned", ("mode", "frozen"): "frozen",
@@ -247,7 +249,7 @@ def claim(
 @statistic("later_convolutions_change_less")
 def later_change_less(results: Results, claim: Claim) -> pd.Series:
     """Minus the rank correlation of a convolution's depth with its change, per training."""
-    changes = results.measured("transfer", claim.sets[0], metric="layer_weight_change", **claim.where)
+    changes = results.measured("transfer", claim.sets[0], **claim.where)
     return -changes.groupby("repetition")["value"].agg(lambda values: spearmanr(np.arange(len(values)), values)[0])
 
 
@@ -274,6 +276,24 @@ OWN = both(
     claim("middle_frozen", "T5.5", "With layers 18 to 139 frozen touch is recognised as well as with all tuned, but "
           "for one point.", "mode", "18:139", "finetuned", 1.0),
 )  # fmt: skip
+
+
+def of_four(claim: Claim) -> Claim:
+    """The claim on the mean of FOUR networks, as the thesis speaks of all; other sets have rows of NETWORK alone.
+
+    Readings on objects, and at the printed rates, are those of NETWORK alone, too.
+    """
+    sides = {side: {"method": FOUR, **getattr(claim, side)} for side in ("first", "second")}
+    alone = {side: {"method": NETWORK} for side in sides}
+    readings = (CONVERGED[0], *(
+        reading(f"{label(NETWORK)}, {base.name}", **{**base.changes, **alone}) for base in claim.readings))  # fmt: skip
+    where = {column: value for column, value in claim.where.items() if column != "method"}
+    within = (*claim.within, "method")  # a network that one side lacks does not count
+    return replace(claim, where=where, within=within, elsewhere=dict.fromkeys(FOUR, NETWORK), readings=readings,
+                   **sides)  # fmt: skip
+
+
+OWN = [of_four(entry) if entry.section in ("T5.4", "T5.6") and not entry.of else entry for entry in OWN]
 EARLY = [  # by layers that the default run does not freeze
     replace(entry, key=f"{entry.key}_psb", dataset=THEIRS)
     for entry in both(
@@ -286,8 +306,9 @@ CHANGES = Claim(
     shared=shared_by("random"),
     sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
     where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet",
-           "passes": "printed"},
+           "passes": "printed", "metric": "layer_weight_change"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
+    readings=CONVERGED[:1],
 )  # fmt: skip
 BESIDE = ("alexnet", "mobilenet_v2", "vgg16")  # networks beside ResNet50
 BEST = [  # of the networks at the thesis's size
@@ -305,7 +326,7 @@ LESS = [  # at the thesis's size, by networks or by layers
                       lowest_of(*BESIDE), "resnet50", split="random", mode="finetuned", metric="weight_change",
                       readings=CONVERGED[:1]), scale=1e6, unit="millionths, of squared weights"),
         replace(claim("resnet_gains_least", "T5.4", "ResNet50 has the smallest updates of its accuracy.", "method",
-                      BESIDE, "resnet50", split="random", note="what tuning gains over frozen filters"),
+                      lowest_of(*BESIDE), "resnet50", split="random", note="what tuning gains over frozen filters"),
                 contrast=({"mode": "finetuned"}, {"mode": "frozen"}), of="resnet_smallest_updates"),
         claim("early_and_late_best", "T5.5", "Frozen in layers 18 to 139, a network comes closest to one that is tuned "
               "whole.", "mode", "18:139", highest_of(*RANGES), split="random", note="of T table 5.6's ranges"),
