@@ -38,6 +38,8 @@ from stages.engine.settings import (
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()
 SHARED = ("profile", "out", "seed", "parallel", "sets", "report")  # what is said once, not for each set
+BACKENDS = ("loky", "sequential", "dask")  # of parallel.backend
+TREE = ("benchmarks", "conf", "data", "docs", "haptic_glance", "samples", "stages", "tests")  # of this project
 RUNS = "runs"  # below it are the results of every configuration but the published one
 READ_TOO = {  # sections that a stage also reads
     "exploration": ["classification"],
@@ -76,8 +78,12 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
             check_maps(values[dataset])
         if any("targets" in override for override in overrides):
             check_targets(values[dataset])
+        if any(override.partition("=")[0].partition(".")[2] in CHOSEN for override in (*general, *special)):
+            check_choices(values[dataset])
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
+        if not config["obtain"] and config["meshes"]["folder"]:
+            raise ParamsError(f"{dataset} reads no meshes.folder: with several sets write SET.meshes.folder=...")
     values["graph"] = {
         stage: {name: begins_with(values[name], stage, name) for name in sets} if stage in STARTS else sets
         for stage, sets in values["graph"].items()
@@ -165,14 +171,18 @@ def _check_names(overrides: Sequence[str]) -> None:
 def _check_run(values: dict[str, Any]) -> None:
     """Raises ParamsError for sets, workers or a folder of results that no run can have."""
     sets, workers = values["sets"], values["parallel"].get("workers", -1)
+    backend = values["parallel"].get("backend", BACKENDS[0])
     if not sets:
         raise ParamsError(f"sets=[] names no set: write sets=[household], or others of {', '.join(groups()['data'])}")
     if twice := [name for name in dict.fromkeys(sets) if sets.count(name) > 1]:
         raise ParamsError(f"sets=[{','.join(sets)}] names {', '.join(twice)} twice")
     if not (isinstance(workers, int) and (workers == -1 or workers >= 1)):
         raise ParamsError(f"parallel.workers={workers} must be 1 or more, or -1 for one a core")
-    if values["out"] and (Path(values["out"]).is_file() or Path(values["out"]) == Path("/")):
-        raise ParamsError(f"out={values['out']} is no folder for results: write out=runs/NAME")
+    out = Path(values["out"])
+    if values["out"] and (out.is_file() or out == Path("/") or out.parts[0] in TREE):
+        raise ParamsError(f"out={out} is no folder for results: write out=runs/NAME")
+    if backend not in BACKENDS:
+        raise ParamsError(f"parallel.backend={backend} is none of {', '.join(BACKENDS)}")
 
 
 def check_methods(sections: dict[str, Any]) -> None:
@@ -222,6 +232,49 @@ def check_targets(sections: dict[str, Any]) -> None:
             raise ParamsError(str(error)) from None
 
 
+CHOSEN = (
+    "renderer",
+    "background",
+    "viewpoints",
+    "backend",
+    "selection",
+    "symmetry",
+    "formulas",
+    "svm",
+    "colours",
+    "contact",
+    "method",
+)  # settings below a section, whose values have names
+
+
+def check_choices(sections: dict[str, Any]) -> None:
+    """Raises ParamsError for a value of CHOSEN that its stage would refuse, before any stage runs."""
+    from haptic_glance.lod.simplify import BACKENDS
+    from haptic_glance.look.channels.channels import SYMMETRIES
+    from haptic_glance.look.channels.cropped_view import BACKGROUNDS as LEFT
+    from haptic_glance.look.channels.printed import FORMULAS
+    from haptic_glance.look.points.options import SELECTIONS
+    from haptic_glance.look.views.renderer import RENDERERS
+    from haptic_glance.look.views.view import BACKGROUNDS
+    from haptic_glance.look.views.viewpoints import VIEWPOINTS
+    from haptic_glance.mesh.materials import COLOURS
+    from haptic_glance.touch.quasi_tangent import SENSORS
+    from stages.weights import training  # seconds, which most compositions need not
+
+    choices = {
+        "views.renderer": ("auto", *RENDERERS), "views.background": BACKGROUNDS, "views.viewpoints": VIEWPOINTS,
+        "lod.viewpoints": VIEWPOINTS, "lod.backend": BACKENDS, "salient_points.selection": SELECTIONS,
+        "conspicuity.background": LEFT, "conspicuity.symmetry": SYMMETRIES, "conspicuity.formulas": FORMULAS,
+        "weights.svm": training.PIXELS, "weights.method": training.CHOICES, "meshes.colours": COLOURS,
+        "imprints.contact": SENSORS,
+    }  # fmt: skip
+    for name, options in choices.items():
+        section, _, key = name.partition(".")
+        value = sections.get(section, {}).get(key, next(iter(options)))
+        if value not in options:
+            raise ParamsError(f"{name}={value} is none of {', '.join(options)}")
+
+
 def _set_of(override: str) -> str:
     """The set that an override is for, empty where it is for all."""
     first = override.partition("=")[0].partition(".")[0]
@@ -229,14 +282,30 @@ def _set_of(override: str) -> str:
 
 
 def quoted(override: str) -> str:
-    """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents."""
+    """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents.
+
+    In a list, each part that needs quotes gets its own.
+    """
+    if _is_parsed(override):
+        return override
+    key, _, value = override.partition("=")
+    if value.startswith("[") and value.endswith("]"):
+        parts = (part.strip() for part in value[1:-1].split(","))
+        return f"{key}=[{','.join(part if _is_parsed(f'name={part}') else _in_quotes(part) for part in parts)}]"
+    return f"{key}={_in_quotes(value)}"
+
+
+def _is_parsed(override: str) -> bool:
     try:
         OverridesParser.create().parse_override(override)
     except HydraException:
-        key, _, value = override.partition("=")
-        escaped = value.replace('"', '\\"')
-        return f'{key}="{escaped}"'
-    return override
+        return False
+    return True
+
+
+def _in_quotes(value: str) -> str:
+    escaped = value.replace('"', '\\"')
+    return f'"{escaped}"'
 
 
 def _check_options(overrides: Sequence[str]) -> None:
@@ -264,6 +333,8 @@ def _explain(overrides: Sequence[str], error: Exception) -> str:
             match = difflib.get_close_matches(first, groups()["data"], n=1, cutoff=0.8) if rest in keys else []
             hint = f"did you mean {match[0]}.{rest}?" if match else _near(name, keys if dot else [*groups(), *config])
             return f"unknown setting {name}: {hint}"
+    if foreign := [name for name in (override.partition("=")[0] for override in overrides) if not name.isascii()]:
+        return f"{foreign[0]}: the command line takes names of plain letters; values may have any"
     message = str(error).splitlines()[0]
     section = next((name for name in OPEN if f"'{name}'" in message), None)  # with a name that it does not have
     return message + (f" To add a name, write +{section}.NAME=..." if section else "")

@@ -198,7 +198,8 @@ def run(argv: Sequence[str]) -> None:
         workspace = Workspace(Path("."))
         metrics, path = measured(workspace), options.baseline or baseline_of(workspace)
         rules = options.tolerances or (TOLERANCES if TOLERANCES.exists() else None)
-        other_names = [name for file in path.parent.glob("*.json") for name in read_json(file)]
+        folders = {path.parent, workspace.published / "baselines"}  # the rules are about the metrics of every profile
+        other_names = [name for folder in folders for file in folder.glob("*.json") for name in read_json(file)]
     if options.spread:
         print(write_spread([measured(workspace, folder) for folder in options.spread], path))
     elif options.update:

@@ -110,16 +110,20 @@ def patient(call: Callable[[], Any]) -> Any:
             causes: list[BaseException] = [error]
             while causes[-1].__cause__:
                 causes.append(causes[-1].__cause__)
-            if remaining and any(isinstance(cause, LockError) for cause in causes):
+            locked = any(isinstance(cause, LockError) for cause in causes)
+            if remaining and locked:
                 continue
-            print(": ".join(map(str, causes)), file=sys.stderr)
+            if locked:  # DVC advises to delete its lock
+                print("another run of DVC is at work here: run it again when that has ended", file=sys.stderr)
+            else:
+                print(": ".join(map(str, causes)), file=sys.stderr)
             raise SystemExit(1) from error
 
 
 def run(root: Path) -> list[str]:
     """Runs all that changed below `root`; returns the stages that failed."""
     context = multiprocessing.get_context("fork")  # DVC takes a second to load, once
-    schedule = Schedule(*read_graph(root))
+    schedule = Schedule(*patient(lambda: read_graph(root)))
     (root / LOGS).mkdir(parents=True, exist_ok=True)
     running: dict[str, tuple[Any, Any, float]] = {}
     bar = tqdm(total=len(schedule.needs), desc="stages", disable=not sys.stderr.isatty(), unit="stage")

@@ -128,10 +128,13 @@ def based(values: dict[str, Any], dataset: str) -> dict[str, Any]:
 
 
 def _laid_over(base: Any, default: Any, chosen: Any) -> Any:
-    """`chosen` where it differs from the default, else the base; dicts key by key."""
-    if isinstance(base, dict) and isinstance(default, dict) and isinstance(chosen, dict):
-        return {key: _laid_over(base.get(key, value), default.get(key), value) for key, value in chosen.items()}
-    return base if chosen == default else chosen
+    """`chosen` where it differs from the default, else the base; dicts key by key, also those of one side alone."""
+    if not (isinstance(base, dict) and isinstance(default, dict) and isinstance(chosen, dict)):
+        return base if chosen == default else chosen
+    added = {key: value for key, value in base.items() if key not in default}
+    new = {key: value for key, value in chosen.items() if key not in base and value != default.get(key)}
+    both = {key: _laid_over(base[key], default.get(key), chosen[key]) for key in base if key in chosen}
+    return added | new | both
 
 
 def prepare(argv: Sequence[str]) -> None:
@@ -250,7 +253,7 @@ def conclude(folder: Path) -> None:
     parts = [read_table(path) for path in sorted(folder.rglob(ROWS))]
     if parts:
         print(table(pd.concat(parts, ignore_index=True)).to_string(index=False))
-    texts = [path.read_text() for path in sorted(folder.rglob(FAILURE))]
+    texts = [path.read_text().strip() for path in sorted(folder.rglob(FAILURE))]
     if texts:
         sys.exit(f"sweep: {len(texts)} of {number(len(parts) + len(texts), 'job')} failed: {'; '.join(texts)}")
 

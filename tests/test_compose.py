@@ -150,6 +150,13 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
         ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),
         ("conspicuity.channels=[colour]", "unknown name 'colour': did you mean color?"),
+        ("views.renderer=foo", "views.renderer=foo is none of auto, raster, pyrender"),
+        ("household.lod.viewpoints=six", "lod.viewpoints=six is none of twelve, four, principal"),
+        ("weights.method=guess", "weights.method=guess is none of gaze, fixations"),
+        ("parallel.backend=foo", "parallel.backend=foo is none of loky, sequential, dask"),
+        ("out=stages/new", "out=stages/new is no folder for results"),
+        ("meshes.folder=scans", "household reads no meshes.folder: with several sets write SET.meshes.folder=..."),
+        ("+meshes.classes.Löffel=[a]", "+meshes.classes.Löffel: the command line takes names of plain letters"),
         ("conspicuity.channels=[color]", "needs the channels intensity, orientation: add them to conspicuity.channels"),
     ],
 )
@@ -157,6 +164,13 @@ def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
     with pytest.raises(ParamsError) as error:
         compose(["sets=[household]", override])
     assert hint in str(error.value)
+
+
+def test_names_in_a_list_may_have_blanks_accents_and_brackets():
+    names = ["boule à vis", "cône (2)", "anneau#1", "caisse"]
+    values = compose(["sets=[folder]", "meshes.folder=scans", f"meshes.objects=[{','.join(names)}]", "lod.rings=2"])
+    assert values["folder"]["meshes"]["objects"] == names
+    assert compose(["sets=[folder]", 'meshes.folder=a"b c'])["folder"]["meshes"]["folder"] == 'a"b c'
 
 
 @pytest.fixture(scope="module")
@@ -177,6 +191,7 @@ def params():
         ("lod.shrink", "perhaps", "write true or false"),
         ("lod.rings", -3, "lod.rings: -3 must be 0 or more"),
         ("views.size", [900, 0], "views.size: 0 must be 1 or more"),
+        ("views.size", [900], "views.size: [900] must be [rows, columns]"),
         ("salient_points.radius", 0, "salient_points.radius: 0 must be above 0"),
         ("exploration.confidences", [0.5, 1.5], "exploration.confidences: 1.5 must be between 0 and 1"),
         ("fixation.folds", 1, "fixation.folds: 1 must be 2 or more"),

@@ -65,6 +65,20 @@ def test_a_published_run_has_the_baseline_of_its_profile_and_one_of_ones_own_tha
     assert gate.baseline_of(own_run) == workspace.published / "baselines/laptop.json"
 
 
+def test_a_run_of_ones_own_is_held_by_the_rules_about_published_metrics(workspace, monkeypatch, capsys):
+    root = workspace.root
+    write_json(workspace.published / "baselines/laptop.json", {"toys.lod.error": 1.0, "other.svm": 1.0})
+    (workspace.published / "tolerances.yaml").write_text('rules: [{metric: "*.svm", rel: 0.1}]\n')
+    text = (root / "params.yaml").read_text()
+    (root / "params.yaml").write_text(f"{text}out: runs/mine\n")
+    (root / "dvc.yaml").touch()
+    monkeypatch.chdir(root)
+    write_json(root / "runs/mine/metrics/toys/lod.json", {"error": 0.5})
+    gate.run(["--update"])
+    gate.run([])
+    assert "gate: 1 metrics within their tolerances about runs/mine/baseline.json" in capsys.readouterr().out
+
+
 def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     metrics, baseline, rules = (tmp_path / name for name in ("train.json", "base.json", "rules.yaml"))
     metrics.write_text(json.dumps({"accuracy": 0.8, "epochs": 10}))

@@ -56,6 +56,9 @@ def test_a_stage_that_meets_a_lock_tries_again_and_other_errors_tell_their_cause
         return "done"
 
     assert patient(lambda: call(LockError("busy"))) == "done" and len(calls) == 3
+    with pytest.raises(SystemExit):
+        patient(lambda: [calls.clear(), call(LockError("busy: you can manually remove the lock"))])
+    assert capsys.readouterr().err == "another run of DVC is at work here: run it again when that has ended\n"
     calls.clear()
     with pytest.raises(SystemExit):
         patient(lambda: call(KeyError("no such file")))

@@ -43,8 +43,9 @@ def test_rows_are_appended_and_a_repeated_job_replaces_its_own(leave, tmp_path, 
 def test_a_job_that_fails_is_named_at_the_end_and_the_others_are_shown(leave, tmp_path, capsys):
     leave("0", job_rows("classifier=knn", "knn", 0.5))
     sweep.conclude(tmp_path)
-    write_text(tmp_path / "1" / sweep.FAILURE, "seed=-1")
-    with pytest.raises(SystemExit, match="1 of 2 jobs failed: seed=-1"):
+    for number in (1, 2):
+        write_text(tmp_path / str(number) / sweep.FAILURE, f"seed=-{number}")
+    with pytest.raises(SystemExit, match="2 of 3 jobs failed: seed=-1; seed=-2$"):
         sweep.conclude(tmp_path)
     assert capsys.readouterr().out.count("classifier=knn") == 2
 
@@ -115,6 +116,17 @@ def test_sets_of_objects_that_are_not_there_are_left_out_and_names_that_are_ther
     assert "six (cup)" in capsys.readouterr().err
     with pytest.raises(ParamsError, match=r"six \(cup\); name some .*\+classification.sets.NAME=.*: ball, ring$"):
         sweep.sets_there({"six": ["cup", "ring"]}, data)
+
+
+@pytest.mark.slow
+def test_jobs_know_the_sets_that_params_yaml_adds_and_not_those_that_it_lacks(root):
+    values = OmegaConf.to_container(OmegaConf.load("params.yaml"))
+    values["household_four"]["classification"]["sets"] = {"mine": ["hand", "cup"]}
+    (root / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
+    sweep.prepare(["-m", "data=household_four"])
+    job = compose.composed(["data=household_four", "+classification.sets.two=[cup,elephant]"])
+    sets = sweep.based(job, "household_four")["classification"]["sets"]
+    assert sets == {"mine": ["hand", "cup"], "two": ["cup", "elephant"]}
 
 
 @pytest.mark.slow

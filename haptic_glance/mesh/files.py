@@ -260,13 +260,15 @@ def _brief(error):
 def mesh_files(place: Path) -> list[Path]:
     """The file itself, or the files of a folder that `load` reads by their suffix, in alphabetical order.
 
-    Folders in the folder are left out. Raises MeshError for a folder without a mesh, and where there is nothing.
+    Folders in the folder and names that begin with a dot are left out. Raises MeshError for a folder without a mesh,
+    and where there is nothing.
     """
     if not place.exists():
         raise MeshError(f"{place}: no such file or folder")
     if not place.is_dir():
         return [place]
-    files = sorted(path for path in place.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
+    names = sorted(path for path in place.iterdir() if not path.name.startswith("."))
+    files = [path for path in names if path.suffix.lower() in FORMATS and path.is_file()]
     if not files:
         raise MeshError(f"{place}: no mesh in this folder; the formats are {', '.join(FORMATS)}")
     return files

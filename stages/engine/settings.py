@@ -112,6 +112,8 @@ def _check_ranges(where: str, values: dict[str, Any]) -> None:
         if isinstance(value, dict) and key not in RANGES:
             _check_ranges(f"{where}.{key}", value)
             continue
+        if key == "size" and isinstance(value, list) and len(value) != 2:
+            raise ParamsError(f"{where}.{key}: {value} must be [rows, columns]")
         lowest, highest = RANGES.get(key, (-np.inf, np.inf))
         for number in _numbers(value):
             if not lowest <= number <= highest:

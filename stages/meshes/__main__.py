@@ -10,11 +10,15 @@ import dataclasses
 import functools
 import hashlib
 import sys
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from haptic_glance.base.files import write_mesh, write_table
 from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import Stopwatch
+from haptic_glance.mesh.axes import AUTO
 from haptic_glance.mesh.headers import MeshError
 from haptic_glance.mesh.materials import COLOURS
 from stages.engine.run import Rows, StageRun
@@ -57,6 +61,17 @@ def content_hash(item: MeshFile, colours: str) -> str:
     return digest.hexdigest()
 
 
+def up_axes(manifest: Sequence[Mapping[str, Any]]) -> str:
+    """`z for 6, y for 1 (cup)`: the axes that point up in the files, the commonest first; names for the others."""
+    names: dict[str, list[str]] = defaultdict(list)
+    for entry in manifest:
+        names[str(entry["up"])].append(entry["object"])
+    first, *others = sorted(names.items(), key=lambda item: -len(item[1]))
+    return ", ".join(
+        [f"{first[0]} for {len(first[1])}", *(f"{axis} for {len(rest)} ({', '.join(rest)})" for axis, rest in others)]
+    )
+
+
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
@@ -78,6 +93,8 @@ def run(workspace: Workspace) -> None:
             raise ValueError("stopped: meshes.strict is set, and a mesh was refused")
         if not manifest:
             raise ValueError("every mesh was refused; none is left to work on")
+        if settings.up == AUTO:
+            print(f"meshes: {workspace.dataset}, up axes: {up_axes(manifest)}", file=sys.stderr)
         write_table(stage.folder / "manifest.csv", pd.DataFrame(manifest))
         write_table(stage.folder / "refused.csv", pd.DataFrame(refused, columns=REFUSED))
         if settings.classes:

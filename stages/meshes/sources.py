@@ -123,7 +123,7 @@ def folder(settings: Params) -> list[MeshFile]:
     root = Path(settings.folder).expanduser()
     if not settings.folder or not root.is_dir():
         raise MeshError(f"meshes.folder={settings.folder!r} is not a folder: set it to the folder of your meshes")
-    everything = sorted(path for path in root.rglob("*") if not path.is_dir())
+    everything = sorted(path for path in root.rglob("*") if not path.is_dir() and not _is_hidden(root, path))
     files = [path for path in everything if path.suffix.lower() in FORMATS]
     if not files:
         raise MeshError(f"meshes.folder={settings.folder!r} holds no mesh file ({', '.join(FORMATS)})")
@@ -139,9 +139,16 @@ def folder(settings: Params) -> list[MeshFile]:
         while name in by_name:
             name += "_"
         by_name[name] = path
-    return [
-        _folder_file(root, name, by_name[name], settings) for name in _select_objects(tuple(by_name), settings.objects)
-    ]
+    chosen = _select_objects(tuple(by_name), settings.objects)
+    if left_out := sorted(set(by_name) - set(chosen)):
+        where = "meshes.objects and meshes.classes"
+        print(f"meshes: {len(left_out)} of {len(by_name)} are not in {where}: {', '.join(left_out)}", file=sys.stderr)
+    return [_folder_file(root, name, by_name[name], settings) for name in chosen]
+
+
+def _is_hidden(root: Path, path: Path) -> bool:
+    """Whether a file below a root, or a folder around it, has a name such as `._cup.stl`, which macOS leaves."""
+    return any(part.startswith(".") for part in path.relative_to(root).parts)
 
 
 def _folder_file(root, name, path, settings):

@@ -30,7 +30,7 @@ VIEWPOINTS = {"twelve": TWELVE, "four": FOUR, "principal": PRINCIPAL}
 def viewpoint_set(name: str) -> tuple[Viewpoint, ...]:
     """The viewpoints of a named set; ValueError for an unknown name."""
     if name not in VIEWPOINTS:
-        raise ValueError(f"views.viewpoints={name!r} is not a set of viewpoints: choose one of {', '.join(VIEWPOINTS)}")
+        raise ValueError(f"viewpoints={name!r} is not a set of viewpoints: choose one of {', '.join(VIEWPOINTS)}")
     return VIEWPOINTS[name]
 
 
