@@ -71,7 +71,7 @@ def test_a_surface_is_pressed_as_it_is(tmp_path):
 
 
 def test_a_folder_gives_its_meshes_in_order_and_nothing_else(tmp_path):
-    for name in ("b.STL", "a.ply", "a.mtl", "readme.txt"):
+    for name in ("b.STL", "a.ply", "a.mtl", "readme.txt", "._a.ply"):
         (tmp_path / name).touch()
     (tmp_path / "c.obj").mkdir()
     assert [path.name for path in mesh_files(tmp_path)] == ["a.ply", "b.STL"]

@@ -20,6 +20,9 @@ def start(tmp_path, make_workspace):
     trimesh.creation.icosphere(2).export(tmp_path / "mine" / "sub folder" / "ball.ply")
     trimesh.creation.icosphere(1).export(tmp_path / "mine" / "sub folder" / "ball.off")
     (tmp_path / "mine" / "broken.obj").write_bytes(b"\0\1\2")
+    (tmp_path / "mine/.Trash").mkdir()
+    for name in ("._ball.stl", ".Trash/old.stl"):  # of macOS: no objects, and not counted as files of other formats
+        (tmp_path / "mine" / name).write_bytes(b"\0")
 
     def start(**settings):
         section = {"source": "folder", "folder": str(tmp_path / "mine"), "up": "y", "unit": "mm", "objects": []}
@@ -32,7 +35,8 @@ def start(tmp_path, make_workspace):
 
 def test_good_meshes_pass_and_bad_ones_are_named(start, capsys):
     workspace = start()
-    assert "refused broken.obj: the file holds no geometry" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "refused broken.obj: the file holds no geometry" in said and "ignored" not in said and "axes" not in said
     folder = workspace.data / "meshes"
     manifest = read_table(folder / "manifest.csv")
     assert sorted(manifest.object) == ["Kiste à thé", "sub folder__ball", "sub folder__ball_ply"]
@@ -79,6 +83,15 @@ def test_strict_stops_at_the_first_refusal_and_keeps_the_earlier_result(start):
         with pytest.raises(ValueError, match=words):
             start(**settings)
     assert len(read_table(workspace.data / "meshes" / "manifest.csv")) == 3
+
+
+def test_axes_that_were_assumed_and_meshes_without_a_class_are_named(start, tmp_path, capsys):
+    (tmp_path / "mine/broken.obj").unlink()
+    trimesh.creation.box((1, 2, 4)).export(tmp_path / "mine/lamp.glb")  # of glTF y is up
+    start(up="auto", classes={"round": ["sub folder__ball", "sub folder__ball_ply"], "flat": ["lamp"]})
+    said = capsys.readouterr().err
+    assert "meshes: 1 of 4 are not in meshes.objects and meshes.classes: Kiste à thé" in said
+    assert "meshes: toys, up axes: z for 2, y for 1 (lamp)" in said
 
 
 def test_objects_of_classes_are_taken_and_small_classes_have_a_note(start):
