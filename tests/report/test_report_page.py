@@ -83,10 +83,8 @@ def run(tmp_path_factory, small):
 def own(tmp_path_factory, small):
     """The results of a run on a folder of one's own, with its report, as other processes write it."""
     root = small.root(tmp_path_factory.mktemp("own"))
-    text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
-    (root / "params.yaml").write_text(text)
     small.write(root, "lod", small.lod(), "elsewhere")
-    results = small.results(root)
+    results = small.own(root)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(statistics, "RESAMPLES", RESAMPLES)
         patch.setattr(items, "save", save)
