@@ -111,9 +111,10 @@ def left_out(frame, note, **where):
     return pd.concat([frame[~mask], pd.DataFrame([row])], ignore_index=True)
 
 
-def own_results(root):
+def own_results(root, folder="meshes"):
     """The results of a root whose first set is a folder of a person's own meshes."""
-    write_text(root / "params.yaml", (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n")
+    more = f"test: {{meshes: {{source: folder, folder: {folder}}}}}\n"
+    write_text(root / "params.yaml", (root / "params.yaml").read_text() + more)
     return read_results(root)
 
 
