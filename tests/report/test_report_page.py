@@ -213,6 +213,7 @@ def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
     page = (own.reports / "index.html").read_text()
     assert "Your meshes" in page and all(f"<h2>{name}</h2>" in page for name in own.objects)
     assert all((own.reports / address).exists() for address in re.findall(r'href="(site/[^"]+)"', page))
+    assert json.loads((own.reports / "metrics/report.json").read_text())["not_run"] > 1  # the note, and reasons
     assert "y is up in the file." in page and "-x is up in the file." in page
     assert "haptic-glance gallery &#x27;my meshes&#x27;" in page
     assert "units of the object&#x27;s diameter" in page and "Touched there" in page

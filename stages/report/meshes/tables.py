@@ -297,9 +297,8 @@ def table_3_2(results: Results) -> Table:
     """Errors by method and face count, on all objects and where nothing shrank, beside the thesis's."""
     parts = some(list(_parts(results)), "no face count that all methods of the table reach", "lod", runnable=False)
     frame = compared(pd.concat(parts), ["data", "nothing_shrunk", "target", "method", "metric"])
-    thesis = results.thesis("table_3_2_lod_errors")[: 0 if results.own_meshes else None].melt(
-        ["method", "faces"], METRICS, "metric", "thesis"
-    )
+    thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
+    thesis = thesis[:0] if results.own_meshes else thesis
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
     orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED, "metric": METRICS}
