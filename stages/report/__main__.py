@@ -121,7 +121,8 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     write_records(items, results, out)
     not_run = {f"{kind}/{name}": reason for kind, batch in items.items() for name, reason in batch.not_run.items()}
     if own_meshes:  # what would need other data sets is left out
-        claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
+        claims = claims[claims["pairs"] > 0]
+        not_run["what needs other data sets"] = OWN_NOTE
     write_claims(claims, differences, out)
     write_headlines(out, None if own_meshes else counts(claims))
     parts = {**items, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}

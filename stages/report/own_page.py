@@ -1,5 +1,6 @@
 """The page of `haptic-glance gallery` from the pipeline's data: the front page of a run on a person's own folder."""
 
+import shlex
 import shutil
 from collections.abc import Sequence
 from contextlib import suppress
@@ -7,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from haptic_glance.base.files import write_text
+from haptic_glance.base.files import read_table, write_text
 from haptic_glance.cli.saliency import as_csv, points_of
 from haptic_glance.gallery.exhibit import Exhibit, Level
 from haptic_glance.gallery.page import build_page
@@ -19,7 +20,7 @@ from haptic_glance.look.points.find import scores_of
 from haptic_glance.touch.places import UserMesh
 from stages.imprints.imprints import read_imprints
 
-from .results import NotRun, Results
+from .results import NotRun, Results, there
 
 MODEL, COUNT = "glance", 6  # whose places and levels are shown, else those of the first method; and how many places
 UNITS = "units of the object's diameter"
@@ -38,7 +39,7 @@ def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
     links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
     section = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
     folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
-    text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {folder}"], out, section)
+    text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {shlex.quote(folder)}"], out, section)
     write_text(out / "index.html", text)
 
 
@@ -68,9 +69,16 @@ def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
         ranks = [rank for rank, vertex in enumerate(vertices.tolist(), 1) if vertex in images_by_vertex]
         touches, images = [{"index": rank} for rank in ranks], [images_by_vertex[vertices[rank - 1]] for rank in ranks]
     return Exhibit(
-        name, folder, folder, UserMesh(mesh, name), "z is up", saliency, points, levels, missing, touches,
+        name, folder, folder, UserMesh(mesh, name), _axis(results, name), saliency, points, levels, missing, touches,
         np.array(images), look(mesh, saliency, vertices), UNITS,
     )  # fmt: skip
+
+
+def _axis(results, name):
+    """Which axis of the object's file was taken to point up. The manifest does not tell whether the shape decided."""
+    manifest = results.folder("meshes") / "manifest.csv"
+    axes = read_table(there(manifest, "no manifest", "meshes"), dtype={"object": str}).set_index("object")["up"]
+    return f"{axes[name]} is up in the file"
 
 
 def _refused(results):

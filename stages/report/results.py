@@ -33,6 +33,7 @@ COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
 ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
 BENCH = "bench"
+OWN = "own"  # in place of a stage: of what only a folder of one's own has, or what it never has
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 DATASETS = {
@@ -65,7 +66,7 @@ class NotRun(Exception):
 
     def __init__(self, message: str, stage: str, runnable: bool = True) -> None:
         super().__init__(f"{message}: run `dvc repro {stage}`" if runnable else message)
-        self.runnable = runnable
+        self.stage, self.runnable = stage, runnable
 
 
 def some(findings: Found, message: str, stage: str, runnable: bool = True) -> Found:
@@ -247,7 +248,7 @@ class Results:
     def _read(self, stage: str, dataset: str | None) -> pd.DataFrame:
         dataset = self._first(stage, dataset)
         if self.own_meshes and dataset not in self.sets:
-            raise NotRun(f"{dataset} is not switched on", stage, runnable=False)
+            raise NotRun(f"{dataset} is not switched on", f"{stage}@{dataset}", runnable=False)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
         there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
         return self._table(path, read_rows)
@@ -328,6 +329,11 @@ class Results:
         """Whether the first set that is switched on is a folder of a person's own meshes."""
         meshes = self.workspace.params.get(self.sets[0], {}).get("meshes", {}) if self.sets else {}
         return meshes.get("source") == "folder"
+
+    def concerns(self, missing: NotRun) -> bool:
+        """Whether what is missing is of this run: with a folder of one's own, of a stage that ran on the sets that are
+        switched on."""
+        return bool(self.datasets(missing.stage)) if self.own_meshes else missing.stage != OWN
 
     @cached_property
     def objects(self) -> list[str]:

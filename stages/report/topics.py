@@ -49,14 +49,18 @@ def files_of(topic: ModuleType, kind: str) -> list[Path]:
 
 
 def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS) -> Built:
-    """Builds and writes all of one kind (a key of KINDS), topic by topic; what lacks its measurement is noted."""
+    """Builds and writes all of one kind (a key of KINDS), topic by topic; what lacks its measurement is noted.
+
+    On a folder of one's own, only where its stage ran there: the rest needs other data sets.
+    """
     built = Built()
     for topic in topics:
         for name in getattr(topic, KINDS[kind]):
             try:
                 item = build_one(topic, kind, name, results)
             except NotRun as missing:
-                built.not_run[name] = str(missing)
+                if results.concerns(missing):
+                    built.not_run[name] = str(missing)
                 continue
             item.html = item_html(item)
             if isinstance(item, Figure):

@@ -111,6 +111,13 @@ def left_out(frame, note, **where):
     return pd.concat([frame[~mask], pd.DataFrame([row])], ignore_index=True)
 
 
+def own_results(root, folder="meshes"):
+    """The results of a root whose first set is a folder of a person's own meshes."""
+    more = f"test: {{meshes: {{source: folder, folder: {folder}}}}}\n"
+    write_text(root / "params.yaml", (root / "params.yaml").read_text() + more)
+    return read_results(root)
+
+
 def judged(offsets=None):
     """Rows of agreement with a known truth: each mesh adds its own level to every method, and a little noise."""
     means = {
@@ -271,7 +278,8 @@ def few_pixels_and_resamples():
 def small():
     """What tests make their own small runs of."""
     return SimpleNamespace(
-        settings=settings, results=read_results, ball=ball, classification=classification, write=write_measurements,
+        settings=settings, results=read_results, own=own_results, ball=ball,
+        classification=classification, write=write_measurements,
         write_set=write_set, root=make_root, bare=make_bare,
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
         agreed_marks=agreed_marks,

@@ -136,6 +136,23 @@ def test_every_detector_has_all_errors_in_the_thesis_order(plain):
     assert points["corners"] == 60 and points["qem"] == 0
 
 
+def test_tables_of_ones_own_meshes_leave_out_the_thesis_and_what_is_of_other_data_sets(plain, root, small):
+    small.write(root, "lod", measured())
+    own = small.own(root)
+    with pytest.raises(NotRun, match=r"T3\.1\.5"):
+        table("table_3_1_5_combinations", own)
+    for name, words in WORDS.items():
+        built, published = table(name, own), table(name, plain)
+        text, whole = (" ".join([item.title, *item.shown, *item.notes]) for item in (built, published))
+        assert all(word in whole and word not in text for word in words)
+
+
+WORDS = {
+    "table_3_2": ("beside the thesis", "%, thesis", "As printed", "human gaze"),
+    "lod_detectors": ("human gaze", "household as in T3.1", "in colour"),
+}
+
+
 def higher(results, worse, better, target=""):
     """How much higher the Metro mean error of `worse` is than that of `better`, in % of the mean of the two."""
     return differences(results, lower("s", "metro_mean", "k", "Sentence.", worse, better, target))

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from haptic_glance.base.files import write_text
+from haptic_glance.base.files import write_table, write_text
 from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
@@ -83,10 +83,9 @@ def run(tmp_path_factory, small):
 def own(tmp_path_factory, small):
     """The results of a run on a folder of one's own, with its report, as other processes write it."""
     root = small.root(tmp_path_factory.mktemp("own"))
-    text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
-    (root / "params.yaml").write_text(text)
     small.write(root, "lod", small.lod(), "elsewhere")
-    results = small.results(root)
+    write_table(root / "data/test/meshes/manifest.csv", pd.DataFrame({"object": ["ball", "cube"], "up": ["y", "-x"]}))
+    results = small.own(root, "my meshes")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(statistics, "RESAMPLES", RESAMPLES)
         patch.setattr(items, "save", save)
@@ -214,6 +213,9 @@ def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
     page = (own.reports / "index.html").read_text()
     assert "Your meshes" in page and all(f"<h2>{name}</h2>" in page for name in own.objects)
     assert all((own.reports / address).exists() for address in re.findall(r'href="(site/[^"]+)"', page))
+    assert json.loads((own.reports / "metrics/report.json").read_text())["not_run"] > 1  # the note, and reasons
+    assert "y is up in the file." in page and "-x is up in the file." in page
+    assert "haptic-glance gallery &#x27;my meshes&#x27;" in page
     assert "units of the object&#x27;s diameter" in page and "Touched there" in page
     assert pd.read_csv(own.reports / "claims.csv")["pairs"].gt(0).all()
 

@@ -8,7 +8,7 @@ from stages.report.claims import tested_on as words_on
 from stages.report.topics import CLAIMS, KINDS, TOPICS, build_all
 from tests.report.frames import verdicts
 
-UNMEASURED = {"table_3_1_5_combinations", "fidelity"}  # of the data of the thesis
+UNMEASURED = {"table_3_1_5_combinations", "fidelity", "recognition"}  # of the thesis, or of one's own meshes
 REMEDY = "no measurements of|`dvc repro |`make bench`|run the stage"
 
 
@@ -31,3 +31,11 @@ def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(empty):
     for claim in CLAIMS:
         text = words_on(claim, empty, [name for name in claim.sets if name] or ["household"])
         assert not re.search(r", ?,|  |,$|minus$", text), (claim.key, text)
+
+
+def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone(root, small):
+    small.write(root, "classification", small.classification().assign(group="mine"))
+    small.write(root, "salient_points", small.judged(), "test")
+    missing = build_all("tables", small.own(root)).not_run
+    assert missing["table_4_1"] == "group six is not among those that classification measured"
+    assert not {"table_4_4", "table_4_9", "attention_gaze", "recognition"} & set(missing)

@@ -1,5 +1,6 @@
 """The report on one touch and several: tables 4.3, 4.5, 4.6, the shares, figure 4.4, claims and the chart."""
 
+import re
 from functools import partial
 
 import numpy as np
@@ -229,3 +230,22 @@ def test_bars_are_of_the_samplings_that_ran_with_chance_by_the_objects_of_the_gr
     assert sum(drawn["places"].values()) == pytest.approx(0) and set(pictures.NEEDED) <= set(drawn["places"])
     title = drawn["axes"].get_title(loc="left") + drawn["axes"].get_title()
     assert title == "Recognising 4 objects (group six) by one touch, ours"
+
+
+def test_a_folder_of_ones_own_has_recognition_of_its_groups_with_intervals_and_no_other_run_has(root, small):
+    frame = small.classification().query("group == 'six'").assign(group="mine")
+    regions = frame[frame["method"] == "glance"].assign(split="regions", value=frame["value"] - 0.3)
+    noted = pd.DataFrame([{"dataset": "test", "group": "four", "metric": "accuracy", "note": "set four left out"}])
+    small.write(root, "classification", pd.concat([frame, regions, frame.assign(variant="touches_2"), noted]))
+    small.write_set(root, "mine", 3)
+    with pytest.raises(NotRun, match="groups of the thesis"):
+        touches.recognition(small.results(root))
+    built = table("recognition", small.own(root))
+    cells = built.frame.set_index(["group", "split", "sampling", "classifier"]).loc["mine"]
+    assert len(cells) == 10 and (cells["repetitions"] == 6).all()
+    assert cells.loc[("random", "glance", "knn"), "accuracy"] == pytest.approx(0.8, abs=0.02)
+    unseen = cells.loc[("regions", "glance", "knn")]
+    assert unseen["low"] < unseen["accuracy"] == pytest.approx(0.5, abs=0.02) and unseen["high"] > unseen["accuracy"]
+    shown = built.shown.set_index(["group", "tested on", "places"])["kNN, %"]
+    place = "3 objects (group mine)", "regions that no training touch overlaps", "glance"
+    assert re.match(r"(49|50|51) \[", shown[place]) and "Not run: set four left out." in built.notes

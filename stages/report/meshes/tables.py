@@ -17,9 +17,10 @@ from haptic_glance.look.weights.weights import GLANCE
 from stages.engine.statistics import interval
 from stages.report.drawing import WAYS, label
 from stages.report.items import Table
-from stages.report.results import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, NotRun, Results, dataset_text, some
+from stages.report.results import ON_GREY, ON_WHITE, OWN, SECTION_3_1, SECTION_3_2, NotRun, Results, dataset_text, some
 from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.report.validity import UNIT, as_plain
+from stages.report.words import shared_notes
 
 SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
 
@@ -238,6 +239,8 @@ def dataset(results: Results) -> Table:
 
 def combinations(results: Results) -> Table:
     """The combinations of channels, in the thesis's order, and the mean errors that each led to."""
+    if results.own_meshes:
+        raise NotRun("the combinations of T3.1.5 are judged on the project's own data sets", OWN, runnable=False)
     averages = []
     with suppress(NotRun):  # the list is worth having without the errors
         rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
@@ -266,7 +269,8 @@ def every_detector(results: Results) -> Table:
         name for name in map(str, texts) if name in answer or name in COUNTS or name.startswith(ERRORS["gaze_error"])
     ]
     best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
-    return Table(frame, texts, {"counts": counts}, best, ["kept points", *answer])
+    marks = shared_notes(__package__, "own_detectors" if results.own_meshes else "detectors")
+    return Table(frame, texts, {"counts": counts, "marks": marks}, best, ["kept points", *answer])
 
 
 def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
@@ -294,6 +298,7 @@ def table_3_2(results: Results) -> Table:
     parts = some(list(_parts(results)), "no face count that all methods of the table reach", "lod", runnable=False)
     frame = compared(pd.concat(parts), ["data", "nothing_shrunk", "target", "method", "metric"])
     thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
+    thesis = thesis[:0] if results.own_meshes else thesis
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
     orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED, "metric": METRICS}
@@ -305,7 +310,10 @@ def table_3_2(results: Results) -> Table:
     text_table = _blocks_wide(cells)
     answer = [name for name in map(str, text_table) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
     best = Ranking(next(name for name in answer[2:] if not name.endswith("thesis")), True, ["target"], KEEP_NOTHING)
-    return Table(frame, text_table, {"objects": object_sets, "fewest": FEWEST}, best, answer)
+    words = {"objects": object_sets, "fewest": FEWEST, "beside": "", "printed": ""}
+    if not results.own_meshes:
+        words |= {"beside": ", beside the thesis", "printed": shared_notes(__package__, "printed_3_2")}
+    return Table(frame, text_table, words, best, answer)
 
 
 def _parts(results: Results) -> Iterator[pd.DataFrame]:
@@ -321,10 +329,14 @@ def _parts(results: Results) -> Iterator[pd.DataFrame]:
 
 
 def _blocks_wide(cells: pd.DataFrame) -> pd.DataFrame:
-    """A row a block and method, most faces first; for each metric the set as printed, the thesis's, the other sets."""
+    """A row a block and method, most faces first; for each metric the set as printed, the thesis's, the other sets.
+
+    The thesis's stand there if it has any of them.
+    """
     printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
     printed["text"] = (printed["metric"].map(UNITS).astype(float) * printed["thesis"]).map(number)
-    cells = pd.concat([cells.assign(text=[cell(row) for row in cells.itertuples()]), printed])
+    parts = [printed] if printed["thesis"].notna().any() else []
+    cells = pd.concat([cells.assign(text=[cell(row) for row in cells.itertuples()]), *parts])
     cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
     cells["head"] = cells["metric"].map(ERRORS).astype(str) + ", " + cells["data"]
     cells["kept points"] = cells["method"].map(label)

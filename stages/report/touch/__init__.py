@@ -8,6 +8,7 @@ from stages.report.words import as_printed
 from . import claims, imprints, pictures, similar, touches
 
 TABLES = {
+    "recognition": touches.recognition,
     "table_4_1": touches.table_4_1,
     "table_4_2": touches.table_4_2,
     "table_4_3": similar.table_4_3,

@@ -67,22 +67,22 @@ def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, 
         yield Protocol(dataset, rows, "ours", MODEL)
 
 
-def accuracies(rows: pd.DataFrame) -> dict[str, float]:
-    """accuracy, low, high, repetitions at random, and mean accuracy on the other splits; NaN where not measured.
+def accuracies(rows: pd.DataFrame, split: Split = Split.RANDOM) -> dict[str, float]:
+    """accuracy, low, high, repetitions of one split, and mean accuracy on the others; NaN where not measured.
 
     The interval is over repeated splits of the same objects, or over random sets of objects.
     """
     columns = [column for column in ("dataset", "set", "split", "value") if column in rows]  # of some forty
     accuracy_rows = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
     splits, values = accuracy_rows["split"].to_numpy(), accuracy_rows["value"].to_numpy(float)
-    at_random, share = values[splits == Split.RANDOM], shared_by(Split.RANDOM)
+    of_split, share = values[splits == split], shared_by(split)
     if "set" in accuracy_rows and accuracy_rows["set"].notna().any():
-        random_rows = accuracy_rows[splits == Split.RANDOM]
-        at_random, share = random_rows.groupby(["dataset", "set"])["value"].mean(), 0.0
-    ends = zip(("accuracy", "low", "high"), within(at_random, share), strict=True)
-    by_split = {split: values[splits == split] for split in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
-    means = {f"accuracy_{split}": group.mean() if len(group) else np.nan for split, group in by_split.items()}
-    return {**dict(ends), "repetitions": len(at_random), **means}
+        split_rows = accuracy_rows[splits == split]
+        of_split, share = split_rows.groupby(["dataset", "set"])["value"].mean(), 0.0
+    ends = zip(("accuracy", "low", "high"), within(of_split, share), strict=True)
+    by_split = {name: values[splits == name] for name in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
+    means = {f"accuracy_{name}": group.mean() if len(group) else np.nan for name, group in by_split.items()}
+    return {**dict(ends), "repetitions": len(of_split), **means}
 
 
 def fifteen(variant: str) -> str:

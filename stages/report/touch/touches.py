@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from haptic_glance.know.split import Split
 from stages.report.drawing import INK, colours, label, plt
 from stages.report.items import Figure, Table
-from stages.report.results import SETS_4_2, NotRun, Results, some
-from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, grouped, with_means
+from stages.report.results import OWN, SETS_4_2, NotRun, Results, some
+from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, grouped, scaled, with_means
 from stages.report.words import shared_notes
 
 from .rows import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
@@ -97,6 +98,23 @@ def added(classifiers: pd.Series) -> list[str]:
 table_4_1 = partial(beside_thesis, group="six", printed="table_4_1_six_virtual_objects")
 table_4_2 = partial(beside_thesis, group="four", printed="table_4_2_four_virtual_objects")
 table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_with_locations", variant="locations")
+
+
+def recognition(results: Results) -> Table:
+    """Recognition by one touch in a folder of one's own, of whatever groups there are."""
+    if not results.own_meshes:
+        raise NotRun("tables 4.1 and 4.2 have the groups of the thesis", OWN, runnable=False)
+    splits = [Split.RANDOM, Split.REGIONS]
+    rows = scaled(results.measured(STAGE, metric="accuracy", variant="plain", split=splits))
+    keys, ends = ["group", "split", "sampling", "classifier"], ["accuracy", "low", "high", "repetitions"]
+    parts = dict(grouped(rows.rename(columns={"method": "sampling"}), keys))
+    frame = pd.DataFrame([dict(zip(keys, key, strict=True)) | accuracies(parts[key], key[1]) for key in sorted(parts)])
+    text_table = grid(
+        frame, keys[:3], "classifier", head=lambda name: f"{label(name)}, %",
+        names={"group": results.group_text, "split": lambda name: Split(name).words, "sampling": label},
+    ).rename(columns={"split": "tested on", "sampling": "places"})  # fmt: skip
+    words = {"not_run": results.left_out(STAGE, variant="plain")}
+    return Table(frame[[*keys, *ends]], text_table, words, Ranking(RANKING.by, among=["group", "tested on"]))
 
 
 def table_4_6(results: Results) -> Table:
