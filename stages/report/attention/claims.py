@@ -114,12 +114,13 @@ on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
 
 
 def closer_to_gaze(
-    key: str, section: str, sentence: str, first: str, second: str | Pick, **more: Any
+    key: str, section: str, sentence: str, first: str, second: str | Pick,
+    dataset: str | tuple[str, ...] = GAZED, **more: Any,
 ) -> Claim:  # fmt: skip
     """A claim that the NSS of one method is higher than that of another."""
     return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
-                   first={"method": first}, second={"method": second}, scale=1, unit="NSS",
-                   **{"dataset": GAZED} | more)  # fmt: skip
+                   first={"method": first}, second={"method": second}, dataset=dataset, scale=1,
+                   unit="NSS", **more)  # fmt: skip
 
 
 OF_3_2 = (SECTION_3_2, "gaze_clouds")  # the printed protocol first; elsewhere a method has not seen the object
