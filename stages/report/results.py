@@ -25,6 +25,7 @@ Found = TypeVar("Found", bound=Sized)
 # Sets with the settings of a section of the thesis.
 SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
 SETS_3_1 = SECTION_3_1, "princeton_3_1"  # the protocol of T3.1 on objects of our own and on published ones
+SETS_3_1_FOUR = tuple(f"{name}_four" for name in SETS_3_1)  # from the four principal viewpoints of T3.1.2
 MENDED_3_2 = "gaze_3_2_mended"  # T3.2 with mended formulas
 GREY_3_1 = "gaze_3_1"  # T3.1 on grey meshes with human gaze
 SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets", "catalogue_4_2_sets"  # random sets of six objects
@@ -38,6 +39,7 @@ NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects th
 
 DATASETS = {
     SECTION_3_1: "household as in T3.1", SETS_3_1[1]: "psb as in T3.1",
+    SETS_3_1_FOUR[0]: "household as in T3.1, four viewpoints", SETS_3_1_FOUR[1]: "psb as in T3.1, four viewpoints",
     GREY_3_1: "meshes with human gaze as in T3.1",
     SECTION_3_2: "meshes with human gaze as in T3.2", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
     SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
