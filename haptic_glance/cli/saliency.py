@@ -36,7 +36,7 @@ from haptic_glance.look.weights.weights import GLANCE
 from haptic_glance.mesh.files import load_unnamed
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.repair import centre_and_radius
+from haptic_glance.mesh.repair import centre_and_radius, significant_digits
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
 from .simplify import check_outputs, dropped_from
@@ -180,8 +180,7 @@ def nearest_vertices(mesh: Mesh, rows: list[tuple]) -> np.ndarray:
 
 def as_csv(rows: list[tuple], mesh: Mesh) -> str:
     """The points of a mesh as lines of CSV, under a header: nine digits, and more where it lies far from the origin."""
-    centre, radius = centre_and_radius(mesh)
-    digits = min(9 + int(np.ceil(np.log10(max(np.abs(centre).max() / radius, 1)))), 17)
+    digits = significant_digits(mesh, 9)
     lines = (
         f"{rank},{vertex},{x:.{digits}g},{y:.{digits}g},{z:.{digits}g},{value:.6g}"
         for rank, vertex, x, y, z, value in rows

@@ -247,6 +247,15 @@ def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     return centre, radius
 
 
+def significant_digits(mesh: Mesh, least: int) -> int:
+    """Significant digits of coordinates that resolve the same part of an object wherever the object lies.
+
+    least: the digits for an object at the origin.
+    """
+    centre, radius = centre_and_radius(mesh)
+    return min(least + int(np.ceil(np.log10(max(np.abs(centre).max() / radius, 1)))), 17)
+
+
 def rotate_to_z_up(mesh: Mesh, up: Axis | None = None) -> Mesh:
     """Rotates a mesh so that its up axis becomes +z.
 

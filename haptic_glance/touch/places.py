@@ -11,7 +11,7 @@ from haptic_glance.mesh import clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import to_z_up
 from haptic_glance.mesh.files import load_unnamed
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.repair import RADIUS, centre_and_radius
+from haptic_glance.mesh.repair import RADIUS, centre_and_radius, significant_digits
 from haptic_glance.mesh.up import upright_by
 
 from .section import MAX_OFFSET, snap_to_surface
@@ -58,8 +58,7 @@ class UserMesh:
     @property
     def digits(self) -> int:
         """Significant digits of the file's coordinates that resolve a 100,000th of the object."""
-        far = np.abs(centre_and_radius(self.source)[0]).max() / self.unit
-        return min(6 + int(np.ceil(np.log10(max(far, 1)))), 17)
+        return significant_digits(self.source, 6)
 
     def to_file(self, positions: np.ndarray) -> np.ndarray:
         """Positions (k, 3) in the mesh's frame, converted to the file's coordinates."""
