@@ -158,8 +158,10 @@ def run_alone(root: Path) -> list[str]:
         try:
             return run(root)
         except DvcException as error:
-            remedy = "take dvc.yaml and params.yaml from git again, and run it again"
-            raise ValueError(f"{error}: {remedy}; what was computed is in the cache") from error
+            remedy = (
+                "`python -m stages.compose` with your settings writes params.yaml anew, `git checkout dvc.yaml` brings"
+            )
+            raise ValueError(f"{error}: {remedy} dvc.yaml back; what was computed is in the cache") from error
 
 
 def _plain(schedule, running):

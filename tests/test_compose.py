@@ -4,6 +4,7 @@ import re
 import shlex
 import subprocess
 import sys
+from contextlib import nullcontext
 from importlib import import_module
 from itertools import zip_longest
 from pathlib import Path
@@ -12,7 +13,15 @@ import pytest
 from omegaconf import OmegaConf
 
 from stages.compose import CONF, _sections, compose, composed, groups, main, own_folder
-from stages.engine.settings import ParamsError, Workspace, check_common, check_section, load_params, schema_of
+from stages.engine.settings import (
+    ParamsError,
+    Workspace,
+    check_common,
+    check_section,
+    load_params,
+    schema_of,
+    workspace_of_arguments,
+)
 from stages.views import Params
 
 pytestmark = pytest.mark.usefixtures("compose_once")
@@ -67,6 +76,16 @@ def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monk
         else:
             module.run(arguments) if name == "claim" else module.main()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_stage_about_all_sets_takes_the_name_of_none(make_workspace, monkeypatch):
+    root = make_workspace({"lod": {}}).root
+    (root / "dvc.yaml").touch()
+    monkeypatch.setattr("sys.excepthook", sys.excepthook)
+    for stage, words in (("report", "about all sets that params.yaml names: leave toys out"), ("lod", "")):
+        monkeypatch.setattr("sys.argv", [stage, "toys", "--root", str(root)])
+        with pytest.raises(ValueError, match=words) if words else nullcontext():
+            assert workspace_of_arguments("", stage).dataset == "toys"
 
 
 @pytest.mark.slow
@@ -191,6 +210,7 @@ def params():
         ("lod.shrink", "perhaps", "write true or false"),
         ("lod.rings", -3, "lod.rings: -3 must be 0 or more"),
         ("views.size", [900, 0], "views.size: 0 must be 1 or more"),
+        ("lod.targets", "25%", "is not a ListConfig, list or tuple: write a list in brackets"),
         ("views.size", [900], "views.size: [900] must be [rows, columns]"),
         ("salient_points.radius", 0, "salient_points.radius: 0 must be above 0"),
         ("exploration.confidences", [0.5, 1.5], "exploration.confidences: 1.5 must be between 0 and 1"),

@@ -39,7 +39,8 @@ RANGES = {  # the last part of a setting's name: the least and the greatest of i
     "folds": (2, np.inf), "angle": (ABOVE_0, 180),
 }  # fmt: skip
 
-REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false"}
+REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false",
+            "ListConfig": "write a list in brackets"}  # fmt: skip
 Settings = TypeVar("Settings")
 
 
@@ -84,7 +85,7 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
         return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
-        reason = str(error).splitlines()[0]
+        reason = str(error).splitlines()[0].rstrip(".")
         remedy = next((f": {words}" for kind, words in REMEDIES.items() if f" {kind}" in reason), "")
         raise ParamsError(f"{key}: {reason}{remedy}") from None
     except ValueError as error:  # a schema's own check
@@ -250,14 +251,17 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
         epilog=rest,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("dataset", nargs="?", default="", help="a data set that params.yaml names")
+    help_text = "a data set that params.yaml names; what is written to reports/ stands below its `out` in other runs"
+    parser.add_argument("dataset", nargs="?", default="", help=help_text)
     parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
     errors_in_one_line(stage)
     options = parser.parse_args()
     check_clone(options.root)
     workspace = Workspace(options.root)
     if stage not in workspace.params["graph"]:
-        return workspace  # a stage about all sets
+        if options.dataset:
+            raise ValueError(f"this stage is about all sets that params.yaml names: leave {options.dataset} out")
+        return workspace
     return workspace.on(options.dataset or _only_set(workspace, stage))
 
 
