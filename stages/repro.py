@@ -91,13 +91,17 @@ def reproduce(root: Path, name: str, log: Path, send: Any) -> None:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
     logging.getLogger("dvc").setLevel(logging.WARNING)  # its advice on git, once a stage, hides what the stage says
-    stages = patient(lambda: Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True))  # type: ignore[arg-type] (its decorators)
+    try:
+        stages = patient(lambda: Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True))  # type: ignore[arg-type] (its decorators)
+    except Exception as error:
+        print(": ".join(map(str, causes_of(error))), file=sys.stderr)
+        raise SystemExit(1) from error
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     send.send((bool(stages), usage.ru_utime + usage.ru_stime))
 
 
 def patient(call: Callable[[], Any]) -> Any:
-    """Calls DVC, again where another stage held a lock too long; SystemExit once the error and its causes are printed.
+    """Calls DVC, again where another stage held a lock too long; ValueError where it is held all the time.
 
     DVC waits for its list of what runs for 3 seconds only, which a busy machine may exceed.
     """
@@ -107,17 +111,18 @@ def patient(call: Callable[[], Any]) -> Any:
         try:
             return call()
         except Exception as error:
-            causes: list[BaseException] = [error]
-            while causes[-1].__cause__:
-                causes.append(causes[-1].__cause__)
-            locked = any(isinstance(cause, LockError) for cause in causes)
-            if remaining and locked:
-                continue
-            if locked:  # DVC advises to delete its lock
-                print("another run of DVC is at work here: run it again when that has ended", file=sys.stderr)
-            else:
-                print(": ".join(map(str, causes)), file=sys.stderr)
-            raise SystemExit(1) from error
+            if not any(isinstance(cause, LockError) for cause in causes_of(error)):
+                raise
+            if not remaining:  # DVC advises to delete its lock
+                raise ValueError("another run of DVC is at work here: run it again when that has ended") from None
+
+
+def causes_of(error: BaseException) -> list[BaseException]:
+    """The error, its cause, the cause of that, and so on."""
+    causes = [error]
+    while causes[-1].__cause__:
+        causes.append(causes[-1].__cause__)
+    return causes
 
 
 def run(root: Path) -> list[str]:
