@@ -12,6 +12,7 @@ import difflib
 import re
 import sys
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from omegaconf.errors import OmegaConfBaseException
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
 from stages.code import stage_names
+from stages.engine.parallel import BACKENDS
 from stages.engine.settings import (
     FILE,
     PUBLISHED,
@@ -38,7 +40,6 @@ from stages.engine.settings import (
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()
 SHARED = ("profile", "out", "seed", "parallel", "sets", "report")  # what is said once, not for each set
-BACKENDS = ("loky", "sequential", "dask")  # of parallel.backend
 TREE = ("benchmarks", "conf", "data", "docs", "haptic_glance", "samples", "stages", "tests")  # of this project
 RUNS = "runs"  # below it are the results of every configuration but the published one
 READ_TOO = {  # sections that a stage also reads
@@ -73,13 +74,9 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *special])
         values[dataset] = _sections(config, dataset)
-        if any(word in override for override in overrides for word in ("methods", "classifiers", "channels")):
-            check_methods(values[dataset])  # what conf/ names exists
-            check_maps(values[dataset])
-        if any("targets" in override for override in overrides):
-            check_targets(values[dataset])
-        if any(override.partition("=")[0].partition(".")[2] in CHOSEN for override in (*general, *special)):
-            check_choices(values[dataset])
+        if any("." in override.partition("=")[0] for override in (*general, *special)):  # what conf/ names exists
+            for check in (check_methods, check_maps, check_targets, check_choices):
+                check(values[dataset])
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
         if not config["obtain"] and config["meshes"]["folder"]:
@@ -131,16 +128,18 @@ def composed(overrides: Sequence[str]) -> dict[str, Any]:
     """One composition by Hydra, as plain dicts; ParamsError that names the nearest right name of an unknown setting."""
     _check_options(overrides)
     try:
-        with hydra.initialize_config_dir(str(CONF), version_base=None):
-            config = hydra.compose("config", list(overrides))
-        OmegaConf.resolve(config)
+        config = _config(tuple(overrides))
     except (HydraException, OmegaConfBaseException) as error:
         raise ParamsError(_explain(overrides, error)) from None
-    return _plain(config)
-
-
-def _plain(config: DictConfig) -> dict[str, Any]:
     return OmegaConf.to_container(config)  # type: ignore[return-value]  # the root of a config is a dict
+
+
+@cache  # Hydra takes a third of a second, and one call of `compose` asks for the published settings three times
+def _config(overrides: tuple[str, ...]) -> DictConfig:
+    with hydra.initialize_config_dir(str(CONF), version_base=None):
+        config = hydra.compose("config", list(overrides))
+    OmegaConf.resolve(config)
+    return config
 
 
 def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
@@ -232,24 +231,9 @@ def check_targets(sections: dict[str, Any]) -> None:
             raise ParamsError(str(error)) from None
 
 
-CHOSEN = (
-    "renderer",
-    "background",
-    "viewpoints",
-    "backend",
-    "selection",
-    "symmetry",
-    "formulas",
-    "svm",
-    "colours",
-    "contact",
-    "method",
-)  # settings below a section, whose values have names
-
-
 def check_choices(sections: dict[str, Any]) -> None:
-    """Raises ParamsError for a value of CHOSEN that its stage would refuse, before any stage runs."""
-    from haptic_glance.lod.simplify import BACKENDS
+    """Raises ParamsError for a value with a name that its stage would refuse, before any stage runs."""
+    from haptic_glance.lod.simplify import BACKENDS as SIMPLIFIERS
     from haptic_glance.look.channels.channels import SYMMETRIES
     from haptic_glance.look.channels.cropped_view import BACKGROUNDS as LEFT
     from haptic_glance.look.channels.printed import FORMULAS
@@ -263,7 +247,7 @@ def check_choices(sections: dict[str, Any]) -> None:
 
     choices = {
         "views.renderer": ("auto", *RENDERERS), "views.background": BACKGROUNDS, "views.viewpoints": VIEWPOINTS,
-        "lod.viewpoints": VIEWPOINTS, "lod.backend": BACKENDS, "salient_points.selection": SELECTIONS,
+        "lod.viewpoints": VIEWPOINTS, "lod.backend": SIMPLIFIERS, "salient_points.selection": SELECTIONS,
         "conspicuity.background": LEFT, "conspicuity.symmetry": SYMMETRIES, "conspicuity.formulas": FORMULAS,
         "weights.svm": training.PIXELS, "weights.method": training.CHOICES, "meshes.colours": COLOURS,
         "imprints.contact": SENSORS,

@@ -25,6 +25,7 @@ from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
+BACKENDS = ("loky", "sequential", "dask")  # processes here, one item after the other, or a cluster
 GROWTH = 600_000_000  # bytes by which a worker may grow; joblib allows half, and each new one imports for seconds
 Item = TypeVar("Item")
 Result = TypeVar("Result")
