@@ -32,8 +32,10 @@ from stages.engine.settings import (
     ParamsError,
     check_clone,
     check_common,
+    check_names,
     check_section,
     conf_folder,
+    nearest,
     schema_of,
 )
 
@@ -74,9 +76,11 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *special])
         values[dataset] = _sections(config, dataset)
-        if any("." in override.partition("=")[0] for override in (*general, *special)):  # what conf/ names exists
-            for check in (check_methods, check_maps, check_targets, check_choices):
-                check(values[dataset])
+        changed = {override.lstrip("+~").partition(".")[0] for override in (*general, *special)}
+        for section in sorted(changed & values[dataset].keys()):  # the names in conf/ exist
+            check_names(section, values[dataset][section])
+        if any(word in override for override in overrides for word in ("methods", "channels")):
+            check_maps(values[dataset])
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
         if not config["obtain"] and config["meshes"]["folder"]:
@@ -164,7 +168,7 @@ def _check_names(overrides: Sequence[str]) -> None:
         if not name:
             raise ParamsError(f"{override!r} has no name: write group=option or section.key=value")
         if override.startswith("+") and not _set_of(name) and name.partition(".")[0] not in composed([]):
-            raise ParamsError(f"unknown setting {override}: {_near(name, list(composed([])))}")
+            raise ParamsError(f"unknown setting {override}: {nearest(name, list(composed([])))}")
 
 
 def _check_run(values: dict[str, Any]) -> None:
@@ -184,27 +188,6 @@ def _check_run(values: dict[str, Any]) -> None:
         raise ParamsError(f"parallel.backend={backend} is none of {', '.join(BACKENDS)}")
 
 
-def check_methods(sections: dict[str, Any]) -> None:
-    """Raises ParamsError with the nearest name for an unknown method, classifier or channel in one of the sections."""
-    from haptic_glance.know.classifiers import CLASSIFIERS
-    from haptic_glance.lod.task import variant  # seconds, which most compositions need not
-    from haptic_glance.look.channels.channels import CHANNELS, OTHERS
-    from haptic_glance.look.points.methods import method_named
-
-    for section in ("salient_points", "stability", "imprints", "exploration", "lod"):
-        for name in sections.get(section, {}).get("methods", []):
-            try:
-                variant(name) if section == "lod" else method_named(name)
-            except ValueError as error:
-                raise ParamsError(f"{section}.methods: {error}") from None
-    choices = (("classification", "classifiers", CLASSIFIERS), ("touch_stability", "classifiers", CLASSIFIERS),
-             ("conspicuity", "channels", [*CHANNELS, *OTHERS]))  # fmt: skip
-    for section, key, names in choices:
-        for name in sections.get(section, {}).get(key, []):
-            if name not in names:
-                raise ParamsError(f"{section}.{key}: unknown name {name!r}: {_near(name, list(names))}")
-
-
 def check_maps(sections: dict[str, Any]) -> None:
     """Raises ParamsError for a method of the salient points whose channels the stage conspicuity does not compute."""
     from haptic_glance.look.points.methods import method_named
@@ -218,45 +201,6 @@ def check_maps(sections: dict[str, Any]) -> None:
                 f"{name} needs the channels {', '.join(missing)}: add them to conspicuity.channels, or leave it out of "
                 "salient_points.methods"
             )
-
-
-def check_targets(sections: dict[str, Any]) -> None:
-    """Raises ParamsError for face counts of levels that are neither a number nor a share."""
-    from haptic_glance.lod.export import face_count
-
-    for target in sections.get("lod", {}).get("targets", []):
-        try:
-            face_count(target, 1)
-        except ValueError as error:
-            raise ParamsError(str(error)) from None
-
-
-def check_choices(sections: dict[str, Any]) -> None:
-    """Raises ParamsError for a value with a name that its stage would refuse, before any stage runs."""
-    from haptic_glance.lod.simplify import BACKENDS as SIMPLIFIERS
-    from haptic_glance.look.channels.channels import SYMMETRIES
-    from haptic_glance.look.channels.cropped_view import BACKGROUNDS as LEFT
-    from haptic_glance.look.channels.printed import FORMULAS
-    from haptic_glance.look.points.options import SELECTIONS
-    from haptic_glance.look.views.renderer import RENDERERS
-    from haptic_glance.look.views.view import BACKGROUNDS
-    from haptic_glance.look.views.viewpoints import VIEWPOINTS
-    from haptic_glance.mesh.materials import COLOURS
-    from haptic_glance.touch.quasi_tangent import SENSORS
-    from stages.weights import training  # seconds, which most compositions need not
-
-    choices = {
-        "views.renderer": ("auto", *RENDERERS), "views.background": BACKGROUNDS, "views.viewpoints": VIEWPOINTS,
-        "lod.viewpoints": VIEWPOINTS, "lod.backend": SIMPLIFIERS, "salient_points.selection": SELECTIONS,
-        "conspicuity.background": LEFT, "conspicuity.symmetry": SYMMETRIES, "conspicuity.formulas": FORMULAS,
-        "weights.svm": training.PIXELS, "weights.method": training.CHOICES, "meshes.colours": COLOURS,
-        "imprints.contact": SENSORS,
-    }  # fmt: skip
-    for name, options in choices.items():
-        section, _, key = name.partition(".")
-        value = sections.get(section, {}).get(key, next(iter(options)))
-        if value not in options:
-            raise ParamsError(f"{name}={value} is none of {', '.join(options)}")
 
 
 def _set_of(override: str) -> str:
@@ -300,7 +244,7 @@ def _check_options(overrides: Sequence[str]) -> None:
         if name in options and value not in (*options[name], "null"):
             if "," in value:
                 raise ParamsError(f"{override}: one option at a time; `python -m stages.sweep -m` takes a list")
-            raise ParamsError(f"unknown option {override}: {_near(value, options[name])}")
+            raise ParamsError(f"unknown option {override}: {nearest(value, options[name])}")
 
 
 def _explain(overrides: Sequence[str], error: Exception) -> str:
@@ -315,18 +259,13 @@ def _explain(overrides: Sequence[str], error: Exception) -> str:
                 return f"{parent} has no {name.rpartition('.')[2]} yet: to add it, write +{override}"
             first, dot, rest = name.partition(".")
             match = difflib.get_close_matches(first, groups()["data"], n=1, cutoff=0.8) if rest in keys else []
-            hint = f"did you mean {match[0]}.{rest}?" if match else _near(name, keys if dot else [*groups(), *config])
+            hint = f"did you mean {match[0]}.{rest}?" if match else nearest(name, keys if dot else [*groups(), *config])
             return f"unknown setting {name}: {hint}"
     if foreign := [name for name in (override.partition("=")[0] for override in overrides) if not name.isascii()]:
         return f"{foreign[0]}: the command line takes names of plain letters; values may have any"
     message = str(error).splitlines()[0]
     section = next((name for name in OPEN if f"'{name}'" in message), None)  # with a name that it does not have
     return message + (f" To add a name, write +{section}.NAME=..." if section else "")
-
-
-def _near(name: str, options: Sequence[str]) -> str:
-    matches = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
-    return f"did you mean {matches[0]}?" if matches else f"known: {', '.join(options)}"
 
 
 def _dotted(values: dict[str, Any], prefix: str = "") -> list[str]:

@@ -1,8 +1,6 @@
 """Meshes, views, imprints and runs that several folders test with."""
 
-import functools
 import shutil
-from copy import deepcopy
 
 import numpy as np
 import pytest
@@ -17,7 +15,6 @@ from haptic_glance.look.channels.channels import OTHERS
 from haptic_glance.look.views import TWELVE, gl
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
-from stages import compose
 from stages.engine import run
 from stages.engine.settings import Workspace
 
@@ -81,17 +78,6 @@ def make_workspace(tmp_path):
         return Workspace(tmp_path, dataset)
 
     return make
-
-
-composed_once = functools.cache(compose.composed)
-
-
-@pytest.fixture(scope="module")
-def compose_once():
-    """Hydra composes equal overrides once for a process, since a composition takes 0.4 seconds."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compose, "composed", lambda overrides: deepcopy(composed_once(tuple(overrides))))
-        yield
 
 
 @pytest.fixture(scope="session")

@@ -14,9 +14,11 @@ from omegaconf import OmegaConf
 
 from stages.compose import CONF, _sections, compose, composed, groups, main, own_folder
 from stages.engine.settings import (
+    NAMES,
     ParamsError,
     Workspace,
     check_common,
+    check_names,
     check_section,
     load_params,
     schema_of,
@@ -24,7 +26,6 @@ from stages.engine.settings import (
 )
 from stages.views import Params
 
-pytestmark = pytest.mark.usefixtures("compose_once")
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^(python -m stages\.compose .*?)(?: &&|  |$)", README, re.M)
@@ -57,7 +58,18 @@ def covering():
 def test_every_option_composes_and_fits_the_schemas(dataset, overrides):
     if "folder: ???" in (CONF / f"data/{dataset}.yaml").read_text():
         overrides = [*overrides, "meshes.folder=somewhere"]
-    assert _sections(composed([f"data={dataset}", *overrides]), dataset)
+    sections = _sections(composed([f"data={dataset}", *overrides]), dataset)
+    assert sections
+    for section, values in sections.items():
+        check_names(section, values)
+
+
+@pytest.mark.parametrize("setting", [f"{section}.{key}" for section, keys in NAMES.items() for key in keys])
+def test_a_name_that_a_setting_does_not_know_is_refused(setting):
+    section, key = setting.split(".")
+    assert key in schema_of(section).__dataclass_fields__
+    with pytest.raises(ParamsError, match=f"^{setting}: .*xyzzy"):
+        check_names(section, {key: ["xyzzy"]})
 
 
 @pytest.mark.parametrize(
@@ -154,7 +166,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("salient_points.methods=[glanse]", "salient_points.methods: unknown method 'glanse' (did you mean glance?)"),
         ("lod.methods=[qem,bendng]", "lod.methods: 'bendng': unknown method 'bendng'; methods are qem"),
         ("lod.methods=[qem,glanse-soft]", "(did you mean glance?)"),
-        ("lod.targets=[50%,half]", "lod.targets='half' is not a face count: write one like 1500 or 25%"),
+        ("lod.targets=[50%,half]", "lod.targets: 'half' is not a face count: write one like 1500 or 25%"),
         ("sets=[]", "sets=[] names no set: write sets=[household]"),
         ("sets=[gaze,gaze]", "sets=[gaze,gaze] names gaze twice"),
         ("gaze.lod.rings=2", "gaze is not switched on: add 'sets=[household,gaze]'"),
@@ -169,9 +181,9 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
         ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),
         ("conspicuity.channels=[colour]", "unknown name 'colour': did you mean color?"),
-        ("views.renderer=foo", "views.renderer=foo is none of auto, raster, pyrender"),
-        ("household.lod.viewpoints=six", "lod.viewpoints=six is none of twelve, four, principal"),
-        ("weights.method=guess", "weights.method=guess is none of gaze, fixations"),
+        ("views.renderer=foo", "views.renderer: unknown renderer 'foo': choose auto or one of raster, pyrender"),
+        ("household.lod.viewpoints=six", "lod.viewpoints: unknown name 'six': known: twelve, four, principal"),
+        ("weights.method=guess", "weights.method: unknown name 'guess': known: gaze, fixations"),
         ("parallel.backend=foo", "parallel.backend=foo is none of loky, sequential, dask"),
         ("out=stages/new", "out=stages/new is no folder for results"),
         ("meshes.folder=scans", "household reads no meshes.folder: with several sets write SET.meshes.folder=..."),
@@ -238,6 +250,11 @@ def test_a_value_that_a_setting_cannot_have_is_named(params, setting, value, hin
         ("sets:", "data:", "lacks the section graph or sets: run `python -m stages.compose`"),
         ("    renderer: ", "    rendrer: ", "unknown setting views.rendrer: did you mean views.renderer"),
         ("    renderer: raster\n", "", "views.renderer"),
+        (
+            "    background: black\n",
+            "    background: blak\n",
+            "views.background: unknown name 'blak': did you mean black?",
+        ),
     ],
 )
 def test_a_fault_in_params_yaml_is_named(tmp_path, old, new, reason):

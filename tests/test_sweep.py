@@ -11,8 +11,6 @@ from haptic_glance.base.files import read_table, write_json, write_table, write_
 from stages import compose, sweep
 from stages.engine.settings import ParamsError, load_params
 
-pytestmark = pytest.mark.usefixtures("compose_once")
-
 
 def job_rows(job, classifier, value):
     common = {"dataset": "household", "group": "four", "method": "itti", "classifier": classifier}
@@ -83,7 +81,7 @@ def test_an_accuracy_is_at_most_one(value, step, shown):
 
 
 @pytest.fixture
-def root(tmp_path, monkeypatch, compose_once):
+def root(tmp_path, monkeypatch):
     """A folder with a params.yaml that has another number of repetitions, and the files that jobs read."""
     monkeypatch.chdir(tmp_path)
     values = compose.compose(["sets=[household_four]", "profile=smoke", "classification.repetitions=3"])

@@ -1,6 +1,5 @@
 """Perturbations of imprints by a worse sensor or a less steady hand, which are not in the training data."""
 
-from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -59,6 +58,7 @@ PERTURBATIONS = {
     "rotation": rotation,  # degrees
     "resolution": resolution,  # cells a side
 }
+KNOWN = (*PERTURBATIONS, FEW_TOUCHES)
 
 
 def as_shares(images: np.ndarray) -> np.ndarray:
@@ -75,15 +75,3 @@ def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Ge
     Raises ValueError for other values, and for a severity out of range.
     """
     return np.clip(PERTURBATIONS[name](as_shares(images), severity, random), 0, 1).astype(np.float32)
-
-
-def check(severities: Mapping[str, Sequence[float]]) -> None:
-    """Raises ValueError for an unknown perturbation."""
-    check_known(severities, (*PERTURBATIONS, FEW_TOUCHES), "transfer.severities")
-
-
-def check_known(severities: Mapping[str, Sequence[float]], choices: Sequence[str], setting: str) -> None:
-    """Raises ValueError, which names the setting, for a perturbation that is not known."""
-    unknown = sorted(set(severities) - set(choices))
-    if unknown:
-        raise ValueError(f"{setting}: {', '.join(unknown)} not known, choose from {', '.join(choices)}")

@@ -1,12 +1,10 @@
 """Damaged pictures: a worse camera, less light, something in front of the object."""
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 
 from haptic_glance.base.lazy import cv2
 
-from .imprint import PERTURBATIONS, as_shares, check_known, disturb, with_square
+from .imprint import PERTURBATIONS, as_shares, disturb, with_square
 from .perturbed import in_range
 
 PICTURE, IMPRINT = "picture_", "imprint_"  # prefixes of perturbations: the sense that is damaged
@@ -37,6 +35,7 @@ def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) 
 
 
 PICTURES = {"noise": noise, "blur": blur, "darkness": darkness, "occlusion": occlusion}
+KNOWN = (*(PICTURE + name for name in PICTURES), *(IMPRINT + name for name in PERTURBATIONS))
 
 
 def damage_pictures(pictures: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
@@ -57,9 +56,3 @@ def damage(raw: np.ndarray, name: str, severity: float, random: np.random.Genera
     if effect == MISSING:
         return None
     return (damage_pictures if name.startswith(PICTURE) else disturb)(raw, effect, severity, random)
-
-
-def check(severities: Mapping[str, Sequence[float]]) -> None:
-    """Raises ValueError for an unknown perturbation."""
-    choices = [*(PICTURE + name for name in PICTURES), *(IMPRINT + name for name in PERTURBATIONS)]
-    check_known(severities, choices, "transfer.hybrid_severities")

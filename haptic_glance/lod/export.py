@@ -247,22 +247,23 @@ def _picture(picture, glb):
     return _File(picture) if glb else Image.open(io.BytesIO(picture))
 
 
-def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:
-    """The face count of a `target` ("25%", "1500") for a mesh of `total` faces.
+def face_count(target: str | int, total: int = 1, name: str = "") -> int:
+    """The face count of a `target` ("25%", "1500") for a mesh of `total` faces; a check of the target without a total.
 
-    Raises ValueError, which names the setting, for anything else, shares outside 0 to 100 %, and counts below 1.
+    Raises ValueError, which names the option `name`, for anything else, shares outside 0 to 100 %, and counts below 1.
     """
-    match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip())
+    given = f"{name}={target!r}" if name else repr(target)
+    match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip().removesuffix(".0"))
     if match is None:
-        raise ValueError(f"{name}={target!r} is not a face count: write one like 1500 or 25%")
+        raise ValueError(f"{given} is not a face count: write one like 1500 or 25%")
     number = float(match[1])
     if match[2] and not 0 < number < 100:
-        raise ValueError(f"{name}={target!r} must lie between 0% and 100%")
+        raise ValueError(f"{given} must lie between 0% and 100%")
     share = round(total * number / 100, 6)  # 32.3 % of 1000 are 322.99999999999994 in binary fractions
     count = int(share if match[2] else number)
     if count < 1 and not match[2]:
         remedy = f"; for a share write {100 * number:g}%" if number else ""
-        raise ValueError(f"{name}={target!r} must be 1 or more{remedy}")
+        raise ValueError(f"{given} must be 1 or more{remedy}")
     return max(count, 1)
 
 
@@ -276,7 +277,7 @@ def levels(text: str) -> list[str]:
     try:
         targets = [part.strip() for part in text.split(",")]
         for part in targets:
-            face_count(part, 1, "--levels")
+            face_count(part, name="--levels")
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
     return list(dict.fromkeys(targets))

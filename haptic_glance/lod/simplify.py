@@ -69,7 +69,8 @@ def simplify(
     (with nothing kept, where neighbourhoods may shrink); SimplifyError when the result would be faulty; ValueError for
     invalid arguments and for a mesh whose size is out of range.
     """
-    check_backend(backend)
+    if backend not in BACKENDS:
+        raise ValueError(f"unknown backend {backend!r}: choose one of {', '.join(BACKENDS)}")
     if faces < 1 or len(mesh.faces) == 0:
         raise ValueError(f"cannot simplify {len(mesh.faces)} faces to {faces}: both must be 1 or more")
     if not 1 / MAX_DIAGONAL < (mesh.diagonal or 1.0) < MAX_DIAGONAL:
@@ -133,12 +134,6 @@ def quadric_weights(saliency: np.ndarray) -> np.ndarray | None:
     saliency of 1 the same distance has sqrt(1 + STRENGTH) = 5.6 times the weight.
     """
     return None if np.ptp(saliency) == 0 else 1 + STRENGTH * saliency
-
-
-def check_backend(backend: str) -> None:
-    """Raises ValueError unless there is a backend of this name."""
-    if backend not in BACKENDS:
-        raise ValueError(f"unknown backend {backend!r}: choose one of {', '.join(BACKENDS)}")
 
 
 def _check_borders(mesh, free, backend, counted):

@@ -93,14 +93,16 @@ class SimplificationTask:
     def simplified(self, faces: int) -> Mesh:
         """The Mesh of at most `faces` faces, in the frame of `mesh`, with its attributes.
 
-        Borders between materials are preserved where that is feasible. Raises as `simplify` does.
+        Borders between materials are preserved where that is feasible. With free borders and no points, counts are
+        tried near which the surface loses its shape. Raises as `simplify` does.
         """
         try:
             return self._simplify(*self.cut, faces)
         except InfeasibleTarget:
-            if len(self.cut[0].vertices) == len(self.mesh.vertices):
+            may_below = self.free_borders and len(self.points) == 0
+            if len(self.cut[0].vertices) == len(self.mesh.vertices) and not may_below:
                 raise
-        return self._simplify(self.mesh, np.arange(len(self.mesh.vertices)), faces)
+        return self._simplify(self.mesh, np.arange(len(self.mesh.vertices)), faces, may_below)
 
     def plain(self, faces: int) -> Mesh:
         """As `simplified`, by plain quadric edge collapse: no points, no weights."""
@@ -130,13 +132,13 @@ class SimplificationTask:
         vertices[vertex >= 0] = self.given.vertices[vertex[vertex >= 0]]
         return replace(mesh, vertices=vertices)
 
-    def _simplify(self, mesh, ids, faces):
+    def _simplify(self, mesh, ids, faces, below=False):
         keep, rings = self._on_cut(ids)
         counts = {"weights": None if self.weights is None else self.weights[ids], "attributes": self.attributes}
         counts["free_borders"] = self._free(ids) if self.free_borders else False
         # Those that the error does not count are transferred once, at the end.
         bare = mesh if self.attributes else replace(mesh, colors=None, texture=None)
-        reduced = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
+        reduced = simplify(bare, faces, keep, rings, self.backend, self.shrink, below=below, **counts)
         return self.mesh if reduced is bare else carry(self.mesh, close_borders(reduced, mesh, ids))
 
     def _free(self, ids):

@@ -185,7 +185,8 @@ def contact_distances(
     tangent plane is below it or intersects it and does not measure it, a rigid one rests on it. They also differ in the
     depth limit, which for a rigid array counts from where it rests.
     """
-    check_contact(contact)
+    if contact not in CONTACTS:
+        raise ValueError(f"contact must be one of {', '.join(CONTACTS)}, got {contact!r}")
     limit = max_distances[:, None, None]
     if contact == "tangent":
         distances = surface.measure(centres, axes, cells, pitches)
@@ -194,12 +195,6 @@ def contact_distances(
     np.maximum(distances, 0.0, out=distances)
     distances -= np.minimum(distances.min(axis=(1, 2), keepdims=True), limit)
     return np.minimum(distances, limit, out=distances)
-
-
-def check_contact(contact: str, choices: Sequence[str] = CONTACTS) -> None:
-    """Raises ValueError unless `contact` is one of `choices`."""
-    if contact not in choices:
-        raise ValueError(f"contact must be one of {', '.join(choices)}, got {contact!r}")
 
 
 MIN_PITCH = 0.2  # of the pitch, as T4.3.2's fine sensor (0.002) to its coarse one (0.01)

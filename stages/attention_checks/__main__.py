@@ -19,7 +19,6 @@ from . import COLUMNS, Params, checks
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     views = list(workspace.settings(Params).views)
-    checks.check_views(views)
     with StageRun(workspace, "attention_checks", COLUMNS, inputs=("meshes", "weights")) as stage:
         names = sorted(path.stem for path in (workspace.data / "weights/ground_truth").glob("*.npz"))
         if len(names) < 2:

@@ -137,13 +137,6 @@ VIEWS: dict[str, Callable[[Mesh], Sequence[Viewpoint]]] = {
 }
 
 
-def check_views(names: Sequence[str]) -> None:
-    """Raises ValueError for the name of a set of viewpoints that does not exist."""
-    for name in names:
-        if name not in VIEWS:
-            raise ValueError(f"attention_checks.views: {name!r} is not one of {', '.join(VIEWS)}")
-
-
 def process_views(name: str, folder: Path, data: Path, views: Sequence[str]) -> Rows:
     """Rows of NSS and AUC of one object: the plain average of all nine channels, from each set of viewpoints."""
     cv2.setNumThreads(1)  # a worker is one core, and `seconds` are of one core

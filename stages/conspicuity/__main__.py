@@ -11,8 +11,8 @@ import numpy as np
 
 from haptic_glance.base.files import read_mesh, read_table, write_arrays
 from haptic_glance.base.lazy import cv2
-from haptic_glance.look.channels.channels import check_channels, check_symmetry, mask_at_size
-from haptic_glance.look.channels.cropped_view import FILLED, check_background
+from haptic_glance.look.channels.channels import mask_at_size
+from haptic_glance.look.channels.cropped_view import FILLED
 from haptic_glance.look.channels.printed import check_formulas
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
@@ -49,9 +49,6 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
-    check_channels(settings.channels)
-    check_background(settings.background)
-    check_symmetry(settings.symmetry)
     check_formulas(settings.formulas, settings.background == FILLED)
     with StageRun(workspace, "conspicuity", COLUMNS, inputs=("meshes", "views")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)

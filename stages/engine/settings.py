@@ -39,6 +39,66 @@ RANGES = {  # the last part of a setting's name: the least and the greatest of i
     "folds": (2, np.inf), "angle": (ABOVE_0, 180),
 }  # fmt: skip
 
+NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, or of a function that refuses others}
+    "attention_checks": {"views": "stages.attention_checks.checks:VIEWS"},
+    "classification": {"classifiers": "haptic_glance.know.classifiers:CLASSIFIERS"},
+    "coarse_imprints": {"variants": "stages.coarse_imprints.trial:VARIANTS"},
+    "conspicuity": {
+        "background": "haptic_glance.look.channels.cropped_view:BACKGROUNDS",
+        "channels": "haptic_glance.look.channels.channels:MAPS",
+        "formulas": "haptic_glance.look.channels.printed:FORMULAS",
+        "symmetry": "haptic_glance.look.channels.channels:SYMMETRIES",
+    },
+    "exploration": {"methods": "haptic_glance.look.points.methods:method_named"},
+    "fixation": {
+        "methods": "stages.fixation.backbone:method_named",
+        "projection": "stages.fixation.places:PROJECTIONS",
+    },
+    "imprints": {
+        "contact": "haptic_glance.touch.quasi_tangent:SENSORS",
+        "methods": "haptic_glance.look.points.methods:method_named",
+    },
+    "lod": {
+        "backend": "haptic_glance.lod.simplify:BACKENDS",
+        "methods": "haptic_glance.lod.task:variant",
+        "targets": "haptic_glance.lod.export:face_count",
+        "viewpoints": "haptic_glance.look.views.viewpoints:VIEWPOINTS",
+    },
+    "meshes": {"colours": "haptic_glance.mesh.materials:COLOURS", "source": "stages.meshes.sources:SOURCES"},
+    "salient_points": {
+        "methods": "haptic_glance.look.points.methods:method_named",
+        "selection": "haptic_glance.look.points.options:SELECTIONS",
+    },
+    "sensor_size": {
+        "classifiers": "stages.sensor_size.protocol:CLASSIFIERS",
+        "extents": "stages.sensor_size.protocol:EXTENTS",
+    },
+    "simulated_to_real": {"simulations": "stages.simulated_to_real.trial:SIMULATIONS"},
+    "stability": {
+        "methods": "haptic_glance.look.points.methods:method_named",
+        "perturbations": "haptic_glance.disturb.objects:PERTURBATIONS",
+        "severities": "haptic_glance.disturb.objects:PERTURBATIONS",
+    },
+    "touch_stability": {
+        "classifiers": "haptic_glance.know.classifiers:CLASSIFIERS",
+        "denoisers": "stages.touch_stability.denoisers:DENOISERS",
+        "severities": "haptic_glance.disturb.touches:TOUCH_PERTURBATIONS",
+    },
+    "transfer": {
+        "hybrid_severities": "haptic_glance.disturb.picture:KNOWN",
+        "networks": "haptic_glance.deep.network:NETWORKS",
+        "severities": "haptic_glance.disturb.imprint:KNOWN",
+        "splits": "stages.transfer.plan:SPLITS",
+        "uncontrolled": "haptic_glance.deep.network:NETWORKS",
+        "weights": "haptic_glance.deep.network:WEIGHTS",
+    },
+    "views": {
+        "background": "haptic_glance.look.views.view:BACKGROUNDS",
+        "renderer": "haptic_glance.look.views.renderer:resolve_renderer",
+        "viewpoints": "haptic_glance.look.views.viewpoints:VIEWPOINTS",
+    },
+    "weights": {"method": "stages.weights.training:CHOICES", "svm": "stages.weights.training:PIXELS"},
+}
 REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false",
             "ListConfig": "write a list in brackets"}  # fmt: skip
 Settings = TypeVar("Settings")
@@ -107,6 +167,27 @@ def check_common(values: dict[str, Any]) -> None:
         raise ParamsError(f"seed: {values['seed']} is negative")
 
 
+def check_names(section: str, values: dict[str, Any]) -> None:
+    """ParamsError for a value that is not among the NAMES of its setting; imports the modules that have the names."""
+    for key in NAMES.get(section, {}).keys() & values.keys():
+        module, _, name = NAMES[section][key].partition(":")
+        known = getattr(importlib.import_module(module), name)
+        for value in [values[key]] if isinstance(values[key], str) else values[key]:
+            try:
+                if callable(known):
+                    known(value)
+                elif value not in known:
+                    raise ValueError(f"unknown name {value!r}: {nearest(value, list(known))}")
+            except ValueError as error:
+                raise ParamsError(f"{section}.{key}: {error}") from None
+
+
+def nearest(name: str, options: list[str], where: str = "") -> str:
+    """`did you mean NAME?`, or all options where none resembles the name; where: comes before the nearest one."""
+    matches = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
+    return f"did you mean {where}{matches[0]}?" if matches else f"known: {', '.join(options)}"
+
+
 def _check_ranges(where: str, values: dict[str, Any]) -> None:
     """ParamsError for a number outside the range of its setting; numbers may stand in lists, or one a name."""
     for key, value in values.items():
@@ -133,10 +214,8 @@ def _numbers(value: Any) -> Iterator[float]:
 def _check_keys(where: str, values: dict[str, Any], keys: list[Any]) -> None:
     for key in values:
         if key not in keys:
-            name = f"{where}.{key}" if where else key
-            match = difflib.get_close_matches(key, keys, n=1, cutoff=0.5)
-            hint = f"did you mean {where + '.' if where else ''}{match[0]}?" if match else f"known: {', '.join(keys)}"
-            raise ParamsError(f"unknown setting {name}: {hint}")
+            prefix = f"{where}." if where else ""
+            raise ParamsError(f"unknown setting {prefix}{key}: {nearest(key, keys, prefix)}")
 
 
 def conf_folder() -> Path:
@@ -225,7 +304,8 @@ class Workspace:
     def settings(self, schema: type[Settings]) -> Settings:
         """The settings of one stage as an instance of its schema: `workspace.settings(stages.lod.Params)`.
 
-        Raises ParamsError for a section that is absent, a key that the schema does not have, or a wrong type.
+        Raises ParamsError for a section that is absent, a key that the schema does not have, a wrong type, or a value
+        that is not among the names of its setting.
         """
         section = section_of(schema)
         if self.dataset and self.dataset not in self.sets:
@@ -234,7 +314,9 @@ class Workspace:
         if section not in values:
             where = f"{self.dataset}.{section}" if self.dataset else section
             raise ParamsError(f"{self.root / FILE} has no section {where}: run `python -m stages.compose` anew")
-        return check_section(schema, values[section])
+        settings = check_section(schema, values[section])
+        check_names(section, values[section])
+        return settings
 
 
 def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:

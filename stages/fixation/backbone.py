@@ -28,7 +28,7 @@ from haptic_glance.look.views import render
 from haptic_glance.look.weights.convexity import convexity
 
 from . import Params
-from .places import PROJECTIONS, curvature_shares, eccentricity
+from .places import curvature_shares, eccentricity
 from .tasks import viewpoint_sphere
 
 DEGREES, SCALE = 20, (0.8, 1.2)  # random rotation and rescaling; T3.3.2 gives no range
@@ -103,17 +103,15 @@ def method_named(name: str) -> Method:
     """The Method of a name NETWORK-MODE; raises ValueError for a name without a known mode."""
     network, _, mode = name.rpartition("-")
     if not network or mode not in MODES:
-        raise ValueError(f"fixation.methods: {name!r} is not NETWORK-MODE with mode {', '.join(MODES)}")
+        raise ValueError(f"{name!r} is not NETWORK-MODE with mode {', '.join(MODES)}")
     if mode == "last_block" and network not in LAST_BLOCK:
-        raise ValueError(f"fixation.methods: {name}: the last block is known of {', '.join(LAST_BLOCK)} alone")
+        raise ValueError(f"{name}: the last block is known of {', '.join(LAST_BLOCK)} alone")
     return Method(name, network, mode)
 
 
 def check(settings: Params) -> None:
     """Raises ValueError for settings that cannot be run."""
     choose_device(settings.device)
-    if settings.projection not in PROJECTIONS:
-        raise ValueError(f"fixation.projection must be {' or '.join(PROJECTIONS)}, got {settings.projection!r}")
     if settings.size < 32 or settings.folds < 2 or not (settings.penalties and settings.rates and settings.methods):
         raise ValueError(
             "fixation: size must be 32 or more, folds 2 or more, and penalties, rates and methods must not be empty"

@@ -15,8 +15,8 @@ import numpy as np
 
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.touch.distances import check_array, check_contact
-from haptic_glance.touch.quasi_tangent import SENSORS, Touched, misfit, touch
+from haptic_glance.touch.distances import check_array
+from haptic_glance.touch.quasi_tangent import Touched, misfit, touch
 from haptic_glance.touch.surface import Surface
 from haptic_glance.touch.warm_up import warm_up
 from stages.engine.run import Rows, StageRun
@@ -61,7 +61,6 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     check_array(settings.cells, settings.pitch)
-    check_contact(settings.contact, SENSORS)
     if wrong := misfit(settings.cells, settings.pitch):
         print(f"imprints: {wrong}", file=sys.stderr)
     with StageRun(workspace, "imprints", inputs=("meshes", "salient_points")) as stage:

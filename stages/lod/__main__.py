@@ -12,9 +12,6 @@ measured once. Settings: section `lod` of params.yaml.
 `haptic-glance simplify` simplifies a mesh of your own.
 """
 
-from haptic_glance.lod.export import face_count
-from haptic_glance.lod.simplify import check_backend
-from haptic_glance.lod.task import variant
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes import Params as MeshesParams
 
@@ -25,11 +22,6 @@ from .data_set import simplify_all
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
-    check_backend(settings.backend)
-    for target in settings.targets:
-        face_count(target, 1)
-    for method in settings.methods:
-        variant(method)
     if not settings.methods or not settings.targets:
         raise ValueError("lod.methods and lod.targets must name at least one each")
     print(simplify_all(workspace, settings, workspace.settings(MeshesParams).source))

@@ -20,7 +20,6 @@ from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.mesh.axes import AUTO
 from haptic_glance.mesh.headers import MeshError
-from haptic_glance.mesh.materials import COLOURS
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
@@ -75,10 +74,6 @@ def up_axes(manifest: Sequence[Mapping[str, Any]]) -> str:
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
-    if settings.source not in SOURCES:
-        raise ValueError(f"meshes.source={settings.source!r} is not one of {', '.join(SOURCES)}")
-    if settings.colours not in COLOURS:
-        raise ValueError(f"meshes.colours={settings.colours!r} is not one of {', '.join(COLOURS)}")
     source_settings = dataclasses.replace(settings, objects=chosen_objects(settings.objects, settings.classes))
     items = {item.name: item for item in SOURCES[settings.source](source_settings)}
     with StageRun(workspace, "meshes") as stage:

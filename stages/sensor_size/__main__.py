@@ -28,7 +28,7 @@ from stages.meshes.collect import read_classes
 from stages.salient_points.measure import read_points, read_saliency
 
 from . import COLUMNS, Params
-from .protocol import ARRAY, EXTENTS, TOUCHES, choice_repeatability, evaluate, sample_vertices, smallest_sufficient
+from .protocol import ARRAY, TOUCHES, choice_repeatability, evaluate, sample_vertices, smallest_sufficient
 
 
 def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]], settings: Params, seed: int) -> Rows:
@@ -119,8 +119,6 @@ def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
-    if not set(settings.extents) <= set(EXTENTS):
-        raise ValueError(f"sensor_size.extents: {', '.join(settings.extents)}; choose from {', '.join(EXTENTS)}")
     with StageRun(workspace, "sensor_size", COLUMNS, inputs=("meshes", "salient_points")) as stage:
         classes = chosen_classes(read_classes(workspace.data / "meshes"), settings.classes)
         items = [f"{cells}-{pitch}" for cells in settings.cells for pitch in settings.pitches]

@@ -22,7 +22,7 @@ from stages.meshes.collect import read_classes
 from stages.recorded import Params as RecordedParams
 
 from . import COLUMNS, Params, trial
-from .trial import SIMULATIONS, simulate
+from .trial import simulate
 
 
 def process(name: str, folder: Path, data: Path, counts: dict[str, int], cells: tuple[int, int], simulations: list[str],
@@ -50,9 +50,6 @@ def shares(members: dict[str, list[str]], count: int) -> dict[str, int]:
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
-    unknown = sorted(set(settings.simulations) - set(SIMULATIONS))
-    if unknown:
-        raise ValueError(f"simulated_to_real.simulations: {unknown[0]} is not one of {', '.join(SIMULATIONS)}")
     images = read_pressure_images(workspace.settings(RecordedParams).path(workspace.root))
     with StageRun(workspace, "simulated_to_real", COLUMNS, inputs=("meshes",)) as stage:
         members = read_classes(workspace.data / "meshes")

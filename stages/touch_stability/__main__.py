@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
-from haptic_glance.know import CLASSIFIERS, SPLITS
+from haptic_glance.know import SPLITS
 from stages.classification import Params as Classification
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
@@ -24,7 +24,6 @@ from stages.engine.statistics import breaking_point, lead_left
 from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
-from .denoisers import DENOISERS
 from .trial import CLEAN, process, trial
 
 
@@ -53,17 +52,6 @@ def check(settings: Params, sets: Mapping[str, list[str]]) -> None:
     """Raises ValueError that names a setting with which nothing can be measured."""
     if settings.set not in sets:
         raise ValueError(f"touch_stability.set: no set {settings.set}; classification.sets: {', '.join(sets)}")
-    unknown = [name for name in settings.severities if name not in TOUCH_PERTURBATIONS]
-    if unknown:
-        raise ValueError(
-            f"touch_stability.severities: {', '.join(unknown)}; choose from {', '.join(TOUCH_PERTURBATIONS)}"
-        )
-    odd = [name for name in settings.denoisers if name not in DENOISERS]
-    if odd:
-        raise ValueError(f"touch_stability.denoisers: {', '.join(odd)}; choose from {', '.join(DENOISERS)}")
-    strange = [name for name in settings.classifiers if name not in CLASSIFIERS]
-    if strange:
-        raise ValueError(f"touch_stability.classifiers: {', '.join(strange)}; choose from {', '.join(CLASSIFIERS)}")
 
 
 def left_out(settings: Params, objects: list[str], folder: Path) -> tuple[str | None, int, float]:

@@ -14,10 +14,9 @@ import numpy as np
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.deep.device import choose_device, precision
 from haptic_glance.deep.modes import MODES, frozen_modules, is_range, parse_range
-from haptic_glance.deep.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS, build
+from haptic_glance.deep.network import SMALLEST, UNNORMALISED, build
 from haptic_glance.deep.training import PASSES, PRINTED, check_passes
 from haptic_glance.deep.weights import available_weights, imagenet_state
-from haptic_glance.disturb import imprint, picture
 from stages.engine.statistics import Split, interval_metrics
 
 from . import Params
@@ -73,13 +72,9 @@ class Plan(NamedTuple):
 
 def check(settings: Params) -> None:
     """Raises ValueError, which names the setting and its possible values, for settings that cannot be run."""
-    lists = {"weights": WEIGHTS, "splits": SPLITS} | dict.fromkeys(("networks", "uncontrolled"), tuple(NETWORKS))
-    for key, options in lists.items():
-        unknown = sorted(set(getattr(settings, key)) - set(options))
-        if unknown or not (getattr(settings, key) or key == "uncontrolled"):
-            raise ValueError(
-                f"transfer.{key}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(options)}"
-            )
+    for key in ("networks", "weights", "splits"):
+        if not getattr(settings, key):
+            raise ValueError(f"transfer.{key} must name at least one")
     for network, modes in settings.networks.items():
         _check_modes(network, modes)
     if min(max(settings.splits.values()), settings.touches - 1, settings.cells, *settings.coarse_cells) < 1:
@@ -94,8 +89,6 @@ def check(settings: Params) -> None:
         raise ValueError(f"transfer.new_object_touches: {settings.new_object_touches} must be 1 or more and less than "
                          f"transfer.touches ({settings.touches}), so that some are left to ask about")  # fmt: skip
     choose_device(settings.device)  # raises where there is no card
-    imprint.check(settings.severities)
-    picture.check(settings.hybrid_severities)
     for layers in settings.hybrid_middles:
         middle_of(layers)
 

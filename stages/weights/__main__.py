@@ -22,7 +22,6 @@ from stages.meshes import Params as MeshesParams
 from . import COLUMNS, Params
 from .ground_truth import Files, digest, ground_truth_amounts, ground_truth_files
 from .training import (
-    check_pixels,
     collect_training_data,
     read_training_data,
     train_all,
@@ -57,7 +56,6 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings, meshes = workspace.settings(Params), workspace.settings(MeshesParams)
-    check_pixels(settings.svm)
     marks = workspace.root / "data" / "annotations"
     with StageRun(workspace, "weights", COLUMNS, inputs=("meshes", "conspicuity")) as stage:
         # Objects without ground truth are no items: what is trained on the others does not depend on them.

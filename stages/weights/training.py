@@ -131,12 +131,6 @@ PIXELS = {"object": "", "picture": "image_"}  # what an object's own SVMs are tr
 MIN_ROWS = 40  # per model, so that each of ten folds has two of either class
 
 
-def check_pixels(name: str) -> None:
-    """Raises ValueError unless `name` is one of PIXELS."""
-    if name not in PIXELS:
-        raise ValueError(f"weights.svm={name!r}: choose one of {', '.join(PIXELS)}")
-
-
 def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str = "object") -> Rows:
     """Trains and stores the SVMs of one object, folder/svm/NAME.npz; returns rows with their accuracy.
 

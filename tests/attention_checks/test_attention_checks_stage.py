@@ -56,8 +56,3 @@ def test_every_check_is_made_on_every_object(workspace):
         (workspace.data / f"weights/ground_truth/{name}.npz").unlink()
     with pytest.raises(ValueError, match="1 objects with ground truth; two are needed"):
         run(workspace)
-
-
-def test_a_strange_set_of_viewpoints_is_named(make_workspace):
-    with pytest.raises(ValueError, match="'three' is not one of best, four, twelve"):
-        run(make_workspace({"attention_checks": {"views": ["three"]}}))

@@ -73,10 +73,3 @@ def test_a_background_that_is_kept_is_filtered_with_the_object_and_the_strongest
     unfilled = shares["filled"]["silhouette_share_unfilled"].dropna()
     kept, filled = (shares[background]["silhouette_share"][unfilled.index] for background in ("kept", "filled"))
     assert len(unfilled) and kept.to_numpy() == pytest.approx(unfilled.to_numpy()) and (filled != unfilled).any()
-
-
-def test_an_unknown_channel_or_background_is_named(make_workspace):
-    with pytest.raises(ValueError, match="glitter"):
-        stage.run(make_workspace({"conspicuity": SECTION | {"channels": ["glitter"]}}))
-    with pytest.raises(ValueError, match="conspicuity.background='green': choose one of filled, kept"):
-        stage.run(make_workspace({"conspicuity": SECTION | {"background": "green"}}))

@@ -22,7 +22,7 @@ SETTINGS = {
 }  # fmt: skip
 
 
-MESHES = {"source": "test", "folder": "", "up": "z", "unit": "", "objects": [], "classes": {}, "strict": False}
+MESHES = {"source": "folder", "folder": "", "up": "z", "unit": "", "objects": [], "classes": {}, "strict": False}
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def run(shapes, make_workspace):
             write_mesh(workspace.data / f"meshes/{name}.npz", mesh)
             values = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
             write_arrays(workspace.data / f"salient_points/{name}.npz", **{"glance.saliency": values})
-            lines.append(f"test,{name},{'yes' if number < 2 else 'no'},{'round' if number < 2 else 'hollow'}")
+            lines.append(f"folder,{name},{'yes' if number < 2 else 'no'},{'round' if number < 2 else 'hollow'}")
         ball = shapes["ball"]
         density = np.exp(-20 * ((ball.vertices - [0.5, 0, 0]) ** 2).sum(axis=1))
         path = workspace.data / "weights/ground_truth/ball.npz"
@@ -127,9 +127,7 @@ def test_an_unknown_method_is_named(name):
         method_named(name)
 
 
-@pytest.mark.parametrize(
-    "changed", [{"size": 8}, {"folds": 1}, {"methods": []}, {"device": "abacus"}, {"projection": "map"}]
-)
+@pytest.mark.parametrize("changed", [{"size": 8}, {"folds": 1}, {"methods": []}, {"device": "abacus"}])
 def test_settings_that_no_run_can_have_are_refused(changed):
     with pytest.raises(ValueError):
         backbone.check(Params(**SETTINGS | changed))

@@ -18,7 +18,6 @@ from stages.front import space
 from stages.front.senses import Senses
 from stages.front.space import SPACE, WHOLE, choice_of
 
-pytestmark = pytest.mark.usefixtures("compose_once")
 SMALL = {"method": "random", "viewpoints": "four", "image_rows": 225, "points": 20, "cells": 8, "level": "500",
          "touches": 1, "classifier": "knn"}  # fmt: skip
 BLIND = choice_of(SMALL)

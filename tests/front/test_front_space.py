@@ -11,7 +11,6 @@ from stages.engine.settings import ParamsError
 from stages.front.space import DEFAULT, SPACE, WIDTH, choice_of, one_choice_changed, settings_of
 from stages.imprints import Params as Imprints
 
-pytestmark = pytest.mark.usefixtures("compose_once")
 ROOT = Path(__file__).parents[2]
 OPTIONS = {name: options[0] for name, options in SPACE.items()}
 BLIND, ITTI = (choice_of(OPTIONS | {"method": method}) for method in ("random", "itti"))

@@ -114,9 +114,9 @@ def test_maps_of_the_printed_formulas_lie_in_0_to_1_on_the_object_alone(formulas
         (TRIANGLE, ["curvature"], {}, "render this mesh again"),  # the view is of another mesh
         (BOX, ["colour"], {}, "unknown channel colour: choose from color"),
         (BOX, ["edge"], {"size": (0, 10)}, "size of the maps"),
-        (BOX, ["edge"], {"symmetry": "all"}, "unknown conspicuity.symmetry 'all': choose one of perceived, strongest"),
-        (BOX, ["edge"], {"formulas": "exact"}, "conspicuity.formulas='exact': choose one of ours, printed, mended"),
-        (BOX, ["edge"], {"formulas": "printed"}, "filters whole pictures: set conspicuity.background=kept"),
+        (BOX, ["edge"], {"symmetry": "all"}, "unknown symmetry 'all': choose one of perceived, strongest"),
+        (BOX, ["edge"], {"formulas": "exact"}, "unknown formulas 'exact': choose one of ours, printed, mended"),
+        (BOX, ["edge"], {"formulas": "printed"}, "filter whole pictures: keep the background"),
     ],
 )
 def test_bad_questions_are_named(box_view, mesh, channels, settings, says):

@@ -243,8 +243,3 @@ def test_another_picture_is_another_mesh(run, tmp_path):
     Image.fromarray(PICTURE[:, ::-1]).save(tmp_path / "mine" / "paint.png")
     corners = colours_at_corners(read_mesh(run(colours="own") / "it.npz"))
     assert (corners == [GREEN, RED, GOLD, BLUE]).all()
-
-
-def test_an_unknown_choice_is_named_with_the_known_ones(run):
-    with pytest.raises(ValueError, match="meshes.colours='pink' is not one of vertex, own, palette"):
-        run(colours="pink")

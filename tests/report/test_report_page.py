@@ -291,7 +291,7 @@ def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, run, width
         assert not bad, path.name
 
 
-def test_the_command_of_a_claim_switches_its_stage_on(small, compose_once):
+def test_the_command_of_a_claim_switches_its_stage_on(small):
     results, switched = small.results(ROOT), {}
     needs = {(claim.stage, tuple(sets_read(claim, results))) for claim in CLAIMS}
     assert len(needs) > 10

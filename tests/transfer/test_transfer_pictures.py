@@ -6,7 +6,7 @@ import trimesh
 
 from haptic_glance.deep.hybrid import present
 from haptic_glance.deep.pictures import ELEVATIONS, imprint_images, picture_images, take_pictures, viewpoints
-from haptic_glance.disturb.picture import PICTURES, check, damage, damage_pictures
+from haptic_glance.disturb.picture import PICTURES, damage, damage_pictures
 from haptic_glance.mesh.mesh import Mesh
 from stages.transfer.hybrid_data import pair_pictures
 
@@ -101,5 +101,3 @@ def test_a_missing_sense_is_none_and_imprints_are_damaged_as_elsewhere():
     assert damage(imprints, "imprint_missing", 1.0, random()) is None
     damaged = damage(imprints, "imprint_dead_cells", 0.5, random())
     assert damaged.shape == imprints.shape and damaged.std() > 0
-    with pytest.raises(ValueError, match="picture_fog not known"):
-        check({"picture_fog": [1.0]})

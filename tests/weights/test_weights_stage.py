@@ -158,8 +158,3 @@ def test_svms_of_an_object_learn_from_its_own_pixels_or_from_all_of_the_picture(
     pixels = arrays[f"{prefix}pixels"]
     whole = np.abs(model.center - pixels.mean(axis=0)).max() < 1e-9
     assert np.abs(model.center - pixels.mean(axis=0)).max() < 0.2 and whole == (trained_on == "picture")
-
-
-def test_other_pixels_are_refused(make_workspace):
-    with pytest.raises(ValueError, match=r"weights\.svm='views': choose one of object, picture"):
-        stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze", "svm": "views"}}))

@@ -35,6 +35,7 @@ OTHERS = {
     "spectral_residual": spectral_residual,
     "fine_grained": fine_grained,
 }
+MAPS = CHANNELS | OTHERS
 # In place of the channels of symmetry where `conspicuity.symmetry` is `strongest`.
 STRONGEST = {
     "symmetry": partial(symmetry, strongest=True),
@@ -107,11 +108,13 @@ def conspicuity(
     {'edge': (22, 30)}
     """
     check_formulas(formulas, filled)
+    if symmetry not in SYMMETRIES:
+        raise ValueError(f"unknown symmetry {symmetry!r}: choose one of {', '.join(SYMMETRIES)}")
     names = list(CHANNELS) if channels is None else check_channels(channels)
     size = tuple(max(side // REDUCTION, 1) for side in view.mask.shape) if size is None else tuple(size)
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
-    maps: dict[str, Channel] = {**CHANNELS, **OTHERS, **SYMMETRIES[check_symmetry(symmetry)]}
+    maps: dict[str, Channel] = MAPS | SYMMETRIES[symmetry]
     if not view.mask.any():
         return {name: np.zeros(size, dtype=np.float32) for name in names}
     inside = mask_at_size(view.mask, size)
@@ -120,19 +123,11 @@ def conspicuity(
 
 
 def check_channels(names: Iterable[str]) -> list[str]:
-    """The names as a list; ValueError for a name that is neither in CHANNELS nor in OTHERS."""
-    choices = [*CHANNELS, *OTHERS]
-    unknown = [name for name in names if name not in choices]
+    """The names as a list; ValueError for a name that is not in MAPS."""
+    unknown = [name for name in names if name not in MAPS]
     if unknown:
-        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(choices)}")
+        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(MAPS)}")
     return list(names)
-
-
-def check_symmetry(setting: str) -> str:
-    """The setting; ValueError for one that is not among SYMMETRIES."""
-    if setting not in SYMMETRIES:
-        raise ValueError(f"unknown conspicuity.symmetry {setting!r}: choose one of {', '.join(SYMMETRIES)}")
-    return setting
 
 
 @weak_cache  # the channels of a view share its mask

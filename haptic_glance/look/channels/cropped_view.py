@@ -124,12 +124,6 @@ FILLED, KEPT = BACKGROUNDS = ("filled", "kept")
 MIN_WEIGHT = 1e-3  # a coarse pixel with less known weight is unknown; far above rounding in single precision
 
 
-def check_background(name: str) -> None:
-    """Raises ValueError unless `name` is one of BACKGROUNDS."""
-    if name not in BACKGROUNDS:
-        raise ValueError(f"conspicuity.background={name!r}: choose one of {', '.join(BACKGROUNDS)}")
-
-
 def fill(image: np.ndarray, known: np.ndarray) -> np.ndarray:
     """The image with its unknown pixels filled smoothly from the known ones, which stay unchanged.
 

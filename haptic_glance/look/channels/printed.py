@@ -44,9 +44,9 @@ Channel = Callable[[Mesh, View, bool], np.ndarray]
 def check_formulas(name: str, filled: bool) -> None:
     """Raises ValueError unless `name` is one of FORMULAS that goes with the background."""
     if name not in FORMULAS:
-        raise ValueError(f"conspicuity.formulas={name!r}: choose one of {', '.join(FORMULAS)}")
+        raise ValueError(f"unknown formulas {name!r}: choose one of {', '.join(FORMULAS)}")
     if filled and name != OURS:
-        raise ValueError(f"conspicuity.formulas={name} filters whole pictures: set conspicuity.background=kept")
+        raise ValueError(f"the formulas {name} filter whole pictures: keep the background (filled=False, in the pipeline conspicuity.background=kept)")
 
 
 def normalise(values: np.ndarray, mended: bool) -> np.ndarray:
