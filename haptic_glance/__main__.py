@@ -31,10 +31,11 @@ PIPELINE = ("bench", "claim", "front", "gate", "scene")  # modules of stages tha
 
 def main() -> None:
     """Runs the subcommand that the command line names; a package that is not installed ends in one line."""
-    from haptic_glance import __version__ as version
     from haptic_glance.base.errors import errors_in_one_line
 
-    errors_in_one_line("haptic-glance")
+    errors_in_one_line("haptic-glance")  # before the imports that take a while, in which a person may press Ctrl-C
+    from haptic_glance import __version__ as version
+
     parser = argparse.ArgumentParser(
         prog="haptic-glance",
         usage="haptic-glance COMMAND ...",
@@ -43,13 +44,14 @@ def main() -> None:
     )
     parser.add_argument("--version", action="version", version=f"haptic-glance {version}")
     parser.add_argument("command", help=argparse.SUPPRESS)
-    parser.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    parser.add_argument("rest", nargs="*", help=argparse.SUPPRESS)
     if sys.argv[1:2] in ([], ["-h"], ["--help"]):
         parser.epilog = listing()
     if not sys.argv[1:]:
         parser.print_help(sys.stderr)
         sys.exit(2)
-    options = parser.parse_args()
+    rest = sys.argv[2:]  # as it is: argparse would take a `--` out
+    options = parser.parse_args(sys.argv[1:2])
     names = {**OWN, **SHELL}
     if options.command in PIPELINE:
         in_clone = f"run `python -m stages.{options.command}` in a clone of the repository"
@@ -57,7 +59,7 @@ def main() -> None:
     if options.command not in names:
         close = " or ".join(get_close_matches(options.command, names)) or "one of those that --help lists"
         parser.error(f"there is no command {options.command!r}: try {close}")
-    sys.argv[1:] = options.rest
+    sys.argv[1:] = rest
 
     from haptic_glance.base.extras import MissingExtra, from_extra
     from haptic_glance.base.progress import report
@@ -65,11 +67,11 @@ def main() -> None:
     warnings.showwarning = lambda message, *_: report(options.command, str(message))  # in one line
     try:
         with from_extra():
-            status = run(options.command, options.rest)
+            status = run(options.command, rest)
             print(end="", flush=True)  # an error has its line and its status here, and neither when Python ends
             sys.exit(status)
     except MissingExtra as error:
-        if {"-h", "--help"} & set(options.rest):  # what it does can be read without what it needs
+        if {"-h", "--help"} & set(rest):  # what it does can be read without what it needs
             print(f"usage: haptic-glance {options.command} ...\n\n{docstring(names[options.command])}\n\n{error}")
             return
         sys.exit(f"haptic-glance {options.command}: {error}")
@@ -79,14 +81,15 @@ def run(command: str, argv: Sequence[str]) -> int:
     """Runs a command; returns the exit status."""
     if command in first_run.COMMANDS and not {"-h", "--help"} & set(argv):
         first_run.start(command)
-    from haptic_glance.base.errors import errors_in_one_line
+    from haptic_glance.base.errors import errors_in_one_line, interrupts_wait
 
-    errors_in_one_line(command)  # before the imports that take a second, in which a person may press Ctrl-C
+    errors_in_one_line(command)
     from haptic_glance.base.progress import no_silence
 
     # Pillow warns of large pictures in two lines; `materials` refuses those that are too large in one.
     warnings.filterwarnings("ignore", message="Image size .* exceeds limit")
-    work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
+    with interrupts_wait():
+        work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
     with no_silence():
         return work(argv) or 0
 

@@ -20,6 +20,7 @@ import importlib.util
 import json
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -79,7 +80,9 @@ def run(argv: Sequence[str]) -> None:
     if method:
         archive = options.gaze or Path(GAZE.format(options.set))
         report(f"reading {archive}")
-        rows = judged(method, gazed(options.set, archive), options.train)
+        objects = gazed(options.set, archive)
+        with redirect_stdout(sys.stderr):  # a method may print, and stdout has the result
+            rows = judged(method, objects, options.train)
         if not {row["item"] for row in rows} & set(scores["item"]):
             report("the other methods were judged on other objects: no mean compares, and there is no lead")
         scores = pd.concat([scores, pd.DataFrame(rows)])
@@ -109,8 +112,9 @@ def function_of(text: str) -> Callable:
     module = importlib.util.module_from_spec(spec)
     sys.path.insert(0, str(path.parent.resolve()))  # what lies beside the file can be imported, as when it is run
     try:
-        spec.loader.exec_module(module)
-    except Exception as error:  # the file may do anything
+        with redirect_stdout(sys.stderr):
+            spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # the file may do anything
         raise ValueError(f"{path} cannot be imported: {type(error).__name__}: {error}") from error
     if not callable(getattr(module, name, None)):
         raise ValueError(f"{path} has no function {name!r}")
@@ -148,9 +152,11 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
             saliency, fresh = method(training) if train else method, replace(mesh)  # without what the truth has cached
             with Stopwatch() as watch:
                 values = saliency(fresh)
+            if np.iscomplexobj(values):
+                raise TypeError("the saliency has complex values")
             scores = agreement(np.asarray(values, dtype=np.float64), truth)
             row["seconds"] = watch.seconds
-        except Exception as error:  # a method may raise anything; the other objects are judged
+        except (Exception, SystemExit) as error:  # a method may raise anything; the other objects are judged
             row["note"] = failed[name] = " ".join(f"{type(error).__name__}: {error}".split())
             report(f"{name} is left out: {failed[name]}")
         rows += [row | {"metric": metric, "value": scores.get(metric, np.nan)} for metric in SCORES]

@@ -22,6 +22,7 @@ METHODS = """
 import numpy as np
 
 def height(mesh):
+    print("a method may print")
     return mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
 
 def positions(mesh):
@@ -32,6 +33,12 @@ def moody(mesh):
     if size == 1:
         raise KeyError("no such part")
     return values if size == 2 else values * np.nan
+
+def quits(mesh):
+    raise SystemExit(3)
+
+def waves(mesh):
+    return height(mesh) * 1j
 
 def counts(training):
     assert all(len(mesh.vertices) == len(density) for mesh, density in training)
@@ -123,6 +130,12 @@ def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(fi
     assert re.search(r"^ +> yours +1 ", out, re.M) and re.search(r"^yours +third +ValueError: .*NaN", out, re.M)
     yours = listed(capsys, f"{file}:moody")["yours"]
     assert [*yours["values"]] == ["second"] and [*yours["failed"]] == ["first", "third"]
+
+
+@pytest.mark.parametrize(("name", "reason"), [("quits", "SystemExit: 3"), ("waves", "complex values")])
+def test_a_method_that_fails_on_every_object_ends_with_the_reason(file, toys, name, reason):
+    with pytest.raises(ValueError, match=f"failed on every object, on third by .*{reason}"):
+        bench.run([f"{file}:{name}"])
 
 
 @pytest.mark.slow

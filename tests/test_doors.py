@@ -98,6 +98,9 @@ def test_a_length_that_does_not_fit_the_mesh_is_warned_of(body):
         press(mesh, 7, cells=16, pitch="1mm", unit="mm")
     with pytest.raises(ValueError, match=r"cells=\(100000, 100000\): an array has at most 16,777,216 cells"):
         press(mesh, 7, cells=(100_000, 100_000))
+    for pitch in (1, -0.01, np.nan):
+        with pytest.raises(ValueError, match=f"pitch={pitch}: give a share of the object's diameter between 0 and 1"):
+            press(mesh, 7, pitch=pitch)
 
 
 def test_forces_take_lengths_as_texts(body):

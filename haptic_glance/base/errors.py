@@ -4,7 +4,10 @@ import atexit
 import errno
 import os
 import select
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
 
@@ -37,6 +40,22 @@ def errors_in_one_line(name: str) -> None:
 
     sys.excepthook = show
     atexit.register(_flush)
+
+
+@contextmanager
+def interrupts_wait() -> Iterator[None]:
+    """Inside the block Ctrl-C waits until its end; processes that start there never see it.
+
+    Libraries that catch every exception while they are imported would swallow it.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _flush() -> None:

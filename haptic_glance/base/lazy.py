@@ -6,6 +6,7 @@ In a file that uses them, `from __future__ import annotations` keeps the types o
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .errors import interrupts_wait
 from .extras import from_extra
 
 
@@ -14,7 +15,7 @@ class _Lazy:
         self._name, self._need = name, need
 
     def __getattr__(self, name: str) -> Any:
-        with from_extra(self._need):
+        with from_extra(self._need), interrupts_wait():
             value = getattr(import_module(self._name), name)
         setattr(self, name, value)  # later uses cost no more than those of a module
         return value

@@ -36,7 +36,7 @@ from haptic_glance.look.weights.weights import GLANCE
 from haptic_glance.mesh.files import load_unnamed
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.repair import centre_and_radius, significant_digits
+from haptic_glance.mesh.repair import area_share, centre_and_radius, significant_digits
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
 from .simplify import check_outputs, dropped_from
@@ -92,6 +92,7 @@ def look_at(options: argparse.Namespace) -> None:
     before = existing(options.out, options.points, options.picture, options.weights)
     with about(options.mesh):
         mesh, note = upright_by(load_unnamed(options.mesh), options.mesh, options.up)
+        area_share(mesh)  # or there would be no points, and no reason
         report(options, "looking at it")
         with WallClock() as watch:
             detection = detect(mesh, options.method, options.count)

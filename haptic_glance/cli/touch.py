@@ -157,6 +157,8 @@ def parse_values(option: str, kind: type, text: str | None) -> dict[str, Any]:
         name, _, value = (word.strip() for word in part.partition("="))
         if name not in names:
             raise ValueError(f"{option} {part}: {name!r} is unknown; write NAME=VALUE with one of {', '.join(names)}")
+        if name in values:
+            raise ValueError(f"{option} {text}: {name} is given twice")
         try:
             values[name] = float(value)
         except ValueError:

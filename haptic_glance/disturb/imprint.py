@@ -6,6 +6,7 @@ import numpy as np
 
 from haptic_glance.base.lazy import cv2
 from haptic_glance.touch import Skin
+from haptic_glance.touch.skin import as_shares
 
 from .perturbed import in_range
 
@@ -59,14 +60,6 @@ PERTURBATIONS = {
     "resolution": resolution,  # cells a side
 }
 KNOWN = (*PERTURBATIONS, FEW_TOUCHES)
-
-
-def as_shares(images: np.ndarray) -> np.ndarray:
-    """Images, u1 or floats in 0..1, as f4 in 0..1; ValueError for other values."""
-    shares = images.astype(np.float32) / (255 if images.dtype == np.uint8 else 1)
-    if not ((shares >= 0) & (shares <= 1)).all():  # NaN fails as well
-        raise ValueError("images must be bytes, or numbers in 0..1")
-    return shares
 
 
 def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:

@@ -3,8 +3,9 @@
 import numpy as np
 
 from haptic_glance.base.lazy import cv2
+from haptic_glance.touch.skin import as_shares
 
-from .imprint import PERTURBATIONS, as_shares, disturb, with_square
+from .imprint import PERTURBATIONS, disturb, with_square
 from .perturbed import in_range
 
 PICTURE, IMPRINT = "picture_", "imprint_"  # prefixes of perturbations: the sense that is damaged

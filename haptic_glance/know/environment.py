@@ -10,9 +10,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from haptic_glance.base.extras import from_extra
-from haptic_glance.mesh import normalise
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import Surface
+from haptic_glance.touch import Skin, Surface
 
 from .exploration import MOST, PLACES, Exploration
 from .library import CELLS, learn, primitives
@@ -39,15 +40,18 @@ class TouchUntilSure(gymnasium.Env):
 
     Parameters
     ----------
-    meshes : mapping of str to Mesh, optional
-        The known objects, which are normalised. Six basic shapes by default.
+    meshes : mapping of str to Mesh or any input of `as_mesh`, optional
+        The known objects, which are normalised and rotated so that z is up. Six basic shapes by default.
     most : int
         Touches of an episode, at most.
+    skin : Skin, optional
+        The sensor, for example `Skin(dead=0.02, noise=0.02)`; an ideal one by default. It learns the objects and
+        touches them.
 
     Raises
     ------
     ValueError
-        For fewer than two objects, for a mesh that cannot be touched, and for `most` below 1.
+        For fewer than two objects, for a mesh that cannot be touched, and for a `most` that is no whole number from 1.
     MissingExtra
         Where Gymnasium is not installed.
 
@@ -60,11 +64,14 @@ class TouchUntilSure(gymnasium.Env):
     -1.0
     """
 
-    def __init__(self, meshes: Mapping[str, Mesh] | None = None, most: int = MOST) -> None:
-        self.meshes = dict(primitives()) if meshes is None else {name: normalise(mesh) for name, mesh in meshes.items()}
-        if most < 1:
-            raise ValueError(f"an episode needs at least one touch, got most={most}")
-        self.library = learn(self.meshes, placed=False, turned=True)
+    def __init__(
+        self, meshes: Mapping[str, MeshLike] | None = None, most: int = MOST, skin: Skin | None = None
+    ) -> None:
+        given = primitives() if meshes is None else meshes
+        self.meshes = {name: normalise(rotate_to_z_up(as_mesh(mesh))) for name, mesh in given.items()}
+        if not (isinstance(most, int | np.integer) and most >= 1):
+            raise ValueError(f"an episode needs a whole number of touches, at least one, got most={most}")
+        self.library = learn(self.meshes, placed=False, turned=True, skin=skin)
         self.most, self.ended = most, True  # until the first reset
         self.action_space = Discrete(PLACES)
         self.observation_space = Dict({
@@ -78,6 +85,8 @@ class TouchUntilSure(gymnasium.Env):
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[dict, dict]:
         """Draws an object, its pose and the places on it; `options={"name": NAME}` chooses the object."""
         super().reset(seed=seed)
+        if unknown := {*(options or {})} - {"name"}:
+            raise ValueError(f"unknown option {min(unknown)!r} of an episode: known: name")
         name = str((options or {}).get("name") or self.np_random.choice(self.library.names))
         if name not in self.meshes:
             raise ValueError(f"unknown object {name!r}: choose one of {', '.join(self.library.names)}")

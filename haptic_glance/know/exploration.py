@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import as_surface
@@ -26,15 +26,16 @@ class Exploration:
     ----------
     library : Library
         The known objects, from `learn`.
-    surface : Mesh or Surface
-        The object, scaled by `normalise` as the library's objects are.
+    surface : Surface, Mesh or any input of `as_mesh`
+        The object, scaled by `normalise` as the library's objects are, with z up. It is touched by the sensor that the
+        library was learned with.
     random : numpy.random.Generator
         Draws the places.
 
     Raises
     ------
     ValueError
-        For an object of another scale.
+        For an object of another scale, or with another axis up.
 
     Examples
     --------
@@ -49,13 +50,19 @@ class Exploration:
     ['box', 'cylinder']
     """
 
-    def __init__(self, library: Library, surface: Mesh | Surface, random: np.random.Generator) -> None:
-        self.library, self.surface = library, as_surface(surface)
+    def __init__(self, library: Library, surface: "MeshLike | Surface", random: np.random.Generator) -> None:
+        self.library = library
+        self.surface = as_surface(surface if isinstance(surface, Surface) else as_mesh(surface))
         check_scale(self.surface.mesh)
+        if self.surface.mesh.up != "z":
+            raise ValueError(
+                f"the object has {self.surface.mesh.up} up, and was learned with z up: call rotate_to_z_up"
+            )
         self.candidates = sample_places(self.surface, PLACES, random)
         self.positions, self.normals = np.zeros((0, 3)), np.zeros((0, 3))  # of the touches so far
         self.images = np.zeros((0, *CELLS), dtype=np.float32)  # what was felt there
         self.beliefs = [library.belief()]
+        self._noise = "" if library.skin is None else f"exploration {random.integers(2**31)}"
 
     @property
     def belief(self) -> Belief:
@@ -65,10 +72,12 @@ class Exploration:
     def touch(self, place: Places) -> np.ndarray:
         """(rows, cols) f4: the imprint at the first of the places, by which the belief is updated.
 
-        A second touch of the same place feels the same, so the belief stays as it is.
+        A second touch of the same place feels the same but for the noise, so the belief stays as it is.
         """
         position, axes = place.positions[:1], sensor_axes(place.normals[:1])
         image = press_at(self.surface, position, axes, CELLS, PITCH)[0]
+        if self.library.skin is not None:
+            image = self.library.skin(image[None], self._noise, len(self.images))[0]
         is_repeat = (self.positions == position).all(axis=1).any()
         self.positions = np.concatenate([self.positions, position])
         self.normals = np.concatenate([self.normals, place.normals[:1]])

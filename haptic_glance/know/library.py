@@ -6,7 +6,7 @@ tells how likely a new imprint is under each object.
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
@@ -17,11 +17,12 @@ from haptic_glance.base.files import read_mesh
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
-from haptic_glance.mesh.files import FORMATS, names_of
+from haptic_glance.mesh.files import FORMATS, MeshLike, as_mesh, names_of
 from haptic_glance.mesh.mesh import Mesh, unit
-from haptic_glance.mesh.sampling import sample_surface
-from haptic_glance.touch import Surface, press_at, sensor_axes
+from haptic_glance.mesh.sampling import along_curve, sample_surface
+from haptic_glance.touch import Skin, Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
+from haptic_glance.touch.skin import as_shares
 from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals, turned
 
 from .belief import (
@@ -50,10 +51,14 @@ class Belief:
     touches: int = 0
 
     def after(self, image: np.ndarray, position: np.ndarray) -> "Belief":
-        """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,)."""
-        if not np.isfinite(position).all():
-            raise ValueError(f"a touch needs a position of finite numbers, got {position}")
-        evidence = self.library.log_likelihoods(np.asarray(image)[None], np.asarray(position)[None])[0]
+        """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,).
+
+        image: bytes, or numbers in 0..1; 0 where the array meets the surface first. Raises ValueError for others.
+        """
+        place = np.asarray(position, dtype=np.float64)
+        if place.shape != (3,) or not np.isfinite(place).all():
+            raise ValueError(f"a touch needs a position of three finite numbers, got {position}")
+        evidence = self.library.log_likelihoods(as_shares(np.asarray(image))[None], place[None])[0]
         return Belief(self.library, self.log_likelihoods + evidence, self.touches + 1)
 
     @cached_property
@@ -79,13 +84,24 @@ NEAR = 0.01  # units, one cell of the default array: within it a point belongs t
 
 
 def sample_places(surface: Surface, count: int, random: np.random.Generator) -> Places:
-    """Places of `count` points, drawn uniformly by area, so that all lie in faces with a normal.
+    """Places of `count` points, drawn uniformly by area, so that all lie in faces with a normal, in random order.
 
-    Raises ValueError for a mesh without area.
+    The order of vertices, faces and corners has no influence. Raises ValueError for a mesh without area.
     """
     shares = (np.arange(count) + random.random(count)) / count  # one in each of `count` equal parts of the surface
-    points, faces, _ = sample_surface(surface.mesh, shares, random.random((2, count)))
-    return place_at(surface, points, faces)
+    order, corners = by_position(surface.mesh)
+    points, faces, _ = sample_surface(replace(surface.mesh, faces=corners), shares, random.random((2, count)))
+    shuffled = random.permutation(count)  # or places that follow one another would be neighbours
+    return place_at(surface, points[shuffled], order[faces[shuffled]])
+
+
+def by_position(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """(ids (m,), corners (m, 3)) of the faces along a curve that fills space, each from its first corner by place."""
+    ranks = np.argsort(np.lexsort(mesh.vertices.T[::-1]))[mesh.faces]
+    first = (ranks.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    code = along_curve(mesh.vertices[mesh.faces].mean(axis=1))
+    order = np.lexsort((*np.take_along_axis(ranks, first, axis=1).T[::-1], code))
+    return order, np.take_along_axis(mesh.faces, first, axis=1)[order]
 
 
 def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:
@@ -116,13 +132,15 @@ BLOCK = 256  # touches compared at once, in the processor's cache
 AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three widths of `place_kernel` away
 
 
-def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned: bool = False) -> "Library":
+def learn(
+    meshes: Mapping[str, MeshLike], placed: bool = True, seed: int = 0, turned: bool = False, skin: Skin | None = None
+) -> "Library":
     """Learns objects by touch; a mesh that was learned before costs nothing.
 
     Parameters
     ----------
-    meshes : mapping of str to Mesh
-        Two or more meshes that `normalise` has scaled, by name.
+    meshes : mapping of str to Mesh or any input of `as_mesh`
+        Two or more meshes that `normalise` has scaled, by name. They are rotated so that z is up.
     placed : bool
         True: the objects stand where they were learned. False: they stand upright at an unknown place.
     seed : int
@@ -130,6 +148,9 @@ def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned
     turned : bool
         Whether each array is turned at random about its normal, as it lies on an object that may also be turned. A pose
         of which nothing is known needs placed=False and turned=True.
+    skin : Skin, optional
+        The sensor by whose imprints the objects are learned, and by which an `Exploration` touches. Where a real array
+        has dead cells or noise, a belief that was learned with an ideal array is sure too soon, and often wrong.
 
     Returns
     -------
@@ -153,12 +174,13 @@ def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0, turned
     """
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
-    return _library(tuple(_Named(name, mesh, seed, turned) for name, mesh in sorted(meshes.items())), placed)
+    upright = {name: rotate_to_z_up(as_mesh(meshes[name])) for name in sorted(meshes)}
+    return _library(tuple(_Named(name, mesh, seed, turned, skin) for name, mesh in upright.items()), placed)
 
 
 def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:
     """(TOUCHES, 41) features of the touches by which `learn` knows a mesh; ValueError where it cannot be touched."""
-    return _learned(_Named(name, mesh, seed, False))[0]
+    return _learned(_Named(name, mesh, seed, False, None))[0]
 
 
 @dataclass(frozen=True)
@@ -188,6 +210,8 @@ class Library:
         Whether the objects stand as they were learned.
     seed : int
         Seed of the calibration.
+    skin : Skin, optional
+        The sensor by which the objects were touched; None: an ideal one.
 
     Notes
     -----
@@ -197,9 +221,10 @@ class Library:
     """
 
     def __init__(
-        self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0
-    ) -> None:
-        self.names, self.placed, (classes, self._each) = names, placed, samples.shape[:2]
+        self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0,
+        skin: Skin | None = None,
+    ) -> None:  # fmt: skip
+        self.names, self.placed, self.skin, (classes, self._each) = names, placed, skin, samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._each)
         self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
@@ -279,12 +304,12 @@ class Library:
 
 
 class _Named:
-    """A mesh under a name; equal where name, seed, content and `turned` are."""
+    """A mesh under a name; equal where name, seed, content, `turned` and skin are."""
 
-    def __init__(self, name: str, mesh: Mesh, seed: int, turned: bool) -> None:
+    def __init__(self, name: str, mesh: Mesh, seed: int, turned: bool, skin: Skin | None) -> None:
         content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
-        self.name, self.mesh, self.key = name, mesh, (name, seed, content, turned)
-        self.seed, self.turned = seed, turned
+        self.name, self.mesh, self.key = name, mesh, (name, seed, content, turned, skin)
+        self.seed, self.turned, self.skin = seed, turned, skin
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Named) and self.key == other.key
@@ -297,7 +322,7 @@ class _Named:
 def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
     samples, positions = zip(*map(_learned, objects), strict=True)
     names = tuple(item.name for item in objects)
-    return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed)
+    return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed, objects[0].skin)
 
 
 SCALE = 4  # the diagonal of a normalised object is 1 to 1.74; that of a damaged one may differ a little more
@@ -320,6 +345,7 @@ def _learned(item: _Named) -> tuple[np.ndarray, np.ndarray]:
         if item.turned:
             axes = turned(axes, 360 * rng(item.seed, f"{item.name} turned").random(TOUCHES))
         images = press_at(surface, places.positions, axes, CELLS, PITCH)
+        images = images if item.skin is None else item.skin(images, item.name)
     except ValueError as error:
         raise ValueError(f"{item.name}: {error}") from None
     return features(images), places.positions

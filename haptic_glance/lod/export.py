@@ -38,6 +38,7 @@ COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
 OF_ONE = 7  # digits of texture coordinates and colours, which trimesh writes with as many places as the vertices
 SINGLE = (".glb", ".npz", ".ply", ".stl", ".usda")  # the formats of single precision
+RUINED = 0.01  # of the diagonal: the written mesh would be another one than the mesh that was measured
 MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farther is seen to be elsewhere
 
 
@@ -102,7 +103,10 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
 
 
 def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, .off)") -> None:
-    """Warns where the path's format moves vertices by more than MOST_MOVED of the diagonal; ValueError for infinity."""
+    """Warns where the path's format moves vertices by more than MOST_MOVED of the diagonal.
+
+    Raises ValueError where it moves them by more than RUINED, and where coordinates become infinite.
+    """
     if path.suffix.lower() not in SINGLE or not mesh.diagonal:
         return
     with np.errstate(over="ignore", under="ignore"):
@@ -110,10 +114,11 @@ def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, 
     if not np.isfinite(rounding_error):
         raise ValueError(f"{path.name}: its coordinates are too large for single precision: scale it, or write .obj")
     if rounding_error > MOST_MOVED * mesh.diagonal:
-        share, remedy = 100 * rounding_error / mesh.diagonal, f"move it to the origin{text}"
-        warnings.warn(
-            f"{path.name}: single precision moves vertices by {share:.2g} % of the diagonal: {remedy}", stacklevel=3
-        )
+        share, remedy = rounding_error / mesh.diagonal, f"move it to the origin{text}"
+        message = f"{path.name}: single precision moves vertices by {100 * share:.2g} % of the diagonal: {remedy}"
+        if share > RUINED:
+            raise ValueError(message)
+        warnings.warn(message, stacklevel=3)
 
 
 def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
@@ -253,7 +258,7 @@ def face_count(target: str | int, total: int = 1, name: str = "") -> int:
     Raises ValueError, which names the option `name`, for anything else, shares outside 0 to 100 %, and counts below 1.
     """
     given = f"{name}={target!r}" if name else repr(target)
-    match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip().removesuffix(".0"))
+    match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip())
     if match is None:
         raise ValueError(f"{given} is not a face count: write one like 1500 or 25%")
     number = float(match[1])
@@ -264,6 +269,8 @@ def face_count(target: str | int, total: int = 1, name: str = "") -> int:
     if count < 1 and not match[2]:
         remedy = f"; for a share write {100 * number:g}%" if number else ""
         raise ValueError(f"{given} must be 1 or more{remedy}")
+    if count != number and not match[2]:
+        raise ValueError(f"{given} is not a whole number of faces")
     return max(count, 1)
 
 
@@ -276,11 +283,10 @@ def levels(text: str) -> list[str]:
     """["50%", "25%"] of the text `50%,25%`; argparse.ArgumentTypeError for what is no face count."""
     try:
         targets = [part.strip() for part in text.split(",")]
-        for part in targets:
-            face_count(part, name="--levels")
+        counts = [(face_count(part, 10**9, "--levels"), "%" in part) for part in targets]
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
-    return list(dict.fromkeys(targets))
+    return [part for k, part in enumerate(targets) if counts[k] not in counts[:k]]  # 50% and 50.0% are one level
 
 
 def level_path(folder: Path, name: str, source: Path, target: str, kind: str | None = None) -> Path:

@@ -63,17 +63,22 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
         raise MeshError("no face has three different vertices")
     faces = mesh.faces[ids]
     cleaned = replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.of(ids))
-    spread = np.ptp(mesh.vertices[cleaned.used], axis=0)
-    with np.errstate(over="ignore", invalid="ignore"):
-        area, square = cleaned.face_areas.sum(), float(spread @ spread)
-    if not np.isfinite([area, square]).all():
-        raise MeshError("the coordinates are so large that areas overflow")
-    if area <= MIN_AREA * max(square, np.finfo(float).tiny):
-        raise MeshError("the surface has no area")
-    if area <= MIN_VISIBLE_AREA * square:
+    if area_share(cleaned) <= MIN_VISIBLE_AREA:
         raise MeshError("the surface is too small for its extent: are there stray parts far from the object?")
     cleaned, orient_notes = orient(cleaned)
     return cleaned, notes + orient_notes
+
+
+def area_share(mesh: Mesh) -> float:
+    """The area over the squared diagonal of the box; MeshError for a mesh without area, or whose area overflows."""
+    spread = np.ptp(mesh.vertices[mesh.used], axis=0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        area, square = mesh.face_areas.sum(), float(spread @ spread)
+    if not np.isfinite([area, square]).all():
+        raise MeshError("the coordinates are so large that areas overflow: scale them, for example to metres")
+    if area <= MIN_AREA * max(square, np.finfo(float).tiny):
+        raise MeshError(f"the surface has no area, its extent is {spread.max():.3g}: scale it, or export its faces")
+    return area / square
 
 
 def _repeats(rows):
@@ -243,7 +248,9 @@ def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     centre = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     radius = np.linalg.norm(vertices - centre, axis=1).max()
     if radius == 0:
-        raise ValueError("the mesh has no extent: all vertices coincide")
+        extent = np.ptp(vertices, axis=0).max()
+        reason = f"its extent is {extent:.3g}: scale it" if extent else "all vertices coincide"
+        raise ValueError(f"the mesh has no extent that could be measured: {reason}")
     return centre, radius
 
 

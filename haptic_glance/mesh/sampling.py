@@ -31,6 +31,20 @@ def sample_surface(
     return points, faces, weights
 
 
+BITS = 10  # of a coordinate on the curve
+ROUNDING = 1e-6  # smaller differences of steps along a coordinate are rounding
+
+
+def along_curve(points: np.ndarray) -> np.ndarray:
+    """(n,) i8 numbers of the cells of points (n, 3) along a curve that fills space: near points have near numbers.
+
+    Source: Morton, A computer oriented geodetic data base, IBM 1966.
+    """
+    inside = points - points.min(axis=0)
+    steps = (inside / max(inside.max(), 1e-12) * (2**BITS - 1) + ROUNDING).astype(np.int64)
+    return np.asarray(sum((steps[:, axis] >> bit & 1) << (3 * bit + axis) for bit in range(BITS) for axis in range(3)))
+
+
 def points_in_faces(mesh: "Mesh", faces: np.ndarray, draws: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(points (k, 3), barycentric weights (k, 3)), uniform in faces (k,) for uniform draws (2, k) in 0..1.
 

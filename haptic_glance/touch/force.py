@@ -305,7 +305,12 @@ def _check_unit(unit):
 
 
 def _per_touch(name, values, count):
-    values = np.asarray(values, dtype=np.float64)
+    try:
+        values = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"{name} must be a number in {'newtons' if name == 'load' else 'metres'}, got {values!r}"
+        ) from None
     if values.shape not in ((), (count,)):
         raise ValueError(f"{name} must be a number or have shape ({count},), one per touch, got {values.shape}")
     return np.full(count, values)

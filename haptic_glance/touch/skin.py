@@ -106,11 +106,21 @@ class Skin:
         return self.noise * np.array(draws).reshape(shape)
 
 
+def as_shares(images: np.ndarray) -> np.ndarray:
+    """Images, u1 or floats in 0..1, as f4 in 0..1; ValueError for other values."""
+    shares = images.astype(np.float32) / (255 if images.dtype == np.uint8 else 1)
+    if not ((shares >= 0) & (shares <= 1)).all():  # NaN fails as well
+        raise ValueError("images must be bytes, or numbers in 0..1")
+    return shares
+
+
 @functools.cache
 def dead_cells(cells: tuple[int, int], share: float, seed: int = 0) -> np.ndarray:
     """(rows, cols) boolean: the dead cells, a share of all, of an array of `cells` (rows, cols) with this seed."""
     order = rng(seed, f"dead {cells[0]}x{cells[1]}").permutation(cells[0] * cells[1]).reshape(cells)
-    return order < round(share * order.size)
+    dead = order < round(share * order.size)
+    dead.flags.writeable = False  # all sensors of this kind share it
+    return dead
 
 
 def indent(distances: ArrayLike, depth: float) -> np.ndarray:

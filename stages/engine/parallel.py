@@ -7,7 +7,6 @@ processors than there are. A core is a locked file, which the system frees when 
 import functools
 import os
 import random
-import signal
 import sys
 import time
 import warnings
@@ -24,6 +23,8 @@ from joblib.externals.loky import process_executor
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
+
+from haptic_glance.base.errors import interrupts_wait
 
 BACKENDS = ("loky", "sequential", "dask")  # processes here, one item after the other, or a cluster
 GROWTH = 600_000_000  # bytes by which a worker may grow; joblib allows half, and each new one imports for seconds
@@ -96,26 +97,14 @@ def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[
     else:
         # Caches make a worker grow; joblib then renews it between two items, loses none, and warns.
         warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
+        for tracker in (resource_tracker, loky_tracker):  # their start, inside the block, would let Ctrl-C through
+            tracker.ensure_running()
+        # Ctrl-C goes to all processes of a terminal: this one ends its workers, which would each print a traceback.
         with parallel_config(backend, n_jobs=workers), interrupts_wait():
             pairs: Any = Parallel(return_as="generator_unordered")(
                 delayed(_named)(function, task, root) for task in tasks
             )
         yield from pairs
-
-
-@contextmanager
-def interrupts_wait() -> Iterator[None]:
-    """Inside the block Ctrl-C waits until its end; processes that start there never see it.
-
-    Ctrl-C goes to all processes of a terminal: this one ends its workers, which would each print a traceback.
-    """
-    for tracker in (resource_tracker, loky_tracker):  # their start, inside the block, would let Ctrl-C through
-        tracker.ensure_running()
-    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
 
 
 def _on_a_core(function, task, root):

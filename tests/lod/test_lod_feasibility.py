@@ -75,6 +75,14 @@ def test_smallest_feasible_of_plain_shapes():
     assert smallest_feasible(Mesh(TORUS.vertices, TORUS.faces)) >= 14  # a torus has no triangulation below 14 faces
 
 
+def test_a_loose_triangle_asks_for_its_one_face():
+    corners = np.arange(90).reshape(-1, 3) % 7 + 3.0 * np.arange(30)[:, None]  # ten triangles that share no vertex
+    loose = Mesh(
+        np.r_[SPHERE.vertices, corners], np.r_[SPHERE.faces, len(SPHERE.vertices) + np.arange(30).reshape(-1, 3)]
+    )
+    assert smallest_feasible(loose) == smallest_feasible(loose, free_borders=True) == 14
+
+
 def flower():
     away = np.hypot(*SPHERE.vertices.T[:2])
     petals = 1 + 1.4 * np.cos(9 * np.arctan2(*SPHERE.vertices.T[:2])) * away

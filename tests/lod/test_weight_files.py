@@ -106,7 +106,7 @@ def test_wrong_files_and_weights_are_named(ball, tmp_path, name, weights, words)
 
 
 def test_places_that_single_precision_moves_are_warned_of(ball, tmp_path):
-    far = replace(ball[0], vertices=ball[0].vertices + 5e6)
+    far = replace(ball[0], vertices=ball[0].vertices + 1e5)
     for write, kind, text in (
         (write_any, "ply", r", or write text \(.obj, .off\)"),
         (lambda path, mesh: write_weights(path, mesh, ball[1]), "usda", "$"),
@@ -115,6 +115,8 @@ def test_places_that_single_precision_moves_are_warned_of(ball, tmp_path):
             write(tmp_path / f"w.{kind}", far)
         with pytest.raises(ValueError, match=f"v.{kind}: its coordinates are too large for single precision"):
             write(tmp_path / f"v.{kind}", replace(far, vertices=1e45 * far.vertices))
+        with pytest.raises(ValueError, match="single precision moves vertices by [0-9.]+ % of the diagonal"):
+            write(tmp_path / f"v.{kind}", replace(far, vertices=ball[0].vertices + 5e6))
     with warnings.catch_warnings(action="error"):
         write_any(tmp_path / "w.ply", ball[0])
         write_any(tmp_path / "w.obj", far)

@@ -1,5 +1,7 @@
 """Agreement at the vertices: known values and invariances."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sklearn.metrics import roc_auc_score
@@ -32,6 +34,7 @@ def test_values_worked_out_by_hand():
     saliency = [3.0, 1.0, 0.0]  # mean over area 1, variance (4 + 0 + 2) / 4
     assert nss(saliency, truth) == pytest.approx(2 / np.sqrt(1.5))
     assert cc(saliency, truth) == pytest.approx(2 / np.sqrt(1.5) / np.sqrt(3))
+    assert cc(saliency, replace(truth, density=1e200 * truth.density)) == pytest.approx(cc(saliency, truth))
     assert auc(saliency, truth) == pytest.approx(3 / 4 + 1 / 4 / 2)
     assert sim(saliency, truth) == pytest.approx(3 / 4)
     assert kl(saliency, truth) == pytest.approx(np.log(4 / 3))

@@ -123,6 +123,7 @@ def test_dead_cells_are_the_same_in_every_imprint_and_frame():
     skin = Skin(dead=0.25, noise=0.1)
     felt = load(skin, np.zeros((5, 3, 8, 8)))
     dead = dead_cells((8, 8), 0.25)
+    assert not dead.flags.writeable  # all sensors of this kind share it
     assert dead.sum() == 16 and (felt[..., dead] == 0).all() and (felt[..., ~dead] > 0).all()
 
 

@@ -96,7 +96,7 @@ def cc(saliency: np.ndarray, truth: GroundTruth) -> float:
     PAMI 2019, section 4.2. Raises ValueError for a saliency of another shape or with NaN.
     """
     predicted = standardised(checked_saliency(saliency, truth), truth.shares)
-    return float(truth.shares @ (predicted * standardised(truth.density, truth.shares)))
+    return float(truth.shares @ (predicted * standardised(truth.density / truth.density.max(), truth.shares)))
 
 
 EPSILON = np.finfo(np.float64).eps  # 2.2e-16, as in the benchmark: keeps the logarithm of zero finite
@@ -106,10 +106,10 @@ def kl(saliency: np.ndarray, truth: GroundTruth) -> float:
     """Information lost, in nats, when saliency (n,) stands in for truth.density, both as distributions over the area.
 
     0 for equal distributions, without upper bound. A constant saliency, including zero, counts as uniform attention.
-    Zeros where people looked cost most, up to 36 nats times the attention there. Source: Bylinskii et al., PAMI 2019,
-    section 4.2. They add epsilon to the share of a pixel; here it is added to the density over its mean, which unlike
-    the share of a vertex does not depend on the resolution of the mesh. Raises ValueError for a saliency of another
-    shape, with NaN or with negative values.
+    Zeros where people looked cost most: 36 nats plus the logarithm of the density there over its mean. Source:
+    Bylinskii et al., PAMI 2019, section 4.2. They add epsilon to the share of a pixel; here it is added to the density
+    over its mean, which unlike the share of a vertex does not depend on the resolution of the mesh. Raises ValueError
+    for a saliency of another shape, with NaN or with negative values.
     """
     predicted = as_density(checked_saliency(saliency, truth), truth.shares, "saliency")
     observed = as_density(truth.density, truth.shares, "density")

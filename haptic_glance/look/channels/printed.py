@@ -46,7 +46,8 @@ def check_formulas(name: str, filled: bool) -> None:
     if name not in FORMULAS:
         raise ValueError(f"unknown formulas {name!r}: choose one of {', '.join(FORMULAS)}")
     if filled and name != OURS:
-        raise ValueError(f"the formulas {name} filter whole pictures: keep the background (filled=False, in the pipeline conspicuity.background=kept)")
+        remedy = "keep the background (filled=False, in the pipeline conspicuity.background=kept)"
+        raise ValueError(f"the formulas {name} filter whole pictures: {remedy}")
 
 
 def normalise(values: np.ndarray, mended: bool) -> np.ndarray:

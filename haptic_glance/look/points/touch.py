@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.sampling import along_curve
 from haptic_glance.touch.surface import sensor_axes
 
 from ..glance import Samples, samples_of_mesh
@@ -23,7 +24,6 @@ SHARE = 0.03  # of the surface that must feel alike for a place to recur
 ALIKE = 0.06  # root mean square difference of two imprints in 0..1 at which they are 1 / e alike
 FLAT = 1e-3  # relief below which an imprint is flat, in units: samples are no finer
 DISC = 1.1  # radius of a disc over the square root of the area that its sample stands for: discs leave no holes
-BITS = 10  # of a coordinate on the curve that orders samples
 ROUNDING = 1e-6  # smaller differences of skewness, steps and shares are rounding
 
 
@@ -53,16 +53,12 @@ class TouchDetector(SampledDetector):
 def spread(samples: Samples, count: int) -> np.ndarray:
     """(k,) i8 ids of at most `count` samples, each for the same share of the surface.
 
-    They follow one another at equal areas along a curve that fills space (Morton, A computer oriented geodetic data
-    base, IBM 1966). Two sides of a sheet get as many each.
+    They follow one another at equal areas along a curve that fills space. Two sides of a sheet get as many each.
     """
     skew = samples.shares @ samples.local**3
     inside = samples.local * np.where(skew * [1, 1, 0] < -ROUNDING, -1, 1)  # either way of a horizontal axis
-    inside -= inside.min(axis=0)
-    steps = (inside / max(inside.max(), 1e-12) * (2**BITS - 1) + ROUNDING).astype(np.int64)
-    code = sum((steps[:, axis] >> bit & 1) << (3 * bit + axis) for bit in range(BITS) for axis in range(3))
     has_side = np.flatnonzero(samples.normals.any(axis=1))
-    order = has_side[np.argsort(np.asarray(code)[has_side], kind="stable")]
+    order = has_side[np.argsort(along_curve(inside)[has_side], kind="stable")]
     cumulative_shares = np.cumsum(samples.shares[order])
     ranks = np.searchsorted(cumulative_shares, (np.arange(count) + 0.5) / count * cumulative_shares[-1] - ROUNDING)
     return order[np.unique(ranks.clip(max=len(order) - 1))]
