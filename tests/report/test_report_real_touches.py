@@ -24,6 +24,8 @@ def recorded():
     """Rows in which the selection gains 5 points, in training alone loses 5; blocks lose 10."""
     random, rows = np.random.default_rng(0), []
     for name in CLASSES:
+        rows.append({"group": name, "method": "all", "metric": "share_similar", "value": 0.2, "repetition": 0})
+        rows[-1]["chosen"] = "can pen"
         for repetition in range(6):
             luck = 0.01 * random.normal()
             rows += [
@@ -35,6 +37,8 @@ def recorded():
                 for method, gain in GAIN.items() for classifier, mean in CLASSIFIERS.items()
                 for split, loss in LOSS.items()
             ]  # fmt: skip
+    for metric, value in (("neighbour_correlation", 0.6), ("pair_correlation", 0.3)):
+        rows.append({"group": "can", "metric": metric, "value": value})
     return pd.DataFrame(rows)
 
 
@@ -65,6 +69,7 @@ def event_rows(levels=EVENTS):
         folded = common | {"part": "training", "split": "folds"}
         rows += [folded | {"heard": heard, "value": common["value"] * heard} for heard in (0.25, 1.0)]
         rows += [folded | {"cells": 20, "value": common["value"] - 0.01 - 0.001 * k}]
+        rows += [folded | {"disturbance": "jitter", "severity": 5.0, "value": common["value"] / 2}]
     return pd.DataFrame(rows)
 
 

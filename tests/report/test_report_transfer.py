@@ -15,7 +15,7 @@ from stages.report import transfer
 from stages.report.effects import differences
 from stages.report.topics import build_one
 from stages.report.transfer import figure_5_3
-from tests.report.frames import only, verdicts
+from tests.report.frames import has_ink, only, verdicts
 
 FINE, COARSE = "imprints128", "imprints16"
 LEVELS = {  # (data, weights, mode) -> accuracy
@@ -85,6 +85,11 @@ def test_passes_are_not_mixed_in_gains_and_claims(run):
     assert differences(run, claim).mean() == pytest.approx(30, abs=1)
     late = replace(claim, checked=False, where={**claim.where, "passes": "converged"})
     assert differences(run, late).mean() == pytest.approx(25)
+
+
+@pytest.mark.slow
+def test_the_gains_of_one_set_alone_are_drawn(run):
+    assert has_ink(build_one(transfer, "figures", "figure_5_3", run))
 
 
 @pytest.mark.slow
