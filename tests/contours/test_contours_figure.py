@@ -48,7 +48,6 @@ def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
     write(tmp_path, ["a", "b"], ["glance", "random", "thesis_ssim"])
     run = results(tmp_path, ["b"])
     contours, felt = figure("figure_4_14", run), figure("figure_4_15", run)
-    assert [picture.paths[0].name for picture in (contours, felt)] == ["figure_4_14.png", "figure_4_15.png"]
     assert all(picture.paths[0].stat().st_size > 10_000 for picture in (contours, felt))
     assert "b, a" in contours.alt and "blind touch and thesis, SSIM" in contours.alt
     assert "first contour of b" in felt.caption

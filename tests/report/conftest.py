@@ -280,7 +280,7 @@ def small():
     return SimpleNamespace(
         settings=settings, results=read_results, own=own_results, ball=ball,
         classification=classification, write=write_measurements,
-        write_set=write_set, root=make_root, bare=make_bare,
+        write_set=write_set, root=make_root,
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
         agreed_marks=agreed_marks,
     )  # fmt: skip

@@ -10,7 +10,6 @@ from stages.report import meshes
 from stages.report.meshes.levels import growth
 from stages.report.results import NotRun
 from stages.report.topics import build_one
-from tests.report.frames import has_ink
 
 SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]
 LEVELS = {0.5: 1.0, 0.1: 2.0}  # seconds of a share, beside the other's
@@ -82,28 +81,6 @@ def test_a_refusal_or_a_miss_is_counted_and_takes_its_cell_from_all(bench, outco
     assert sorted(built.shown["missed"].unique()) == ["0 of 10", "1 of 10"][: 1 + (outcome == "missed")]
 
 
-def test_what_ours_has_is_said_without_and_with_points_and_without_inner_targets(bench):
-    rows = benched(1.2)
-    rows["ratio"] *= 0.8
-    rows.loc[(rows["backend"] == "fast") & (rows["kept_points"] == 12), "error_ratio"] = 1.2
-    built = table(bench(rows))
-    without, with_points = built.notes[:2]
-    assert without.startswith("fast (ours), nothing kept: 25.0 times as fast as pymeshlab. Its Metro error is ")
-    assert "points kept" in with_points and "Its Metro error is 1.20 times pymeshlab's." in with_points
-    assert not any(word in " ".join(built.notes) for word in ("is met", "is missed", "wanted"))
-    assert built.summary == "Our simplifier is 25 times as fast as pymeshlab's, where no points are to be kept."
-
-
-@pytest.mark.parametrize("older", [True, False])
-@pytest.mark.slow
-def test_the_largest_mesh_is_named_and_rows_of_an_older_benchmark_are_said_to_be(bench, older):
-    rows = benched()[lambda rows: rows["full"] <= 400_000]
-    notes = table(bench(rows if older else rows.assign(metro_max=0.01))).notes
-    assert "The largest mesh has 400,000 faces." in notes[2]
-    assert any("older than the code" in note for note in notes) == older
-    assert any("Each call gets a new mesh" in note for note in notes) != older
-
-
 @pytest.mark.slow
 def test_infeasible_targets_are_no_refusals_and_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):
     rows = benched()
@@ -155,14 +132,6 @@ def test_growth_finds_the_power_though_large_meshes_have_one_share(power):
 def test_growth_needs_large_meshes():
     rows = benched().assign(with_points=False)
     assert growth(rows[rows["full"] <= 20_000]) is None
-
-
-@pytest.mark.slow
-def test_chart_of_backends_has_the_front(bench):
-    figure = build_one(meshes, "tradeoff", "backends", bench(benched()))
-    frame = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])
-    assert frame.loc[("fast", True), "error_front"] and not frame.loc[("pymeshlab", True), "error_front"]
-    assert has_ink(figure) and "1.00 [1.00, 1.00]" in figure.caption
 
 
 def test_rows_without_the_reference_or_outcomes_are_not_run(bench):

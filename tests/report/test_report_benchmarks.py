@@ -48,18 +48,11 @@ def bench(measure):
 
 
 def test_rates_ratios_and_errors_are_those_of_the_bench(bench):
-    built = table(bench(benched()))
-    frame = built.frame
+    frame = table(bench(benched())).frame
     row = frame[(frame["method"] == "ours") & (frame["cells"] == 32)].iloc[0]
     assert row["rate"] == pytest.approx(4000 * 1.1 ** (1 / 3), rel=1e-4) and row["rate_least"] == pytest.approx(4000)
     assert row["rate_low"] < row["rate"] < row["rate_high"] and row["meshes"] == 3
     assert row["ratio"] == pytest.approx(200) and row["error"] == pytest.approx(1e-16)
-    assert frame.loc[frame["method"] == "tacto_160x120", "error"].tolist() == pytest.approx([2e-4, 2e-4])
-    assert len(frame) == 10 and list(frame["cells"]) == [16] * 5 + [32] * 5
-    assert built.notes[1].startswith("Ours, 32 x 32 cells: 4,129 [") and built.notes[1].endswith("times TACTO's rate.")
-    text = built.paths[1].read_text()
-    assert "TACTO, its 160 x 120 pixels" in text and "< 1e-6" in text and "| 20 |" in text
-    assert "m0 (psb, 2,000 faces)" in text
 
 
 @pytest.mark.slow
@@ -69,17 +62,6 @@ def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
     assert any(NO_TACTO in note for note in built.notes) and "TACTO was not run" in built.notes[0]
     assert built.frame.loc[built.frame["method"] == "ours", "rate"].notna().all()
     assert chart(results).paths[0].exists()
-
-
-@pytest.mark.parametrize(("rate", "best"), [(2000.0, "ours"), (9000.0, "trimesh_embree")])
-@pytest.mark.slow
-def test_chart_puts_the_fastest_alone_on_the_front_and_counts_rounding_as_equal(bench, rate, best):
-    rows = benched()
-    rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = rate
-    figure = chart(bench(rows))
-    written = pd.read_csv(figure.paths[1])
-    assert written.loc[written["on_front"] == "yes", "method"].tolist() == [best]
-    assert figure.paths[0].exists() and "TACTO" in figure.alt
 
 
 def test_half_a_bench_or_one_without_a_rate_is_not_run(bench):

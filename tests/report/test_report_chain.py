@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from stages.report import chain
-from stages.report.chain import smallest_kept, words
+from stages.report.chain import smallest_kept
 from stages.report.topics import build_one
 
 BLIND = {"method": "random", "points": 40, "cells": 8, "level": "500", "touches": 3, "classifier": "knn"}
@@ -45,9 +45,8 @@ def test_confirmed_choices_stand_beside_what_the_search_found(measured):
     assert small["regions"] == pytest.approx(0.5) and small["regions_searched"] == pytest.approx(0.6)
     assert small["regions_low"] < 0.5 < small["regions_high"] and np.isnan(table.frame.iloc[2]["regions_searched"])
     assert small["regions_over"] == pytest.approx(-5) and small["regions_over_low"] < -5 < small["regions_over_high"]
-    notes = " ".join(table.notes)
-    assert "takes 10 ms, the default 100 times as long" in notes and "6 shapes and 6 objects" in notes
-    assert words(pd.Series(small)) in notes and "in 50 and 50 % of the cases, the default in 55 and 55 %" in notes
+    assert "takes 10 ms, the default 100 times as long" in " ".join(table.notes)
+    assert "takes 10 ms" in build_one(chain, "tradeoff", "front", measured).caption
 
 
 def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both_accuracies(measured):
@@ -57,8 +56,6 @@ def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both
     frame = pd.DataFrame([best, *worse, quick], columns=columns)
     assert smallest_kept(frame)["words"] == "quick" and smallest_kept(frame[:3])["words"] == "best"
     assert smallest_kept(frame.assign(seconds=1.0, faces=[500, 500, 500, 1000]))["words"] == "best"
-    table = build_one(chain, "tables", "front", measured)
-    assert f"It is {smallest_kept(table.frame)['words']}." in table.notes[-1]
 
 
 def test_each_changed_choice_has_its_paired_effect_and_its_cost(measured):
@@ -67,10 +64,3 @@ def test_each_changed_choice_has_its_paired_effect_and_its_cost(measured):
     assert frame.loc["points", "regions"] == pytest.approx(-10) and frame.loc["points", "times"] == pytest.approx(0.5)
     assert frame.loc["classifier", "objects"] == pytest.approx(2) and frame.loc["classifier", "times"] == 2
     assert frame.loc["classifier", "objects_low"] < 2 < frame.loc["classifier", "objects_high"]
-
-
-@pytest.mark.slow
-def test_the_chart_draws_the_front_and_keeps_its_numbers(measured):
-    figure = build_one(chain, "tradeoff", "front", measured)
-    assert all(path.exists() for path in figure.paths) and "takes 10 ms" in figure.caption
-    assert figure.frame is not None and set(figure.frame["rung"]) == {"last", "confirmation"}

@@ -152,16 +152,6 @@ def test_guessing_is_what_is_right_more_often_and_of_each_kept_object(table, mea
     assert line(real_networks(measured(frame)))["guess"] == pytest.approx(0.3)
 
 
-def test_classical_features_lead_each_split_and_have_neither_gains_nor_guesses_alone(measured, table):
-    first = table.shown.drop_duplicates(["data", "split"])
-    assert set(first["network"]) == {"features and kNN"} and len(first) == len(SETTINGS)
-    assert set(first["over features and kNN"]) == set(first["over random weights"]) == {"–"}
-    absent = {"dataset": "vt60", "data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen"}
-    frame = pd.concat([touches({}, PRESSURE), pd.DataFrame([absent | {"metric": "accuracy"}])])
-    shown = real_networks(measured(frame)).shown
-    assert list(shown["guessing, %"]) == list(shown["starts from"]) == ["–"]
-
-
 WORDS = {
     "frozen_over_guessing": "supported",
     "frozen_by_guessing": "contradicted",

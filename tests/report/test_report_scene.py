@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from stages.report import scene as topic
-from stages.report.scene import scene as scenes
 from stages.report.scene.random import CLAIMS, planning
 from stages.report.topics import build_one
 from stages.report.verdict import judge
@@ -42,22 +41,6 @@ def table(measure):
         return build_one(topic, "tables", "scenes", results)
 
     return build
-
-
-def test_every_scene_has_a_line_a_way(table):
-    made = table(scene("shelf"), scene("hall", saved=0.29), scene("hall", kind="ssim", tolerance=0.05))
-    shown, notes = made.shown, made.notes
-    assert "8 objects (5 different), 24 frames" in notes[0]
-    assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:2]] == [2, 2]
-    assert notes[0].count("saves 40 [30, 50] % at an equal mean error") == 2
-    assert notes[1].count("saves 29 [19, 39] % at an equal mean error") == 2
-    assert len(shown) == 3 * len(scenes.WAYS)
-    assert shown["tolerance"].unique().tolist() == ["1 pixel", "0.05 1 − SSIM"]
-    lines = shown[shown["scene"] == "shelf"].set_index("levels chosen by")
-    assert lines.loc["uniform levels by distance", "faces that ours saves, %"] == "40 [30, 50]"
-    assert lines.loc["ours", "faces a frame"] == "1,000" and lines.loc["ours", "frames within, %"] == "100"
-    assert lines.loc["ours, limited", "frame error, mean"] == "1.50"
-    assert lines.loc["ours, the limit shared equally", "frame error, mean"] == "2.50"
 
 
 ABSENT = {"scene": "shelf", "kind": "pixels", "tolerance": 1.0, "method": "network", "matched": "error",
@@ -136,16 +119,11 @@ def test_the_time_of_drawing_stands_beside_the_faces(measure, measured):
               "ratio": ratio + 0.001 * k, "device": "llvmpipe (LLVM 15)"}
              for k in range(12) for name, (faces, ratio) in ways.items()]  # fmt: skip
     results = measure("bench/frame_times", pd.DataFrame(bench), results=results)
-    table = build_one(topic, "tables", "random_scenes", results)
-    less = table.frame.set_index("method")["less"]
+    less = build_one(topic, "tables", "random_scenes", results).frame.set_index("method")["less"]
     assert less["beforehand"] == pytest.approx(0.2, abs=0.001) and 0.3 < less["every_level"] < 0.4
     assert less["full"] != less["full"]  # not at an equal displacement
-    assert "take 20 [20, 20] % fewer faces than uniform levels, and planning takes 20.00 ms" in table.summary
-    shown = table.shown.set_index("levels chosen by")["drawing time / full"]
-    assert shown["ours"].startswith("0.26 [") and shown["full models"] == "–"
-    assert any("llvmpipe, a software rasteriser" in note for note in table.notes)
     text = planning(results)  # 40 ms times 0.3 - 0.25 are saved by 20 ms of planning
-    assert text in table.notes and "costs 20 ms a frame, and drawing them is 2.0 ms faster" in text
+    assert "costs 20 ms a frame, and drawing them is 2.0 ms faster" in text
     assert "beforehand costs 20 ms, and drawing these levels is 1.0 ms faster" in text
     assert "renders nothing costs 20 ms and saves -20 [" in text
 
@@ -166,13 +144,6 @@ def needs(measure):
 
 
 def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
-    table = build_one(topic, "tables", "faces_by_task", needs)
-    assert table.frame["median"].tolist() == [104, 204, 1004, 3004, 304]
-    assert table.shown["task"].tolist() == [
-        "seen from 1 m", "seen from 0.5 m", "felt, within 5 % of full scale", "felt, within 2 % of full scale",
-        "recognised by touch, within 2 points",
-    ]  # fmt: skip
-    assert "9 household objects" in table.notes[0] and "74" in table.notes[2]
-    build_one(topic, "figures", "faces_by_task", needs)
+    assert build_one(topic, "tables", "faces_by_task", needs).frame["median"].tolist() == [104, 204, 1004, 3004, 304]
     judged = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
     assert judged["verdict"].tolist() == ["supported", "supported"] and (judged["pairs"] == 9).all()

@@ -1,4 +1,4 @@
-"""The report on one touch and several: tables 4.3, 4.5, 4.6, the shares, figure 4.4, claims and the chart."""
+"""The report on one touch and several: the claims, and tables of what the published rows do not have."""
 
 import re
 from functools import partial
@@ -11,7 +11,7 @@ from stages.report import touch
 from stages.report.results import SETS_4_2, NotRun
 from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
-from stages.report.touch import claims, pictures, touches
+from stages.report.touch import claims, touches
 from stages.report.touch.rows import PRINTED
 from tests.report.frames import verdicts
 
@@ -40,17 +40,13 @@ def rows(best="VisAttAll", dataset=PRINTED):
                         right = row | {"metric": "accuracy"}
                         entries += [right | {"split": "random", "value": value}]
                         regions = right | {"split": "regions"}
-                        if variant in ("plain", "selected"):
-                            entries += [regions | {"value": value - 0.2}]
-                            entries += [row | {"metric": "recall", "split": "random", "value": value - 0.01}]
-                        else:
-                            entries += [regions | {"value": value - 0.1}]
+                        entries += [regions | {"value": value - (0.2 if variant in ("plain", "selected") else 0.1)}]
                         if variant == "plain":
                             entries += [regions | {"variant": "plain_side", "value": value - 0.1}]
             for variant in ("plain", "first_15"):
                 for k, of in enumerate((None, "cup", "duck", "hand")):
-                    entries.append(common | {"variant": variant, "item": of, "metric": "similar_share", "imprints": 60})
-                    entries[-1]["value"] = share + 0.1 * k * share + (0 if variant == "plain" else 0.1)
+                    about = common | {"variant": variant, "item": of, "metric": "similar_share", "imprints": 60}
+                    entries.append(about | {"value": share + 0.1 * k * share + (0 if variant == "plain" else 0.1)})
             for variant in ("plain", "image_features", "wavelet_features"):
                 entries.append(common | {"variant": variant, "metric": "features", "value": 41, "seconds": 0.02})
     return pd.DataFrame(entries).assign(dataset=dataset, seed=0)
@@ -62,21 +58,6 @@ def drawn(dataset):
     shares = frame[frame["repetition"].isna()]
     sets = [shares.assign(set=number, value=shares["value"] * (1 + 0.01 * number)) for number in numbers]
     return pd.concat([frame.dropna(subset=["repetition"]).assign(set=lambda row: row["repetition"] + 1), *sets])
-
-
-@pytest.fixture(scope="module")
-def glance(measure):
-    """Results with all variants."""
-    return measure("classification", pd.concat([rows(), *map(drawn, SETS_4_2), rows("glance", "test")]))
-
-
-def scaled(scaling, gain):
-    """The same rows by another scaling, with all five classifiers, the SVM dead where the gain is 0."""
-    frame = drawn(SETS_4_2[0]).dropna(subset=["classifier"])
-    knn = frame[frame["classifier"] == "knn"]
-    others = [knn.assign(classifier=name, value=knn["value"] * (name != "svm" or gain > 0))
-              for name in ("svm", "decision_tree")]  # fmt: skip
-    return pd.concat([frame, *others]).assign(scaling=scaling)
 
 
 table = partial(build_one, touch, "tables")
@@ -92,88 +73,11 @@ def test_a_run_of_random_sets_alone_has_the_tables_of_sets_and_says_that_the_oth
             table(name, results)
 
 
-@pytest.mark.slow
-def test_twin_shows_the_regions_and_the_first_fifteen(glance):
-    shown = table("table_4_1", glance).shown
-    protocols = ["as printed", "as printed, 18 random sets", "ours"]
-    below = [f"{name}, unseen regions" for name in protocols]
-    assert shown["protocol"].unique().tolist() == [*protocols, *below, "the thesis"]
-    knn = shown.set_index(["protocol", "sampling"])["kNN, %"]
-    attention = [knn[protocol, "thesis, equal weights"] for protocol in (protocols[0], below[0], "the thesis")]
-    assert attention[0].startswith("60 [") and attention[1:] == ["40", "73"]
-    assert knn["as printed", "blind touch, 15 imprints"].startswith("50 [")
-    assert ("the thesis", "blind touch, 15 imprints") not in knn and knn.index.is_unique
-
-
-@pytest.mark.slow
-def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
-    built = table("table_4_5", glance)
-    cells = built.frame.set_index(["protocol", "sampling", "classifier"])
-    cell = cells.loc["as printed", "VisAttAll", "knn"]
-    assert cell["accuracy"] == pytest.approx(0.8, abs=0.01) and cell["thesis"] == 0.85
-    assert cell["accuracy_regions"] == pytest.approx(0.7, abs=0.01) and "one side" in built.notes[1]
-
-
-@pytest.mark.slow
-def test_selection_has_a_column_for_each_group_and_way(glance):
-    built = table("table_4_3", glance)
-    cells = built.frame.set_index(["protocol", "classifier", "objects", "selection"]).loc["as printed"]
-    assert cells.loc[("knn", "six", "selected"), "thesis"] == 0.76
-    assert cells.loc[("knn", "four", "plain"), "thesis"] == 0.78
-    assert np.isnan(cells.loc[("knn", "six", "selected_train"), "thesis"])
-    assert cells.loc[("knn", "six", "selected"), "recall"] == pytest.approx(0.69, abs=0.01)
-    assert cells.loc[("knn, 15 imprints", "six", "selected"), "accuracy"] == pytest.approx(0.6, abs=0.01)
-    assert built.shown.shape[1] == 10 and "kNN, 15 imprints" in set(built.shown["classifier"])
-    printed = built.shown.set_index(["protocol", "classifier"]).loc[("the thesis", "kNN")]
-    assert printed["six, selection, %"] == "76" and printed["six, selection in training alone, %"] == "–"
-
-
 def test_selection_that_was_not_run_says_why(measure):
     frame = rows()[lambda row: row["variant"] != "selected"]
     note = {"group": "six", "method": "VisAttAll", "variant": "selected", "note": "an object keeps too few"}
     with pytest.raises(NotRun, match="an object keeps too few"):
         table("table_4_3", measure("classification", pd.concat([frame, pd.DataFrame([note])]), PRINTED))
-
-
-def test_shares_stand_beside_those_of_the_thesis_by_sampling_and_by_object(glance):
-    frame = table("section_4_2_4", glance).frame.set_index(["protocol", "name"]).loc["as printed"]
-    assert frame.loc["random", ["all", "thesis"]].tolist() == pytest.approx([0.6, 0.5889])
-    assert frame.loc["VisAttAll", "first_15"] == pytest.approx(0.4)
-    assert frame.loc["duck", "thesis"] == 0.4 and frame.loc["duck", "all"] == pytest.approx(0.36)
-
-
-@pytest.mark.slow
-def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
-    built = table("table_4_6", glance)
-    cells = built.frame.set_index(["protocol", "sampling", "way", "classifier", "touches"]).loc["as printed"]
-    assert cells.loc[("VisAttAll", "", "knn", 2), "thesis"] == 0.96
-    assert np.isnan(cells.loc[("random", "", "knn", 2), "thesis"])
-    assert cells.loc[("VisAttAll", "first_15_mixed", "knn", 2), "accuracy"] == pytest.approx(0.9, abs=0.01)
-    thesis = built.shown.set_index(["protocol", "classifier"]).loc[("the thesis", "deep learning")]
-    assert thesis["5 touches, %"] == "46"
-    shown = built.shown[built.shown["protocol"] == "as printed"].set_index("classifier")
-    assert "kNN, combinations drawn before the split" in shown.index
-    assert "kNN, combinations drawn before the split, blind touch" in shown.index
-
-
-@pytest.mark.slow
-def test_readings_stand_below_with_means_that_leave_out_the_svm(measure):
-    rows_by = [scaled("training", 0.0), scaled("min_max", 0.1)]
-    frame = pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates()
-    results = measure("classification", frame[frame["variant"].str.contains("plain|touches")])
-    shown = table("table_4_1", results).shown
-    protocols = ["as printed, 6 random sets", "as printed, 6 random sets: all data from 0 to 1"]
-    assert [name for name in shown["protocol"].unique() if "6 random" in name and "unseen" not in name] == protocols
-    cells = shown.set_index(["protocol", "sampling"])
-    dead, alive = (cells.loc[(name, "thesis, equal weights")] for name in protocols)
-    assert dead["SVM, %"].startswith("0") and alive["SVM, %"].startswith("60 [")
-    assert dead["mean of all, %"].startswith("48 [") and alive["mean of all, %"].startswith("60 [")
-    assert dead["mean without the SVM, %"][:4] == alive["mean without the SVM, %"][:4] == "60 ["
-    joined = table("table_4_6", results).shown.set_index(["protocol", "classifier"])
-    assert joined.loc[(protocols[0], "mean of all"), "5 touches, %"].startswith("79 [")
-    assert joined.loc[(protocols[1], "mean of all"), "5 touches, %"].startswith("99 [")
-    assert joined.loc[(protocols[0], "SVM, combinations drawn before the split"), "5 touches, %"].startswith("0")
-    assert joined.loc[("the thesis", "mean without the SVM"), "5 touches, %"] == "85"
 
 
 VERDICTS = {
@@ -185,18 +89,11 @@ VERDICTS = {
 
 
 @pytest.mark.slow
-def test_claims_follow_the_measurements(glance):
-    judged = verdicts(claims.CLAIMS, glance, *VERDICTS)
+def test_claims_follow_the_measurements(measure):
+    frame = pd.concat([rows(), *map(drawn, SETS_4_2), rows("glance", "test")])
+    judged = verdicts(claims.CLAIMS, measure("classification", frame), *VERDICTS)
     assert judged["verdict"].to_dict() == VERDICTS
     assert judged.loc["more_touches", "effect"] == pytest.approx(39, abs=1)
-
-
-@pytest.mark.slow
-def test_chart_counts_the_making_of_the_features(glance):
-    frame = pd.read_csv(build_one(touch, "tradeoff", "touches", glance).paths[1]).set_index("name")
-    assert frame.loc["kNN, 41 features", "seconds"] == pytest.approx(0.03)
-    assert frame.loc["kNN, pixels", "seconds"] == pytest.approx(0.01)
-    assert frame.loc["kNN, 5 touches, map and position", "cost_ratio"] == pytest.approx(1)
 
 
 @pytest.mark.slow
@@ -213,23 +110,6 @@ def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(
         assert cells["accuracy"].notna().any() and cells["thesis"].isna().all()
     build_one(touch, "figures", "table_4_1", results)
     assert bars == [[*CLASSIFIERS, "centroid"]]
-
-
-def test_bars_are_of_the_samplings_that_ran_with_chance_by_the_objects_of_the_group(root, small, monkeypatch):
-    rows, drawn, draw = small.classification(), {}, touches.draw_bars
-
-    def noted(axes, *rest, chance, **other):
-        drawn.update(axes=axes, chance=chance, places=draw(axes, *rest, chance=chance, **other))
-        return drawn["places"]
-
-    monkeypatch.setattr(touches, "draw_bars", noted)
-    small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])
-    small.write_set(root, "six", 4)
-    build_one(touch, "figures", "table_4_1", small.results(root))
-    assert drawn["chance"] == 1 / 4 and list(drawn["places"]) == ["random", "itti", "glance"]
-    assert sum(drawn["places"].values()) == pytest.approx(0) and set(pictures.NEEDED) <= set(drawn["places"])
-    title = drawn["axes"].get_title(loc="left") + drawn["axes"].get_title()
-    assert title == "Recognising 4 objects (group six) by one touch, ours"
 
 
 def test_a_folder_of_ones_own_has_recognition_of_its_groups_with_intervals_and_no_other_run_has(root, small):

@@ -208,17 +208,6 @@ def used(method="glance", scale=1.0, objects=8):
     return entries
 
 
-def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path):
-    built = build_one(stability, "tables", "stability_uses", results(tmp_path, [*used(), *used("itti", 3.0)]))
-    shown = built.shown.set_index("disturbance")
-    assert list(shown.index) == ["none", "noise"] and shown.loc["noise", "severity"].startswith("0.001 sigma")
-    error, known = "glance, salient error, %", "glance, recognised, %"
-    assert shown.loc["none", error].startswith("50") and shown.loc["noise", error].startswith("90")
-    assert shown.loc["none", "Itti's attention, salient error, %"].startswith("50")  # of its own plain error
-    assert shown.loc["none", known].startswith("90 [") and shown.loc["noise", known].startswith("60 [")
-    assert "names the right object in 60 [" in built.summary
-
-
 def test_claims_have_their_sign(tmp_path):
     entries = [*rows(), *used()]
     known = results(tmp_path, entries)

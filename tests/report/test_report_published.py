@@ -1,0 +1,101 @@
+"""The published report, rebuilt from its committed rows: tables, claims, numbers of charts, and what items are of."""
+
+import math
+import re
+from itertools import product, zip_longest
+from pathlib import Path
+
+import pytest
+
+from haptic_glance.base.files import read_json, read_table, write_table
+from stages.engine.settings import Workspace
+from stages.report import Params, items, topics
+from stages.report.drawing import plt
+from stages.report.results import Results
+from stages.report.topics import CLAIMS, TOPICS, build_all, name_of
+from stages.report.verdict import COLUMNS, by_claim, tabled
+
+ROOT = Path(__file__).parents[2]
+REPORTS = ROOT / "reports"
+KINDS = ("claims", "tables", "tradeoff", "figures")
+FROM_DATA = {  # items that need what stages leave in data/
+    "dataset", "figure_3_3", "figure_3_10", "figure_3_12", "figure_3_13", "figure_3_29", "figure_3_30", "figure_3_34",
+    "scene", "pipeline", "touch_one_mesh", "imprints", "figure_4_15", "stability_failures", "touch_stability_imprints",
+}  # fmt: skip
+RECORDED = ("files", "rows", "objects", "methods", "sizes")  # of a record, what follows from the rows alone
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
+REMEDY = "where this change is wanted, `dvc repro --single-item report` writes it anew"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pixels_and_resamples():
+    """No pictures, and, unlike in other tests of the report, as many resamples as published."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(items, "save", lambda figure, path, dpi: plt.close(figure) or path)
+        patch.setattr(topics, "item_html", lambda item: "")
+        yield
+
+
+@pytest.fixture
+def published(tmp_path):
+    """The published results as a fresh clone has them, without what stages left in data/."""
+    workspace = Workspace(ROOT, "")
+    results = Results.published(workspace, workspace.settings(Params))
+    results.data, results.out = tmp_path / "data", tmp_path / "out"
+    results.data.mkdir()
+    (results.data / "reference").symlink_to(ROOT / "data/reference")
+    return results
+
+
+def alike(line, former):
+    """Whether two lines are the same but for what another processor may change: last digits, and 1e-17 for 0."""
+    if line == former:
+        return True
+    if NUMBER.split(line) != NUMBER.split(former):
+        return False
+    numbers = zip(NUMBER.findall(line), NUMBER.findall(former), strict=True)
+    return all(math.isclose(float(one), float(other), rel_tol=2e-5, abs_tol=1e-12) for one, other in numbers)
+
+
+def assert_unchanged(name, text, expected):
+    """Fails with the first line that differs from the published one."""
+    lines = zip_longest(text.splitlines(), expected.splitlines(), fillvalue="the end")
+    for number, (line, former) in enumerate(lines, start=1):
+        assert alike(line, former), f"reports/{name}, line {number}: {former!r} has become {line!r}; {REMEDY}"
+
+
+def assert_items_unchanged(kind, results, topic):
+    records = read_json(REPORTS / kind / "records.json")["items"]
+    built = build_all(kind, results, [topic])
+    assert set(built.not_run) <= FROM_DATA, f"of reports/{kind}, {built.not_run} is no longer built; {REMEDY}"
+    for path in (path for item in built.items for path in item.paths if path.suffix in (".csv", ".md")):
+        name = path.relative_to(results.out)
+        assert (REPORTS / name).exists(), f"reports/{name} is not published; {REMEDY}"
+        assert_unchanged(name, path.read_text(), (REPORTS / name).read_text())
+    for item in built.items:
+        record, former = ({key: entry.get(key) for key in RECORDED} for entry in (item.record, records[item.name]))
+        assert record == former, f"reports/{kind}/records.json, {item.name}, is no longer the published one; {REMEDY}"
+
+
+def assert_claims_unchanged(results, topic):
+    """The claims of a topic, judged among the published ones of the others, which give `holds` and `of`."""
+    former = read_table(REPORTS / "claims.csv")
+    rows = {row["key"]: ({column: row[column] for column in COLUMNS}, []) for row in former.to_dict("records")}
+    own = {claim.key: row for claim, row in zip(topic.CLAIMS, by_claim(topic.CLAIMS, results), strict=True)}
+    assert rows.keys() >= own.keys(), f"reports/claims.csv lacks {own.keys() - rows.keys()}; {REMEDY}"
+    frame, _ = tabled([claim for claim in CLAIMS if claim.key in rows], list((rows | own).values()))
+    write_table(results.out / "claims.csv", frame)
+    assert_unchanged("claims.csv", (results.out / "claims.csv").read_text(), (REPORTS / "claims.csv").read_text())
+
+
+def named(value):
+    return value if value in KINDS else name_of(value)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "topic"), product(KINDS, TOPICS), ids=named)
+def test_committed_rows_give_the_published_report(published, kind, topic):
+    if kind == "claims":
+        assert_claims_unchanged(published, topic)
+    else:
+        assert_items_unchanged(kind, published, topic)
