@@ -158,12 +158,6 @@ def test_side_is_held_out_of_all_objects_alike():
         assert np.linalg.norm(known[:, None] - side, axis=2).min() > 0.1
 
 
-def test_a_class_of_which_no_touch_can_be_held_out_is_named():
-    truth = np.repeat([0, 1, 2], [16, 1, 16])
-    with pytest.raises(ValueError, match="class 1 has 1 touches"):
-        protocol.region_holdout(truth, np.arange(33.0)[:, None] * [1, 0, 0], 2.5, 0)
-
-
 @pytest.mark.slow
 def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
     random = np.random.default_rng(0)
@@ -188,28 +182,22 @@ def test_located_samples_keep_the_place_behind_the_components():
     assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    "change, name, words",
+    ("call", "words"),
     [
-        ({}, "knm", "did you mean knn"),
-        ({}, "perceptron of old", "choose one of knn"),
-        ({"cup": np.zeros((9, 16, 16))}, "knn", "cup has 9 imprints"),
-        ({"cup": np.zeros((20, 4, 4))}, "knn", "at least 8 x 8"),
-        ({"cup": np.zeros((20, 8, 8))}, "knn", "imprints of several arrays"),
+        (lambda bumps: evaluate(bumps(), "knm"), "did you mean knn"),
+        (lambda bumps: evaluate(bumps(), "perceptron of old"), "choose one of knn"),
+        (lambda bumps: evaluate(bumps() | {"cup": np.zeros((9, 16, 16))}, "knn"), "cup has 9 imprints"),
+        (lambda bumps: evaluate(bumps() | {"cup": np.zeros((20, 4, 4))}, "knn"), "at least 8 x 8"),
+        (lambda bumps: evaluate(bumps() | {"cup": np.zeros((20, 8, 8))}, "knn"), "imprints of several arrays"),
+        (lambda bumps: evaluate(bumps(("cup",)), "knn"), "two objects"),
+        (lambda bumps: evaluate(bumps(), "knn", 0), "repetitions must be 1 or more, got 0"),
+        (lambda _: classifier("knn", 0, "places"), "kind must be one of features, located, reduced"),
+        (lambda _: classifier("knn", scaling="none"), "scaling must be one of training, .*, min_max, got 'none'"),
+        (lambda _: protocol.region_holdout([0, 1, 1], np.zeros((3, 3)), 2.5, 0), "class 0 has 1 touches"),
     ],
 )
-@pytest.mark.slow
-def test_what_cannot_be_classified_is_named(bumps, change, name, words):
+def test_wrong_arguments_are_named_with_what_is_right(bumps, call, words):
     with pytest.raises(ValueError, match=words):
-        evaluate({**bumps(), **change}, name)
-
-
-def test_one_object_and_settings_of_no_classifier_are_named(bumps):
-    with pytest.raises(ValueError, match="two objects"):
-        evaluate(bumps(("cup",)), "knn")
-    with pytest.raises(ValueError, match="repetitions must be 1 or more, got 0"):
-        evaluate(bumps(), "knn", 0)
-    with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
-        classifier("knn", 0, "places")
-    with pytest.raises(ValueError, match="scaling must be one of training, .*, min_max, got 'none'"):
-        classifier("knn", scaling="none")
+        call(bumps)
