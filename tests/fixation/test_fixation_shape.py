@@ -32,12 +32,6 @@ def test_measures_ignore_size_turn_order_and_seams(shapes):
     assert np.allclose(gaussian_curvature(apart), gaussian_curvature(egg)[egg.faces.ravel()])
 
 
-def test_eccentricity_of_a_ball_is_zero_and_of_an_egg_that_of_its_axes(shapes):
-    assert eccentricity(shapes["ball"]) == pytest.approx(0, abs=0.01)
-    axes = np.sqrt(1 - 0.3**2)
-    assert axes - 0.03 < eccentricity(shapes["egg"]) < axes
-
-
 def test_a_mesh_without_area_is_refused_and_a_vertex_in_no_face_counts_for_nothing(shapes):
     for measure in (curvature_shares, eccentricity):
         with pytest.raises(ValueError, match="no face with an area"):

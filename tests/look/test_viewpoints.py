@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.look.camera import Viewpoint, pixel_rays, project
 from haptic_glance.look.views import CANDIDATES, FOUR, PERPENDICULAR_SETS, TWELVE, viewpoint_set
 from haptic_glance.look.views.best import BETWEEN, on_circle
 from haptic_glance.mesh.mesh import Mesh
@@ -23,10 +23,6 @@ CAPTION = {  # T figure 3.2: turns of the object in degrees, around z, then arou
 
 def backs(views):
     return np.array([view.axes[2] for view in views])
-
-
-def test_pixels_per_unit_is_the_thesis_s():
-    assert pixels_per_unit(900) == pytest.approx(858.7, abs=0.05)  # T eq. 3.11 at distance 10, 6 degrees
 
 
 def test_camera_axes_are_a_rotation_and_a_point_on_a_pixel_s_ray_is_projected_to_the_pixel():

@@ -18,23 +18,18 @@ R, C = np.mgrid[:60, :80]
 MASK = (R - 30) ** 2 + (C - 40) ** 2 < 20**2
 
 
-def blob(row, column, sigma=3.0):
-    return np.exp(-((R - row) ** 2 + (C - column) ** 2) / (2 * sigma**2)) * MASK
+def blob(row, column):
+    return np.exp(-((R - row) ** 2 + (C - column) ** 2) / 18) * MASK
 
 
 GTS = np.maximum(blob(25, 35), blob(38, 44))
 NOISE = np.random.default_rng(0).random(MASK.shape) * MASK
 
 
-def test_distance_is_the_mean_over_all_pairs_of_points_and_as_many_brightest_pixels():
+def test_distance_is_that_of_the_brightest_pixels_of_which_there_may_be_few():
     spot = np.zeros(SHAPE)
     spot[4, 5] = 1
     assert view_distances({"edge": spot}, [7], [9]) == {"edge": 5.0}
-    points = np.array([[3.0, 3.0], [10.0, 30.5], [20.0, 8.0]])
-    values = np.random.default_rng(0).random(SHAPE)
-    brightest = np.argwhere(values >= np.sort(values, axis=None)[-3])
-    distances = view_distances({"edge": values, "cubed": values**3 / 9}, points[:, 0], points[:, 1])
-    assert distances["edge"] == pytest.approx(cdist(brightest, points).mean()) == distances["cubed"]
     maps = {"edge": np.array([[1.0, 0.0]])}
     assert view_distances(maps, [0, 0, 0], [0, 0, 0]) == {"edge": 0.5}  # more points than pixels take every pixel
     assert view_distances(maps, [], []) == {}
