@@ -10,13 +10,13 @@ from stages.attention_checks import checks
 from stages.attention_checks.checks import Seen, choose
 
 
-def objects(count=8, points=400, seed=0):
+def objects(count=8):
     """Objects with gaze that one of six features draws, and noise in the others."""
-    random, items = np.random.default_rng(seed), {}
+    random, items = np.random.default_rng(0), {}
     for k in range(count):
-        features = {f"f{j}": random.normal(size=points) for j in range(6)}
+        features = {f"f{j}": random.normal(size=400) for j in range(6)}
         shares = np.exp(features["f3"])
-        items[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float), np.ones(points))
+        items[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float), np.ones(400))
     return items
 
 

@@ -20,15 +20,12 @@ from stages.engine.settings import Workspace
 ROOT = Path(__file__).parents[2]
 
 
-def write_params(root, seed=0):
-    """A params.yaml of one data set, and a folder of inputs in it."""
-    common = f"seed: {seed}\nprofile: test\nparallel: {{backend: sequential}}\nsets: [toys]\ngraph: {{views: [toys]}}\n"
-    write_text(root / "params.yaml", common + "toys: {}\n")
+PARAMS = "seed: 0\nprofile: test\nparallel: {backend: sequential}\nsets: [toys]\ngraph: {views: [toys]}\ntoys: {}\n"
 
 
 @pytest.fixture
 def workspace(tmp_path):
-    write_params(tmp_path)
+    write_text(tmp_path / "params.yaml", PARAMS)
     for name in "abc":
         write_text(tmp_path / f"data/toys/meshes/{name}.txt", name)
     return Workspace(tmp_path, "toys")

@@ -104,8 +104,8 @@ def bits(image):
     return -sum(share * np.log2(share) for share in shares if share > 0)
 
 
-def smooth_maps(count=4):
-    maps = [ndimage.gaussian_filter(np.random.default_rng(k).random((56, 56)), 3 + k) for k in range(count)]
+def smooth_maps():
+    maps = [ndimage.gaussian_filter(np.random.default_rng(k).random((56, 56)), 3 + k) for k in range(4)]
     return np.stack([(values - values.min()) / np.ptp(values) for values in maps])
 
 

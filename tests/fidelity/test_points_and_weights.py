@@ -18,8 +18,8 @@ from haptic_glance.look.weights.svm import select_far_points
 from stages.weights.ground_truth import gts_map
 
 
-def smooth_map(seed, shape=(90, 120), width=4.0):
-    values = ndimage.gaussian_filter(np.random.default_rng(seed).random(shape), width)
+def smooth_map(seed, shape=(90, 120)):
+    values = ndimage.gaussian_filter(np.random.default_rng(seed).random(shape), 4)
     return (values - values.min()) / np.ptp(values)
 
 

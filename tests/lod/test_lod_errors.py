@@ -89,9 +89,9 @@ def waves():
     return Mesh(mesh.vertices * [1, 0.1, 1], mesh.faces)
 
 
-def soup(seed=0):
+def soup():
     """Triangles of all sizes thrown about, some of them needles, two far apart from the rest."""
-    generator = np.random.default_rng(seed)
+    generator = np.random.default_rng(0)
     corners = generator.normal(size=(300, 1, 3)) + generator.exponential(0.2, (300, 1, 1)) * generator.normal(
         size=(300, 3, 3)
     )

@@ -30,10 +30,10 @@ creator#2=nobody
 """
 
 
-def sh3f(catalogue=CATALOGUE):
+def sh3f():
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
-        archive.writestr("PluginFurnitureCatalog.properties", catalogue)
+        archive.writestr("PluginFurnitureCatalog.properties", CATALOGUE)
         archive.writestr("lib/crate/crate.obj", "mtllib paint.mtl\nusemtl a\n" + CUBE.export(file_type="obj"))
         archive.writestr("lib/crate/paint.mtl", "newmtl a\nKd 1 0 0\nmap_Kd gone.png\n")
         archive.writestr("lib/other/other.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n")

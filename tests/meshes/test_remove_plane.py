@@ -39,12 +39,12 @@ def _goblet():
 SHAPES = shapes()
 
 
-def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0, seed=0):
+def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0):
     """(Mesh, (m,) boolean: the object's own faces): on a table `table` times as wide, turned and shifted at random.
 
     noise: standard deviation, a share of the diagonal of it all.
     """
-    draw = np.random.default_rng(seed)
+    draw = np.random.default_rng(0)
     vertices = SHAPES[shape].vertices - [0, 0, SHAPES[shape].vertices[:, 2].min()]
     faces = SHAPES[shape].faces
     if not bottom:
@@ -66,7 +66,7 @@ def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0, seed=0):
         whole = np.linalg.norm(middle - middle[draw.integers(len(faces))], axis=1) > 0.04 * diagonal
         faces, mask = faces[whole], mask[whole]
     vertices = vertices + draw.normal(size=vertices.shape) * noise * diagonal
-    turn = Rotation.random(random_state=seed).as_matrix()
+    turn = Rotation.random(random_state=0).as_matrix()
     return Mesh(vertices @ turn.T * 30 + draw.normal(size=3) * 100, faces), mask
 
 

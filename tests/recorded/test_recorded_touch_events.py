@@ -12,9 +12,9 @@ from stages.recorded.splits import METHODS, binned, choose, rotated
 from stages.recorded.touch_events import disturbed, process
 
 
-def series(count=8, classes=4, steps=60, seed=0):
+def series(count=8, classes=4, steps=60):
     """Touches of objects that differ by when one taxel, the same for all, has its events; the last two are tests."""
-    random, names = np.random.default_rng(seed), np.repeat([f"{k:02}" for k in range(classes)], count)
+    random, names = np.random.default_rng(0), np.repeat([f"{k:02}" for k in range(classes)], count)
     values = (random.random((len(names), 39, 2, steps)) < 0.02).astype(np.uint8)
     for k in range(len(names)):
         start = 15 * (k // count)

@@ -28,9 +28,9 @@ def curves(objects=10):
     return [law(f"o{k}", size, 3 + k % 4, method) for k, size in enumerate(sizes) for method in COMBINATIONS]
 
 
-def right(error, initial, exponent=2.0, scale=1e-4):
+def right(error, initial):
     """The count that the law asks for."""
-    return initial * (scale / error) ** (1 / exponent)
+    return initial * np.sqrt(1e-4 / error)
 
 
 def ball():

@@ -27,20 +27,21 @@ def written(path, text):
     return path
 
 
-def hexagons(pitch=0.001, rings=4):
-    """(positions (n, 2), area of each) of a hexagonal array."""
-    i, j = (part.ravel() for part in np.mgrid[-rings : rings + 1, -rings : rings + 1])
-    inside = np.abs(i + j) <= rings
-    return pitch * np.c_[i + j / 2, j * np.sqrt(0.75)][inside], pitch**2 * np.sqrt(0.75)
+def hexagons():
+    """(positions (n, 2), area of each) of a hexagonal array of four rings, 1 mm apart."""
+    i, j = (part.ravel() for part in np.mgrid[-4:5, -4:5])
+    inside = np.abs(i + j) <= 4
+    return 0.001 * np.c_[i + j / 2, j * np.sqrt(0.75)][inside], 1e-6 * np.sqrt(0.75)
 
 
-def fingertip(count=6000, angle=0.9):
+def fingertip(count=6000):
     """A Layout of equal areas on the cap of a ball (Fibonacci's spiral), its lowest point at the origin."""
     k = np.arange(count) + 0.5
-    down, turn = 1 - k / count * (1 - np.cos(angle)), k * np.pi * (3 - np.sqrt(5))
+    height, turn = 1 - np.cos(0.9), k * np.pi * (3 - np.sqrt(5))
+    down = 1 - k / count * height
     side = np.sqrt(1 - down**2)
     normals = np.c_[side * np.cos(turn), side * np.sin(turn), -down]
-    area = 2 * np.pi * TIP**2 * (1 - np.cos(angle)) / count
+    area = 2 * np.pi * TIP**2 * height / count
     return Layout(TIP * (normals + [0, 0, 1]), normals, np.full(count, area))
 
 

@@ -22,10 +22,10 @@ def ball():
     return Mesh(made.vertices, made.faces)
 
 
-def dome(open_at=0.0):
-    """The part of a ball above z = open_at, an open mesh."""
+def dome():
+    """The part of a ball above z = 0, an open mesh."""
     mesh = ball()
-    return Mesh(mesh.vertices, mesh.faces[mesh.vertices[mesh.faces][..., 2].min(axis=1) > open_at])
+    return Mesh(mesh.vertices, mesh.faces[mesh.vertices[mesh.faces][..., 2].min(axis=1) > 0])
 
 
 def test_a_place_in_a_face_has_its_normal():

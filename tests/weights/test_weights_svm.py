@@ -46,10 +46,10 @@ def smooth(seed):
     return (field - field.min()) / np.ptp(field)
 
 
-def spots(seed, count=4):
-    """A ground truth map of spots on the object."""
+def spots(seed):
+    """A ground truth map of four spots on the object."""
     pixels = np.argwhere(MASK)
-    chosen = pixels[np.random.default_rng(seed).choice(len(pixels), count, replace=False)]
+    chosen = pixels[np.random.default_rng(seed).choice(len(pixels), 4, replace=False)]
     return np.max([np.exp(-((R - a) ** 2 + (C - b) ** 2) / 18) for a, b in chosen], axis=0) * MASK
 
 
