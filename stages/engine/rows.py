@@ -37,7 +37,7 @@ COMMON = {
     "seed": "of all random numbers",
     "note": "why there is no value, or what a reader must know of it",
 }
-FIRST, LAST = ("dataset", "item", "group", "method", "split"), ("metric", "value", "seconds", "clock", "seed", "note")
+FIRST, LAST = tuple(COMMON)[:5], tuple(COMMON)[5:]  # before and after the columns of a stage
 NEEDED = ("dataset", "value")  # without one of the others, what compares by it is not run, and says so
 SUFFIX = ".csv.gz"
 RECHECKED = "rechecked.json"  # in reports/measurements, by stages.recheck: {SET/STAGE: outcome}
