@@ -96,7 +96,8 @@ def cc(saliency: np.ndarray, truth: GroundTruth) -> float:
     PAMI 2019, section 4.2. Raises ValueError for a saliency of another shape or with NaN.
     """
     predicted = standardised(checked_saliency(saliency, truth), truth.shares)
-    return float(truth.shares @ (predicted * standardised(truth.density / truth.density.max(), truth.shares)))
+    density = np.ldexp(truth.density, -np.frexp(truth.density.max())[1])  # in any unit; a power of two loses no digit
+    return float(truth.shares @ (predicted * standardised(density, truth.shares)))
 
 
 EPSILON = np.finfo(np.float64).eps  # 2.2e-16, as in the benchmark: keeps the logarithm of zero finite
