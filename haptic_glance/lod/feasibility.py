@@ -135,10 +135,12 @@ def smallest_with(mesh: Mesh, frozen: np.ndarray, free_borders: bool = False) ->
         return len(mesh.faces)
     shape = topology(free)
     open_components = shape.components - shape.closed_components
-    edges, is_open = shape.boundary_edges, half_edges(mesh.faces)[1].reshape(-1, 3)[~frozen] < 0
+    edges = shape.boundary_edges
     if free_borders:  # each of their loops may shrink to a triangle
-        edges -= max(int(is_open.sum()) - LEAST_LOOP * shape.boundary_loops, 0)
-    loose = int(is_open.all(axis=1).sum())  # triangles by themselves: one tile each, and just this one face
+        open_edges = int((half_edges(mesh.faces)[1].reshape(-1, 3)[~frozen] < 0).sum())
+        edges -= max(open_edges - LEAST_LOOP * shape.boundary_loops, 0)
+    # Triangles that share no vertex: one tile each, and just this one face.
+    loose = int((np.bincount(mesh.faces.ravel())[free] == 1).all(axis=1).sum())
     tiles = max(edges + 2 * shape.boundary_loops - 4 * open_components - loose, 0)
     free_count = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * shape.closed_components + FACES_PER_GENUS * shape.genus
     free_count += loose

@@ -29,6 +29,7 @@ import os, signal
 from contextlib import suppress
 from haptic_glance.base.errors import errors_in_one_line, interrupts_wait
 errors_in_one_line("look")
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a process in the background may ignore it
 with interrupts_wait():
     with suppress(BaseException):  # as trimesh does round each optional package
         os.kill(os.getpid(), signal.SIGINT)

@@ -9,7 +9,7 @@ from stages.exploration import __main__ as stage
 from stages.exploration.one_sampling import EXPERIMENTS
 from stages.imprints.imprints import Imprints, write_imprints
 
-SETTINGS = {"sets": ["pair"], "methods": ["here"], "confidences": [0.8], "most": 3, "repetitions": 2}
+SETTINGS = {"sets": ["pair"], "methods": ["glance"], "confidences": [0.8], "most": 3, "repetitions": 2}
 CLASSIFICATION = {"drawn": 0, "classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
 
 
@@ -20,7 +20,7 @@ def run(tmp_path, make_workspace):
     for k, name in enumerate(("flat", "rough")):
         images = generator.random((40, 16, 16)) if k else np.linspace(0, 1, 16) * generator.random((40, 16, 1))
         places = generator.uniform(-0.5, 0.5, (40, 3))
-        imprints = {"here": Imprints(images, np.arange(40), places, 0.002)}
+        imprints = {"glance": Imprints(images, np.arange(40), places, 0.002)}
         write_imprints(tmp_path / f"data/toys/imprints/{name}.npz", imprints)
 
     def call(objects=("flat", "rough"), **changes):
@@ -49,7 +49,7 @@ def test_a_run_writes_every_experiment_and_tells_objects_apart_that_have_nothing
     [
         (("flat", "gone"), {}, "no imprints of gone"),
         (("flat",), {}, "at least two objects"),
-        (("flat", "rough"), {"methods": ["elsewhere"]}, "no imprints by elsewhere of flat, rough"),
+        (("flat", "rough"), {"methods": ["itti"]}, "no imprints by itti of flat, rough"),
     ],
 )
 def test_what_cannot_be_explored_is_a_note(run, objects, changes, note):
