@@ -44,7 +44,6 @@ def main() -> None:
     )
     parser.add_argument("--version", action="version", version=f"haptic-glance {version}")
     parser.add_argument("command", help=argparse.SUPPRESS)
-    parser.add_argument("rest", nargs="*", help=argparse.SUPPRESS)
     if sys.argv[1:2] in ([], ["-h"], ["--help"]):
         parser.epilog = listing()
     if not sys.argv[1:]:

@@ -131,7 +131,7 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
 def in_units(name: str, value: float | str, diameter: float, unit: str | None) -> Any:
     """A length in units of the mesh: a share of its diameter, or text such as "1mm" of a mesh whose unit is known."""
     if not isinstance(value, str):
-        if name == "pitch" and not 0 < value < 1:
+        if name == "pitch" and not (np.ndim(value) == 0 and 0 < value < 1):
             raise ValueError(f"pitch={value}: give a share of the object's diameter between 0 and 1, such as 0.01")
         return value if abs(diameter - 1) < 1e-9 else np.multiply(value, diameter)
     try:

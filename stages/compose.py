@@ -76,9 +76,10 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         special = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
         config = composed([f"data={dataset}", *general, *special])
         values[dataset] = _sections(config, dataset)
-        changed = {override.lstrip("+~").partition(".")[0] for override in (*general, *special)}
-        for section in sorted(changed & values[dataset].keys()):  # the names in conf/ exist
-            check_names(section, values[dataset][section])
+        for override in (*general, *special):  # the names in conf/ exist
+            section, _, key = override.lstrip("+~").partition("=")[0].partition(".")
+            if key in values[dataset].get(section, {}):
+                check_names(section, {key: values[dataset][section][key]})
         if any(word in override for override in overrides for word in ("methods", "channels")):
             check_maps(values[dataset])
         for stage in config["stages"]:

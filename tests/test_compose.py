@@ -68,8 +68,9 @@ def test_every_option_composes_and_fits_the_schemas(dataset, overrides):
 def test_a_name_that_a_setting_does_not_know_is_refused(setting):
     section, key = setting.split(".")
     assert key in schema_of(section).__dataclass_fields__
-    with pytest.raises(ParamsError, match=f"^{setting}: .*xyzzy"):
-        check_names(section, {key: ["xyzzy"]})
+    for value, words in ((["xyzzy"], "xyzzy"), (12.5, "12.5"), (True, "True")):
+        with pytest.raises(ParamsError, match=f"^{setting}: .*{words}"):
+            check_names(section, {key: value})
 
 
 @pytest.mark.parametrize(

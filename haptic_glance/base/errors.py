@@ -46,7 +46,8 @@ def errors_in_one_line(name: str) -> None:
 def interrupts_wait() -> Iterator[None]:
     """Inside the block Ctrl-C waits until its end; processes that start there never see it.
 
-    Libraries that catch every exception while they are imported would swallow it.
+    Libraries that catch every exception while they are imported would swallow it. Other threads must have begun in such
+    a block, or they take the signal.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield

@@ -6,6 +6,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
+from .errors import interrupts_wait
+
 PAUSE = 8.0  # seconds without a line, after which a command says that it still works
 
 
@@ -40,7 +42,8 @@ def no_silence() -> Iterator[None]:
                     print(f"{_Last.command}: still working, {now - _Last.step:.0f} s", file=sys.stderr, flush=True)
 
     thread = threading.Thread(target=watch, daemon=True)
-    thread.start()
+    with interrupts_wait():  # Ctrl-C is for the main thread
+        thread.start()
     try:
         yield
     finally:

@@ -67,8 +67,8 @@ class TouchUntilSure(gymnasium.Env):
     def __init__(
         self, meshes: Mapping[str, MeshLike] | None = None, most: int = MOST, skin: Skin | None = None
     ) -> None:
-        given = primitives() if meshes is None else meshes
-        self.meshes = {name: normalise(rotate_to_z_up(as_mesh(mesh))) for name, mesh in given.items()}
+        upright = {name: rotate_to_z_up(as_mesh(mesh)) for name, mesh in (meshes or {}).items()}
+        self.meshes = primitives() if meshes is None else {name: normalise(mesh) for name, mesh in upright.items()}
         if not (isinstance(most, int | np.integer) and most >= 1):
             raise ValueError(f"an episode needs a whole number of touches, at least one, got most={most}")
         self.library = learn(self.meshes, placed=False, turned=True, skin=skin)

@@ -6,7 +6,7 @@ tells how likely a new imprint is under each object.
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.rng import rng
+from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.files import FORMATS, MeshLike, as_mesh, names_of
 from haptic_glance.mesh.mesh import Mesh, unit
@@ -89,19 +90,20 @@ def sample_places(surface: Surface, count: int, random: np.random.Generator) -> 
     The order of vertices, faces and corners has no influence. Raises ValueError for a mesh without area.
     """
     shares = (np.arange(count) + random.random(count)) / count  # one in each of `count` equal parts of the surface
-    order, corners = by_position(surface.mesh)
-    points, faces, _ = sample_surface(replace(surface.mesh, faces=corners), shares, random.random((2, count)))
+    order, mesh = by_position(surface.mesh)
+    points, faces, _ = sample_surface(mesh, shares, random.random((2, count)))
     shuffled = random.permutation(count)  # or places that follow one another would be neighbours
     return place_at(surface, points[shuffled], order[faces[shuffled]])
 
 
-def by_position(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """(ids (m,), corners (m, 3)) of the faces along a curve that fills space, each from its first corner by place."""
+@weak_cache
+def by_position(mesh: Mesh) -> tuple[np.ndarray, Mesh]:
+    """(ids (m,), a Mesh) of the faces along a curve that fills space, each from its first corner by place."""
     ranks = np.argsort(np.lexsort(mesh.vertices.T[::-1]))[mesh.faces]
     first = (ranks.argmin(axis=1)[:, None] + np.arange(3)) % 3
     code = along_curve(mesh.vertices[mesh.faces].mean(axis=1))
     order = np.lexsort((*np.take_along_axis(ranks, first, axis=1).T[::-1], code))
-    return order, np.take_along_axis(mesh.faces, first, axis=1)[order]
+    return order, Mesh(mesh.vertices, np.take_along_axis(mesh.faces, first, axis=1)[order])
 
 
 def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:

@@ -93,8 +93,8 @@ class SimplificationTask:
     def simplified(self, faces: int) -> Mesh:
         """The Mesh of at most `faces` faces, in the frame of `mesh`, with its attributes.
 
-        Borders between materials are preserved where that is feasible. With free borders and no points, counts are
-        tried near which the surface loses its shape. Raises as `simplify` does.
+        Borders between materials are preserved where that is feasible. With free borders and no points, also tries
+        counts below the smallest feasible one, where the surface may lose its shape. Raises as `simplify` does.
         """
         try:
             return self._simplify(*self.cut, faces)

@@ -40,8 +40,8 @@ def along_curve(points: np.ndarray) -> np.ndarray:
 
     Source: Morton, A computer oriented geodetic data base, IBM 1966.
     """
-    inside = points - points.min(axis=0)
-    steps = (inside / max(inside.max(), 1e-12) * (2**BITS - 1) + ROUNDING).astype(np.int64)
+    inside = points - points.min(axis=0, initial=np.inf)
+    steps = (inside / max(inside.max(initial=0), 1e-12) * (2**BITS - 1) + ROUNDING).astype(np.int64)
     return np.asarray(sum((steps[:, axis] >> bit & 1) << (3 * bit + axis) for bit in range(BITS) for axis in range(3)))
 
 

@@ -169,10 +169,16 @@ def check_common(values: dict[str, Any]) -> None:
 
 def check_names(section: str, values: dict[str, Any]) -> None:
     """ParamsError for a value that is not among the NAMES of its setting; imports the modules that have the names."""
-    for key in NAMES.get(section, {}).keys() & values.keys():
-        module, _, name = NAMES[section][key].partition(":")
-        known = getattr(importlib.import_module(module), name)
-        for value in [values[key]] if isinstance(values[key], str) else values[key]:
+    for key, place in NAMES.get(section, {}).items():
+        if key not in values:
+            continue
+        module, _, name = place.partition(":")
+        try:
+            known = getattr(importlib.import_module(module), name)
+        except ModuleNotFoundError:  # the stage says which package it needs
+            continue
+        parts = values[key] if isinstance(values[key], list | dict) else [values[key]]
+        for value in map(str, parts):  # YAML reads 12 as a number
             try:
                 if callable(known):
                     known(value)

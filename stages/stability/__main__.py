@@ -104,7 +104,7 @@ def truth_of(data: Path, name: str) -> GroundTruth | None:
 
 
 def check(settings: Params) -> None:
-    """Raises ValueError that that names a setting with which nothing can be measured."""
+    """Raises ValueError that names a setting with which nothing can be measured."""
     if not settings.perturbations or not settings.methods:
         raise ValueError("stability.perturbations and stability.methods must name at least one each")
     bare = [name for name in settings.perturbations if not settings.severities.get(name)]

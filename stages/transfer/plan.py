@@ -71,7 +71,7 @@ class Plan(NamedTuple):
 
 
 def check(settings: Params) -> None:
-    """Raises ValueError, which names the setting and its possible values, for settings that cannot be run."""
+    """Raises ValueError, which names the setting, for settings that cannot be run."""
     for key in ("networks", "weights", "splits"):
         if not getattr(settings, key):
             raise ValueError(f"transfer.{key} must name at least one")

@@ -30,7 +30,8 @@ from contextlib import suppress
 from haptic_glance.base.errors import errors_in_one_line, interrupts_wait
 errors_in_one_line("look")
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a process in the background may ignore it
-with interrupts_wait():
+from haptic_glance.base.progress import no_silence
+with no_silence(), interrupts_wait():  # whose thread does not take the signal
     with suppress(BaseException):  # as trimesh does round each optional package
         os.kill(os.getpid(), signal.SIGINT)
         print("imported", flush=True)
