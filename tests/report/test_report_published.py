@@ -13,6 +13,7 @@ from stages.report import Params, items, topics
 from stages.report.drawing import plt
 from stages.report.results import Results
 from stages.report.topics import CLAIMS, TOPICS, build_all, name_of
+from stages.report.topics import KINDS as DICTS
 from stages.report.verdict import COLUMNS, by_claim, tabled
 
 ROOT = Path(__file__).parents[2]
@@ -86,6 +87,12 @@ def assert_claims_unchanged(results, topic):
     frame, _ = tabled([claim for claim in CLAIMS if claim.key in rows], list((rows | own).values()))
     write_table(results.out / "claims.csv", frame)
     assert_unchanged("claims.csv", (results.out / "claims.csv").read_text(), (REPORTS / "claims.csv").read_text())
+
+
+@pytest.mark.parametrize(("kind", "dictionary"), DICTS.items())
+def test_every_item_of_the_topics_is_published_and_no_other(kind, dictionary):
+    names = {name for topic in TOPICS for name in getattr(topic, dictionary)} - {"recognition"}  # of own folders alone
+    assert names == read_json(REPORTS / kind / "records.json")["items"].keys()
 
 
 def named(value):
