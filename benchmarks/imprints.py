@@ -68,9 +68,9 @@ class Camera:
     def __init__(self, python, kind, rows, columns):
         command = [python, str(Path(__file__).with_name("_camera_peers.py")), kind, str(rows), str(columns)]
         # In a pipe that nobody reads a talkative peer would get stuck.
-        self.said = tempfile.TemporaryFile("w+")  # noqa: SIM115
+        self.stderr_file = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        stderr=self.said, text=True)  # fmt: skip
+                                        stderr=self.stderr_file, text=True)  # fmt: skip
 
     def touch(self, job):
         """The answer of the process to a job: seconds, points, gl, version."""
@@ -81,8 +81,8 @@ class Camera:
         except (OSError, ValueError):
             self.process.kill()
             self.process.wait()
-            self.said.seek(0)
-            lines = self.said.read().strip().splitlines()
+            self.stderr_file.seek(0)
+            lines = self.stderr_file.read().strip().splitlines()
             raise ValueError(lines[-1] if lines else "it ended without a word") from None
 
     def close(self):
@@ -90,7 +90,7 @@ class Camera:
         self.process.stdin.close()
         self.process.wait()
         self.process.stdout.close()
-        self.said.close()
+        self.stderr_file.close()
 
 
 class Cameras:

@@ -28,15 +28,15 @@ SECONDS = 1.0  # of the processor for the pairs of a kernel
 PAIRS = (7, 25)  # but at least and at most so many
 
 
-def measured(what: str) -> dict:
+def measured(kernel: str) -> dict:
     """The row of one kernel, without commit and machine."""
-    peer, case = CASES[what]
+    peer, case = CASES[kernel]
     ours, theirs = case()
     with threadpool_limits(1):  # after the case has loaded its libraries
         seconds = in_pairs(ours, theirs)
     low, ratio, high = np.quantile(seconds[:, 0] / seconds[:, 1], [0.25, 0.5, 0.75])
-    print(f"kernels: {what}: {ratio:.3g} [{low:.3g}, {high:.3g}] of the time of {peer}", flush=True)
-    row = {"what": what, "peer": peer, "ratio": ratio, "low": low, "high": high, "limit": TOLERANCE * high}
+    print(f"kernels: {kernel}: {ratio:.3g} [{low:.3g}, {high:.3g}] of the time of {peer}", flush=True)
+    row = {"what": kernel, "peer": peer, "ratio": ratio, "low": low, "high": high, "limit": TOLERANCE * high}
     return row | {"seconds": np.median(seconds[:, 0])}
 
 

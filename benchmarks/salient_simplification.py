@@ -83,10 +83,10 @@ def cell(mesh, faces, gaze, works):
     return list(rows.values())
 
 
-def errors(mesh, found, faces, gaze):
+def errors(mesh, simplified, faces, gaze):
     """Errors of one result, and whether it has few enough faces."""
-    row = {"outcome": "reached" if len(found.faces) <= faces else "missed", "faces": len(found.faces)}
-    return row | {"metro_mean": metro(mesh, found)["mean"], "salient": salient_error(mesh, found, gaze)}
+    row = {"outcome": "reached" if len(simplified.faces) <= faces else "missed", "faces": len(simplified.faces)}
+    return row | {"metro_mean": metro(mesh, simplified)["mean"], "salient": salient_error(mesh, simplified, gaze)}
 
 
 def main():

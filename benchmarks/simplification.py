@@ -186,9 +186,9 @@ def survives(places, vertices):
     return all(place.tobytes() in stored for place in np.ascontiguousarray(places))
 
 
-def valid(mesh, found):
+def valid(mesh, result):
     """True where the topology is the same and there is no new fault."""
-    return topology(found.faces) == topology(mesh.faces) and not faults(found).added(faults(mesh))
+    return topology(result.faces) == topology(mesh.faces) and not faults(result).added(faults(mesh))
 
 
 def main():

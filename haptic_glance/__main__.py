@@ -13,7 +13,7 @@ from pathlib import Path
 from haptic_glance import first_run
 
 # Command -> the module that runs it; the first line of its docstring is what --help says of it.
-OWN = {
+MESH_COMMANDS = {
     "demo": "haptic_glance.gallery.demo",
     "gallery": "haptic_glance.gallery.command",
     "saliency": "haptic_glance.cli.saliency",
@@ -22,7 +22,7 @@ OWN = {
     "touch": "haptic_glance.cli.touch",
     "studio": "haptic_glance.studio.command",
 }
-SHELL = {"completion": "haptic_glance.cli.completion"}
+SHELL_COMMANDS = {"completion": "haptic_glance.cli.completion"}
 ABOUT = """\
 exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped
 by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
@@ -51,7 +51,7 @@ def main() -> None:
         sys.exit(2)
     rest = sys.argv[2:]  # as it is: argparse would take a `--` out
     options = parser.parse_args(sys.argv[1:2])
-    names = {**OWN, **SHELL}
+    names = {**MESH_COMMANDS, **SHELL_COMMANDS}
     if options.command in PIPELINE:
         in_clone = f"run `python -m stages.{options.command}` in a clone of the repository"
         parser.error(f"{options.command} belongs to the pipeline: {in_clone}")
@@ -88,15 +88,15 @@ def run(command: str, argv: Sequence[str]) -> int:
     # Pillow warns of large pictures in two lines; `materials` refuses those that are too large in one.
     warnings.filterwarnings("ignore", message="Image size .* exceeds limit")
     with interrupts_wait():
-        work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
+        work: Callable[[Sequence[str]], int | None] = import_module({**MESH_COMMANDS, **SHELL_COMMANDS}[command]).run
     with no_silence():
         return work(argv) or 0
 
 
 def listing() -> str:
     """The commands with the first line of their docstrings."""
-    wide, lines = max(map(len, {**OWN, **SHELL})), []
-    for title, group in {"with a mesh of your own": OWN, "for the shell": SHELL}.items():
+    wide, lines = max(map(len, {**MESH_COMMANDS, **SHELL_COMMANDS})), []
+    for title, group in {"with a mesh of your own": MESH_COMMANDS, "for the shell": SHELL_COMMANDS}.items():
         lines += [f"{title}:", *(f"  {name:{wide}}  {summary(docstring(group[name]))}" for name in group), ""]
     return "\n".join([*lines, "COMMAND --help has options and examples.", "", ABOUT])
 

@@ -36,7 +36,7 @@ MESHES = {  # public function: its arguments that are meshes
 }  # fmt: skip
 LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
 METRIC = {"press_forces": "depth", "gaps_at": "within"}  # public function: its argument in metres
-SAID = "Mesh(vertices, faces, up={!r})"  # says which axis points up
+WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 TRIES = 8  # lower counts that are tried where one leaves a fold
 LOOKING = "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"  # depend on the axis that is up
 
@@ -63,7 +63,7 @@ def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: 
             mesh = bound.arguments[name]
             if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
                 silent = not looking or bound.arguments.get("up") is not None
-                remedy = "up={!r}" if "up" in parameters.parameters else SAID
+                remedy = "up={!r}" if "up" in parameters.parameters else WITH_UP
                 bound.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, remedy)
         return function(*bound.args, **bound.kwargs)
 
@@ -84,7 +84,7 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str], looking: bo
         bound.apply_defaults()
         name, whole = next(iter(bound.arguments.items()))
         if not isinstance(getattr(whole, "mesh", whole), Mesh):
-            bound.arguments[name] = whole = _settled(whole, SAID) if looking else as_mesh(whole)
+            bound.arguments[name] = whole = _settled(whole, WITH_UP) if looking else as_mesh(whole)
         if unit is not None and not any(isinstance(bound.arguments[name], str) for name in names):
             raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
         diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
@@ -297,14 +297,14 @@ def simplify(
     raise min(infeasible, key=lambda error: error.smallest) if infeasible else failures[0]
 
 
-def _around_folds(work: Callable[..., Mesh], mesh: Mesh, count: int, **given: Any) -> Mesh:
+def _around_folds(work: Callable[..., Mesh], mesh: Mesh, count: int, **options: Any) -> Mesh:
     """The Mesh of at most `count` faces; where just that many leave a fold, of a few fewer, by other collapses."""
     try:
-        return work(mesh, count, **given)
+        return work(mesh, count, **options)
     except SimplifyError:
         for fewer in range(count - 2, max(count - 2 * TRIES, 1) - 1, -2):
             with suppress(SimplifyError):
-                return work(mesh, fewer, **given)
+                return work(mesh, fewer, **options)
         raise
 
 

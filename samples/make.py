@@ -59,12 +59,12 @@ def cone(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     return away - (start[3] + share * (end[3] - start[3]))
 
 
-def blended(one: np.ndarray, other: np.ndarray, width: float) -> np.ndarray:
+def blended(first: np.ndarray, second: np.ndarray, width: float) -> np.ndarray:
     """The smaller of two distances, rounded where they differ by less than the width (Quilez, smooth minimum)."""
     if width == 0:
-        return np.minimum(one, other)
-    overlap = np.clip(1 - np.abs(one - other) / width, 0, None)
-    return np.minimum(one, other) - overlap**2 * width / 4
+        return np.minimum(first, second)
+    overlap = np.clip(1 - np.abs(first - second) / width, 0, None)
+    return np.minimum(first, second) - overlap**2 * width / 4
 
 
 def dromedary() -> Mesh:

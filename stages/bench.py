@@ -36,7 +36,7 @@ ROWS = "reports/measurements/{}/salient_points.csv.gz"
 GAZE = "../shared/data/{}.zip"  # as conf/data has it
 SETS = ("gaze", "gaze_clouds")
 SCORES = {"nss": 1, "auc": 1, "cc": 1, "sim": 1, "kl": -1}  # metric: 1 where more is better, -1 where less is
-OWN = "yours"
+YOURS = "yours"
 HUMAN = "human"  # the gaze itself, spread over the surface: no method
 COST = "seconds: of the median object, without the pictures that some methods read"
 PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
@@ -91,7 +91,7 @@ def run(argv: Sequence[str]) -> None:
         return print(json.dumps(methods, indent=1))
     print(as_text(methods, options.by))
     if options.objects:
-        print(f"\n{objects_text([row for row in methods if not options.method or row['method'] == OWN])}")
+        print(f"\n{objects_text([row for row in methods if not options.method or row['method'] == YOURS])}")
 
 
 def report(text: str) -> None:
@@ -143,7 +143,7 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
     rows, failed = [], {}
     for number, (name, (mesh, truth)) in enumerate(objects.items(), 1):
         report(f"{number} of {len(objects)}: {name}")
-        row: dict[str, Any] = {"item": name, "method": OWN, "clock": clock()}
+        row: dict[str, Any] = {"item": name, "method": YOURS, "clock": clock()}
         scores: dict[str, float] = {}
         try:
             training = [  # copies: a method may change what it is given
@@ -199,8 +199,8 @@ def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
     -------
     list
         A dict a method: method, has_seen, objects (how many), each metric with its `_low` and `_high`, seconds (of the
-        median object), clock, values {object: {metric: value, seconds}}, failed {object: reason}; and, where OWN is
-        among the methods, `nss_lead` with its `_low` and `_high` and so on: by how much OWN is better, also in KL.
+        median object), clock, values {object: {metric: value, seconds}}, failed {object: reason}; and, where YOURS is
+        among the methods, `nss_lead` with its `_low` and `_high` and so on: by how much YOURS is better, also in KL.
     """
     from stages.engine.statistics import interval
 
@@ -213,8 +213,8 @@ def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
         row: dict[str, Any] = {"method": method, "has_seen": has_seen(method), "objects": metric_rows["item"].nunique()}
         for metric, better in SCORES.items():
             compared = {metric: table[metric][method]}
-            if OWN in table[metric] and method != OWN:
-                compared[f"{metric}_lead"] = better * (table[metric][OWN] - table[metric][method])
+            if YOURS in table[metric] and method != YOURS:
+                compared[f"{metric}_lead"] = better * (table[metric][YOURS] - table[metric][method])
             for name, values in compared.items():
                 row |= zip((name, f"{name}_low", f"{name}_high"), interval(values), strict=True)
         row["seconds"] = float(metric_rows["seconds"].median())
@@ -238,8 +238,8 @@ def as_text(methods: Sequence[dict[str, Any]], by: str = "nss") -> str:
     lines = [f"{'':>3} {'method':26} objects {' '.join(heads)} {'seconds':>8} {'clock':9}  lead in {by.upper()}"]
     rank = 0
     for row in methods:
-        rank += row["method"] not in (HUMAN, OWN)
-        place = ">" if row["method"] == OWN else "" if row["method"] == HUMAN else f"{rank}"
+        rank += row["method"] not in (HUMAN, YOURS)
+        place = ">" if row["method"] == YOURS else "" if row["method"] == HUMAN else f"{rank}"
         name = f"{row['method']} *" if row["has_seen"] else row["method"]
         cells = [f"{_bracketed(row, metric):>20}" for metric in SCORES]
         cost = "" if row["seconds"] is None else f"{row['seconds']:.3g}"

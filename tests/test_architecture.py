@@ -90,22 +90,22 @@ def test_code_that_is_imported_late_or_handed_on_is_found(tmp_path, monkeypatch)
         for remembered in (code._module, code._facts, code._kept, code.imported_files):
             remembered.cache_clear()
 
-    def found():
+    def reached():
         fresh()
         return {path.relative_to(tmp_path).as_posix() for path in code.stage_files("a")}
 
     needed = set(files) - {"stages/__init__.py", "stages/b/__init__.py", "stages/b/unused.py"}
-    assert found() == needed
+    assert reached() == needed
     before = code.file_digest(tmp_path / "stages/b/inner.py")
     code.keep_facts()
     with monkeypatch.context() as kept:
         kept.setattr(code, "_work_out", None)
-        assert found() == needed  # from what was kept
+        assert reached() == needed  # from what was kept
     (tmp_path / "stages/a/__main__.py").write_text("from stages.b import other\n")
     (tmp_path / "stages/b/inner.py").write_text("from .helper import help as work\n")
-    assert found() == {"stages/a/__init__.py", "stages/a/__main__.py", "stages/b/unused.py"}
+    assert reached() == {"stages/a/__init__.py", "stages/a/__main__.py", "stages/b/unused.py"}
     assert code.file_digest(tmp_path / "stages/b/inner.py") != before
     for damaged in ("[]", "{"):
         (tmp_path / code.KEPT).write_text(damaged)
-        assert found() == {"stages/a/__init__.py", "stages/a/__main__.py", "stages/b/unused.py"}
+        assert reached() == {"stages/a/__init__.py", "stages/a/__main__.py", "stages/b/unused.py"}
     fresh()

@@ -37,15 +37,15 @@ def test_help_of_a_benchmark_is_its_docstring(name, monkeypatch, capsys):
 def of_backends(monkeypatch, faces, **answers):
     """dict backend -> row of a cell of a ball, where the backends answer with meshes or errors."""
 
-    def answer(found):
+    def answer(result):
         def work(*_):
-            if isinstance(found, Exception):
-                raise found
-            return found
+            if isinstance(result, Exception):
+                raise result
+            return result
 
         return work
 
-    monkeypatch.setattr(simplification, "BACKENDS", {name: answer(found) for name, found in answers.items()})
+    monkeypatch.setattr(simplification, "BACKENDS", {name: answer(result) for name, result in answers.items()})
     monkeypatch.setattr(simplification, "WHOLE", ())
     rows = simplification.cell(BALL, faces, np.zeros(0, dtype=np.int64), 0)
     return {row["backend"]: row for row in rows}
@@ -82,8 +82,8 @@ def history(*rows):
 def complaints(known, here="here", **ratios):
     """What the check says of kernels that are measured with these ratios, one after the other, the last again."""
 
-    def measure(what):
-        return {"ratio": ratios[what].pop(0) if len(ratios[what]) > 1 else ratios[what][0]}
+    def measure(kernel):
+        return {"ratio": ratios[kernel].pop(0) if len(ratios[kernel]) > 1 else ratios[kernel][0]}
 
     return _history.slower(known, here, list(ratios), measure)
 

@@ -83,18 +83,18 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     metrics, baseline, rules = (tmp_path / name for name in ("train.json", "base.json", "rules.yaml"))
     metrics.write_text(json.dumps({"accuracy": 0.8, "epochs": 10}))
     rules.write_text("rules: [{metric: train.accuracy, abs: 0.05, direction: more}]")
-    given = [str(metrics), "--baseline", str(baseline)]
+    options = [str(metrics), "--baseline", str(baseline)]
     with pytest.raises(SystemExit, match="--update makes it"):
-        gate.run(given)
-    gate.run([*given, "--update"])
+        gate.run(options)
+    gate.run([*options, "--update"])
     assert read_json(baseline) == {"train.accuracy": 0.8, "train.epochs": 10}
     metrics.write_text(json.dumps({"accuracy": 0.9, "epochs": 10}))
-    gate.run([*given, "--tolerances", str(rules)])
+    gate.run([*options, "--tolerances", str(rules)])
     assert "\ngate: 2 metrics within their tolerances" in capsys.readouterr().out
     with pytest.raises(SystemExit, match=r"(?s)1 of 2 metrics left.*\n- train.accuracy moved by \+0.1"):
-        gate.run([*given, "--markdown"])  # exact without rules
+        gate.run([*options, "--markdown"])  # exact without rules
     assert capsys.readouterr().out == ""
-    gate.run([*given, "--tolerances", str(rules), "--markdown"])
+    gate.run([*options, "--tolerances", str(rules), "--markdown"])
     assert capsys.readouterr().out.startswith("## Metrics against their baseline\n\n2 metrics within")
     with pytest.raises(SystemExit):
         gate.run([str(metrics)])
@@ -106,10 +106,10 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     assert not (tmp_path / "none.json").exists()
     metrics.write_text("[0.9, 10]")
     with pytest.raises(ValueError, match=r"train.json is no table of metrics: it needs \{NAME: number\}"):
-        gate.run(given)
+        gate.run(options)
     baseline.write_text(json.dumps({"train": {"accuracy": 0.9}}))  # as a project's own metrics are
     metrics.write_text(json.dumps({"accuracy": 0.9}))
-    gate.run(given)
+    gate.run(options)
     assert "1 metrics within" in capsys.readouterr().out
 
 
@@ -197,7 +197,7 @@ def write(root, name, rows):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "reason"),
     [
         (lambda rows: [*rows[:2], rows[2].replace(",3,", ",3.15,"), *rows[3:]], "1 rows changed"),  # 5 %
         (lambda rows: [*rows[:2], rows[2].replace(",3,", ",-3,"), *rows[3:]], "1 rows changed"),
@@ -210,12 +210,12 @@ def write(root, name, rows):
     ],
     ids=["five per cent", "sign", "two methods that change places", "dropped", "twice"],
 )
-def test_every_changed_row_is_found_also_of_sets_that_are_off(repository, change, said):
+def test_every_changed_row_is_found_also_of_sets_that_are_off(repository, change, reason):
     root, rows = repository
     assert "2 files equal those of HEAD" in gate.hold_rows("HEAD", root)
     for name in ("toys", "off"):
         write(root, name, change(rows))
-        with pytest.raises(SystemExit, match=rf"{name}/lod.csv.gz: .*{said}"):
+        with pytest.raises(SystemExit, match=rf"{name}/lod.csv.gz: .*{reason}"):
             gate.hold_rows("HEAD", root)
 
 

@@ -153,10 +153,10 @@ def test_the_commands_do_their_work_in_a_core_install(ball):
     assert process.returncode == 0 and all(path.exists() for path in (*written, ball.with_suffix(".ply"))), (
         process.stderr
     )
-    (simplified, salient, _), (said, _, of_touch) = (text.split(RULE) for text in (process.stdout, process.stderr))
+    (simplified, salient, _), (messages, _, of_touch) = (text.split(RULE) for text in (process.stdout, process.stderr))
     measures = [line.split() for line in simplified.splitlines() if "SSIM" in line or "pyramid" in line]
     assert len(measures) == 3 and all(words[-3:] == ["-", "-", "-"] for words in measures)
-    assert said.count("which is not installed: pip install '.[pictures]'\n") == 1
+    assert messages.count("which is not installed: pip install '.[pictures]'\n") == 1
     assert salient.startswith("rank,vertex,x,y,z,score")
     assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "places.csv"}
     (line,) = (line for line in of_touch.splitlines() if "imprints.png" in line)
@@ -205,7 +205,7 @@ def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
 def test_the_list_of_commands_imports_no_stage():
     process = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
     assert process.returncode == 0
-    for name in {**command.OWN, **command.SHELL}:
+    for name in {**command.MESH_COMMANDS, **command.SHELL_COMMANDS}:
         assert re.search(rf"^  {name} +[A-Z].{{20,}}$", process.stdout, re.M)
     assert max(map(len, process.stdout.splitlines()[:-1])) <= 120
     loaded = ast.literal_eval(process.stdout.splitlines()[-1])
@@ -231,8 +231,8 @@ def test_an_unknown_command_is_named_with_one_like_it_and_none_at_all_shows_the_
 
 @pytest.mark.slow
 def test_every_command_shows_its_name_examples_and_json_in_a_core_install():
-    process = run_all(*((name, "--help") for name in command.OWN))
-    texts = dict(zip(command.OWN, process.stdout.split(RULE), strict=True))
+    process = run_all(*((name, "--help") for name in command.MESH_COMMANDS))
+    texts = dict(zip(command.MESH_COMMANDS, process.stdout.split(RULE), strict=True))
     for name, text in texts.items():
         assert text.startswith(f"usage: haptic-glance {name} ")
         assert f"  haptic-glance {name} " in text.partition("examples:")[2]

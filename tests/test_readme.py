@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from haptic_glance.__main__ import OWN
+from haptic_glance.__main__ import MESH_COMMANDS
 from stages.compose import groups
 from stages.report.cells import number_of, rows_of
 
@@ -62,7 +62,7 @@ def test_every_command_is_there():
     code = "\n".join(text for _, text in CODE.findall(TEXT))
     modules = set(re.findall(r"python -m stages\.([\w.]+)", TEXT))
     assert modules and all(find_spec(f"stages.{name}") for name in modules)
-    assert set(re.findall(r"haptic-glance (\w+)", code)) <= {*OWN}
+    assert set(re.findall(r"haptic-glance (\w+)", code)) <= {*MESH_COMMANDS}
     made = set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.M))
     assert {"repro", "test"} <= set(re.findall(r"^make (\w+)", code, re.M)) <= made
     options = re.findall(r"\b(experiment|profile|parallel|classifier)=([\w,]+)", TEXT)

@@ -87,16 +87,16 @@ def test_a_stage_that_stops_is_not_kept_and_the_next_file_goes_on(committed, mon
 
 
 def test_a_stage_of_an_experiment_is_switched_on_by_its_name(committed, tmp_path, monkeypatch, capsys):
-    given = []
+    calls = []
 
     def without_views(dataset, settings):
-        given.append((dataset, settings))
+        calls.append((dataset, settings))
         return workspace
 
     workspace = SimpleNamespace(params={"graph": {"views": ["others"]}})
     monkeypatch.setattr(recheck, "prepared", without_views)
     assert run(["seed=3", "toys/views", "profile=smoke"]) == 1
-    assert given == [("toys", ["seed=3", "profile=smoke"])]
+    assert calls == [("toys", ["seed=3", "profile=smoke"])]
     assert "conf/data/toys.yaml leaves views out; add experiment=NAME" in capsys.readouterr().err
     monkeypatch.undo()
     monkeypatch.setattr(recheck, "FOLDER", tmp_path)
@@ -169,7 +169,7 @@ def test_values_that_are_absent_on_both_sides_or_zero_but_for_rounding_are_equal
 
 
 @pytest.mark.parametrize(
-    ("found", "expected"),
+    ("counts", "expected"),
     [
         ({"compared": 300, "close": 300, "only_committed": 0, "least": 1.0}, True),
         ({"compared": 300, "close": 299, "only_committed": 0, "least": 0.98}, True),
@@ -178,8 +178,8 @@ def test_values_that_are_absent_on_both_sides_or_zero_but_for_rounding_are_equal
         ({"compared": 0, "close": 0, "only_committed": 0, "least": 0.0}, False),
     ],
 )
-def test_rows_agree_where_nearly_all_of_each_method_were_measured_again_and_are_close(found, expected):
-    assert agrees(found) == expected
+def test_rows_agree_where_nearly_all_of_each_method_were_measured_again_and_are_close(counts, expected):
+    assert agrees(counts) == expected
 
 
 def test_a_stage_stands_behind_all_that_it_reads():

@@ -39,12 +39,12 @@ def _code(block):
     return f"\n\n.. code-block:: text\n{block}\n" if ">" not in block and "=" not in block else f"\n\n::\n{block}\n"
 
 
-def _process(app, what, name, thing, options, lines):
-    if isinstance(thing, dict | tuple | int):  # else it would have the docstring of its type
-        lines[:] = [_said(thing), ""]
+def _process(app, what, name, obj, options, lines):
+    if isinstance(obj, dict | tuple | int):  # else it would have the docstring of its type
+        lines[:] = [_value_text(obj), ""]
         return
-    text = as_rst(lines, lambda code: linked(code, getattr(thing, "__module__", None) or ""))
-    lines[:] = [*with_bold_names(text, _parameters(thing)), ""]
+    text = as_rst(lines, lambda code: linked(code, getattr(obj, "__module__", None) or ""))
+    lines[:] = [*with_bold_names(text, _parameters(obj)), ""]
 
 
 def linked(code: str, module: str) -> str:
@@ -67,22 +67,22 @@ def with_bold_names(lines: list[str], names: list[str]) -> list[str]:
     return begins.sub(r"**\1**", "\n".join(lines)).splitlines()
 
 
-def _said(thing):
+def _value_text(obj):
     """A constant in words: a number itself, of a dict or tuple its items by their names."""
-    if isinstance(thing, int):
-        return f"``{thing}``"
-    if any(isinstance(item, tuple) for item in thing):
-        return f"A {type(thing).__name__} of {len(thing)} tuples."
-    return f"A {type(thing).__name__} of " + ", ".join(f"``{getattr(item, 'name', item)}``" for item in thing) + "."
+    if isinstance(obj, int):
+        return f"``{obj}``"
+    if any(isinstance(item, tuple) for item in obj):
+        return f"A {type(obj).__name__} of {len(obj)} tuples."
+    return f"A {type(obj).__name__} of " + ", ".join(f"``{getattr(item, 'name', item)}``" for item in obj) + "."
 
 
-def _parameters(thing):
+def _parameters(obj):
     try:
-        return list(inspect.signature(thing).parameters)
+        return list(inspect.signature(obj).parameters)
     except (TypeError, ValueError):
         return []
 
 
-def _skip(app, what, name, thing, skip, options):
+def _skip(app, what, name, obj, skip, options):
     """Fields of named tuples say nothing of themselves."""
-    return True if type(thing).__name__ == "_tuplegetter" else None
+    return True if type(obj).__name__ == "_tuplegetter" else None

@@ -118,16 +118,16 @@ class Artifact(SphinxDirective):
         return nodes.section("", title, body, ids=[nodes.make_id(f"claims of {command.name}")])
 
 
-def effect(found: pd.DataFrame) -> str:
+def effect(selected: pd.DataFrame) -> str:
     """The effect of a claim with its interval and unit, with as many decimals as its ends need."""
-    row = found.iloc[0]
+    row = selected.iloc[0]
     if not row["low"]:
         return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
     ends = [abs(float(row[name])) for name in ("low", "high")]
     places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
     while places < 6 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
         places += 1
-    return f"{text_of(found, f'effect low high +.{places}f')} {row['unit']}"
+    return f"{text_of(selected, f'effect low high +.{places}f')} {row['unit']}"
 
 
 def shown(row: pd.DataFrame, column: str) -> str:

@@ -65,8 +65,8 @@ away = np.linalg.norm(mesh.vertices[:, None] - mesh.vertices[None, marked], axis
 truth = GroundTruth(amounts, np.exp(-((away / 0.05) ** 2) / 2).sum(axis=1), mesh.vertex_areas)
 
 for method in ["thin_parts", "glance", "itti", "mesh_saliency"]:
-    found = agreement(saliency(mesh, method), truth)
-    print(f"{method:14} NSS {found['nss']:5.2f}   AUC {found['auc']:.2f}")
+    scores = agreement(saliency(mesh, method), truth)
+    print(f"{method:14} NSS {scores['nss']:5.2f}   AUC {scores['auc']:.2f}")
 
 # %%
 # Three marks on one mesh that somebody chose prove nothing. They show how the judging works.

@@ -48,14 +48,13 @@ write_any(folder / "scan.stl", scanned)
 # about a second.
 
 mesh = load(folder / "scan.stl", up="y")
-found = detect(mesh, count=10)
+detection = detect(mesh, count=10)
 print(mesh)
-print(
-    f"{found.strong} places pass the method's own threshold; the first three are vertices {found.points[:3].tolist()}"
-)
+first = detection.points[:3].tolist()
+print(f"{detection.strong} places pass the method's own threshold; the first three are vertices {first}")
 
 plt.figure(figsize=(4.6, 4.4), layout="constrained")
-plt.imshow(look(normalise(mesh), found.saliency, found.points)[90:530, 60:560])
+plt.imshow(look(normalise(mesh), detection.saliency, detection.points)[90:530, 60:560])
 plt.axis("off")
 plt.show()
 
@@ -79,7 +78,7 @@ for faces in (4000, 2000, 1000):
 # one, so that a pitch of 0.01 is a hundredth of the object.
 
 unit = normalise(mesh)
-images = press_many(unit, found.points[:8], cells=(16, 16), pitch=0.01)
+images = press_many(unit, detection.points[:8], cells=(16, 16), pitch=0.01)
 
 fig, axes = plt.subplots(2, 4, figsize=(8, 4.2), layout="constrained")
 for rank, (axis, image) in enumerate(zip(axes.flat, images, strict=True), start=1):
@@ -97,7 +96,7 @@ plt.show()
 # and the array is pressed 1 mm deep.
 
 METRES = 0.2
-places = found.points[:8]
+places = detection.points[:8]
 axes_of_array = sensor_axes(sensor_normals(unit, places))
 layer = Layer(thickness=0.004, modulus=1e5)
 felt = press_forces(

@@ -277,8 +277,8 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh
     write_any(out, upright_mesh, moved_parts(parts, original, restored))
     if note:
         report(note)
-    suffix, texture = out.suffix.lower(), task.given.texture
-    if suffix in COLORLESS and (texture or task.given.colors is not None):
+    suffix, texture = out.suffix.lower(), task.source.texture
+    if suffix in COLORLESS and (texture or task.source.colors is not None):
         report(f"{out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
     elif (
         suffix != ".glb" and texture and (names := {name for material in texture.materials for name in material or ()})
@@ -292,7 +292,7 @@ def draw(task: SimplificationTask, level: Mesh, path: Path) -> None:
     from haptic_glance.lod.pictures import write_picture
 
     points = task.points[task.points_kept(level)]
-    write_picture(path, task.upright(task.mesh), task.upright(level), task.saliency, points, task.given.up)
+    write_picture(path, task.upright(task.mesh), task.upright(level), task.saliency, points, task.source.up)
 
 
 def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:

@@ -136,16 +136,16 @@ class HybridNet(torch.nn.Module):
         # the items of a ModuleList are typed as Module
         return tuple(late[-1][-1].out_features for late in self.late)  # pyright: ignore
 
-    def _own(self, images, sense):
+    def _pixels(self, images, sense):
         return images[:, 3 * sense : 3 * sense + 3]
 
     def _stream(self, images, sense):
-        pixels, channels = self._own(images, sense), slice(3 * sense, 3 * sense + 3)
+        pixels, channels = self._pixels(images, sense), slice(3 * sense, 3 * sense + 3)
         normal = ((pixels - self.mean[channels]) / self.std[channels]).contiguous(memory_format=torch.channels_last)
         return self.switch(pixels, self.early[sense](normal))
 
     def _head(self, images, shared, sense):
-        available = present(self._own(images, sense))
+        available = present(self._pixels(images, sense))
         return self.late[sense](shared).where(available[:, None], torch.nan)
 
 

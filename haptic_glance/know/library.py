@@ -226,11 +226,11 @@ class Library:
         self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0,
         skin: Skin | None = None,
     ) -> None:  # fmt: skip
-        self.names, self.placed, self.skin, (classes, self._each) = names, placed, skin, samples.shape[:2]
-        self._owners = np.repeat(np.arange(classes), self._each)
+        self.names, self.placed, self.skin, (classes, self._touches) = names, placed, skin, samples.shape[:2]
+        self._owners = np.repeat(np.arange(classes), self._touches)
         self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
-        self._own = self._of_own_touches()
+        self._evidence = self._of_own_touches()
         self.calibration: Calibration = self._calibrate(seed)
 
     def belief(self) -> Belief:
@@ -252,7 +252,7 @@ class Library:
         distances = np.linalg.norm(places.positions[:, None] - self._positions[None], axis=2)
         outcomes, probabilities = nearest_outcomes(distances, self._owners)
         if not self.placed:
-            return Expected(self._own[outcomes], probabilities)
+            return Expected(self._evidence[outcomes], probabilities)
         predicted = [self._at_place(*place) for place in zip(places.positions, outcomes, strict=True)]
         return Expected(np.stack(predicted), probabilities)
 
@@ -293,11 +293,11 @@ class Library:
         return evidence.reshape(*outcomes.shape, len(self.names))
 
     def _calibrate(self, seed):
-        touches = self._own.reshape(len(self.names), self._each, -1)
+        touches = self._evidence.reshape(len(self.names), self._touches, -1)
 
         def sequences(orders, longest, random):
             truth = np.repeat(np.arange(len(self.names)), orders)
-            order = np.array([random.permutation(self._each)[:longest] for _ in truth])
+            order = np.array([random.permutation(self._touches)[:longest] for _ in truth])
             return touches[truth[:, None], order], truth
 
         average = calibrate(*sequences(ORDERS, LONGEST, rng(seed, "calibration")))

@@ -257,20 +257,20 @@ def face_count(target: str | int, total: int = 1, name: str = "") -> int:
 
     Raises ValueError, which names the option `name`, for anything else, shares outside 0 to 100 %, and counts below 1.
     """
-    given = f"{name}={target!r}" if name else repr(target)
+    shown = f"{name}={target!r}" if name else repr(target)
     match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip())
     if match is None:
-        raise ValueError(f"{given} is not a face count: write one like 1500 or 25%")
+        raise ValueError(f"{shown} is not a face count: write one like 1500 or 25%")
     number = float(match[1])
     if match[2] and not 0 < number < 100:
-        raise ValueError(f"{given} must lie between 0% and 100%")
+        raise ValueError(f"{shown} must lie between 0% and 100%")
     share = round(total * number / 100, 6)  # 32.3 % of 1000 are 322.99999999999994 in binary fractions
     count = int(share if match[2] else number)
     if count < 1 and not match[2]:
         remedy = f"; for a share write {100 * number:g}%" if number else ""
-        raise ValueError(f"{given} must be 1 or more{remedy}")
+        raise ValueError(f"{shown} must be 1 or more{remedy}")
     if count != number and not match[2]:
-        raise ValueError(f"{given} is not a whole number of faces")
+        raise ValueError(f"{shown} is not a whole number of faces")
     return max(count, 1)
 
 

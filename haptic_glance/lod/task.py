@@ -29,13 +29,13 @@ from .topology import half_edges, topology
 class SimplificationTask:
     """A mesh and what simplification must preserve of it.
 
-    given: the Mesh in its own units and axes. saliency (n,) f8 in 0..1. points (k,) vertex ids to
+    source: the Mesh in its own units and axes. saliency (n,) f8 in 0..1. points (k,) vertex ids to
     keep, most salient first, rings (k,) around each. weights: (n,) for the soft variant or None. shrink: whether the
     neighbourhoods may shrink where the target needs it. attributes: their weights in the error; free_borders: whether
     the boundary is simplified, too, but where it meets a border between materials: see `simplify`.
     """
 
-    given: Mesh
+    source: Mesh
     saliency: np.ndarray
     points: np.ndarray
     rings: np.ndarray
@@ -48,7 +48,7 @@ class SimplificationTask:
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh centred and scaled, its axes unchanged."""
-        return normalise(self.given)
+        return normalise(self.source)
 
     @cached_property
     def cut(self) -> tuple[Mesh, np.ndarray]:
@@ -120,8 +120,8 @@ class SimplificationTask:
         return bake_texture(rotate_to_z_up(mesh))
 
     def restored(self, mesh: Mesh) -> Mesh:
-        """A mesh in the frame of `mesh` in the units of `given`; unmoved vertices have their original coordinates."""
-        centre, radius = centre_and_radius(self.given)
+        """A mesh in the frame of `mesh` in the units of `source`; unmoved vertices have their original coordinates."""
+        centre, radius = centre_and_radius(self.source)
         vertices = mesh.vertices * (radius / RADIUS) + centre
         n = len(self.mesh.vertices)
         _, place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)
@@ -129,7 +129,7 @@ class SimplificationTask:
         owner = np.full(place.max() + 1, -1)
         owner[place[:n]] = np.arange(n)
         vertex = owner[place[n:]]
-        vertices[vertex >= 0] = self.given.vertices[vertex[vertex >= 0]]
+        vertices[vertex >= 0] = self.source.vertices[vertex[vertex >= 0]]
         return replace(mesh, vertices=vertices)
 
     def _simplify(self, mesh, ids, faces, below=False):

@@ -33,7 +33,7 @@ class Texture:
     materials: tuple[Mapping[str, Any] | None, ...] = ()
 
     def __post_init__(self) -> None:
-        uv, image = _own(self.uv, np.float64), whole("image", self.image, np.int64)
+        uv, image = _copied(self.uv, np.float64), whole("image", self.image, np.int64)
         images = tuple(whole("images", picture, np.uint8) for picture in self.images)
         for picture in images:
             picture.flags.writeable = False  # so that no further Texture of them copies them again
@@ -119,7 +119,7 @@ class Mesh:
             values = getattr(self, name)
             if values is not None and np.size(values) and np.asarray(values).dtype.kind not in "iu":
                 raise ValueError(f"{name} must be whole numbers, got {np.asarray(values).dtype}")
-        vertices, faces = _own(self.vertices, np.float64), _own(self.faces, np.int64)
+        vertices, faces = _copied(self.vertices, np.float64), _copied(self.faces, np.int64)
         if vertices.ndim != 2 or vertices.shape[1] != 3:
             raise ValueError(f"vertices must have shape (n, 3), got {vertices.shape}")
         if faces.ndim != 2 or faces.shape[1] != 3:
@@ -134,7 +134,7 @@ class Mesh:
             raw = np.asarray(self.colors)
             if raw.dtype != np.uint8 and raw.size and not 0 <= raw.min() <= raw.max() <= 255:
                 raise ValueError(f"colors must lie in 0..255, got {raw.min()} to {raw.max()}")
-            colors = _own(self.colors, np.uint8)
+            colors = _copied(self.colors, np.uint8)
             if colors.shape != vertices.shape:
                 raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
             object.__setattr__(self, "colors", colors)
@@ -246,7 +246,7 @@ def content_of(material: Mapping[str, Any] | None) -> list[bytes]:
     return [part if isinstance(part, bytes) else getattr(part, "tobytes", repr(part).encode)() for part in parts]
 
 
-def _own(values: Any, kind: type) -> np.ndarray:
+def _copied(values: Any, kind: type) -> np.ndarray:
     """A contiguous, writable copy of the values in a type.
 
     The copy of a read-only array is writable, too: numba would compile all kernels again for read-only arrays.
@@ -270,7 +270,7 @@ def _frozen(values: Any) -> bool:
 
 
 def whole(name: str, values: Any, kind: type) -> np.ndarray:
-    """Copies whole numbers as `_own` does, and shares an array that nobody can write to.
+    """Copies whole numbers as `_copied` does, and shares an array that nobody can write to.
 
     Raises ValueError for numbers that the type does not hold.
     """
@@ -279,7 +279,7 @@ def whole(name: str, values: Any, kind: type) -> np.ndarray:
     if not in_range or (array.dtype != kind and (array % 1 != 0).any()):
         raise ValueError(f"{name} must be whole numbers of {limits.dtype}, got {array.dtype} of others")
     shared = array.dtype == kind and array.flags.c_contiguous and _frozen(values)
-    return array if shared else _own(values, kind)
+    return array if shared else _copied(values, kind)
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

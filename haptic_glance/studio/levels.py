@@ -44,13 +44,13 @@ class Levels:
 
     def __init__(self, specimen: Specimen, look: Look) -> None:
         self.specimen, self.looked, self.lock = specimen, look, RLock()
-        self._found: dict[tuple[int, str], Level] = {}
+        self._levels: dict[tuple[int, str], Level] = {}
 
     @cached_property
     def tasks(self) -> dict[str, SimplificationTask]:
         """{SOFT, HARD: the SimplificationTask}."""
-        mesh, _ = repaired(self.specimen.given)
-        keeps_vertices = len(mesh.vertices) == len(self.specimen.given.vertices)
+        mesh, _ = repaired(self.specimen.source)
+        keeps_vertices = len(mesh.vertices) == len(self.specimen.source.vertices)
         values = self.looked.saliency if keeps_vertices else saliency(mesh, self.looked.method)
         places = np.array([row[2:5] for row in self.looked.points]).reshape(-1, 3)
         points = np.unique(KDTree(mesh.vertices).query(places)[1]).astype(np.int64)
@@ -69,10 +69,10 @@ class Levels:
     def at(self, faces: int, kind: str, report: Report) -> Level:
         """The Level of at most `faces` faces. ValueError that says what is feasible."""
         with self.lock:
-            if (faces, kind) not in self._found:
-                self._found = dict(list(self._found.items())[1 - KEPT :])
-                self._found[faces, kind] = self._made(faces, kind, report)
-            return self._found[faces, kind]
+            if (faces, kind) not in self._levels:
+                self._levels = dict(list(self._levels.items())[1 - KEPT :])
+                self._levels[faces, kind] = self._made(faces, kind, report)
+            return self._levels[faces, kind]
 
     def _made(self, faces, kind, report):
         first = not any(FOLDER.rglob("*.nbc"))

@@ -25,8 +25,8 @@ class Guess:
     """An object that is touched.
 
     name: what it is. hidden: whether its mesh and name are not shown before the end. helped: touches that the planner
-    made. said: what the person takes it for, who need not wait until the belief is sure. over: whether a hidden object
-    is found out, or given up. told: the verdict, once it is known.
+    made. person_answer: the person's guess, who need not wait until the belief is sure. over: whether a hidden object
+    is found out, or given up. verdict_text: the verdict, once it is known.
     """
 
     specimen: Specimen
@@ -34,9 +34,9 @@ class Guess:
     name: str
     hidden: bool = False
     helped: int = 0
-    said: str = ""
+    person_answer: str = ""
     over: bool = False
-    told: str = ""
+    verdict_text: str = ""
 
     @property
     def touches(self) -> int:
@@ -109,7 +109,7 @@ def verdict(game: Guess, planner: tuple[int, str], escaped: Callable[[str], str]
     if planner[1] != game.name:
         theirs = f"took it for {escaped(planner[1])}" if planner[1] else "gave up"
         theirs = f"the planner alone {theirs} after {planner[0]}"
-    answer = game.said or game.exploration.belief.known
+    answer = game.person_answer or game.exploration.belief.known
     yours = "You knew it" if answer == game.name else f"You took it for {escaped(answer)}" if answer else "You gave up"
     helped = f", {game.helped} of them the planner's" if game.helped else ""
     return f"**It is {escaped(game.name)}.** {yours} after {count(game.touches)}{helped}; {theirs}."

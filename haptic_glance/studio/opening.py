@@ -61,7 +61,7 @@ class Opening:
     def turn(self) -> None:
         """Another axis points up."""
         specimen, up = self.window.session.on_table, self.axis.value
-        if up != specimen.given.up:
+        if up != specimen.source.up:
             self.put(f"Turning {specimen.name}", lambda: turned(specimen, up))
 
     def put(self, title: str, make: Callable[[], Specimen]) -> None:
@@ -80,11 +80,11 @@ class Opening:
 
     def named(self, specimen: Specimen) -> None:
         """Says what is on the table."""
-        count, note = f"{len(specimen.given.faces):,} faces", specimen.note.partition(" (")[0]
+        count, note = f"{len(specimen.source.faces):,} faces", specimen.note.partition(" (")[0]
         self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(note)}"
-        if specimen.given.up not in self.axis.options:  # a vector
-            self.axis.options = (*self.axis.options, specimen.given.up)
-        self.axis.value = specimen.given.up
+        if specimen.source.up not in self.axis.options:  # a vector
+            self.axis.options = (*self.axis.options, specimen.source.up)
+        self.axis.value = specimen.source.up
 
     def refuse(self, name: str, size: int) -> None:
         """Says that an upload is too large."""

@@ -59,21 +59,21 @@ class Hit:
 
 
 class Specimen:
-    """given: the Mesh in its file's coordinates. note: what is known of its up axis.
+    """source: the Mesh in its file's coordinates. note: what is known of its up axis.
 
     Several threads may ask: each answer is computed once.
     """
 
-    def __init__(self, given: Mesh, name: str, note: str = "", path: Path | None = None) -> None:
-        self.given, self.name, self.note, self.path = given, name, note, path
+    def __init__(self, source: Mesh, name: str, note: str = "", path: Path | None = None) -> None:
+        self.source, self.name, self.note, self.path = source, name, note, path
         self.lock = RLock()
         self._looks: dict[tuple, Look] = {}
         self._looked: tuple[str, Looked] | None = None  # of the last method
 
     @cached_property
     def baked(self) -> Mesh:
-        """`given`, its texture turned into colours of the vertices."""
-        return bake_texture(self.given)
+        """`source`, its texture turned into colours of the vertices."""
+        return bake_texture(self.source)
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -86,7 +86,7 @@ class Specimen:
     @cached_property
     def unit(self) -> float:
         """One unit of `mesh`, in units of the file."""
-        return float(centre_and_radius(self.given)[1]) / RADIUS
+        return float(centre_and_radius(self.source)[1]) / RADIUS
 
     @cached_property
     def rays(self) -> RayScene:
@@ -122,10 +122,10 @@ class Specimen:
 
     def _look(self, method, count):
         if METHODS[method].channels:
-            return RENDERING.submit(self._found, method, count).result()
-        return self._found(method, count)
+            return RENDERING.submit(self._find, method, count).result()
+        return self._find(method, count)
 
-    def _found(self, method, count):
+    def _find(self, method, count):
         """The Look; another count of the same method needs neither another look nor another mesh to draw."""
         if self._looked is None or self._looked[0] != method:
             self._looked = method, Looked(self.baked, method)
@@ -134,7 +134,7 @@ class Specimen:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
         earlier = next((look.drawn for (name, _), look in self._looks.items() if name == method), None)
         fine_mesh = earlier or finely(self.mesh, detection.saliency, method)
-        return Look(method, detection.saliency, points_of(self.given, detection), fine_mesh)
+        return Look(method, detection.saliency, points_of(self.source, detection), fine_mesh)
 
 
 def files_at(place: Path) -> list[Path]:
@@ -165,4 +165,4 @@ def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
 
 def turned(specimen: Specimen, up: str) -> Specimen:
     """The same mesh with another axis up; nothing that was found on the old one is kept."""
-    return Specimen(replace(specimen.given, up=up), specimen.name, f"{up} up", specimen.path)
+    return Specimen(replace(specimen.source, up=up), specimen.name, f"{up} up", specimen.path)

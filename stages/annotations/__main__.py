@@ -48,7 +48,7 @@ def passes(path: Path, mesh: Mesh) -> list[np.ndarray]:
     return [group.vertex.to_numpy() for _, group in marks.groupby("annotator", sort=False)]
 
 
-def found(mesh: Mesh, ours: np.ndarray, theirs: np.ndarray, near: float) -> float:
+def found_share(mesh: Mesh, ours: np.ndarray, theirs: np.ndarray, near: float) -> float:
     """The share of `ours` that has one of `theirs` within `near`, a share of the diagonal."""
     distance, _ = KDTree(mesh.vertices[theirs]).query(mesh.vertices[ours])
     return float((distance <= near * mesh.diagonal).mean())
@@ -58,11 +58,11 @@ def agreement_of_passes(name: str, mesh: Mesh, marked: list[np.ndarray], setting
     """Rows of how well the passes agree with each other, and what chance gives."""
     pairs = list(permutations(marked, 2))
     chance = [
-        found(mesh, ours, random_vertices(mesh, len(theirs), rng(number, f"{name} annotations")), settings.near)
+        found_share(mesh, ours, random_vertices(mesh, len(theirs), rng(number, f"{name} annotations")), settings.near)
         for number in range(seed * settings.draws, (seed + 1) * settings.draws)
         for ours, theirs in pairs
     ]
-    agreed = [found(mesh, ours, theirs, settings.near) for ours, theirs in pairs]
+    agreed = [found_share(mesh, ours, theirs, settings.near) for ours, theirs in pairs]
     means = {"passes": float(np.mean(agreed)), "random": float(np.mean(chance))}
     return [{"method": method, "metric": "found", "value": value} for method, value in means.items()]
 

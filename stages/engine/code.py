@@ -20,7 +20,7 @@ from typing import Any
 from haptic_glance.base.files import write_json
 
 ROOT = Path(__file__).parents[2]  # the folder that holds the package `stages`
-OWN = Path(__file__).read_bytes()
+THIS_CODE = Path(__file__).read_bytes()
 PACKAGE = "stages"
 PACKAGES = PACKAGE, "haptic_glance"  # what a stage may import
 LOCAL = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
@@ -159,7 +159,7 @@ _ASKED: dict[str, Facts] = {}  # {key: Facts} of this process
 def _facts(path: Path) -> Facts:
     content = path.read_bytes()
     # all that Facts follow from; another Python writes the same tree as another text
-    parts = OWN, str(path.relative_to(ROOT)).encode(), content, repr(sys.version_info[:2]).encode()
+    parts = THIS_CODE, str(path.relative_to(ROOT)).encode(), content, repr(sys.version_info[:2]).encode()
     key = hashlib.sha256(b"\0".join(parts)).hexdigest()[:32]
     entry = _kept().get(key)
     _ASKED[key] = Facts(**entry) if entry else _work_out(path, content)

@@ -49,7 +49,7 @@ class Search:
         self.folder, self.senses, self.seed = folder, senses, seed
         self._end = time.monotonic() + 60 * minutes
         self._numbers: dict[Choice, int] = {}  # in the order in which they were first asked about
-        self._found: dict[tuple[str, Choice], Rows] = {}
+        self._measured: dict[tuple[str, Choice], Rows] = {}
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         folder.mkdir(parents=True, exist_ok=True)
         storage = JournalStorage(JournalFileBackend(str(folder / "study.journal")))
@@ -83,7 +83,7 @@ class Search:
             self._asked("confirmation", unseen, choice, CONFIRMATION, roles.get(choice))
         for choice in one_choice_changed(smallest_of(rows)):
             self._asked("one_choice", unseen, choice, CONFIRMATION)
-        return [row for group in self._found.values() for row in group]
+        return [row for group in self._measured.values() for row in group]
 
     def _wide(self, searched, trials):
         """{choice: its rows} of the choices that the study proposes, until it has asked about so many."""
@@ -125,8 +125,8 @@ class Search:
             text = " ".join(f"{value:.3g}" for value in aims(rows)[:3])
             print(f"front: {rung} {choice.name}: {text} (regions, objects, seconds)", file=sys.stderr)
         common = {"rung": rung, "number": self._numbers.setdefault(choice, len(self._numbers)), "role": role}
-        self._found[rung, choice] = [{**row, **common} for row in read_json(path)]
-        return self._found[rung, choice]
+        self._measured[rung, choice] = [{**row, **common} for row in read_json(path)]
+        return self._measured[rung, choice]
 
 
 Key = TypeVar("Key")

@@ -20,7 +20,7 @@ from .tables import number
 
 PLACE = re.compile(r"\{(\S+) ((?:[^:{}]|:(?! ))*): ([^{}]+)\}")
 PAIR = re.compile(r"(\w+)(!?=)(.*?)(?=\s+\w+!?=|\s*$)")
-WHAT = re.compile(r"(.+?)(?: ([+,]*\.\d+[fg]))?")  # columns and words, format
+REQUEST = re.compile(r"(.+?)(?: ([+,]*\.\d+[fg]))?")  # columns and words, format
 CLAIMS = "claims"  # reports/claims.csv; all others are KIND/NAME
 QUALIFIED = ("depends on the reading", "not testable")  # verdicts without which a figure of a claim would mislead
 ROWS = "rows"  # in place of columns: how many rows there are
@@ -85,7 +85,7 @@ def text_of(rows: pd.DataFrame, request: str) -> str:
 
 def parts_of(request: str) -> tuple[list[str], list[str], str]:
     """(columns, the two words for a difference or none, format) of `mean low high NSS higher|NSS lower .2f`."""
-    text, style = WHAT.fullmatch(request.strip()).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    text, style = REQUEST.fullmatch(request.strip()).groups()  # pyright: ignore[reportOptionalMemberAccess]
     match = re.fullmatch(r"(\S+ \S+ \S+) ([^|]+)\|([^|]+)", text)
     columns, *words = match.groups() if match else (text,)
     return columns.split(), words, style or ""

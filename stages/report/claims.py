@@ -130,14 +130,14 @@ class Claim:
     ties: bool = False
 
     @property
-    def own(self) -> bool:
+    def is_ours(self) -> bool:
         """Whether the claim is the project's own, and not the thesis's."""
         return self.section == "ours"
 
     @property
     def judging(self) -> int:
         """The number of leading sets whose rows give the verdict."""
-        printed = self.printed if self.printed is not None else 0 if self.own else 1
+        printed = self.printed if self.printed is not None else 0 if self.is_ours else 1
         return printed or len(self.sets)
 
     @property

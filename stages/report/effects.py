@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from functools import cached_property
 from importlib import import_module
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -64,15 +63,14 @@ def side(
 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
-    part, keys = _side_rows(results, claim, selection, other, extra), [*claim.over, *claim.within]
-    if not keys:
+    part = _side_rows(results, claim, selection, other, extra)
+    if not part.keys:
         return part.rows["value"]
+    values = part.means
     if part.several:
-        cells = part.rows.groupby([*keys, *part.several], sort=False)["value"].mean()
+        cells = part.rows.groupby([*part.keys, *part.several], sort=False)["value"].mean()
         values = cells.unstack(part.several, sort=False).dropna().mean(axis=1)
-    else:
-        values = part.rows.groupby(keys, sort=False)["value"].mean()
-    return values.drop(invalid_pairs(part.rows, part.reasons, keys).index, errors="ignore")
+    return values.drop(part.invalid.index, errors="ignore")
 
 
 def invalid_pairs(rows: pd.DataFrame, reasons: pd.Series, keys: Sequence[str]) -> pd.Series:
@@ -106,9 +104,10 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
         side_rows = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)
                  for k, selection in enumerate(sides)]  # fmt: skip
         parts = [part.rows for part in side_rows]
-        bad = [invalid_pairs(part.rows, part.reasons, keys) for part in side_rows]
+        bad = [part.invalid if part.keys == keys else invalid_pairs(part.rows, part.reasons, keys)
+               for part in side_rows]  # fmt: skip
         if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
-            first, second = (part.groupby(keys, sort=False)["value"].mean() for part in parts)
+            first, second = (part.means for part in side_rows)
             pair_means = pd.concat({"first": first, "second": second}, axis=1, join="inner")
             bad.append(pd.Series(SAME, index=pair_means.index[_same_mesh(claim, pair_means)], dtype=object))
         contrasts.append((parts, pd.concat(bad)))
@@ -132,15 +131,28 @@ def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
     return (joined["first"] == joined["second"]) & (joined["first"] > 0)
 
 
-class SideRows(NamedTuple):
+@dataclass(frozen=True)
+class SideRows:
     """The rows of one side of a claim; several: the columns over whose several values the side is a mean.
 
-    reasons: the cause why a row is invalid, empty text for a valid row; empty where a claim is not checked.
+    keys: the columns that name a pair. reasons: the cause why a row is invalid, empty text for a valid row; empty where
+    a claim is not checked.
     """
 
     rows: pd.DataFrame
+    keys: list[str]
     several: list[str]
     reasons: pd.Series
+
+    @cached_property
+    def means(self) -> pd.Series:
+        """The mean value of each pair."""
+        return self.rows.groupby(self.keys, sort=False)["value"].mean()
+
+    @cached_property
+    def invalid(self) -> pd.Series:
+        """The cause of each invalid pair."""
+        return invalid_pairs(self.rows, self.reasons, self.keys)
 
 
 def _side_rows(
@@ -165,12 +177,12 @@ def _select(
         rows = _some(rows[[fnmatch(str(name), value) for name in rows[column]]], claim, f"{column} like {value}")
     for column, value in picks.items():
         rows = rows[rows[column] == _picked(rows, claim, column, value, other)]
-    keys = (*claim.over, *claim.within)
+    keys = [*claim.over, *claim.within]
     for column in keys:
         if column not in rows:
             raise NotRun(f"no column {column} in the rows of {claim.stage}", claim.stage)
     several = [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
-    return SideRows(rows, several, reasons_of(results, claim, rows))
+    return SideRows(rows, keys, several, reasons_of(results, claim, rows))
 
 
 def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:

@@ -108,7 +108,7 @@ def both(*claims: Claim, items: str = "touches", verb: str = "touched") -> list[
             claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
             sentence=f"{claim.sentence[:-1]}, on objects never {verb} too." if unseen else claim.sentence,
             shared=partial(shared, split), phrases={**claim.phrases, **words},
-            of=claim.of or (f"{claim.key}_random" if unseen and not claim.own else ""),
+            of=claim.of or (f"{claim.key}_random" if unseen and not claim.is_ours else ""),
         ))  # fmt: skip
     return variants
 

@@ -21,7 +21,7 @@ from stages.salient_points.measure import read_points, read_saliency, read_stron
 
 from . import Params
 
-Found = TypeVar("Found", bound=Sized)
+Findings = TypeVar("Findings", bound=Sized)
 # Sets with the settings of a section of the thesis.
 SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
 SETS_3_1 = SECTION_3_1, "princeton_3_1"  # the protocol of T3.1 on objects of our own and on published ones
@@ -34,7 +34,7 @@ COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
 ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
 BENCH = "bench"
-OWN = "own"  # in place of a stage: of what only a folder of one's own has, or what it never has
+OWN_FOLDER = "own"  # in place of a stage: of what only a folder of one's own has, or what it never has
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 DATASETS = {
@@ -71,7 +71,7 @@ class NotRun(Exception):
         self.stage, self.runnable = stage, runnable
 
 
-def some(findings: Found, message: str, stage: str, runnable: bool = True) -> Found:
+def some(findings: Findings, message: str, stage: str, runnable: bool = True) -> Findings:
     """Returns the findings; raises NotRun of `message` where there are none."""
     if not len(findings):
         raise NotRun(message, stage, runnable)
@@ -266,7 +266,7 @@ class Results:
             self._known[name] = work()
         return self._known[name]
 
-    def recently(self, query: Hashable, work: Callable[[], Found]) -> Found:
+    def recently(self, query: Hashable, work: Callable[[], Findings]) -> Findings:
         """The result of some work on the rows, computed anew once RECENT others were asked for."""
         if query not in self._recent:
             self._recent[query] = work()
@@ -335,7 +335,7 @@ class Results:
     def concerns(self, missing: NotRun) -> bool:
         """Whether what is missing is of this run: with a folder of one's own, of a stage that ran on the sets that are
         switched on."""
-        return bool(self.datasets(missing.stage)) if self.own_meshes else missing.stage != OWN
+        return bool(self.datasets(missing.stage)) if self.own_meshes else missing.stage != OWN_FOLDER
 
     @cached_property
     def objects(self) -> list[str]:

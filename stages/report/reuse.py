@@ -32,15 +32,15 @@ BESIDE = ("topics.py", "reuse.py")  # run, too; what they import does not count:
 VIEWER = (HERE / "page.py",)
 
 
-def key_of(own: Iterable[Path], results: Results) -> str:
+def key_of(part_files: Iterable[Path], results: Results) -> str:
     """Hashes what a part depends on, but for the content of the files that it opens.
 
-    own: the code and the prose of the part alone, such as the files of its topic.
+    part_files: the code and the prose of the part alone, such as the files of its topic.
     """
-    code = tuple(sorted(path for path in own if path.suffix == ".py"))
+    code = tuple(sorted(path for path in part_files if path.suffix == ".py"))
     behind = results.once(code, lambda: files_behind([*code, *(HERE / name for name in COMMON)]))
     files = [path for path in behind if path.suffix != ".md"]  # prose of other topics
-    files += sorted(path for path in own if path.suffix == ".md") + [HERE / name for name in BESIDE]
+    files += sorted(path for path in part_files if path.suffix == ".md") + [HERE / name for name in BESIDE]
     digests = [(str(path), file_digest(path)) for path in files]
     return _hash(results.once("inputs", lambda: _inputs(results)), *digests)
 

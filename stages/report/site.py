@@ -155,9 +155,10 @@ def questions_html(answers: Sequence[tuple[str, str, str]]) -> str:
 HOME, FOLDER = "index.html", "site"
 CHARTS = ("front", "touch", "attention")  # the chart of the front page: the first of these that was drawn
 WIDE = 1700  # pixels of the first picture
-WHAT = """A person glances at an object, knows which few places matter, touches only those, and knows what it is. Haptic
-Glance does the same for 3D meshes: it predicts where people look, keeps the mesh fine there, presses a virtual pressure
-array there, and recognises the object. It tests every claim of a thesis on the way, and says which fail."""
+INTRODUCTION = """A person glances at an object, knows which few places matter, touches only those, and knows what it
+is. Haptic Glance does the same for 3D meshes: it predicts where people look, keeps the mesh fine there, presses a
+virtual pressure array there, and recognises the object. It tests every claim of a thesis on the way, and says which
+fail."""
 
 
 def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) -> list[str]:
@@ -264,7 +265,7 @@ def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, st
     missing = "".join(f"<li>{', '.join(names)}: {prose(reason)}</li>" for reason, names in reasons.items())
     words = {
         "heading": "Your meshes" if own_meshes else "The pipeline on one object",
-        "what": prose(" ".join(WHAT.split())),
+        "what": prose(" ".join(INTRODUCTION.split())),
         "dataset": prose(parts["dataset"]),
         "pictures": "".join(image(figures[name], WIDE) for name in parts["first"] if name in figures),
         "findings": "" if own_meshes else findings_html(parts["claims"], parts["differences"]),

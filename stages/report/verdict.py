@@ -73,7 +73,7 @@ def by_claim(claims: Sequence[Claim], results: Results) -> list[Row]:
 def tabled(claims: Sequence[Claim], rows: Sequence[Row]) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The frames of `judged` from the rows of `by_claim`: adds the columns that depend on other claims."""
     first: dict[tuple[bool, str], str] = {}
-    primaries = [claim.of or first.setdefault((claim.own, claim.sentence), claim.key) for claim in claims]
+    primaries = [claim.of or first.setdefault((claim.is_ours, claim.sentence), claim.key) for claim in claims]
     frame = pd.DataFrame([columns for columns, _ in rows], columns=COLUMNS)
     frame["of"] = [key if key != claim.key else "" for key, claim in zip(primaries, claims, strict=True)]
     frame["holds"] = holding(frame)
@@ -90,7 +90,7 @@ def _row(claim: Claim, results: Results) -> Row:
         return row | unmeasured | {"verdict": "open"}, []
     judgement = next((entry for entry in judgements if entry.word != UNTESTABLE), judgements[0])
     pairs = []
-    for effect in judgement.found:
+    for effect in judgement.set_effects:
         start = f"{effect.dataset}/" if len(claim.sets) > 1 else ""
         pair_names = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
         decides = effect in judgement.chosen
@@ -104,7 +104,7 @@ class Judgement:
 
     name: str
     claim: Claim
-    found: list[Effect]
+    set_effects: list[Effect]
     missing: list[str]
     chosen: list[Effect]
 
@@ -198,7 +198,7 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
 
 def _words(judgement: Judgement, results: Results) -> dict[str, str]:
     """Columns tested_on, by_set, carries and validity."""
-    claim, set_effects, selection = judgement.claim, judgement.found, judgement.chosen
+    claim, set_effects, selection = judgement.claim, judgement.set_effects, judgement.chosen
     missing = [] if results.own_meshes else judgement.missing
     words = tested_on(claim, results, [effect.dataset for effect in selection])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
@@ -273,10 +273,10 @@ def counted(claims: pd.DataFrame) -> str:
     frame, thesis = sentences(claims), of_thesis(claims)
     ours, proposals = (frame[frame["section"] == section] for section in ("ours", PROPOSED))
     return (
-        f"Sentences of the thesis ({len(thesis)}): {_said(thesis)}. "
-        f"Its proposals for future work ({PROPOSED}, {len(proposals)}): {_said(proposals)}. "
-        f"Sentences of this project ({len(ours)}): {_said(ours)}. "
-        f"Verdicts, with {len(claims) - len(frame)} that test a sentence elsewhere ({len(claims)}): {_said(claims)}. "
+        f"Sentences of the thesis ({len(thesis)}): {_counts(thesis)}. "
+        f"Its proposals for future work ({PROPOSED}, {len(proposals)}): {_counts(proposals)}. "
+        f"Sentences of this project ({len(ours)}): {_counts(ours)}. "
+        f"Verdicts, with {len(claims) - len(frame)} that test a sentence elsewhere ({len(claims)}): {_counts(claims)}. "
         f"Of the {decided} that are supported or contradicted, {(claims['holds'] == 'yes').sum()} hold among the "
         "claims of their chapter, at a false discovery rate of 5 %."
     )
@@ -288,7 +288,7 @@ def open_by_cause(claims: pd.DataFrame) -> str:
     return f"Open verdicts by cause: {', '.join(f'{cause} {count}' for cause, count in tally.items() if count)}."
 
 
-def _said(frame: pd.DataFrame) -> str:
+def _counts(frame: pd.DataFrame) -> str:
     return ", ".join(f"{count} {word}" for word, count in counts(frame).items() if count) or "none"
 
 

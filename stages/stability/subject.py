@@ -31,7 +31,7 @@ class Findings:
     """The findings of the methods on one mesh, per method, with the seconds that each took."""
 
     perturbed: Perturbed
-    found: dict[str, Detection]
+    detections: dict[str, Detection]
     seconds: dict[str, float]
 
 
@@ -67,7 +67,7 @@ class Subject:
 
         Random points are drawn anew each time: equal draws would look repeatable.
         """
-        pairs = self.unperturbed.found.items()
+        pairs = self.unperturbed.detections.items()
         return {
             name: detection
             for name, detection in pairs
@@ -90,15 +90,15 @@ class Subject:
         """Rows of the unperturbed object: how many points each method has, its agreement with people, its seconds."""
         return [
             self._row(method, None, *item, self.unperturbed.seconds[method])
-            for method, detection in self.unperturbed.found.items()
+            for method, detection in self.unperturbed.detections.items()
             for item in ({"points": detection.strong} | self._agreement(detection.saliency)).items()
         ]
 
     def rows(self, disturbance: Disturbance, case: Findings) -> list[dict]:
         """Rows of Findings: repeatability, chance (of as many random points), points; of a map drift and agreement."""
         rows = []
-        for method, detection in case.found.items():
-            before = self.mesh.vertices[self.unperturbed.found[method].points]
+        for method, detection in case.detections.items():
+            before = self.mesh.vertices[self.unperturbed.detections[method].points]
             tolerance = TOLERANCE * self.mesh.diagonal
             draws = rng(self.options.seed, f"{self.options.name} {disturbance} {method} chance")
             values = {
@@ -106,7 +106,7 @@ class Subject:
                 "chance": chance_repeatability(before, case.perturbed, len(detection.points), draws, tolerance),
                 "points": detection.strong,
             }
-            saliency = self.unperturbed.found[method].saliency
+            saliency = self.unperturbed.detections[method].saliency
             if saliency is not None and detection.saliency is not None:
                 back = at_original_vertices(self.mesh, case.perturbed, detection.saliency)
                 values |= {"drift": drift(saliency, back, self.mesh.vertex_areas)} | self._agreement(back)
@@ -139,13 +139,13 @@ def worst_arrays(subject: Subject, cases: Sequence[tuple[Disturbance, Findings]]
     before and after, and vertices and faces of the perturbed mesh. Methods without a saliency are left out.
     """
     arrays = {}
-    for method, plain in subject.unperturbed.found.items():
+    for method, plain in subject.unperturbed.detections.items():
         if plain.saliency is None or not cases:
             continue
         scores = [_score(subject, method, case) for _, case in cases]
         worst = int(np.argmin(scores))
         disturbance, case = cases[worst]
-        detection, mesh = case.found[method], case.perturbed.mesh
+        detection, mesh = case.detections[method], case.perturbed.mesh
         assert detection.saliency is not None  # a method has one under every perturbation or under none
         values = {
             "perturbation": np.array(disturbance.name), "severity": np.float64(disturbance.severity or 0.0),
@@ -158,8 +158,8 @@ def worst_arrays(subject: Subject, cases: Sequence[tuple[Disturbance, Findings]]
 
 
 def _score(subject, method, case):
-    before = subject.mesh.vertices[subject.unperturbed.found[method].points]
-    after = case.perturbed.original_positions[case.found[method].points]
+    before = subject.mesh.vertices[subject.unperturbed.detections[method].points]
+    after = case.perturbed.original_positions[case.detections[method].points]
     return repeatability(before, after, TOLERANCE * subject.mesh.diagonal)
 
 

@@ -53,14 +53,14 @@ class Uses:
 
     def _at_original(self, case: Findings, method: str) -> np.ndarray:
         """(k,) vertices of the object as it is, nearest to where a method's points lie on it, each one time."""
-        places = case.perturbed.original_positions[case.found[method].points].reshape(-1, 3)
+        places = case.perturbed.original_positions[case.detections[method].points].reshape(-1, 3)
         nearest = self.used[KDTree(self.mesh.vertices[self.used]).query(places)[1]]
         return np.array(list(dict.fromkeys(nearest.tolist())), dtype=np.int64)
 
     def _measure(self, method, perturbation, severity, points):
         key = method, points.tobytes()  # what cannot be seen changes no point
         if key not in self._errors:
-            self._errors[key] = _errors(self.mesh, points[:KEPT], self.subject.unperturbed.found[method].saliency)
+            self._errors[key] = _errors(self.mesh, points[:KEPT], self.subject.unperturbed.detections[method].saliency)
         common = {"item": self.subject.options.name, "method": method, "perturbation": perturbation}
         self.rows += [
             common | {"severity": severity, "metric": f"lod_{metric}", "value": value}

@@ -20,10 +20,12 @@ def objects(count=8):
     return items
 
 
-def around(found):
-    names = tuple(found["o0"].features)
-    amounts = [item.amounts for item in found.values()]
-    return fit_fixations([item.stacked(names) for item in found.values()], amounts, [np.ones(len(a)) for a in amounts])
+def around(responses):
+    names = tuple(responses["o0"].features)
+    amounts = [item.amounts for item in responses.values()]
+    return fit_fixations(
+        [item.stacked(names) for item in responses.values()], amounts, [np.ones(len(a)) for a in amounts]
+    )
 
 
 def test_the_feature_that_draws_gaze_is_chosen_and_little_else():
@@ -42,12 +44,12 @@ def judged(tmp_path, monkeypatch):
     """A function from objects to their rows, without meshes to be looked at."""
     monkeypatch.setattr(checks, "FIXED", ("f0", "f3"))
 
-    def rows(found):
+    def rows(responses):
         def saliency(path, weights):
-            return fixation_density(found[path.stem].features, weights)
+            return fixation_density(responses[path.stem].features, weights)
 
         monkeypatch.setattr(checks, "_saliency", saliency)
-        for name, item in found.items():
+        for name, item in responses.items():
             arrays = {"amounts": item.amounts, "density": item.amounts + 0.01, "areas": np.ones(len(item.amounts))}
             arrays |= {"glance": item.stacked(tuple(item.features)), "glance_names": np.array(list(item.features))}
             write_arrays(
@@ -56,7 +58,7 @@ def judged(tmp_path, monkeypatch):
                 glance_amounts=item.amounts,
                 glance_areas=item.areas,
             )
-        return pd.DataFrame(checks.process_nested("glance", tmp_path, tmp_path, list(found)))
+        return pd.DataFrame(checks.process_nested("glance", tmp_path, tmp_path, list(responses)))
 
     return rows
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from haptic_glance.__main__ import OWN, SHELL
+from haptic_glance.__main__ import MESH_COMMANDS, SHELL_COMMANDS
 from haptic_glance.__main__ import run as run_command
 from haptic_glance.cli import completion
 from haptic_glance.cli.completion import OPTIONS, bash, fish, options_of, run
@@ -39,7 +39,9 @@ def test_the_options_are_those_that_help_lists(monkeypatch, capsys):
 
     monkeypatch.setattr(completion.subprocess, "run", here)
     kept = json.loads(OPTIONS.read_text())
-    assert set(kept) == {*OWN, *SHELL} and {"--help", "--out", "--json", "--up"} <= set(kept["points"])
+    assert set(kept) == {*MESH_COMMANDS, *SHELL_COMMANDS} and {"--help", "--out", "--json", "--up"} <= set(
+        kept["points"]
+    )
     again = "python -c 'from haptic_glance.cli.completion import write_options; write_options()'"
     for command in ("points", "simplify", "touch", "saliency", "gallery"):
         assert options_of(command) == kept[command], f"{command} has other options now: {again}"

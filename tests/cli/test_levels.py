@@ -53,7 +53,7 @@ def test_levels_are_counts_or_shares_each_once_and_keep_the_format_where_it_can_
 
 def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
     looks, look = [], simplify.saliency
-    monkeypatch.setattr(simplify, "saliency", lambda *given: looks.append(1) or look(*given))
+    monkeypatch.setattr(simplify, "saliency", lambda *args: looks.append(1) or look(*args))
     assert run([str(file), "--levels", "50%,200,10%", "--out", str(tmp_path / "out")]) == 0
     faces = {path.name: len(load(path).faces) for path in (tmp_path / "out").iterdir()}
     assert faces == {"egg_50pct.ply": 640, "egg_200.ply": 200, "egg_10pct.ply": 128} and len(looks) == 1

@@ -54,9 +54,9 @@ def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_pat
     assert [list(row) for row in rows] == [list(COLUMNS)] * 3 and "written" in shown.err
     lines = table.read_text().splitlines()
     assert len(lines) == 4 and lines[1].startswith(f"1,{rows[0]['vertex']},")
-    given, coloured = load(egg), load(out)
-    assert coloured.vertices == pytest.approx(given.vertices, rel=1e-6)
-    values = saliency(given)
+    plain, coloured = load(egg), load(out)
+    assert coloured.vertices == pytest.approx(plain.vertices, rel=1e-6)
+    values = saliency(plain)
     bright, dark = coloured.colors[values.argmax()], coloured.colors[values.argmin()]
     assert bright[0] > 200 > dark[0]  # viridis: yellow, violet
     assert np.asarray(Image.open(picture)).std() > 10
@@ -115,9 +115,9 @@ def test_fewer_places_than_asked_for_are_said_and_a_folder_is_made(tmp_path, cap
 
 def test_a_file_that_cannot_be_read_is_named_and_the_mesh_is_not_overwritten(egg, tmp_path):
     (tmp_path / "broken.stl").write_bytes(b"solid nothing")
-    for given, reason in (("broken.stl", "truncated"), ("nowhere.stl", "no such file"), ("", "is a folder")):
-        with pytest.raises(ValueError, match=f"^{tmp_path / given}: {reason}"):
-            run([str(tmp_path / given)])
+    for plain, reason in (("broken.stl", "truncated"), ("nowhere.stl", "no such file"), ("", "is a folder")):
+        with pytest.raises(ValueError, match=f"^{tmp_path / plain}: {reason}"):
+            run([str(tmp_path / plain)])
     before = egg.read_bytes()
     with pytest.raises(ValueError, match="is the mesh itself"):
         run([str(egg), "--out", str(egg)])

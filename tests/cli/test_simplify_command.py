@@ -281,10 +281,18 @@ def test_a_free_boundary_is_simplified_and_what_forbids_it_is_named(tmp_path, ca
     a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
     sheet = Mesh(np.c_[x, y, np.sin(x)], np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]))
     write_any(tmp_path / "sheet.obj", sheet)
-    given = [str(tmp_path / "sheet.obj"), "--method", "qem", "--out", str(tmp_path / "out.obj"), "--faces", "100"]
+    command_line = [
+        str(tmp_path / "sheet.obj"),
+        "--method",
+        "qem",
+        "--out",
+        str(tmp_path / "out.obj"),
+        "--faces",
+        "100",
+    ]
     with pytest.raises(ValueError, match="80 boundary edges are frozen: .*--free-borders"):
-        run(given)
+        run(command_line)
     with pytest.raises(ValueError, match="--free-borders has no effect with --backend pymeshlab"):
-        run([*given, "--free-borders", "--backend", "pymeshlab"])
-    assert run([*given, "--free-borders"]) == 0
+        run([*command_line, "--free-borders", "--backend", "pymeshlab"])
+    assert run([*command_line, "--free-borders"]) == 0
     assert len(load(tmp_path / "out.obj").faces) <= 100 and "border edges kept" not in capsys.readouterr().out

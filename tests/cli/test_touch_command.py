@@ -104,12 +104,12 @@ def test_normals_and_axes_are_those_of_the_file(touched, file):
 
 @pytest.mark.parametrize("up", ["x", "y"])
 def test_coordinates_come_back_from_the_meshs_frame(up):
-    given = Mesh(bumpy().vertices, bumpy().faces, up=up)
-    model = UserMesh(given, "ball")
+    unturned = Mesh(bumpy().vertices, bumpy().faces, up=up)
+    model = UserMesh(unturned, "ball")
     points = np.random.default_rng(0).random((5, 3))
     assert np.allclose(model.from_file(model.to_file(points)), points)
-    assert np.allclose(model.to_file(model.mesh.vertices), given.vertices)
-    assert np.allclose(model.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
+    assert np.allclose(model.to_file(model.mesh.vertices), unturned.vertices)
+    assert np.allclose(model.mesh.vertices, normalise(rotate_to_z_up(unturned, up)).vertices)
 
 
 def test_random_places_depend_on_the_seed_alone(touched, file):

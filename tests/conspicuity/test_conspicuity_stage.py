@@ -48,7 +48,7 @@ def test_maps_of_all_views_and_their_measurements_and_one_object_more_costs_one_
     assert metrics == {"maps": 12, "silhouette_share": pytest.approx(shares.value.mean(), rel=1e-5)}
 
     measured, measure = [], stage.measured_maps
-    monkeypatch.setattr(stage, "measured_maps", lambda *given: measured.append(given) or measure(*given))
+    monkeypatch.setattr(stage, "measured_maps", lambda *args: measured.append(args) or measure(*args))
     write_object(workspace, "plate", (0.6, 0.6, 0.1))
     stage.run(workspace)
     assert len(measured) == 4

@@ -37,8 +37,8 @@ def linear(points=POINTS):
     return Task(model, lambda ids: points[ids], lambda ids: points[ids], lambda *_: None, lambda others: others)
 
 
-def learn(task, learning, labels=LABELS, **other):
-    settings = {"rate": 0.1, "epochs": 60, "batch": 10, "momentum": 0.9} | other
+def learn(task, learning, labels=LABELS, **second):
+    settings = {"rate": 0.1, "epochs": 60, "batch": 10, "momentum": 0.9} | second
     with repeatable(1):
         return train_model(task, labels, FIT, learning=learning, **settings)
 
@@ -55,8 +55,8 @@ def killed_after(steps, task):
     return replace(task, training_inputs=inputs)
 
 
-def same(one, other):
-    return all(torch.equal(value, other.state_dict()[key]) for key, value in one.state_dict().items())
+def same(first, second):
+    return all(torch.equal(value, second.state_dict()[key]) for key, value in first.state_dict().items())
 
 
 def test_a_linear_problem_is_learned_to_the_end_before_the_last_pass():
@@ -203,8 +203,8 @@ def test_a_checkpoint_is_whole_or_absent(tmp_path, monkeypatch):
 def test_a_checkpoint_of_another_training_is_passed_over_with_a_word(tmp_path, capsys, network, changes, word):
     path = tmp_path / "trial.pt"
 
-    def train(task, patience=8, checkpoint=None, **other):
-        return learn(task, Learning(VALIDATION, patience), **SHORT | other, checkpoint=checkpoint)
+    def train(task, patience=8, checkpoint=None, **second):
+        return learn(task, Learning(VALIDATION, patience), **SHORT | second, checkpoint=checkpoint)
 
     with pytest.raises(Killed):
         train(killed_after(4, task_of("finetuned", **network)), **changes, checkpoint=path)
@@ -219,13 +219,13 @@ def test_what_cannot_be_read_or_put_back_leaves_all_as_it_was(tmp_path, capsys):
     optimiser = torch.optim.SGD(model.parameters(), lr=0.1, momentum=0.9)
     save(path, 3, {}, model=model, optimiser=optimiser)
     whole = torch.load(path, weights_only=True)
-    other = small()
-    fewer = torch.optim.SGD(list(other.parameters())[:2], lr=0.1, momentum=0.9)
-    before = {key: value.clone() for key, value in other.state_dict().items()}
-    assert resume(path, {}, model=other, optimiser=fewer) == 0 and "ignored" in capsys.readouterr().err
+    second = small()
+    fewer = torch.optim.SGD(list(second.parameters())[:2], lr=0.1, momentum=0.9)
+    before = {key: value.clone() for key, value in second.state_dict().items()}
+    assert resume(path, {}, model=second, optimiser=fewer) == 0 and "ignored" in capsys.readouterr().err
     del whole["random"]
     torch.save(whole, path)
-    assert resume(path, {}, model=other) == 0 and "cannot be read" in capsys.readouterr().err
+    assert resume(path, {}, model=second) == 0 and "cannot be read" in capsys.readouterr().err
     path.write_bytes(b"PK\x03\x04 half a file")
-    assert resume(path, {}, model=other) == 0 and "cannot be read" in capsys.readouterr().err
-    assert all(torch.equal(value, before[key]) for key, value in other.state_dict().items())
+    assert resume(path, {}, model=second) == 0 and "cannot be read" in capsys.readouterr().err
+    assert all(torch.equal(value, before[key]) for key, value in second.state_dict().items())

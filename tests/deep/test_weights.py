@@ -148,13 +148,13 @@ def test_photographs_are_recognised(name):
 TEXTURES = ("brick", "grass", "gravel", "chelsea", "coffee", "coins", "text", "astronaut")
 
 
-def crops(size=32, each=4):
+def crops(size=32, count=4):
     """Grey crops (k, 3, size, size), their photographs (k,), and which come from the right half (k,)."""
     generator, images, labels, right = np.random.default_rng(0), [], [], []
     for label, name in enumerate(TEXTURES):
         photo = np.asarray(getattr(skimage.data, name)(), dtype=float)
         photo = photo.mean(axis=2) if photo.ndim == 3 else photo
-        for half in np.repeat([0, 1], each):
+        for half in np.repeat([0, 1], count):
             row = generator.integers(photo.shape[0] - size + 1)
             column = generator.integers(photo.shape[1] // 2 - size + 1) + half * (photo.shape[1] // 2)
             crop = photo[row : row + size, column : column + size]

@@ -29,11 +29,11 @@ def sections(member):
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_public_function_documents_its_parameters_and_result(name):
     function = FUNCTIONS[name]
-    signature, found = inspect.signature(function), sections(function)
-    heads = [line for line in found["Parameters"].splitlines() if line and not line.startswith(" ")]
+    signature, parts = inspect.signature(function), sections(function)
+    heads = [line for line in parts["Parameters"].splitlines() if line and not line.startswith(" ")]
     documented = [part.strip() for head in heads for part in head.partition(" : ")[0].split(",")]
     assert sorted(part.lstrip("*") for part in documented) == sorted(signature.parameters)
-    assert ("Returns" in found) == (signature.return_annotation not in (None, "None"))
+    assert ("Returns" in parts) == (signature.return_annotation not in (None, "None"))
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -14,7 +14,7 @@ from _extensions.commands import DEFAULT, command_for, commands  # noqa: E402
 from _extensions.measured import REPORTS, measured  # noqa: E402
 
 import haptic_glance  # noqa: E402
-from haptic_glance.__main__ import OWN  # noqa: E402
+from haptic_glance.__main__ import MESH_COMMANDS  # noqa: E402
 from stages.report.cells import rows_of  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
@@ -98,7 +98,7 @@ def test_every_name_that_a_page_mentions_exists():
 def test_every_command_that_a_page_shows_exists():
     text = "\n".join(map(text_of, SOURCES))
     shown = set(re.findall(r"^#?\s*haptic-glance (\w+)", text, re.M)) - {"contributors"}
-    assert {"saliency", "simplify", "touch"} <= shown <= {*OWN}
+    assert {"saliency", "simplify", "touch"} <= shown <= {*MESH_COMMANDS}
     assert all(find_spec(f"stages.{name}") for name in re.findall(r"python -m stages\.([\w.]*\w)", text))
     experiments = set(re.findall(r"experiment=(\w+)", text))
     assert experiments and all(

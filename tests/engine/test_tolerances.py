@@ -79,7 +79,7 @@ def test_the_widest_move_of_each_metric_is_allowed():
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("rules: [", "is not YAML"),
         ("- a", "must have `rules`"),
@@ -90,23 +90,23 @@ def test_the_widest_move_of_each_metric_is_allowed():
         ("pairs: {lead: ['*.a', b]}", "must list two metrics"),
     ],
 )
-def test_a_wrong_file_is_named_with_what_is_wrong(tmp_path, text, said):
+def test_a_wrong_file_is_named_with_what_is_wrong(tmp_path, text, message):
     path = tmp_path / "tolerances.yaml"
     path.write_text(text)
-    with pytest.raises(ValueError, match=said) as error:
+    with pytest.raises(ValueError, match=message) as error:
         read_tolerances(path)
     assert str(path) in str(error.value)
 
 
 @pytest.mark.parametrize(
-    ("rules", "said"),
+    ("rules", "message"),
     [
         (tolerances(Rule("lod.eror")), "for lod.eror, but no metric is called so, did you mean lod.error?"),
         (tolerances(lead=("touch.ours.accuracy", "touch.random.accuracy")), "did you mean touch.blind.accuracy?"),
         (tolerances(Rule("pairs.lead")), "for pairs.lead"),
     ],
 )
-def test_a_rule_for_no_metric_is_named_with_the_nearest(rules, said):
+def test_a_rule_for_no_metric_is_named_with_the_nearest(rules, message):
     with pytest.raises(ValueError) as error:
         rules.check(BASELINE)
-    assert said in str(error.value)
+    assert message in str(error.value)

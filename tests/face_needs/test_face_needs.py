@@ -72,10 +72,12 @@ def samples(seed=0):
 def test_an_object_is_known_until_its_model_is_that_of_another_and_every_place_is_held_out():
     shares = accuracies(samples(), SETTINGS, 0)
     assert shares["one"].tolist() == shares["other"].tolist() == [1.0] * 5 + [0]
-    given = samples()
-    given["other"] = given["other"][:3]  # an object with fewer levels keeps its last
-    given["one"][0, 0] = given["other"][0].mean(axis=0)  # one place of twelve feels like the other object
-    shares = accuracies(given, SETTINGS, 0)
+    places_by_object = samples()
+    places_by_object["other"] = places_by_object["other"][:3]  # an object with fewer levels keeps its last
+    places_by_object["one"][0, 0] = places_by_object["other"][0].mean(
+        axis=0
+    )  # one place of twelve feels like the other object
+    shares = accuracies(places_by_object, SETTINGS, 0)
     assert shares["other"].shape == (6,) and shares["one"][0] == pytest.approx(11 / 12)
 
 

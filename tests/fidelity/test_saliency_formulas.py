@@ -92,13 +92,13 @@ def printed(picture, channel, mended=False):
     return conspicuity(MESH, view, [channel], size, filled=False, formulas=formulas)[channel]
 
 
-def correlation(found, literal, mask):
+def correlation(computed, literal, mask):
     """Of two maps over the object; pixel k of the library's, a quarter of the picture, lies at 4 k + 1.5 of it."""
     scale = round(mask.shape[0] / literal.shape[0])
-    places = np.stack(np.mgrid[: found.shape[0], : found.shape[1]]) * 4 + 1.5
+    places = np.stack(np.mgrid[: computed.shape[0], : computed.shape[1]]) * 4 + 1.5
     literal = ndimage.map_coordinates(np.asarray(literal, dtype=np.float64), places / scale, order=1, mode="nearest")
-    inside = found > 0
-    return float(np.corrcoef(found[inside], literal[inside])[0, 1])
+    inside = computed > 0
+    return float(np.corrcoef(computed[inside], literal[inside])[0, 1])
 
 
 def test_normalisation(picture, agreement):

@@ -30,17 +30,17 @@ def answers(regions, objects, seconds=1.0, faces=100.0):
     return [{"split": "regions", "value": regions, **common}, {"split": "objects", "value": objects, **common}]
 
 
-def dominates(one, other):
-    return bool((one <= other).all() and (one < other).any())
+def dominates(first, second):
+    return bool((first <= second).all() and (first < second).any())
 
 
 def test_a_dominated_choice_is_never_on_the_front_and_each_rank_is_dominated_by_the_one_before():
     points = np.random.default_rng(0).integers(0, 4, size=(60, 3))  # with many ties
     rank = ranks(points)
-    beaten = np.array([any(dominates(other, point) for other in points) for point in points])
+    beaten = np.array([any(dominates(second, point) for second in points) for point in points])
     assert ((rank == 0) == ~beaten).all() and rank.max() > 1
     for k in range(1, rank.max() + 1):
-        assert all(any(dominates(point, other) for point in points[rank == k - 1]) for other in points[rank == k])
+        assert all(any(dominates(point, second) for point in points[rank == k - 1]) for second in points[rank == k])
 
 
 def test_the_ends_of_an_aim_stand_apart_and_a_crowd_does_not():
@@ -102,10 +102,10 @@ def test_a_study_that_was_stopped_goes_on_like_one_that_was_not_and_the_seed_dec
     count = len(asked)
     known = module.known
 
-    def killed(*given):
+    def killed(*args):
         if len(asked) == count + 13:
             raise KeyboardInterrupt
-        return known(*given)
+        return known(*args)
 
     monkeypatch.setattr(module, "known", killed)
     with pytest.raises(KeyboardInterrupt):

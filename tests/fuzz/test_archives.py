@@ -119,9 +119,9 @@ def unpickling(text):
     """Yields the parts of a module that can build any object from a file."""
     for node in ast.walk(ast.parse(text)):
         name = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
-        given = {keyword.arg: ast.unparse(keyword.value) for keyword in getattr(node, "keywords", [])}
-        torch = name == "torch.load" and given.get("weights_only") != "True"
-        numpy = name == "np.load" and given.get("allow_pickle", "False") != "False"
+        arguments = {keyword.arg: ast.unparse(keyword.value) for keyword in getattr(node, "keywords", [])}
+        torch = name == "torch.load" and arguments.get("weights_only") != "True"
+        numpy = name == "np.load" and arguments.get("allow_pickle", "False") != "False"
         if torch or numpy or name in FORBIDDEN:
             yield name
         if isinstance(node, ast.ClassDef) and any("Unpickler" in ast.unparse(base) for base in node.bases):

@@ -167,10 +167,10 @@ def test_a_boundary_that_leaves_too_many_faces_is_simplified_too(scans):
 def test_where_it_is_stopped_the_page_shows_what_is_done(scans, monkeypatch, capsys):
     work, exhibits = command.exhibit, []
 
-    def stopped(*given):
+    def stopped(*args):
         if exhibits:
             raise KeyboardInterrupt
-        exhibits.append(work(*given))
+        exhibits.append(work(*args))
         return exhibits[0]
 
     monkeypatch.setattr(command, "exhibit", stopped)

@@ -67,7 +67,7 @@ def test_touches_of_a_known_object_end_in_it(library, shapes, name):
 
 def test_an_object_is_explored_as_a_mesh_too_but_in_another_scale_it_is_refused(library, shapes):
     cone = shapes["cone"]
-    first, again = (Exploration(library, given, rng(3, "cone")) for given in (cone, Surface(cone)))
+    first, again = (Exploration(library, form, rng(3, "cone")) for form in (cone, Surface(cone)))
     np.testing.assert_array_equal(first.candidates.positions, again.candidates.positions)
     for scale in (0.1, 100):
         with pytest.raises(ValueError, match="normalise it"):
@@ -215,7 +215,9 @@ def test_places_depend_on_the_surface_and_not_on_the_order_in_which_a_file_has_i
     mesh, random = shapes["cone"], np.random.default_rng(0)
     order, faces = random.permutation(len(mesh.vertices)), random.permutation(len(mesh.faces))
     other = Mesh(mesh.vertices[order], np.roll(np.argsort(order)[mesh.faces[faces]], 1, axis=1))
-    first, second = (sample_places(Surface(it), 64, rng(0, "order")).positions for it in (mesh, other))
+    first, second = (
+        sample_places(Surface(surface_mesh), 64, rng(0, "order")).positions for surface_mesh in (mesh, other)
+    )
     assert first == pytest.approx(second, abs=1e-12)
 
 

@@ -32,10 +32,10 @@ def test_faces_gather_at_a_painted_step_of_a_flat_square():
     assert len(seeing.faces) == len(blind.faces) == 500
     assert colour_error(mesh, blind) > 10 and colour_error(mesh, seeing) < 0.5
 
-    def share_beside(found):
+    def share_beside(simplified):
         """The share of the vertices within the square that lie beside the step."""
-        inner = ((found.vertices[:, :2] > 0) & (found.vertices[:, :2] < 1)).all(axis=1)
-        x, y = found.vertices[inner][:, :2].T
+        inner = ((simplified.vertices[:, :2] > 0) & (simplified.vertices[:, :2] < 1)).all(axis=1)
+        x, y = simplified.vertices[inner][:, :2].T
         around = [disc(x + dx, y + dy) for dx in (-0.03, 0.03) for dy in (-0.03, 0.03)]
         return np.mean(np.ptp(around, axis=0) > 0)
 
@@ -85,21 +85,23 @@ def test_no_face_covers_a_curved_seam():
     mesh = charted(mesh, np.hypot(*(centres(mesh)[:, :2] - 0.5).T) < 0.3)
     blind, seeing = simplify(mesh, 700), simplify(mesh, 700, attributes=UV)
 
-    def strayed(found):
-        return np.abs(found.texture.uv % 3 - found.vertices[found.faces][:, :, :2]).max(), wrong_area(mesh, found)
+    def strayed(simplified):
+        return np.abs(simplified.texture.uv % 3 - simplified.vertices[simplified.faces][:, :, :2]).max(), wrong_area(
+            mesh, simplified
+        )
 
     assert strayed(blind)[1] > 0.003
     assert strayed(seeing) == pytest.approx((0, 0), abs=1e-9)
 
 
-def wrong_area(mesh, found):
+def wrong_area(mesh, simplified):
     """The share of the surface that shows another chart, 3 apart, than the mesh does there."""
     share = np.random.default_rng(0).dirichlet([1, 1, 1], 20_000)
     face = np.random.default_rng(1).integers(len(mesh.faces), size=len(share))
     points = np.einsum("ij,ijk->ik", share, mesh.vertices[mesh.faces[face]])
-    nearest = closest(found, points)[0]
+    nearest = closest(simplified, points)[0]
     return (
-        np.abs(mesh.texture.uv[face].mean(axis=1) - found.texture.uv[nearest].mean(axis=1)).max(axis=1) > 1.5
+        np.abs(mesh.texture.uv[face].mean(axis=1) - simplified.texture.uv[nearest].mean(axis=1)).max(axis=1) > 1.5
     ).mean()
 
 
@@ -133,9 +135,9 @@ def test_normals_of_an_edged_solid_come_out_closer():
     made = trimesh.creation.box().subdivide().subdivide().subdivide().subdivide()
     mesh = Mesh(made.vertices + 0.05 * np.sin(9 * made.vertices[:, [1, 2, 0]]), made.faces)
 
-    def off(found):
-        face, share = closest(found, centres(mesh))
-        normals = np.einsum("ij,ijk->ik", share, found.vertex_normals[found.faces[face]])
+    def off(simplified):
+        face, share = closest(simplified, centres(mesh))
+        normals = np.einsum("ij,ijk->ik", share, simplified.vertex_normals[simplified.faces[face]])
         expected = mesh.vertex_normals[mesh.faces].mean(axis=1)
         return np.sqrt(((expected - normals) ** 2).sum(axis=1).mean())
 

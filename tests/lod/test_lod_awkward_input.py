@@ -57,15 +57,15 @@ MESHES = {
 }
 
 
-def check_sound(mesh, found, faces, keep, rings):
-    assert len(found.faces) <= max(faces, 1)
-    assert np.isfinite(found.vertices).all()
-    assert not faults(found).added(faults(mesh))
-    before, after = topology(mesh.faces), topology(found.faces)
+def check_sound(mesh, simplified, faces, keep, rings):
+    assert len(simplified.faces) <= max(faces, 1)
+    assert np.isfinite(simplified.vertices).all()
+    assert not faults(simplified).added(faults(mesh))
+    before, after = topology(mesh.faces), topology(simplified.faces)
     assert (after.components, after.closed_components, after.boundary_edges, after.boundary_loops) == (
         before.components, before.closed_components, before.boundary_edges, before.boundary_loops,
     )  # fmt: skip
-    held = {place.tobytes() for place in found.vertices}
+    held = {place.tobytes() for place in simplified.vertices}
     edges, counts = mesh.edge_counts
     kept = np.union1d(mesh.faces[frozen_faces(mesh, keep, rings)], edges[counts == 1])  # no crack opens at a border
     assert all(mesh.vertices[vertex].tobytes() in held for vertex in kept)

@@ -108,8 +108,8 @@ def test_a_collapse_keeps_the_topology_and_spoils_no_face(limits):
             locked[[i, j]] = [(False, False), (True, False), (False, True)][h % 3]
             middle = (places[i] + places[j]) / 2 + random.normal(0, 0.02, 3)
             place = places[i] if locked[i] else places[j] if locked[j] else middle
-            given = surface.corner, surface.opposite, surface.start, locked, places, mark, last, h
-            answer = may(*given, *place, *limits)
+            link = surface.corner, surface.opposite, surface.start, locked, places, mark, last, h
+            answer = may(*link, *place, *limits)
             assert answer == allowed(faces, places, i, j, locked, place, *limits), (seed, h)
             answers.append(answer)
     assert 0.1 < np.mean(answers) < 0.9
@@ -123,8 +123,8 @@ def test_no_edge_of_a_tetrahedron_or_beside_a_vertex_of_three_faces_collapses(ap
     surface, source, _ = fast.half_edge_mesh(mesh, np.zeros(len(faces), dtype=bool), None)
     locked, mark, last = np.ones(5, dtype=bool), np.zeros(5, dtype=np.int32), np.zeros(1, dtype=np.int64)
     for h in range(len(surface.corner)):  # nothing moves: only the topology speaks
-        given = surface.corner, surface.opposite, surface.start, locked, surface.position, mark, last, h
-        answer = interpreted(collapse.may_collapse)(*given, 0.0, 0.0, 0.0, 0.01, 0.0, -2.0, np.inf)
+        link = surface.corner, surface.opposite, surface.start, locked, surface.position, mark, last, h
+        answer = interpreted(collapse.may_collapse)(*link, 0.0, 0.0, 0.0, 0.01, 0.0, -2.0, np.inf)
         ends = source[surface.corner[[h, surface.opposite[h]]]]
         assert answer == (apex == 4 and max(ends) > 2)  # an apex may go down to the other three
 

@@ -96,9 +96,9 @@ def pair(kind, rows, columns):
     return 255 * image, 255 * (np.roll(image, 2, 1) if kind == "shift" else 0.8 * image)
 
 
-def distances(one, other):
+def distances(image, other):
     """(2,) the plain and the normalised distance of two pictures."""
-    errors = picture_errors(one[None], other[None])
+    errors = picture_errors(image[None], other[None])
     return np.array([errors["dlap"], errors["dnor"]])
 
 

@@ -84,8 +84,8 @@ def test_an_average_is_that_of_all_pairs_however_many_are_near(stray):
     weight = np.exp(-squared / 0.7**2) * np.clip((normals @ normals.T + 0.2) / 0.4, 0, 1) * (squared <= 1)
     np.fill_diagonal(weight, 1)
     expected = weight * areas / (weight * areas).sum(axis=1, keepdims=True)
-    found = averaging(points, normals, areas, reach=1.0, width=0.7, sides=(-0.2, 0.2))
-    assert found.toarray() == pytest.approx(expected, abs=1e-12) and found.nnz > 40 * 300
+    operator = averaging(points, normals, areas, reach=1.0, width=0.7, sides=(-0.2, 0.2))
+    assert operator.toarray() == pytest.approx(expected, abs=1e-12) and operator.nnz > 40 * 300
 
 
 def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, dense):

@@ -40,10 +40,10 @@ def test_the_parts_of_a_scene_are_joined():
         as_mesh(trimesh.Scene())
 
 
-@pytest.mark.parametrize("given", [5, None, np.zeros((3, 3)), (1, 2, 3)])
-def test_what_is_no_mesh_is_told_what_would_be(given):
-    with pytest.raises(TypeError, match=f"no mesh: a {type(given).__name__}; give a path, a trimesh"):
-        as_mesh(given)
+@pytest.mark.parametrize("value", [5, None, np.zeros((3, 3)), (1, 2, 3)])
+def test_what_is_no_mesh_is_told_what_would_be(value):
+    with pytest.raises(TypeError, match=f"no mesh: a {type(value).__name__}; give a path, a trimesh"):
+        as_mesh(value)
     with pytest.raises(ValueError, match=r"vertices must have shape \(n, 3\)"):
         as_mesh((np.zeros((4, 2)), [[0, 1, 2]]))
 

@@ -114,9 +114,9 @@ def png_of(side):
     )
 
 
-@pytest.mark.parametrize("side, said", [(13_000, "of 13,000 x 13,000 pixels is larger"), (14_000, "is larger")])
+@pytest.mark.parametrize("side, message", [(13_000, "of 13,000 x 13,000 pixels is larger"), (14_000, "is larger")])
 def test_a_glb_with_a_texture_that_would_fill_the_memory_is_refused_before_it_is_parsed(
-    tmp_path, monkeypatch, side, said
+    tmp_path, monkeypatch, side, message
 ):
     """Pillow refuses 14,000 x 14,000 pixels itself, and trimesh then reads the mesh without its texture."""
     png, path = png_of(side), tmp_path / "big.glb"
@@ -129,7 +129,7 @@ def test_a_glb_with_a_texture_that_would_fill_the_memory_is_refused_before_it_is
     }
     path.write_bytes(glb_of(tree, png))
     monkeypatch.setattr(trimesh, "load", None)
-    with pytest.raises(MeshError, match=f"a texture {said} than 8,192 x 8,192"):
+    with pytest.raises(MeshError, match=f"a texture {message} than 8,192 x 8,192"):
         load(path)
 
 

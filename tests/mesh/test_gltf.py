@@ -171,8 +171,8 @@ def test_normalised_integers_are_the_numbers_that_they_stand_for(kind):
         mesh.texture.uv[0], [[u, 1 - v] for u, v in UV[:3]], atol=1 / 127 if "1" in kind else 1e-4
     )
     tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=of_kind(COLOURS / 255, kind))
-    found = parse(json.dumps(tree).encode(), ".gltf").colors
-    assert np.abs(found.astype(int) - COLOURS).max() <= (kind == "i1")  # 127 steps are too few for a byte
+    colors = parse(json.dumps(tree).encode(), ".gltf").colors
+    assert np.abs(colors.astype(int) - COLOURS).max() <= (kind == "i1")  # 127 steps are too few for a byte
 
 
 @pytest.mark.parametrize("name", ["KHR_materials_unlit", "KHR_texture_transform"])

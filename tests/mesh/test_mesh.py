@@ -73,9 +73,9 @@ def test_the_arrays_of_a_mesh_are_its_own_and_of_the_one_type_that_kernels_are_c
     view = base.view()
     view.flags.writeable = False
     stored = np.frombuffer(base.tobytes()).reshape(3, 3)
-    for given in (base, view, stored):
-        mesh = Mesh(given, [[0, 1, 2]])
-        assert mesh.vertices.flags.writeable and not np.shares_memory(mesh.vertices, given)
+    for storage in (base, view, stored):
+        mesh = Mesh(storage, [[0, 1, 2]])
+        assert mesh.vertices.flags.writeable and not np.shares_memory(mesh.vertices, storage)
     picture = paint().images[0]
     assert Texture(np.zeros((1, 3, 2)), [0], (picture,)).images[0] is picture  # it can be large, and is never changed
 

@@ -74,7 +74,7 @@ RGB = [f"property uchar {name}" for name in ("red", "green", "blue")]
 NAMED, NOTHING = "comment TextureFile paint.png", [()] * 4
 ALL_RED = [RED] * 4
 OF_FACES = [RED, GREEN, BLUE, GOLD]
-OWN = {  # name: (files, colours of the corners)
+CARRIERS = {  # name: (files, colours of the corners)
     "obj, a picture": (obj("newmtl a\nKd 1 1 1\nmap_Kd paint.png\n", "usemtl a", "", "", ""), PAINTED),
     "obj, a plain colour": (obj("newmtl a\nKd 1 0 0\n", "usemtl a", "", "", ""), ALL_RED),
     "obj, a colour a face": (
@@ -141,9 +141,9 @@ def colours_at_corners(mesh):
     return mesh.colors[near.argmin(axis=1)].astype(int)
 
 
-@pytest.mark.parametrize("name", OWN)
+@pytest.mark.parametrize("name", CARRIERS)
 def test_every_way_to_colour_a_mesh_gives_the_vertices_their_colours(item, name):
-    files, expected = OWN[name]
+    files, expected = CARRIERS[name]
     mesh, known = prepare_mesh(item(files), colours="own")
     assert len(mesh.vertices) == 4 and len(mesh.faces) == 4 and mesh.watertight and known["colors"]
     assert np.abs(colours_at_corners(mesh) - expected).max() <= 1
@@ -187,7 +187,7 @@ def test_colours_survive_repair_and_any_order_of_vertices_and_faces(item):
 
 
 def test_a_file_that_is_named_and_absent_is_noted(item):
-    files = dict(OWN["obj, a picture"][0])
+    files = dict(CARRIERS["obj, a picture"][0])
     files["paint.mtl"] = b"newmtl a\nKd 1 0 0\nmap_Kd gone.png\n"
     mesh, known = prepare_mesh(item(files), colours="own")
     assert (
@@ -197,7 +197,7 @@ def test_a_file_that_is_named_and_absent_is_noted(item):
 
 
 def test_the_files_of_the_materials_travel_with_the_mesh(item, tmp_path):
-    file = item(OWN["obj, a picture"][0])
+    file = item(CARRIERS["obj, a picture"][0])
     sent = pickle.dumps(file)
     for path in tmp_path.iterdir():
         path.unlink()
@@ -216,7 +216,7 @@ def run(tmp_path, make_workspace):
     """A function that runs the stage on a folder with a painted tetrahedron, a grey one, and other settings."""
     folder = tmp_path / "mine"
     folder.mkdir()
-    files = OWN["obj, a picture"][0] | {"grey.stl": NONE["stl"]["it.stl"]}
+    files = CARRIERS["obj, a picture"][0] | {"grey.stl": NONE["stl"]["it.stl"]}
     for name, content in files.items():
         (folder / name).write_bytes(content)
 

@@ -35,8 +35,12 @@ def start(tmp_path, make_workspace):
 
 def test_good_meshes_pass_and_bad_ones_are_named(start, capsys):
     workspace = start()
-    said = capsys.readouterr().err
-    assert "refused broken.obj: the file holds no geometry" in said and "ignored" not in said and "axes" not in said
+    printed = capsys.readouterr().err
+    assert (
+        "refused broken.obj: the file holds no geometry" in printed
+        and "ignored" not in printed
+        and "axes" not in printed
+    )
     folder = workspace.data / "meshes"
     manifest = read_table(folder / "manifest.csv")
     assert sorted(manifest.object) == ["Kiste à thé", "sub folder__ball", "sub folder__ball_ply"]
@@ -88,9 +92,9 @@ def test_axes_that_were_assumed_and_meshes_without_a_class_are_named(start, tmp_
     (tmp_path / "mine/broken.obj").unlink()
     trimesh.creation.box((1, 2, 4)).export(tmp_path / "mine/lamp.glb")  # of glTF y is up
     start(up="auto", classes={"round": ["sub folder__ball", "sub folder__ball_ply"], "flat": ["lamp"]})
-    said = capsys.readouterr().err
-    assert "meshes: 1 of 4 are not in meshes.objects and meshes.classes: Kiste à thé" in said
-    assert "meshes: toys, up axes: z for 2, y for 1 (lamp)" in said
+    printed = capsys.readouterr().err
+    assert "meshes: 1 of 4 are not in meshes.objects and meshes.classes: Kiste à thé" in printed
+    assert "meshes: toys, up axes: z for 2, y for 1 (lamp)" in printed
 
 
 def test_objects_of_classes_are_taken_and_small_classes_have_a_note(start):

@@ -70,12 +70,14 @@ def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0):
     return Mesh(vertices @ turn.T * 30 + draw.normal(size=3) * 100, faces), mask
 
 
-def shares(mesh, own, left):
+def shares(mesh, of_object, left):
     """(share of the object's area that is left, share of the table's)."""
     kept = {corners.tobytes() for corners in left.vertices[left.faces]}
     still = np.array([corners.tobytes() in kept for corners in mesh.vertices[mesh.faces]])
     areas = mesh.face_areas
-    return areas[still & own].sum() / areas[own].sum(), areas[still & ~own].sum() / areas[~own].sum()
+    return areas[still & of_object].sum() / areas[of_object].sum(), areas[still & ~of_object].sum() / areas[
+        ~of_object
+    ].sum()
 
 
 @pytest.mark.parametrize(("shape", "bottom"), [("blob", True), ("box", False), ("lying", True), ("goblet", False)])

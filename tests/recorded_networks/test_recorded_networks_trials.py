@@ -123,7 +123,7 @@ def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone()
 @pytest.mark.slow
 def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     computed, frozen_features = [], trial.frozen_features
-    monkeypatch.setattr(trial, "frozen_features", lambda *given: computed.append(1) or frozen_features(*given))
+    monkeypatch.setattr(trial, "frozen_features", lambda *args: computed.append(1) or frozen_features(*args))
     turned = replace(recording().touches, images=recording().touches.images[:, ::-1, ::-1])
     recordings = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
     training = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in recordings))

@@ -21,7 +21,7 @@ from stages.report.results import Results
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run
 OBJECTS = ["ball", "cube"]
-FOUND = ["glance", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
+METHODS = ["glance", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
 
 
 def settings(**changes):
@@ -234,7 +234,7 @@ def _write_sight(root, name):
         "strong": np.int64(2),
         "saliency": np.linspace(0, 1, len(mesh.vertices)),
     }
-    arrays = {f"{method}.{key}": values for method in FOUND for key, values in detection.items()}
+    arrays = {f"{method}.{key}": values for method in METHODS for key, values in detection.items()}
     write_arrays(root / f"data/test/salient_points/{name}.npz", **arrays)
 
 

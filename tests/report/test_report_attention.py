@@ -161,10 +161,13 @@ def test_the_largest_and_the_least_weight_are_held_against_the_next_channel_by_o
     frame, values = small.learned_weights(entropy=entropy, color=-entropy)
     rows = frame.rename(columns={"weight": "value", "left_out": "item"}).assign(metric="weight")
     judged = verdicts(CLAIMS, measure("weights", rows, "gaze_3_2"), "entropy_most_ssim", "colour_least_ssim")
-    own = pd.DataFrame(values, columns=frame["channel"].unique()[: values.shape[1]])
-    largest = own.drop(columns="entropy").mean().idxmax()
-    least = own.drop(columns="color").mean().idxmin()
-    leads = {"entropy_most_ssim": own["entropy"] - own[largest], "colour_least_ssim": own[least] - own["color"]}
+    measured = pd.DataFrame(values, columns=frame["channel"].unique()[: values.shape[1]])
+    largest = measured.drop(columns="entropy").mean().idxmax()
+    least = measured.drop(columns="color").mean().idxmin()
+    leads = {
+        "entropy_most_ssim": measured["entropy"] - measured[largest],
+        "colour_least_ssim": measured[least] - measured["color"],
+    }
     for key, lead in leads.items():
         assert judged.loc[key, ["effect", "low", "high"]].tolist() == pytest.approx(interval(lead), abs=1e-4)
     assert judged["verdict"].tolist() == [word, word]

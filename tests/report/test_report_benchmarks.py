@@ -71,11 +71,11 @@ def test_half_a_bench_or_one_without_a_rate_is_not_run(bench):
             table(bench(broken))
 
 
-def row(commit, hour, what, ratio, machine="here"):
+def row(commit, hour, kernel, ratio, machine="here"):
     """A row of the history; ratio None for the reference loop."""
     ends = {} if ratio is None else {"low": 0.9 * ratio, "high": 1.1 * ratio, "limit": 1.5 * ratio}
     date = f"2026-11-21T{hour:02}:00:00+00:00"
-    return {"commit": commit, "date": date, "what": what, "peer": f"peer of {what}", "ratio": ratio, **ends,
+    return {"commit": commit, "date": date, "what": kernel, "peer": f"peer of {kernel}", "ratio": ratio, **ends,
             "machine": machine}  # fmt: skip
 
 

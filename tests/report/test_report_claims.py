@@ -28,9 +28,11 @@ def values(measure):
 def sets_of_rows(measure):
     """A function of sets and their differences from zero, one an item, to the results whose stage `test` has these."""
 
-    def write(**found):
+    def write(**differences_by_set):
         rows = [
-            (name, "error", f"{name}{k}", value) for name, numbers in found.items() for k, value in enumerate(numbers)
+            (name, "error", f"{name}{k}", value)
+            for name, numbers in differences_by_set.items()
+            for k, value in enumerate(numbers)
         ]
         return measure("test", pd.DataFrame(rows, columns=["dataset", "metric", "item", "value"]))
 
@@ -90,17 +92,17 @@ def test_pairs_match_by_repetition_not_by_row(values):
     assert gaps.to_dict() == {"a": 1, "b": 4}
 
 
-@pytest.mark.parametrize(("where", "note", "key", "said"), [
+@pytest.mark.parametrize(("where", "note", "key", "words"), [
     ({"group": "six"}, "no duck", "four_easier_ours", "no duck"),  # a note of all methods and classifiers
     ({"group": "six", "method": "thesis_ssim"}, "no duck", "glance_over_ssim_ours", "no duck"),
     ({"group": "six", "method": "random", "classifier": "knn", "metric": "accuracy"}, "no duck",
      "glance_over_blind_ours", "no duck"),
     ({"group": "six"}, None, "knn_best_ours", "group six is not among those that classification measured"),
 ])  # fmt: skip
-def test_rows_that_were_left_out_hand_on_their_note(measure, small, where, note, key, said):
+def test_rows_that_were_left_out_hand_on_their_note(measure, small, where, note, key, words):
     frame = small.left_out(small.classification(), note, **where)
     frame = frame if note else frame.dropna(subset=["value"])
-    assert of(measure("classification", frame), key)["tested_on"] == f"not run: {said}"
+    assert of(measure("classification", frame), key)["tested_on"] == f"not run: {words}"
 
 
 def test_several_values_are_averaged_where_all_were_measured(values):
@@ -207,13 +209,13 @@ def test_sets_that_say_the_same_are_pooled_and_decide_what_none_decides_alone(se
     assert row["by_set"].count("+0.5") == 3 and row["tested_on"].startswith("one and two and more")
 
 
-@pytest.mark.parametrize(("one", "two", "word"), [
+@pytest.mark.parametrize(("first", "second", "word"), [
     (2.0, -1.0, "mixed"),  # each side of zero has a set
     (2.0, -0.1, "mixed"),  # they differ by chance alone in less than 5 %
     (2.0, 1.5, "supported"), (0.2, -0.1, "open"),
 ])  # fmt: skip
-def test_sets_of_both_signs_that_differ_beyond_chance_are_mixed(sets_of_rows, one, two, word):
-    row = pooled(sets_of_rows(one=spread_about(one), two=spread_about(two)), "one", "two")
+def test_sets_of_both_signs_that_differ_beyond_chance_are_mixed(sets_of_rows, first, second, word):
+    row = pooled(sets_of_rows(one=spread_about(first), two=spread_about(second)), "one", "two")
     assert (row["verdict"], row["carries"]) == (word, "")  # both were judged
 
 

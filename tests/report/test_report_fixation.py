@@ -102,7 +102,7 @@ def written(measure):
     return partial(measure, "fixation")
 
 
-def one(results, key):
+def judged_row(results, key):
     """The judged row of one claim."""
     return verdicts(topic.CLAIMS, results, key).loc[key]
 
@@ -173,12 +173,12 @@ def test_claims_say_what_the_rows_hold(gaze):
 def test_claims_turn_with_the_rows_and_name_what_was_not_run(gaze, written):
     results = written(rows(resnet=-0.05, average=0.38))
     for key, effect in (("over_vgg", -0.05), ("nearer_than_vgg", -10), ("nearer_than_vgg_least", -5)):
-        row = one(results, f"resnet_{key}")
+        row = judged_row(results, f"resnet_{key}")
         match = re.search(r"as written: not testable \+?([-\d.]+)", row["readings"])  # VGG16's layers are random
         assert float(match[1]) == pytest.approx(effect, rel=0.1)
         assert row["effect"] == pytest.approx(0, abs=abs(effect) / 10)  # by frozen filters
-    assert one(results, "entropy_over_average")["verdict"] == "supported"
-    assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
+    assert judged_row(results, "entropy_over_average")["verdict"] == "supported"
+    assert judged_row(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
 
 
 def test_the_network_with_the_lowest_accuracy_is_beside_the_least_of_the_thesis(written):
@@ -186,7 +186,7 @@ def test_the_network_with_the_lowest_accuracy_is_beside_the_least_of_the_thesis(
     taught = frame["metric"].eq("accuracy")
     frame.loc[taught, "value"] = np.where(frame[taught]["method"] == "vgg16-last_block", 0.97, 0.99)
     frame.loc[taught & (frame["task"] == "level_2"), "value"] += 0.01
-    row = one(written(frame), "test_accuracy")
+    row = judged_row(written(frame), "test_accuracy")
     assert row["effect"] == pytest.approx(1.5) and row["pairs"] == 2
 
 

@@ -111,11 +111,11 @@ def test_table_3_2_compares_all_methods_on_the_same_objects(run):
 
 def test_tables_of_ones_own_meshes_leave_out_the_thesis_and_what_is_of_other_data_sets(plain, root, small):
     small.write(root, "lod", measured())
-    own = small.own(root)
+    of_folder = small.own(root)
     with pytest.raises(NotRun, match=r"T3\.1\.5"):
-        table("table_3_1_5_combinations", own)
+        table("table_3_1_5_combinations", of_folder)
     for name, words in WORDS.items():
-        built, published = table(name, own), table(name, plain)
+        built, published = table(name, of_folder), table(name, plain)
         text, whole = (" ".join([item.title, *item.shown, *item.notes]) for item in (built, published))
         assert all(word in whole and word not in text for word in words)
 

@@ -80,7 +80,7 @@ def run(tmp_path_factory, small):
 
 
 @pytest.fixture(scope="module")
-def own(tmp_path_factory, small):
+def of_folder(tmp_path_factory, small):
     """The results of a run on a folder of one's own, with its report, as other processes write it."""
     root = small.root(tmp_path_factory.mktemp("own"))
     small.write(root, "lod", small.lod(), "elsewhere")
@@ -206,39 +206,39 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     assert "<p>not run: no data/SET/salient_points" in text and "no data/SET/meshes" in text
 
 
-def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
-    assert own.own_meshes and own.datasets("lod") == ["test"]
+def test_a_folder_of_ones_own_has_a_page_about_it_alone(of_folder):
+    assert of_folder.own_meshes and of_folder.datasets("lod") == ["test"]
     with pytest.raises(NotRun, match="not switched on"):
-        own.rows("lod", "elsewhere")
-    page = (own.reports / "index.html").read_text()
-    assert "Your meshes" in page and all(f"<h2>{name}</h2>" in page for name in own.objects)
-    assert all((own.reports / address).exists() for address in re.findall(r'href="(site/[^"]+)"', page))
-    assert json.loads((own.reports / "metrics/report.json").read_text())["not_run"] > 1  # the note, and reasons
+        of_folder.rows("lod", "elsewhere")
+    page = (of_folder.reports / "index.html").read_text()
+    assert "Your meshes" in page and all(f"<h2>{name}</h2>" in page for name in of_folder.objects)
+    assert all((of_folder.reports / address).exists() for address in re.findall(r'href="(site/[^"]+)"', page))
+    assert json.loads((of_folder.reports / "metrics/report.json").read_text())["not_run"] > 1  # the note, and reasons
     assert "y is up in the file." in page and "-x is up in the file." in page
     assert "haptic-glance gallery &#x27;my meshes&#x27;" in page
     assert "units of the object&#x27;s diameter" in page and "Touched there" in page
-    assert pd.read_csv(own.reports / "claims.csv")["pairs"].gt(0).all()
+    assert pd.read_csv(of_folder.reports / "claims.csv")["pairs"].gt(0).all()
 
 
 @pytest.mark.parametrize(("damaged", "again"), [("", "57 of 57"), ("tables/*.md", "56 of 57")])
-def test_a_second_run_builds_only_what_was_touched_and_gives_equal_bytes(damaged, again, own, small, capsys):
-    files = sorted(path for path in own.reports.rglob("*") if path.is_file())
+def test_a_second_run_builds_only_what_was_touched_and_gives_equal_bytes(damaged, again, of_folder, small, capsys):
+    files = sorted(path for path in of_folder.reports.rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
     if damaged:
-        next(own.reports.glob(damaged)).write_text("edited by hand")
-    write_report(small.results(own.workspace.root))
+        next(of_folder.reports.glob(damaged)).write_text("edited by hand")
+    write_report(small.results(of_folder.workspace.root))
     assert f"report: {again} parts are those of the last run" in capsys.readouterr().out
     assert [path.read_bytes() for path in files] == before
 
 
-def test_equal_runs_give_equal_bytes_with_any_number_of_workers(own, small):
-    files = sorted(path for path in own.reports.rglob("*") if path.is_file())
+def test_equal_runs_give_equal_bytes_with_any_number_of_workers(of_folder, small):
+    files = sorted(path for path in of_folder.reports.rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
-    for part in sorted((own.workspace.build / reuse.FOLDER).iterdir())[::3]:  # of all kinds and most topics
+    for part in sorted((of_folder.workspace.build / reuse.FOLDER).iterdir())[::3]:  # of all kinds and most topics
         part.unlink()
-    params = own.workspace.root / "params.yaml"
+    params = of_folder.workspace.root / "params.yaml"
     params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
-    write_report(small.results(own.workspace.root))
+    write_report(small.results(of_folder.workspace.root))
     assert [path.read_bytes() for path in files] == before
 
 

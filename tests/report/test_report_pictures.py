@@ -15,10 +15,10 @@ def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_lef
     ball = small.ball()
     mesh, values = Mesh(0.3 * ball.vertices, ball.faces), np.random.default_rng(0).random(len(ball.vertices))
     wide = Mesh(np.vstack([mesh.vertices, [[0.4] * 3, [-0.4] * 3]]), mesh.faces)  # rays all round
-    for given in ({}, {"values": values}, {"wires": True}, {"viewpoint": Viewpoint(20, 50)}, {"smoothing": 1}, {}):
-        pixels = picture(mesh, rows=60, **given)
+    for options in ({}, {"values": values}, {"wires": True}, {"viewpoint": Viewpoint(20, 50)}, {"smoothing": 1}, {}):
+        pixels = picture(mesh, rows=60, **options)
         for other in (wide, Mesh(mesh.vertices, mesh.faces)):
-            assert np.array_equal(pixels, picture(other, rows=60, **given)), given
+            assert np.array_equal(pixels, picture(other, rows=60, **options)), options
 
 
 def test_picture_is_white_off_the_object_only(small):

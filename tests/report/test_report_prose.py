@@ -38,7 +38,9 @@ shows.
 
 The caption of {count}.
 """
-FOUND = "Without a figure,\nit stays.\n\nIt has {tables/t method=one: mean}.\n\nIt has {tables/t method=two:\nmean}.\n"
+FINDINGS = (
+    "Without a figure,\nit stays.\n\nIt has {tables/t method=one: mean}.\n\nIt has {tables/t method=two:\nmean}.\n"
+)
 
 
 class Anything(dict):
@@ -60,7 +62,7 @@ def topic(tmp_path, monkeypatch):
     package.mkdir()
     (package / "__init__.py").touch()
     (package / "prose.md").write_text(PROSE)
-    (package / "findings.md").write_text(FOUND)
+    (package / "findings.md").write_text(FINDINGS)
     monkeypatch.syspath_prepend(tmp_path)
     write_table(tmp_path / "tables/t.csv", pd.DataFrame({"method": ["one"], "mean": [2.5]}))
     module = ModuleType(package.name)
@@ -117,13 +119,13 @@ def test_each_table_has_a_sentence_with_a_figure_of_its_own(topic):
         assert not re.search(r"\d \.|\{|\}|\bnan\b|_", text), text
 
 
-@pytest.mark.parametrize(("method", "said"), [("one", "It is 1."), ("two", "")])
-def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, method, said):
+@pytest.mark.parametrize(("method", "expected_summary"), [("one", "It is 1."), ("two", "")])
+def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, method, expected_summary):
     frame, summary = pd.DataFrame({"method": ["one"], "mean": [1.0]}), f"It is {{tables/t method={method}: mean}}."
     item = Table(frame, name="t", title="T", notes=["a note"], summary=summary)
     item.write(tmp_path / "tables")
     text = (tmp_path / "tables/t.md").read_text()
-    assert item.summary == said and ("# T\n\nIt is 1.\n\n| method" in text) == bool(said)
+    assert item.summary == expected_summary and ("# T\n\nIt is 1.\n\n| method" in text) == bool(expected_summary)
     assert "<details><summary>How to read it</summary>\n\n- a note\n\n</details>" in text
 
 
@@ -139,12 +141,12 @@ def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
         assert all(name in MADE or name == CLAIMS or name.startswith("bench/") for name, _ in sources)
 
 
-@pytest.mark.parametrize("own", [False, True])
-def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(topic, tmp_path, own):
+@pytest.mark.parametrize("of_folder", [False, True])
+def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(topic, tmp_path, of_folder):
     assert findings(topic, tmp_path) == ["Without a figure, it stays.", "It has 2.50."]
-    parts = {"claims": pd.DataFrame({"key": []}), "sets": ["household"], "own": own}
+    parts = {"claims": pd.DataFrame({"key": []}), "sets": ["household"], "own": of_folder}
     text = topic_main(topic, parts, [Table(pd.DataFrame(), title="T", paths=[Path("tables/t.csv")])], tmp_path)
-    assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not own)
+    assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not of_folder)
 
 
 def test_headlines_on_a_folder_of_meshes_count_no_claims(tmp_path):

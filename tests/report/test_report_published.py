@@ -55,7 +55,7 @@ def alike(line, former):
     if NUMBER.split(line) != NUMBER.split(former):
         return False
     numbers = zip(NUMBER.findall(line), NUMBER.findall(former), strict=True)
-    return all(math.isclose(float(one), float(other), rel_tol=2e-5, abs_tol=1e-12) for one, other in numbers)
+    return all(math.isclose(float(first), float(second), rel_tol=2e-5, abs_tol=1e-12) for first, second in numbers)
 
 
 def assert_unchanged(name, text, expected):
@@ -82,9 +82,9 @@ def assert_claims_unchanged(results, topic):
     """The claims of a topic, judged among the published ones of the others, which give `holds` and `of`."""
     former = read_table(REPORTS / "claims.csv")
     rows = {row["key"]: ({column: row[column] for column in COLUMNS}, []) for row in former.to_dict("records")}
-    own = {claim.key: row for claim, row in zip(topic.CLAIMS, by_claim(topic.CLAIMS, results), strict=True)}
-    assert rows.keys() >= own.keys(), f"reports/claims.csv lacks {own.keys() - rows.keys()}; {REMEDY}"
-    frame, _ = tabled([claim for claim in CLAIMS if claim.key in rows], list((rows | own).values()))
+    judged_rows = {claim.key: row for claim, row in zip(topic.CLAIMS, by_claim(topic.CLAIMS, results), strict=True)}
+    assert rows.keys() >= judged_rows.keys(), f"reports/claims.csv lacks {judged_rows.keys() - rows.keys()}; {REMEDY}"
+    frame, _ = tabled([claim for claim in CLAIMS if claim.key in rows], list((rows | judged_rows).values()))
     write_table(results.out / "claims.csv", frame)
     assert_unchanged("claims.csv", (results.out / "claims.csv").read_text(), (REPORTS / "claims.csv").read_text())
 

@@ -47,20 +47,20 @@ def touches(levels=LEVELS, settings=None, repetitions=3):
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _trained(said, level, random, repetitions):
+def _trained(columns, level, random, repetitions):
     """Rows of one way; a later repetition is a harder split, and a later object a harder one."""
-    kept = OBJECTS if said["split"] == "test_objects" else ()
+    kept = OBJECTS if columns["split"] == "test_objects" else ()
     for number in range(repetitions):
-        common = said | {"repetition": number, "dataset": DATASETS[said["data"]]}
+        common = columns | {"repetition": number, "dataset": DATASETS[columns["data"]]}
         yield common | {"metric": "accuracy", "value": level - 0.05 * number + 0.001 * random.normal()}
-        if "mode" in said:
+        if "mode" in columns:
             yield common | {"metric": "chance", "value": CHANCE}
             yield common | {"metric": "majority", "value": MAJORITY}
             yield common | {"metric": "train_accuracy", "value": 1.0}
         for k, name in enumerate(kept):
             value = level - 0.1 * k + 0.001 * random.normal()
             yield common | {"item": name, "metric": "accuracy", "value": value}
-            if "mode" in said:
+            if "mode" in columns:
                 yield common | {"item": name, "metric": "train_accuracy", "value": 1.0}
 
 

@@ -203,8 +203,8 @@ def figure_x(results):
 def at(tmp_path):
     """A function (first set, own_meshes) -> the words of the figure and the bytes of its picture, written there."""
 
-    def written(first, own=False):
-        results = SimpleNamespace(sets=[first], own_meshes=own, out=tmp_path, reports=tmp_path, read=set())
+    def written(first, of_folder=False):
+        results = SimpleNamespace(sets=[first], own_meshes=of_folder, out=tmp_path, reports=tmp_path, read=set())
         figure = partial(as_printed, figure_x, PROTOCOL)(results)
         figure.name = "figure_x"
         figure.write(tmp_path / "figures")
@@ -219,4 +219,4 @@ def test_the_drawing_of_the_printed_protocol_outlasts_its_data_but_not_in_a_fold
     drawn = at(PROTOCOL)
     assert drawn[0] == {"set": PROTOCOL}
     assert at("household") == drawn
-    assert at("folder", own=True)[0] == {"set": "folder"}
+    assert at("folder", of_folder=True)[0] == {"set": "folder"}

@@ -131,11 +131,18 @@ def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole):
     assert ("<code>tables/gaps</code>: in part" in page) != whole
 
 
-def of_claim(one, effect=10.0, low=5.0, high=15.0):
+def of_claim(claim_of_page, effect=10.0, low=5.0, high=15.0):
     """(claims, differences) of a single finding with its verdict."""
     verdict = "supported" if low > 0 else "contradicted" if high < 0 else "open"
-    row = {"key": one.key, "claim": "The sentence.", "verdict": verdict, "effect": effect, "low": low, "high": high}
-    pairs = pd.DataFrame({"key": one.key, "pair": ["a<b", "c", "other set"], "difference": [low, high, 1.0]})
+    row = {
+        "key": claim_of_page.key,
+        "claim": "The sentence.",
+        "verdict": verdict,
+        "effect": effect,
+        "low": low,
+        "high": high,
+    }
+    pairs = pd.DataFrame({"key": claim_of_page.key, "pair": ["a<b", "c", "other set"], "difference": [low, high, 1.0]})
     row |= {"pairs": 2, "over": "objects", "section": "ours", "of": ""}
     return pd.DataFrame([row]), pairs.assign(judged=[True, True, False])
 

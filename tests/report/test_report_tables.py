@@ -205,7 +205,7 @@ def reports(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize(("place", "said"), [
+@pytest.mark.parametrize(("place", "words"), [
     ("tables/rates method=one: mean", "1,234"),
     ("tables/rates method=one: mean low high", "1,234 [1,000, 2,000]"),
     ("tables/rates method=two note=: 100*mean 100*low 100*high .0f", "50 [25, 75]"),
@@ -227,8 +227,8 @@ def reports(tmp_path):
     ("tables/signs kind=none of both: mean low high points higher|points lower .0f",
      "neither points higher nor points lower beyond chance (1 [-2, 4])"),
 ])  # fmt: skip
-def test_a_place_becomes_what_its_cell_holds(reports, place, said):
-    assert filled(f"It is {{{place}}}.", reports) == (f"It is {said}.", [tuple(place.split(":")[0].split(" ", 1))])
+def test_a_place_becomes_what_its_cell_holds(reports, place, words):
+    assert filled(f"It is {{{place}}}.", reports) == (f"It is {words}.", [tuple(place.split(":")[0].split(" ", 1))])
 
 
 @pytest.mark.parametrize("place", [

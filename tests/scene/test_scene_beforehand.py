@@ -85,11 +85,11 @@ def test_a_dent_matters_where_it_faces_the_camera(make_scene, turn, level):
     assert by_profiles(frames, (chain,), [lookup], price).levels.item() == level
 
 
-def _moved(frames, own):
+def _moved(frames, lookup):
     """The displacement of the dent in the frame where it faces the camera."""
     pose, (camera,) = frames.poses[0], frames.scene.cameras
     depth = camera.axes[2] @ (pose.corners().mean(axis=0) - camera.eye)
-    return own.sums[:, 1].max() * (pose.scale * camera.focal / depth) ** 3
+    return lookup.sums[:, 1].max() * (pose.scale * camera.focal / depth) ** 3
 
 
 @cache

@@ -251,7 +251,7 @@ def test_the_benchmark_keeps_what_is_about_all_frames_of_a_scene(workspace, monk
     others = ({"frame": 3}, {"item": "one"}, {"group": None, "condition": "counts"})
     rows = [row, *(row | {"value": 8} | other for other in others)]
     file = workspace.measurements / "scene.csv.gz"
-    monkeypatch.setattr(scenes, "run", lambda given: write_rows(file, rows, COLUMNS, given.dataset, 0))
+    monkeypatch.setattr(scenes, "run", lambda space: write_rows(file, rows, COLUMNS, space.dataset, 0))
     (kept,) = scenes.measured(workspace).to_dict("records")
     wanted = {"scene": "small", "method": "ours", "value": 7, "objects": 2, "shapes": 2, "frames": 4}
     assert {name: kept[name] for name in wanted} == wanted

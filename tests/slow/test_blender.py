@@ -61,10 +61,10 @@ def test_decimation_by_the_group_keeps_the_salient_vertices(tmp_path, suffix):
     x, y, z = np.ptp(mesh.vertices, axis=0)
     assert mesh.up == "y" and size == pytest.approx([x, z, y], rel=1e-3)  # it stands upright
     salient = mesh.vertices[values >= SALIENT] @ [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
-    found = []
+    shares = []
     for faces, vertices in kept:
         assert faces == pytest.approx(FACES, abs=2)
         apart = np.linalg.norm(salient[:, None] - np.array(vertices)[None], axis=2).min(axis=1)
-        found.append((apart < 1e-4).mean())
-    with_group, without = found
+        shares.append((apart < 1e-4).mean())
+    with_group, without = shares
     assert len(salient) == 25 and with_group == 1 and without < 0.5

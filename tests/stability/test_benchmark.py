@@ -25,7 +25,7 @@ def apply(mesh, *parts, draw=0):
 
 
 @pytest.mark.parametrize(
-    ("one", "none"),
+    ("single", "none"),
     [
         (("noise", 0.01), ("tilt", 0.0)),
         (("decimation", 0.5), ("light", 0.0)),
@@ -33,11 +33,11 @@ def apply(mesh, *parts, draw=0):
         (("turn", 30.0), ("noise", 0.0)),
     ],
 )
-def test_a_pair_with_nothing_is_the_single_disturbance(pear, one, none):
-    alone, before, after = apply(pear, one), apply(pear, none, one), apply(pear, one, none)
+def test_a_pair_with_nothing_is_the_single_disturbance(pear, single, none):
+    alone, before, after = apply(pear, single), apply(pear, none, single), apply(pear, single, none)
     for pair in (before, after):
         assert np.allclose(pair.mesh.vertices, alone.mesh.vertices, atol=1e-12)
-        off = 0.02 if one[0] == "decimation" else 1e-9  # new vertices lie beside the surface, and are put on it
+        off = 0.02 if single[0] == "decimation" else 1e-9  # new vertices lie beside the surface, and are put on it
         assert np.allclose(pair.original_positions, alone.original_positions, atol=off)
         assert pair.conditions == alone.conditions == Conditions()
 

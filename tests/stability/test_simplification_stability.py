@@ -24,8 +24,8 @@ NONE = np.zeros(0, dtype=int), np.zeros((0, 3), dtype=int)
 CURVE = QemErrorCurve(SOUND)  # it keeps the errors that it was asked for
 
 
-def said(found, before=SOUND, faces=320, kept=NONE):
-    return "; ".join(find_faults(Surface(before), found, faces, *kept))
+def faults_text(after, before=SOUND, faces=320, kept=NONE):
+    return "; ".join(find_faults(Surface(before), after, faces, *kept))
 
 
 def changed(vertex=None, place=None, faces=None):
@@ -37,9 +37,9 @@ def changed(vertex=None, place=None, faces=None):
 
 
 def test_a_sound_result_has_no_complaint():
-    assert said(FEWER) == "" and said(SOUND, faces=1280) == ""
+    assert faults_text(FEWER) == "" and faults_text(SOUND, faces=1280) == ""
     kept = BALL.faces[0][:1], BALL.faces[:5]
-    assert said(SOUND, faces=1280, kept=kept) == ""
+    assert faults_text(SOUND, faces=1280, kept=kept) == ""
 
 
 def folded():
@@ -72,26 +72,26 @@ RUINS = {
 @pytest.mark.parametrize("name", RUINS)
 def test_every_kind_of_ruin_is_named(name):
     mesh, more = RUINS[name]
-    assert name in said(mesh, **more)
+    assert name in faults_text(mesh, **more)
 
 
 def test_a_new_pinch_is_named_where_two_corners_become_one():
     faces = FEWER.faces.copy()
     far = int(np.argmin(FEWER.vertices @ FEWER.vertices[0]))
     faces[faces == far] = 0
-    assert "1 new non-manifold vertices" in said(changed(faces=faces))
+    assert "1 new non-manifold vertices" in faults_text(changed(faces=faces))
 
 
 def test_faults_that_were_there_before_are_no_complaint_nor_is_throwing_copies_out():
     before = Mesh(SOUND.vertices, np.r_[SOUND.faces, SOUND.faces[:9], SOUND.faces[:4, [0, 1, 1]]])
-    assert said(before, before, 2000) == "" and said(SOUND, before, 2000) == ""
+    assert faults_text(before, before, 2000) == "" and faults_text(SOUND, before, 2000) == ""
 
 
 def test_a_fold_that_a_zero_edge_hid_is_no_new_one_and_a_face_laid_upon_a_face_is():
     hidden = DAMAGES["zero_area"].make(folded(), rng(0, "hidden"))
-    assert said(folded(), hidden, 2000) == ""
+    assert faults_text(folded(), hidden, 2000) == ""
     pillow = Mesh(np.r_[FEWER.vertices, 2 + np.eye(3)], np.r_[FEWER.faces, [[162, 163, 164], [162, 164, 163]]])
-    assert "1 new duplicate faces" in said(pillow, faces=400)
+    assert "1 new duplicate faces" in faults_text(pillow, faces=400)
 
 
 def test_moving_a_rim_is_a_change_of_the_boundary():
@@ -100,7 +100,9 @@ def test_moving_a_rim_is_a_change_of_the_boundary():
     rim = np.flatnonzero([row.tobytes() in edges for row in half.vertices])
     moved = half.vertices.copy()
     moved[rim[0]] *= 1.01
-    assert said(half, half, 2000) == "" and "boundary changed" in said(Mesh(moved, half.faces), half, 2000)
+    assert faults_text(half, half, 2000) == "" and "boundary changed" in faults_text(
+        Mesh(moved, half.faces), half, 2000
+    )
 
 
 @pytest.mark.parametrize(("scale", "offset"), [(1e-12, 1e3), (1e12, 0.0)])
@@ -108,8 +110,8 @@ def test_the_verdict_does_not_depend_on_unit_or_origin(scale, offset):
     def moved(mesh):
         return Mesh(scale * (mesh.vertices + offset), mesh.faces)
 
-    assert said(moved(FEWER), moved(SOUND)) == ""
-    assert "new folds" in said(moved(folded()), moved(SOUND))
+    assert faults_text(moved(FEWER), moved(SOUND)) == ""
+    assert "new folds" in faults_text(moved(folded()), moved(SOUND))
     assert surface_error(moved(SOUND), moved(FEWER)) == pytest.approx(surface_error(SOUND, FEWER), rel=1e-3)
 
 

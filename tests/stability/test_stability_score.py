@@ -45,8 +45,8 @@ def rows(objects=12, lost=None, spread=0.3):
     return entries
 
 
-def scored(found, **given):
-    return scores(of_points(pd.DataFrame(found)), **given).set_index("method")
+def scored(entries, **options):
+    return scores(of_points(pd.DataFrame(entries)), **options).set_index("method")
 
 
 def test_the_reference_is_one_chance_scores_as_chance_and_others_are_measured_by_it():

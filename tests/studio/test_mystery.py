@@ -49,9 +49,9 @@ def test_an_object_that_may_lie_anywhere_hides_in_another_pose(shapes):
     anywhere, _ = study(shapes, placed=False)
     drawn = [guess(anywhere, shapes, None, seed) for seed in range(10)]
     for game in drawn:
-        given, hidden = shapes[game.name].vertices, game.specimen.mesh.vertices
-        assert not np.allclose(hidden, given, atol=0.1)
-        shape = [np.linalg.norm(points - points.mean(axis=0), axis=1) for points in (given, hidden)]
+        plain, hidden = shapes[game.name].vertices, game.specimen.mesh.vertices
+        assert not np.allclose(hidden, plain, atol=0.1)
+        shape = [np.linalg.norm(points - points.mean(axis=0), axis=1) for points in (plain, hidden)]
         assert np.corrcoef(*shape)[0, 1] > 0.999 or game.name == "ball"
     assert np.mean([game.exploration.finish() in (game.name, "") for game in drawn]) >= 0.7
 
@@ -63,7 +63,7 @@ def test_the_planner_tries_the_same_object_without_the_persons_touches(library, 
 
 
 @pytest.mark.parametrize(
-    ("said", "planner", "expected"),
+    ("person_answer", "planner", "expected"),
     [
         ("", (2, "cone"), "You gave up after 0 touches; the planner alone knew it after 2."),
         ("cone", (2, "cone"), "You knew it after 0 touches; the planner alone knew it after 2."),
@@ -71,9 +71,9 @@ def test_the_planner_tries_the_same_object_without_the_persons_touches(library, 
         ("cone", (30, ""), "You knew it after 0 touches; the planner alone gave up after 30."),
     ],
 )
-def test_the_verdict_names_who_knew_it(library, shapes, said, planner, expected):
+def test_the_verdict_names_who_knew_it(library, shapes, person_answer, planner, expected):
     game = guess(library, shapes, Specimen(shapes["cone"], "cone"))
-    game.said = said
+    game.person_answer = person_answer
     assert verdict(game, planner) == f"**It is cone.** {expected}"
 
 

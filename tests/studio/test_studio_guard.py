@@ -149,7 +149,7 @@ def test_two_hosts_in_one_request_are_refused():
 
 def test_no_tunnel_to_other_machines_is_opened(monkeypatch):
     opened = []
-    monkeypatch.setattr("viser._viser.ViserTunnel", lambda *given: opened.append(given))
+    monkeypatch.setattr("viser._viser.ViserTunnel", lambda *args: opened.append(args))
     studio = Studio(Settings())
     try:
         for handler in studio.server._websock_server._incoming_handlers[messages.ShareUrlRequest]:

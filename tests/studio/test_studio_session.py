@@ -89,10 +89,10 @@ def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypat
     specimen, begun, go = Specimen(mesh, "ball"), Event(), Event()
     specimen.look()
 
-    def slow(*given):
+    def slow(*source):
         begun.set()
         go.wait(PATIENCE)
-        return Looked(*given)
+        return Looked(*source)
 
     monkeypatch.setattr("haptic_glance.studio.specimen.Looked", slow)
     with ThreadPoolExecutor(3) as pool:
@@ -149,7 +149,7 @@ def test_turning_keeps_the_vertices_and_changes_what_is_high(mesh):
 def test_an_uploaded_file_is_that_on_disk_and_reads_no_other(knob_file):
     opened = open_content(f"../../{knob_file.name}", knob_file.read_bytes())
     assert opened.name == "knob" and opened.path is None
-    assert np.array_equal(opened.given.vertices, load(knob_file).vertices)
+    assert np.array_equal(opened.source.vertices, load(knob_file).vertices)
     with pytest.raises(MeshError, match="formats are"):
         open_content("/etc/passwd", b"root")
     with pytest.raises(MeshError, match="empty"):
@@ -159,7 +159,7 @@ def test_an_uploaded_file_is_that_on_disk_and_reads_no_other(knob_file):
 def test_meshes_of_the_pipeline_are_opened(tmp_path, mesh):
     write_mesh(tmp_path / "vase.npz", normalise(mesh))
     (path,) = files_at(tmp_path)
-    assert open_file(path).name == "vase" and len(open_file(path).given.faces) == len(mesh.faces)
+    assert open_file(path).name == "vase" and len(open_file(path).source.faces) == len(mesh.faces)
     (tmp_path / "bad.npz").write_bytes(b"no zip")
     np.savez(tmp_path / "other.npz", a=1)
     for name in ("bad.npz", "other.npz"):

@@ -49,8 +49,8 @@ def row_of(small):
     return lambda row, **changes: trial_row(row, {"mobilenet_v2": None}, small.settings(**changes))
 
 
-def train(folder, settings, one=FROZEN):
-    return trial.process(one.name, folder, folder, MEMBERS, settings, seed=0)
+def train(folder, settings, training=FROZEN):
+    return trial.process(training.name, folder, folder, MEMBERS, settings, seed=0)
 
 
 def plain(rows):
@@ -68,9 +68,9 @@ def test_touches_know_their_class_and_object(folder):
 def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_rate(folder, small, row_of, monkeypatch):
     settings, learned, train_model = small.settings(), [], trial.train_model
 
-    def listed(task, labels, ids, *given, **other):
+    def listed(task, labels, ids, *args, **other):
         learned.append(len(ids))
-        return train_model(task, labels, ids, *given, **other)
+        return train_model(task, labels, ids, *args, **other)
 
     def killed(*_, **__):
         raise KeyboardInterrupt
@@ -143,9 +143,9 @@ def test_a_training_to_convergence_has_its_curve_its_best_pass_and_the_accuracy_
 def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge(folder, small, row_of, monkeypatch):
     learned, train_model = [], trial.train_model
 
-    def listed(task, labels, ids, *given, **other):
+    def listed(task, labels, ids, *args, **other):
         learned.append(len(ids))
-        return train_model(task, labels, ids, *given, **other)
+        return train_model(task, labels, ids, *args, **other)
 
     monkeypatch.setattr(trial, "train_model", listed)
     rows = train(folder, small.settings(frozen_rates=[1e38]), CONVERGED)

@@ -51,7 +51,7 @@ def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers_an
     assert metrics["views"] == 8 and metrics["coverage"] == pytest.approx(rows.value.mean(), abs=1e-6)
 
     rendered, render_view = [], stage.render
-    monkeypatch.setattr(stage, "render", lambda *given: rendered.append(given) or render_view(*given))
+    monkeypatch.setattr(stage, "render", lambda *args: rendered.append(args) or render_view(*args))
     write_mesh(workspace.data / "meshes" / "bowl.npz", shapes["bowl"])
     stage.run(workspace)
     assert len(rendered) == 4

@@ -10,12 +10,12 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.views.storage import read_view, write_view
 
 
-def assert_equal(one, other):
+def assert_equal(first, second):
     for name in ("rgb", "depth", "face"):
-        left, right = getattr(one, name), getattr(other, name)
+        left, right = getattr(first, name), getattr(second, name)
         assert left.dtype == right.dtype
         assert np.array_equal(left, right), name
-    assert one.viewpoint == other.viewpoint
+    assert first.viewpoint == second.viewpoint
 
 
 @pytest.mark.parametrize(("name", "background"), [("bowl", "white"), ("coloured", "black"), ("nothing", "grey")])

@@ -22,7 +22,7 @@ points = np.einsum("kc,kcd->kd", corners, whole.vertices[whole.faces[faces]])
 points = points[points[:, 2] > -0.3]  # the feet were out of sight
 
 mesh = surface_of(Cloud(points))
-found = detect(mesh, count=8)
+detection = detect(mesh, count=8)
 print(f"{len(points):,} points became {mesh}")
 
 fig = plt.figure(figsize=(8, 4), layout="constrained")
@@ -32,6 +32,6 @@ left.view_init(22, 305 - 360)
 left.set_aspect("equal")
 left.axis("off")
 right = fig.add_subplot(1, 2, 2)
-right.imshow(look(mesh, found.saliency, found.points)[90:530, 60:560])
+right.imshow(look(mesh, detection.saliency, detection.points)[90:530, 60:560])
 right.axis("off")
 plt.show()

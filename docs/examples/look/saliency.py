@@ -14,13 +14,13 @@ from haptic_glance.gallery.demo import sample
 from haptic_glance.lod.pictures import look
 
 mesh = load(sample())
-found = detect(mesh, count=10)  # saliency and points from one look
-print(mesh, found.saliency.min().round(3), found.saliency.max().round(3))
+detection = detect(mesh, count=10)  # saliency and points from one look
+print(mesh, detection.saliency.min().round(3), detection.saliency.max().round(3))
 
 # %%
 # Yellow attracts most. The numbers are the ranks of the points on this side.
 
 plt.figure(figsize=(5, 5), layout="constrained")
-plt.imshow(look(mesh, found.saliency, found.points))
+plt.imshow(look(mesh, detection.saliency, detection.points))
 plt.axis("off")
 plt.show()

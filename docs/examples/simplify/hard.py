@@ -24,10 +24,11 @@ made = {
 }
 
 fig, axes = plt.subplots(2, 3, figsize=(9, 5.6), height_ratios=[4, 3], layout="constrained")
-for (whole, head), (title, each) in zip(axes.T, made.items(), strict=True):
-    survived = (each.vertices[:, None] == mesh.vertices[points]).all(axis=2).any(axis=0)
-    print(f"{title:31} mean error {100 * metro(mesh, each)['mean']:.4f} %, {int(np.sum(survived))} of 8 points survive")
-    image = draw(each, wires=True)
+for (whole, head), (title, simplified) in zip(axes.T, made.items(), strict=True):
+    survived = (simplified.vertices[:, None] == mesh.vertices[points]).all(axis=2).any(axis=0)
+    error = 100 * metro(mesh, simplified)["mean"]
+    print(f"{title:31} mean error {error:.4f} %, {int(np.sum(survived))} of 8 points survive")
+    image = draw(simplified, wires=True)
     whole.imshow(image[90:530, 60:560])
     whole.set_title(title, fontsize=10)
     head.imshow(image[150:300, 370:570])

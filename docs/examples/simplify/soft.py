@@ -22,8 +22,8 @@ shown = {
 }
 
 fig, axes = plt.subplots(2, 3, figsize=(9, 5.6), height_ratios=[4, 3], layout="constrained")
-for (whole, head), (title, (each, values)) in zip(axes.T, shown.items(), strict=True):
-    image = draw(coloured(each, values), wires=True)
+for (whole, head), (title, (simplified, values)) in zip(axes.T, shown.items(), strict=True):
+    image = draw(coloured(simplified, values), wires=True)
     whole.imshow(image[90:530, 60:560])
     whole.set_title(title, fontsize=10)
     head.imshow(image[150:300, 370:570])

@@ -18,8 +18,8 @@ weights = saliency(mesh)
 
 fig, axes = plt.subplots(1, 3, figsize=(10, 3.7), layout="constrained")
 for axis, tolerance in zip(axes, [0.0002, 0.001, 0.004], strict=True):  # shares of the diagonal
-    found = fewest_faces(mesh, lambda faces: simplify(mesh, faces, weights=weights), 50, tolerance)
-    axis.imshow(draw(found, wires=True)[90:530, 60:560])
-    axis.set_title(f"{100 * tolerance:g} %: {len(found.faces):,} faces", fontsize=10)
+    smallest = fewest_faces(mesh, lambda faces: simplify(mesh, faces, weights=weights), 50, tolerance)
+    axis.imshow(draw(smallest, wires=True)[90:530, 60:560])
+    axis.set_title(f"{100 * tolerance:g} %: {len(smallest.faces):,} faces", fontsize=10)
     axis.axis("off")
 plt.show()

@@ -15,13 +15,13 @@ from haptic_glance.lod.pictures import look
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
-found = detect(mesh, count=6)
-images = press_many(mesh, found.points, cells=(16, 16), pitch=0.01)
+detection = detect(mesh, count=6)
+images = press_many(mesh, detection.points, cells=(16, 16), pitch=0.01)
 
 fig = plt.figure(figsize=(9, 4.2), layout="constrained")
 left, right = fig.subfigures(1, 2, width_ratios=[1, 1.3])
 axis = left.subplots()
-axis.imshow(look(mesh, found.saliency, found.points)[90:530, 60:560])
+axis.imshow(look(mesh, detection.saliency, detection.points)[90:530, 60:560])
 axis.axis("off")
 for rank, (axis, image) in enumerate(zip(np.ravel(right.subplots(2, 3)), images, strict=True), start=1):
     axis.imshow(image, cmap="gray", vmin=0, vmax=1)

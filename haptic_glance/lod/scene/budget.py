@@ -109,7 +109,7 @@ class _Search:
     def _plan(self):
         least = np.zeros(self.frames.shape, dtype=np.int64)
         while True:
-            levels = np.stack([self._one(item, least[:, item]) for item in range(len(self.chains))], axis=1)
+            levels = np.stack([self._levels_of(item, least[:, item]) for item in range(len(self.chains))], axis=1)
             crowded_frames = np.flatnonzero(self._total(levels) > self.scene.limit) if self.scene.limit else ()
             if not len(crowded_frames):
                 return levels
@@ -124,7 +124,7 @@ class _Search:
         counts = np.stack([faces[k] for faces, k in zip(self.faces, levels.T, strict=True)], axis=1)
         return (counts * self.frames.in_view).sum(axis=1)
 
-    def _one(self, item, least):
+    def _levels_of(self, item, least):
         cost = self.faces[item] * self.frames.in_view[:, item, None]
         errors = np.where(np.arange(len(self.chains[item])) < least[:, None], np.inf, self.errors[item])
         # Out of view all levels cost nothing: a small share of the count makes the choice unique.

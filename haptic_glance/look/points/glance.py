@@ -133,7 +133,7 @@ def nearest_vertices(mesh: Mesh, positions: np.ndarray, targets: np.ndarray) -> 
     Of equally near vertices the first one by place, since rounding would decide.
     """
     count = min(len(positions), CORNERS)
-    distances, near = (found.reshape(len(targets), count) for found in KDTree(positions).query(targets, count))
+    distances, near = (part.reshape(len(targets), count) for part in KDTree(positions).query(targets, count))
     equal = distances <= distances[:, :1] * (1 + ROUNDING)
     several = np.flatnonzero(equal.sum(axis=1) > 1)
     rows, columns = np.nonzero(equal[several])

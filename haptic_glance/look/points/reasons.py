@@ -68,13 +68,13 @@ def reasons(
     """
     names, amounts, sign = list(terms), np.array(list(terms.values())), -1 if against else 1
 
-    def said(name: str, amount: float) -> str:
+    def phrase(name: str, amount: float) -> str:
         high_words, low_words = WORDS[name]
         return high_words if amount * GLANCES[method][name] > 0 else low_words
 
     return [
         [
-            (said(names[k], column[k]), float(column[k]))
+            (phrase(names[k], column[k]), float(column[k]))
             for k in np.argsort(-sign * column)[:count]
             if sign * column[k] > 0
         ]

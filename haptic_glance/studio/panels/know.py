@@ -48,7 +48,7 @@ class KnowPanel(Panel):
         on(self.next.on_click, self.touch_next)
         on(self.until.on_click, self.touch_on)
         on(self.mystery.on_click, lambda: self.learn(hidden=True))
-        on(self.name.on_update, self.said)
+        on(self.name.on_update, self.take_answer)
         on(self.reveal.on_click, self.show_it)
         on(self.again.on_click, self.learn)
         for control in (self.basic, self.household, self.placed):
@@ -197,16 +197,16 @@ class KnowPanel(Panel):
             f"**{escaped(belief.known)}**, {touches}." if belief.known else f"Not sure {touches}. {begin}"
         )
         if game.over:
-            self.about.content = game.told or f"**It is {escaped(game.name)}.**"
+            self.about.content = game.verdict_text or f"**It is {escaped(game.name)}.**"
         elif not game.touches:
             self.about.content = begin
         if game.hidden and belief.known:
             self.show_it()
 
-    def said(self) -> None:
+    def take_answer(self) -> None:
         """The person says what it is."""
         if self.guess is not None and self.guess.hidden and self.name.value != GUESS and not self.guess.over:
-            self.guess.said = self.name.value
+            self.guess.person_answer = self.name.value
             self.show_it()
 
     def show_it(self) -> None:
@@ -222,7 +222,7 @@ class KnowPanel(Panel):
 
     def tell(self, game: Guess, planner: tuple[int, str]) -> None:
         """Says who knew the hidden object."""
-        game.told = verdict(game, planner, escaped)
+        game.verdict_text = verdict(game, planner, escaped)
         self.report()
 
     def draw(self) -> None:

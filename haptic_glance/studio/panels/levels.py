@@ -91,7 +91,7 @@ class LevelsPanel(Panel):
             raise ValueError("there is no level yet: wait until it is shown")
         name, send = session.on_table.name, self.window.download
         if self.saves.value.startswith("CSV"):
-            return send(f"{name}_points.csv", (as_csv(levels.looked.points, session.on_table.given) + "\n").encode())
+            return send(f"{name}_points.csv", (as_csv(levels.looked.points, session.on_table.source) + "\n").encode())
         suffix = f".{self.saves.value.lower()}"
         file = f"{name}_{len(level.mesh.faces)}{suffix}"
         self.window.work(

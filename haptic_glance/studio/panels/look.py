@@ -23,7 +23,7 @@ from ..scene import BESIDE, MESH
 from ..specimen import Hit, Look, Specimen
 
 POINTS, OTHER, NAMES = "/points", "/other", "/names"
-NONE, OWN = "none", 0  # no method beside it; as many points as the method finds
+NONE, AUTOMATIC = "none", 0  # no method beside it; as many points as the method finds
 MOST = 20  # points
 ABOVE = np.array([0.0, 0.0, 0.58])
 TILE = (150, 200)  # rows, columns of each of the twelve views
@@ -38,9 +38,9 @@ class LookPanel(Panel):
         session, window = self.window.session, self.window
         self.method = gui.add_dropdown("Method", methods(), initial_value=session.method)
         self.other = gui.add_dropdown("Beside it", [NONE, *methods()], initial_value=session.other or NONE)
-        hint = f"how many; {OWN}: those past the method's own threshold"
-        self.found = session.count or OWN  # places that are listed
-        self.count = gui.add_slider("Places", OWN, MOST, 1, session.count or OWN, hint=hint)
+        hint = f"how many; {AUTOMATIC}: those past the method's own threshold"
+        self.listed = session.count or AUTOMATIC  # places that are listed
+        self.count = gui.add_slider("Places", AUTOMATIC, MOST, 1, session.count or AUTOMATIC, hint=hint)
         self.here = gui.add_markdown("Click the mesh to see why people look there, or not.")
         self.list = gui.add_markdown("")
         with gui.add_folder("Twelve views", expand_by_default=False):
@@ -60,7 +60,7 @@ class LookPanel(Panel):
     def choose(self) -> None:
         """Another method or count was chosen."""
         session = self.window.session
-        count = None if session.count is None and self.count.value == self.found else self.count.value or None
+        count = None if session.count is None and self.count.value == self.listed else self.count.value or None
         other = None if self.other.value == NONE else self.other.value
         if (other is None) != (session.other is None):
             self.window.scene.aim(wide=other is not None)
@@ -116,9 +116,9 @@ class LookPanel(Panel):
     def explain(self, specimen: Specimen, look: Look) -> None:
         """Lists the points; with the reasons, if the method has some, when they are known."""
         self.list.content = listing(look, [[]] * len(look.points))
-        self.found = min(len(look.points), MOST)
-        if self.count.value != self.found:  # of a method's own number it says which that is
-            self.count.value = self.found
+        self.listed = min(len(look.points), MOST)
+        if self.count.value != self.listed:  # of a method's own number it says which that is
+            self.count.value = self.listed
         if look.method in GLANCES and look.points:
             self.window.work(
                 "Asking why",
@@ -152,20 +152,20 @@ class LookPanel(Panel):
     def save_points(self) -> None:
         """Hands out the points in the file's coordinates."""
         session = self.window.session
-        content = as_csv(session.look().points, session.on_table.given) + "\n"
+        content = as_csv(session.look().points, session.on_table.source) + "\n"
         self.window.download(f"{session.on_table.name}_points.csv", content.encode())
 
     def save_mesh(self) -> None:
         """Hands out the coloured mesh in the file's coordinates, turned upright as glTF has it."""
         session = self.window.session
         specimen, look = session.on_table, session.look()
-        self.save(f"{look.method}.glb", lambda: as_bytes(coloured(specimen.given, look.saliency), ".glb"))
+        self.save(f"{look.method}.glb", lambda: as_bytes(coloured(specimen.source, look.saliency), ".glb"))
 
     def save_weights(self) -> None:
         """Hands out the mesh as it was opened, with the saliency of each vertex."""
         session, suffix = self.window.session, f".{self.weights.value.lower()}"
         specimen, look = session.on_table, session.look()
-        self.save(f"{look.method}_weights{suffix}", lambda: as_bytes(specimen.given, suffix, look.saliency))
+        self.save(f"{look.method}_weights{suffix}", lambda: as_bytes(specimen.source, suffix, look.saliency))
 
     def save(self, ending: str, make: Callable[[], bytes]) -> None:
         """Makes a file in the background, then hands it out under the mesh's name and the ending."""

@@ -288,7 +288,7 @@ def _table(
         if row.gain == row.gain:
             line[f"ours − it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
     findings = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
-    words = words | {"said": findings, "reading": shared_notes(__package__, "reading")}
+    words = words | {"findings": findings, "reading": shared_notes(__package__, "reading")}
     cells = pd.DataFrame(lines.values())
     truth_and_peeking = [method_text(name) for name in lines if name == HUMAN or has_seen(name)]
     answer = [name for name in columns if name not in MEANS.values() or name == MEANS[COUNTED]]

@@ -167,7 +167,9 @@ def section_3_2_3(results: Results) -> Table:
         for row in records(frame.dropna(subset=["thesis_accuracy"]))
     ]
     text_table = pd.DataFrame(map(_shown, records(frame)))
-    return Table(frame, text_table, {"said": "\n".join(findings)})  # no ranking: the ways to test differ, not the SVMs
+    return Table(
+        frame, text_table, {"findings": "\n".join(findings)}
+    )  # no ranking: the ways to test differ, not the SVMs
 
 
 def _shown(row: Any) -> dict[str, str | int]:

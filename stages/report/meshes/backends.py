@@ -35,10 +35,10 @@ def backends_table(results: Results) -> Table:
     frame = summarised(rows, fitted=True)
     cells = rows.drop_duplicates(CELL)
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
-    lines = [_said(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
+    lines = [_sentence(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
         "measured": shared_notes(__package__, f"timed_{'cold' if MAXIMUM in rows else 'warm'}"),
-        "said": "\n".join(lines + against_meshoptimizer(rows, results)),
+        "findings": "\n".join(lines + against_meshoptimizer(rows, results)),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -89,7 +89,7 @@ def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
     return pd.DataFrame(lines).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
 
 
-def _said(row) -> str:
+def _sentence(row) -> str:
     peer, faster = label(REFERENCE), (1 / row.time_ratio, 1 / row.time_high, 1 / row.time_low)
     error = row.error_ratio, row.error_low, row.error_high
     power = row.loglinear_power, row.loglinear_low, row.loglinear_high
@@ -140,7 +140,7 @@ def backends_chart(results: Results) -> Figure:
         axes.set(ylabel=f"{name}, ratio to {REFERENCE}", title=title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}
     _growing(panels[2], paired, fits, tints)
-    powers = "; ".join(f"{label(name)} {fit.said}" for name, fit in fits.items() if fit)
+    powers = "; ".join(f"{label(name)} {fit.text}" for name, fit in fits.items() if fit)
     words = {
         "reference": REFERENCE, "backends": ", ".join(map(label, tints)), "fitted": FITTED,
         "powers": f"p = 1 is n log n: {powers}." if powers else "",
@@ -190,7 +190,7 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
         cells, fit, power = rows[rows["backend"] == backend], fits[backend], ""
         axes.plot(cells["full"], cells["seconds"], ".", color=tint, ms=4, alpha=0.4, mew=0)
         if fit:
-            n, power = np.geomspace(*fit.span, 30), f", p = {fit.said}"
+            n, power = np.geomspace(*fit.span, 30), f", p = {fit.text}"
             axes.plot(n, fit(n), color=tint, lw=1.4)
             axes.fill_between(n, *np.sort([fit(n, fit.low), fit(n, fit.high)], axis=0), color=tint, alpha=0.15, lw=0)
             axes.plot(n, fit(n, 1.0), color=INK, lw=0.9, ls="--")

@@ -37,8 +37,8 @@ from .tables import (  # fmt: skip
     fixed,
     ordered,
     paired_cells,
-    said,
     short,
+    target_text,
 )
 
 SPREAD = {"metro_mean": "mean", "metro_rms": "rms", "metro_max": "max"}
@@ -63,9 +63,9 @@ def figure_3_4(results: Results) -> Figure:
     drawing, panels = plt.subplots(1, len(cells), figsize=size, sharey=True)
     for axes, (metric, target) in zip(panels, cells, strict=True):
         _draw_dots(axes, by_object(rows, methods, metric, target), CYCLE[METRICS.index(metric)], CLASSICAL)
-    _dress(drawing, [f"{ERRORS[metric]}\n{said(target)}" for metric, target in cells], methods)
+    _dress(drawing, [f"{ERRORS[metric]}\n{target_text(target)}" for metric, target in cells], methods)
     objects = rows.groupby("target")["item"].nunique()
-    object_counts = ", ".join(f"{said(target)}: {objects[target]} objects" for target in targets)
+    object_counts = ", ".join(f"{target_text(target)}: {objects[target]} objects" for target in targets)
     words = {"methods": ", ".join(map(short, methods)), "counts": len(targets), "classical": short(CLASSICAL)}
     return Figure(drawing, words | {"over": object_counts}, dpi=100)
 
@@ -82,7 +82,7 @@ def figure_3_5(results: Results) -> Figure:
         _draw_dots(panels[0], by_object(rows, methods, metric), tint, PLAIN, SPREAD[metric], down)
     for target, tint, down in zip(targets, CYCLE[3:], APART, strict=False):
         errors = by_object(rows, methods, "metro_mean", target)
-        _draw_dots(panels[1], errors, tint, PLAIN, said(target).removesuffix(" faces"), down)
+        _draw_dots(panels[1], errors, tint, PLAIN, target_text(target).removesuffix(" faces"), down)
     for axes, metric in zip(panels[2:5], ("ssim_error", "dlap", "dnor"), strict=True):
         _draw_dots(axes, by_object(rows, methods, metric), CYCLE[0], PLAIN)
         axes.xaxis.set_major_locator(MaxNLocator(3))
@@ -91,7 +91,7 @@ def figure_3_5(results: Results) -> Figure:
     panels[0].xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     _dress(drawing, TITLES, methods, pad=20)
     objects = rows.groupby("target")["item"].nunique()
-    object_counts = ", ".join(f"{objects[target]} at {said(target)}" for target in targets)
+    object_counts = ", ".join(f"{objects[target]} at {target_text(target)}" for target in targets)
     words = {"methods": ", ".join(map(short, methods)), "objects": rows["item"].nunique(), "over": object_counts}
     return Figure(drawing, words, dpi=100)
 
@@ -112,7 +112,7 @@ def figure_3_23(results: Results) -> Figure:
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
             errors = by_object(rows, boxes[name], metric, target)
             _draw_boxes(axes, errors)
-            title = f"{ERRORS[metric]}, {said(target)}\n{len(errors)} objects"
+            title = f"{ERRORS[metric]}, {target_text(target)}\n{len(errors)} objects"
             axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
         row[0].set_title(f"{name}\n{row[0].get_title('left')}", fontsize=8.5, fontweight="normal", pad=4)
         _name_rows(row[0], boxes[name], TINTS, 8)
@@ -278,6 +278,6 @@ def _typical_views(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines, columns=[*keys, "value", "low", "high", "seconds", "meshes"])
 
 
-def _rows(results: Results, what: str) -> pd.DataFrame:
-    rows = results.bench("errors").query("what == @what")
-    return some(rows, f"bench/errors.csv has no rows of {what}", "lod", runnable=False)
+def _rows(results: Results, source: str) -> pd.DataFrame:
+    rows = results.bench("errors").query("what == @source")
+    return some(rows, f"bench/errors.csv has no rows of {source}", "lod", runnable=False)

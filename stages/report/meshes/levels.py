@@ -205,7 +205,7 @@ class Growth:
         return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)
 
     @property
-    def said(self) -> str:
+    def text(self) -> str:
         """`1.04 [0.90, 1.11]`: the power with its interval."""
         return with_interval(self.power, self.low, self.high, places=2)
 

@@ -28,7 +28,7 @@ from stages.report.drawing import (
 from stages.report.items import Figure
 from stages.report.results import SECTION_3_2, NotRun, Results, dataset_text, some
 
-from .tables import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, said, short, size
+from .tables import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, short, size, target_text
 
 COLUMNS = 7  # of figure 3.6
 GUIDED = PRINTED[1]  # by SSIM: what figure 3.21 keeps
@@ -82,7 +82,7 @@ def figure_3_7(results: Results) -> Figure:
         show(axes, meshes[method], faces_an_area(meshes[method]), True, rows=ROWS["figure_3_7"], tints=TINTS)
     name_panels(grid, [f"{short(method)}: {len(points[method])} points" for method in DIFFERING])
     colour_bar(drawing, [0.93, 0.2, 0.01, 0.6], "faces an area", TINTS, ("few", "as the mean", "many"))
-    words = {"name": name, "target": said(target), "methods": ", ".join(map(short, DIFFERING))}
+    words = {"name": name, "target": target_text(target), "methods": ", ".join(map(short, DIFFERING))}
     return Figure(drawing, words | {"set": dataset_text(results.sets[0])}, dpi=75)
 
 
@@ -161,7 +161,9 @@ def figure_3_22(results: Results) -> Figure:
         for axes, mesh in zip(row, meshes.values(), strict=True):
             show(axes, mesh, wires=True, rows=ROWS["figure_3_22"])
     above = [label(method).replace(", ", ",\n") for method in FIXED_ADAPTIVE]
-    name_panels(grid, above, [f"{name}\n{said(target)}" for name, target, _ in examples], letters=(9.5, 9), away=0.02)
+    name_panels(
+        grid, above, [f"{name}\n{target_text(target)}" for name, target, _ in examples], letters=(9.5, 9), away=0.02
+    )
     words = {"names": " and ".join(name for name, *_ in examples), "set": dataset_text(results.sets[0])}
     return Figure(drawing, words, dpi=85)
 

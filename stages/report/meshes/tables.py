@@ -17,7 +17,17 @@ from haptic_glance.look.weights.weights import GLANCE
 from stages.engine.statistics import interval
 from stages.report.drawing import WAYS, label
 from stages.report.items import Table
-from stages.report.results import ON_GREY, ON_WHITE, OWN, SECTION_3_1, SECTION_3_2, NotRun, Results, dataset_text, some
+from stages.report.results import (
+    ON_GREY,
+    ON_WHITE,
+    OWN_FOLDER,
+    SECTION_3_1,
+    SECTION_3_2,
+    NotRun,
+    Results,
+    dataset_text,
+    some,
+)
 from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.report.validity import UNIT, as_plain
 from stages.report.words import shared_notes
@@ -71,9 +81,9 @@ def _wide(frame: pd.DataFrame, targets: list[str]) -> pd.DataFrame:
     text_table["points"] = column("points", targets[-1])
     text_table[SHARES["without_points"]] = column("without_points", targets[-1], "{:.0f}", 100)
     for target in targets:
-        text_table[f"rings, {said(target)}"] = column("rings", target)
+        text_table[f"rings, {target_text(target)}"] = column("rings", target)
         for name in ("three_rings", "as_plain"):
-            text_table[f"{SHARES[name]}, {said(target)}"] = column(name, target, "{:.0f}", 100)
+            text_table[f"{SHARES[name]}, {target_text(target)}"] = column(name, target, "{:.0f}", 100)
     return text_table
 
 
@@ -164,7 +174,7 @@ def size(target: str) -> tuple[bool, float]:
     return (not target.endswith("%"), -float(target.rstrip("%")))
 
 
-def said(target: str) -> str:
+def target_text(target: str) -> str:
     """A target in words: `25%`, `1,500 faces`."""
     return target if target.endswith("%") else f"{int(target):,} faces"
 
@@ -240,7 +250,7 @@ def dataset(results: Results) -> Table:
 def combinations(results: Results) -> Table:
     """The combinations of channels, in the thesis's order, and the mean errors that each led to."""
     if results.own_meshes:
-        raise NotRun("the combinations of T3.1.5 are judged on the project's own data sets", OWN, runnable=False)
+        raise NotRun("the combinations of T3.1.5 are judged on the project's own data sets", OWN_FOLDER, runnable=False)
     averages = []
     with suppress(NotRun):  # the list is worth having without the errors
         rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
@@ -302,7 +312,9 @@ def table_3_2(results: Results) -> Table:
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
     orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED, "metric": METRICS}
-    cells = frame.assign(block=frame["target"].map(said) + np.where(frame["nothing_shrunk"], ", nothing shrunk", ""))
+    cells = frame.assign(
+        block=frame["target"].map(target_text) + np.where(frame["nothing_shrunk"], ", nothing shrunk", "")
+    )
     cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
     counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
     objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)

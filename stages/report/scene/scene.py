@@ -37,7 +37,7 @@ COLUMNS = {
     "salient_displacement": "where one looks, px", "ssim_error": "1 − SSIM of the frames", "step_worst": "worst jump",
     "planning_ms": "planning, ms a frame",
 }  # fmt: skip
-SAID = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"), ("uniform_size", "displacement"),
+SHOWN = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"), ("uniform_size", "displacement"),
         ("uniform", "held")]  # fmt: skip
 MEASURES = {"rms": "root mean square", "q95": "95 % quantile", "q99": "99 % quantile", "max": "maximum"}
 SPOKEN = NAMES | {f"unrendered_{name}": f"the levels' own surfaces, {words}" for name, words in MEASURES.items()}
@@ -51,7 +51,7 @@ def scene_table(results: Results) -> Table:
     wide["seconds"] = rows.groupby(["method", "matched"])["seconds"].max()
     wide, saved = wide[wide["faces"].notna()], savings(rows)
     text = {(row.rival, row.matched): row.text for row in records(saved)}
-    parts = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SAID if key in text]
+    parts = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SHOWN if key in text]
     text_table = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
     text_table = text_table.assign(held=text_table["held"].map(percent)).map(number).rename(columns=COLUMNS)
     text_table["faces that ours saves, %"] = [text.get(key, "–") for key in wide.index]
@@ -131,14 +131,14 @@ def scenes(results: Results) -> Table:
         "faces that ours saves, %": frame["text"].fillna("–"),
     }
     words = {
-        "scenes": "\n".join(map(_said, scenes.values())),
+        "scenes": "\n".join(map(_sentence, scenes.values())),
         "left": left_of(savings(rows)),
         "planning": planning(results),
     }
     return Table(frame.drop(columns="text"), pd.DataFrame(text_columns), words)
 
 
-def _said(rows: pd.DataFrame) -> str:
+def _sentence(rows: pd.DataFrame) -> str:
     """The objects of a scene, the savings of ours there, and the notes but for those on limits."""
     first = next(iter(records(rows.dropna(subset=["value"]))))
     text = f"Scene {first.scene}, tolerance {amount(first.tolerance, UNITS[first.kind])}: "

@@ -23,7 +23,7 @@ from stages.report.results import Results, dataset_text
 from stages.report.tables import Ranking, blocks, everywhere, grid, percent, records, within
 
 KEYS = ["objects", "split", "classifier"]
-SAID = {
+THESIS_WORDS = {
     ("cnn_images", "conv1"): "kernel 5, 5, 5; padding 2, 2, 2; stride 2, 2, 5; 8 filters",
     ("cnn_images", "norm"): "batch normalisation",
     ("cnn_images", "conv2"): "kernel 5, 5, 3; padding 1, 1, 0; stride 1, 1, 1; tanh; 16 filters",
@@ -45,7 +45,7 @@ def table_4_7(results: Results) -> Table:
     """The layers of both networks, without dropout, beside what the thesis prints of each."""
     rows = results.measured(STAGE, metric="parameters").query("kind != 'Dropout'").reset_index(drop=True)
     frame = rows.rename(columns={"classifier": "network", "value": "parameters"}).astype({"parameters": int})
-    frame["thesis"] = [SAID.get(key, "") for key in zip(frame["network"], frame["layer"], strict=True)]
+    frame["thesis"] = [THESIS_WORDS.get(key, "") for key in zip(frame["network"], frame["layer"], strict=True)]
     frame = frame[["network", "layer", "thesis", "kind", "output", "parameters"]]
     text_table = frame.assign(network=frame["network"].map(NETWORKS))
     text_table = text_table.rename(columns={"kind": "ours", "output": "output of ours"})
@@ -155,11 +155,11 @@ def both(claims: Iterable[Claim]) -> Iterator[Claim]:
     for base in claims:
         words = f"{base.sentence[:-1]}, on objects never touched too."
         yield replace(base, key=f"{base.key}_random", where={**base.where, **RANDOM}, shared=SHARED[Split.RANDOM])
-        of = "" if base.own else f"{base.key}_random"
+        of = "" if base.is_ours else f"{base.key}_random"
         yield replace(base, key=f"{base.key}_unseen", of=of, sentence=words, where={**base.where, **UNSEEN}, **OBJECTS)
 
 
-OWN = [
+BASES = [
     guided(key="contours_guided", where={"classifier": "cnn"},
            sentence="Contours through visually interesting points are better than blind ones."),
     guided(key="contours_guided_all", where={"classifier": PRINTED_METHODS},
@@ -178,11 +178,11 @@ OWN = [
     cnn(key="contours_map_helps", section="T4.4.9", first={"classifier": WITH_MAP}, second={"classifier": NO_MAP},
         sentence="Reducing the features by a self-organising map helps."),
 ]  # fmt: skip
-PRIMARY = [entry for entry in both(OWN) if not entry.own]
+PRIMARY = [entry for entry in both(BASES) if not entry.is_ours]
 CLAIMS = [
     *PRIMARY,
     *(replace(entry, key=f"{entry.key}_more", of=entry.of or entry.key, **OF_MORE, printed=0) for entry in PRIMARY),
-    *(replace(entry, **OF_MORE) for entry in both(OWN) if entry.own),
+    *(replace(entry, **OF_MORE) for entry in both(BASES) if entry.is_ours),
     claim(key="contours_random_flatters", section="ours", **OF_MORE,
           sentence="Drawing test sequences at random flatters: the same objects are known.",
           where={"method": GUIDED, "classifier": "cnn"}, first=RANDOM, second=UNSEEN, mean_of="first", **OBJECTS),

@@ -41,9 +41,9 @@ def table(results: Results) -> Table:
     errors = 1000 * frame["error"] / frame["pitch"]
     text_table["error, thousandths of a cell"] = ["< 1e-6" if error < 1e-6 else error for error in errors]
     texts = text_table[[*TITLES.values()]].itertuples(index=False, name=None)
-    lines = [_said(row, *pair) for row, pair in zip(records(frame), texts, strict=True) if row.method == OURS]
+    lines = [_sentence(row, *pair) for row, pair in zip(records(frame), texts, strict=True) if row.method == OURS]
     words = {
-        "said": "\n".join(lines), "absent": " ".join(reasons.unique()),
+        "findings": "\n".join(lines), "absent": " ".join(reasons.unique()),
         "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in records(meshes)),
     }  # fmt: skip
     answer = ["method", "cells", *TITLES.values(), "error, thousandths of a cell"]
@@ -70,7 +70,7 @@ def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     return rates, frame.sort_values(["cells", "rate"], ascending=[True, False], ignore_index=True)
 
 
-def _said(row: Any, rate: str, ratio: str) -> str:
+def _sentence(row: Any, rate: str, ratio: str) -> str:
     """How fast ours is."""
     text = f"Ours, {row.cells} x {row.cells} cells: {rate} imprints a second on one core. "
     return text + ("TACTO was not run." if row.ratio != row.ratio else f"{ratio} times TACTO's rate.")

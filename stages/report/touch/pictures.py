@@ -10,7 +10,7 @@ from haptic_glance.touch import Surface, distances, normalise, sensor_axes, sens
 from haptic_glance.touch.pictures import draw
 from stages.report.drawing import GREY, INK, PALE, label, plt, show, vivid
 from stages.report.items import Figure
-from stages.report.results import OWN, NotRun, Results
+from stages.report.results import OWN_FOLDER, NotRun, Results
 
 from .rows import MODEL, STAGE
 from .touches import draw_bars, table_4_1, table_4_2
@@ -27,7 +27,7 @@ CELLS, PITCH = (16, 16), 0.01  # as the command has them by default
 def pipeline(results: Results) -> Figure:
     """The whole pipeline on one object, for the README."""
     if results.own_meshes:
-        raise NotRun("the whole pipeline is shown on a published object", OWN, runnable=False)
+        raise NotRun("the whole pipeline is shown on a published object", OWN_FOLDER, runnable=False)
     name = results.choose([results.settings.hero_object], 1, stage="imprints")[0]
     mesh, (_, coarse) = results.mesh(name), results.lods(name, f"{MODEL}-soft")[-1]
     accuracy, classes = _accuracy(results)

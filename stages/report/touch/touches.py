@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from haptic_glance.know.split import Split
 from stages.report.drawing import INK, colours, label, plt
 from stages.report.items import Figure, Table
-from stages.report.results import OWN, SETS_4_2, NotRun, Results, some
+from stages.report.results import OWN_FOLDER, SETS_4_2, NotRun, Results, some
 from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, grouped, scaled, with_means
 from stages.report.words import shared_notes
 
@@ -103,7 +103,7 @@ table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_w
 def recognition(results: Results) -> Table:
     """Recognition by one touch in a folder of one's own, of whatever groups there are."""
     if not results.own_meshes:
-        raise NotRun("tables 4.1 and 4.2 have the groups of the thesis", OWN, runnable=False)
+        raise NotRun("tables 4.1 and 4.2 have the groups of the thesis", OWN_FOLDER, runnable=False)
     splits = [Split.RANDOM, Split.REGIONS]
     rows = scaled(results.measured(STAGE, metric="accuracy", variant="plain", split=splits))
     keys, ends = ["group", "split", "sampling", "classifier"], ["accuracy", "low", "high", "repetitions"]

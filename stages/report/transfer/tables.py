@@ -253,7 +253,7 @@ def later_change_less(results: Results, claim: Claim) -> pd.Series:
     return -changes.groupby("repetition")["value"].agg(lambda values: spearmanr(np.arange(len(values)), values)[0])
 
 
-OWN = both(
+PLAIN = both(
     claim("tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.", "mode", "finetuned", "frozen",
           readings=PRINTED_RATE),
     claim("frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
@@ -293,7 +293,7 @@ def of_four(claim: Claim) -> Claim:
                    **sides)  # fmt: skip
 
 
-OWN = [of_four(entry) if entry.section in ("T5.4", "T5.6") and not entry.of else entry for entry in OWN]
+PLAIN = [of_four(entry) if entry.section in ("T5.4", "T5.6") and not entry.of else entry for entry in PLAIN]
 EARLY = [  # by layers that the default run does not freeze
     replace(entry, key=f"{entry.key}_psb", dataset=THEIRS)
     for entry in both(
@@ -332,7 +332,7 @@ LESS = [  # at the thesis's size, by networks or by layers
               "whole.", "mode", "18:139", highest_of(*RANGES), split="random", note="of T table 5.6's ranges"),
     )
 ]  # fmt: skip
-CLAIMS = [*OWN, *EARLY, CHANGES, *BEST, *LESS]
+CLAIMS = [*PLAIN, *EARLY, CHANGES, *BEST, *LESS]
 
 
 SETTINGS = {

@@ -32,7 +32,7 @@ class Case:
     """
 
     curve: Curve
-    given: Curve
+    known: Curve
     needed: int
     error: float
     distance: float
@@ -87,11 +87,11 @@ def side(curve: Curve, fine: bool) -> np.ndarray:
     return (curve.faces >= HALF * curve.initial_faces) == fine
 
 
-def _case(curve, given, error, points, seed):
+def _case(curve, known, error, points, seed):
     needed_faces = curve.faces[curve.errors <= error][0]
     draw = rng(seed, f"{curve.object} {curve.method} {needed_faces}")
     distance = float(np.exp(draw.uniform(np.log(DISTANCES[0]), np.log(DISTANCES[-1]))))
-    return Case(curve, given, int(needed_faces), float(error), distance, points)
+    return Case(curve, known, int(needed_faces), float(error), distance, points)
 
 
 def _above_floor(cases):

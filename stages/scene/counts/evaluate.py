@@ -237,7 +237,7 @@ def predict_counts(
 ) -> np.ndarray:
     """(k,) i8: the counts of a model, trained on the curves `training`, for the cases; the lookup needs none."""
     if kind == "lookup":
-        return np.array([case.given.faces_needed(case.error) for case in cases])
+        return np.array([case.known.faces_needed(case.error) for case in cases])
     if kind == "one_mesh":
         return from_one_mesh(power_law(training), cases)
     return predict_with(fit_counts(training, combinations, kind, seed), cases)
@@ -256,9 +256,9 @@ def from_one_mesh(exponent: float, cases: Sequence[Case]) -> np.ndarray:
     """(k,) i8: the power law from the given mesh nearest to half of the object's faces."""
     faces, errors = [], []
     for case in cases:
-        nearest = np.abs(np.log(case.given.faces / (HALF * case.curve.initial_faces))).argmin()
-        faces.append(case.given.faces[nearest])
-        errors.append(case.given.errors[nearest])
+        nearest = np.abs(np.log(case.known.faces / (HALF * case.curve.initial_faces))).argmin()
+        faces.append(case.known.faces[nearest])
+        errors.append(case.known.errors[nearest])
     ratio = np.maximum(errors, FLOOR) / np.maximum([case.error for case in cases], FLOOR)
     counts = np.maximum(np.ceil(np.array(faces) * ratio**exponent - 1e-6), FEWEST)
     return np.minimum(counts, [case.curve.initial_faces for case in cases]).astype(np.int64)
