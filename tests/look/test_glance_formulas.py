@@ -9,12 +9,10 @@ from scipy.spatial import KDTree
 
 from haptic_glance.base.jit import interpreted
 from haptic_glance.look.glance import FEATURES, Samples, cells, samples_of_mesh, standardised
-from haptic_glance.look.glance.averaging import averaging
 from haptic_glance.look.glance.cells import cut, visibility
-from haptic_glance.look.glance.denoise import denoised
-from haptic_glance.look.glance.features import features, fullness, relief
-from haptic_glance.look.glance.mirror import symmetry
-from haptic_glance.look.glance.samples import nearest, object_axes
+from haptic_glance.look.glance.draw import denoised
+from haptic_glance.look.glance.features import features, fullness, relief, symmetry
+from haptic_glance.look.glance.samples import averaging, nearest, object_axes
 from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh.mesh import unit
 

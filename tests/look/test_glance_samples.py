@@ -8,7 +8,7 @@ import trimesh
 
 from haptic_glance.base.rng import rng
 from haptic_glance.look.glance import COUNT, Samples, samples_of_mesh, samples_of_points
-from haptic_glance.look.glance.denoise import denoised
+from haptic_glance.look.glance.draw import denoised
 from haptic_glance.look.glance.features import relief
 from haptic_glance.mesh.mesh import Mesh, unit
 
