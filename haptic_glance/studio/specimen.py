@@ -1,16 +1,19 @@
-"""One mesh on the table, and everything that was found on it, computed when it is first asked for."""
+"""One mesh on the table, from file and to file, and everything that was found on it, computed when first asked for."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from threading import RLock
 
 import numpy as np
 
 from haptic_glance.base.files import read_mesh
 from haptic_glance.cli.saliency import finely, points_of
+from haptic_glance.lod.export import write_any
+from haptic_glance.lod.weight_files import write_weights
 from haptic_glance.look.points import METHODS
 from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import normalise, rotate_to_z_up
@@ -20,7 +23,7 @@ from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius, orient
-from haptic_glance.mesh.up import upright_by
+from haptic_glance.mesh.up import upright_by, upright_for
 
 STORED = ".npz"  # a mesh as the pipeline keeps it in data/SET/meshes
 RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belongs to one thread
@@ -166,3 +169,17 @@ def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
 def turned(specimen: Specimen, up: str) -> Specimen:
     """The same mesh with another axis up; nothing that was found on the old one is kept."""
     return Specimen(replace(specimen.source, up=up), specimen.name, f"{up} up", specimen.path)
+
+
+def as_bytes(mesh: Mesh, suffix: str, weights: np.ndarray | None = None) -> bytes:
+    """The file of a Mesh (.glb, .obj, .ply, .off, .stl), upright as its format has it.
+
+    weights (n,): of the vertices, for the formats of `write_weights` (.ply, .glb, .usda, .npz).
+
+    An OBJ gets the texture's colour at each vertex, since its pictures would be files of their own.
+    """
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"mesh{suffix}"
+        upright_mesh, _ = upright_for(path, bake_texture(mesh) if suffix == ".obj" else mesh)
+        write_any(path, upright_mesh) if weights is None else write_weights(path, upright_mesh, weights)
+        return path.read_bytes()

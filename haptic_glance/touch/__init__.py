@@ -4,12 +4,11 @@ from .distances import CONTACTS, adaptive_distances, distances, distances_at
 from .follow import Sequence, contour, follow, follow_many
 from .force import forces, gaps_at, press_forces, shear
 from .layout import Layout, layout_forces, read_layout
-from .press import normalise, press, press_at, press_many
+from .press import normalise, press, press_at, press_many, warm_up
 from .quasi_tangent import contour_imprints, quasi_tangent
 from .section import SectionCurve, snap_to_surface
 from .skin import Layer, Skin, indent
 from .surface import Surface, sensor_axes, sensor_normals, touchable
-from .warm_up import warm_up
 
 __all__ = [
     "CONTACTS", "Layer", "Layout", "SectionCurve", "Sequence", "Skin", "Surface", "adaptive_distances", "contour",

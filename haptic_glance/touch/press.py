@@ -1,4 +1,6 @@
-"""Imprints: the distances of the array as images in 0..1."""
+"""Imprints: the distances of the array as images in 0..1; and a warm-up before time is measured."""
+
+import functools
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -6,6 +8,8 @@ from numpy.typing import ArrayLike
 from haptic_glance.mesh.mesh import Mesh
 
 from .distances import check_arrays, distances, distances_at
+from .kernels.faces import ORDER
+from .kernels.measure import BELOW_TAXELS, FIRST_BELOW, MEASURE, PRESS
 from .surface import Surface
 
 FLAT = 1e-3  # of the pitch: relief below it is rounding of the mesh's coordinates
@@ -160,3 +164,12 @@ def normalise(distances: ArrayLike, pitch: ArrayLike) -> np.ndarray:
         flat = relief <= FLAT * pitches[i : i + step, None, None]
         images[i : i + step] = above * np.divide(1.0, relief, out=np.zeros_like(relief), where=~flat)
     return images
+
+
+@functools.cache
+def warm_up() -> None:
+    """Touches a tetrahedron, once in a process: before time is measured, this loads or compiles machine code."""
+    for kernel in (ORDER, MEASURE, FIRST_BELOW, PRESS, BELOW_TAXELS):
+        kernel.compile_always()
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    press(Mesh(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])), 0)

@@ -16,9 +16,9 @@ import numpy as np
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.touch.distances import check_array
+from haptic_glance.touch.press import warm_up
 from haptic_glance.touch.quasi_tangent import Touched, misfit, touch
 from haptic_glance.touch.surface import Surface
-from haptic_glance.touch.warm_up import warm_up
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.salient_points.measure import read_points

@@ -7,6 +7,7 @@ import trimesh
 from haptic_glance.know import place_at
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.studio.drawing import bars_html, grid_html
 from haptic_glance.studio.feeling import (
     CONTOURS,
     LAYER,
@@ -19,7 +20,6 @@ from haptic_glance.studio.feeling import (
     feel_by_rays,
     turned,
 )
-from haptic_glance.studio.grids import bars_html, grid_html
 from haptic_glance.touch import Surface, press, sensor_axes
 from haptic_glance.touch.places import Places
 

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.studio.paths import around, through
+from haptic_glance.studio.panels.path import around, through
 from haptic_glance.studio.specimen import Specimen
 from haptic_glance.touch import Surface, follow
 

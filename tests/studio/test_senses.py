@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.know import place_at, primitives
-from haptic_glance.studio.senses import (
+from haptic_glance.studio.panels.senses import (
     CELLS,
     SIZE,
     Answer,

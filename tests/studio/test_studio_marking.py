@@ -5,7 +5,7 @@ import pytest
 
 from haptic_glance.look.marks import MarksError, read_marks
 from haptic_glance.mesh import normalise
-from haptic_glance.studio.marking import Marking
+from haptic_glance.studio.panels.mark import Marking
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job, Stopped
-from haptic_glance.studio.levels import HARD, SOFT, Levels
+from haptic_glance.studio.panels.levels import HARD, SOFT, Levels
 from haptic_glance.studio.panels.look import views_of
 from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned

@@ -8,9 +8,8 @@ from haptic_glance.know.library import CELLS, PITCH
 from haptic_glance.touch import sensor_axes
 from haptic_glance.touch.places import Places
 
-from ..drawing import draw_cells
+from ..drawing import bars_html, draw_cells, grid_html
 from ..feeling import Felt, feel_by_rays
-from ..grids import bars_html, grid_html
 from ..jobs import Report
 from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict
 from ..panel import Panel

@@ -16,11 +16,10 @@ from haptic_glance.look.weights import LearnedWeights
 from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh.mesh import Mesh
 
-from ..files import as_bytes
 from ..jobs import Report
 from ..panel import Panel
 from ..scene import BESIDE, MESH
-from ..specimen import Hit, Look, Specimen
+from ..specimen import Hit, Look, Specimen, as_bytes
 
 POINTS, OTHER, NAMES = "/points", "/other", "/names"
 NONE, AUTOMATIC = "none", 0  # no method beside it; as many points as the method finds

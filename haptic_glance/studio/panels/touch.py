@@ -6,12 +6,11 @@ import viser
 from haptic_glance.know import place_at
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch.places import Places
+from haptic_glance.touch.press import warm_up
 from haptic_glance.touch.surface import as_surface, mean_vertex_normals
-from haptic_glance.touch.warm_up import warm_up
 
-from ..drawing import draw_array
+from ..drawing import draw_array, grid_html
 from ..feeling import CONTOURS, NEWTONS, SENSORS, Sensor, feel
-from ..grids import grid_html
 from ..panel import Panel
 from ..specimen import Hit
 
