@@ -14,10 +14,9 @@ import pytest
 
 from haptic_glance.base import files
 from haptic_glance.base.errors import errors_in_one_line
-from stages.engine.dvc_files import forget_killed
 from stages.engine.objects import Objects, archive
 from stages.engine.run import StageRun
-from stages.repro import run_alone
+from stages.repro import forget_killed, run_alone
 
 
 def full(*_):
