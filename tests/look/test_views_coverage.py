@@ -10,7 +10,7 @@ import trimesh
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import CANDIDATES, cumulative_coverage, fewest_views, greedy_views, point_visibility
-from haptic_glance.look.views.best import POINTS, _fewest, _greedy, surface_points
+from haptic_glance.look.views.coverage import POINTS, _fewest, _greedy, surface_points
 from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import as_mesh
