@@ -15,13 +15,13 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from haptic_glance.base.jit import kernel_of
 from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View
 from .colour import LINEAR, mechanisms
-from .kernels import mean_of_maxima, mean_of_other_maxima, window_entropy
-from .operators import CENTRES, DELTAS, expand, pyramid, reduce
+from .operators import CENTRES, DELTAS, expand, mean_of_maxima, mean_of_other_maxima, pyramid, reduce
 from .texture import (
     ANGLES,
     EDGE_SIGMA,
@@ -35,6 +35,7 @@ from .texture import (
     local_variance,
 )
 
+kernel = kernel_of(__file__)
 OURS, PRINTED, MENDED = FORMULAS = ("ours", "printed", "mended")
 STORED = 2  # the scale of a map of a whole picture, a quarter of its size
 Levels = dict[int, np.ndarray]
@@ -124,6 +125,36 @@ def gabor(image: np.ndarray, angle: float) -> np.ndarray:
     parts = wave.real.copy(), wave.imag.copy()
     even, odd = (cv2.filter2D(image, cv2.CV_32F, part, borderType=cv2.BORDER_REPLICATE) for part in parts)
     return np.sqrt(even * even + odd * odd)
+
+
+@kernel
+def window_entropy(padded: np.ndarray, side: int) -> np.ndarray:
+    """(h, w) f4 entropy in bits of the side x side windows of an image (h + side - 1, w + side - 1) u1 (T eq. 3.7)."""
+    height, width, pixels = padded.shape[0] - side + 1, padded.shape[1] - side + 1, side * side
+    shares = np.arange(pixels + 1) / pixels
+    terms = -shares * np.log2(np.maximum(shares, 1 / pixels))
+    entropy = np.empty((height, width), dtype=np.float32)
+    for i in range(height):
+        counts, total = np.zeros(256, dtype=np.int64), 0.0
+        for a in range(i, i + side):
+            for b in range(side):
+                counts[padded[a, b]] += 1
+        for count in counts:
+            total += terms[count]
+        entropy[i, 0] = total
+        for j in range(1, width):
+            for a in range(i, i + side):
+                total += _moved(counts, terms, padded[a, j - 1], -1) + _moved(counts, terms, padded[a, j + side - 1], 1)
+            entropy[i, j] = total
+    return entropy
+
+
+@kernel
+def _moved(counts, terms, level, step):
+    """The change of the entropy by a pixel of a level that leaves the window (-1) or enters it (1)."""
+    before = terms[counts[level]]
+    counts[level] += step
+    return terms[counts[level]] - before
 
 
 def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str, Channel]:

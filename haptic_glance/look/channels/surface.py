@@ -10,15 +10,16 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
+from haptic_glance.base.jit import kernel_of
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 
 from ..camera import DISTANCE, screen_position
 from ..views import View
 from .cropped_view import cropped_view, fill
-from .kernels import locate_pixels
 from .operators import OUTPUT_SCALE, centre_surround, normalise, pyramid
 
+kernel = kernel_of(__file__)
 FLOOR = 0.02  # of the range of the values; a flatter map is noise of the mesh
 SCALE = 1  # one scale finer than centre-surround starts at, so that small faces are not aliased
 
@@ -118,3 +119,36 @@ def nearest_corners(mesh: Mesh, faces: np.ndarray, positions: np.ndarray) -> np.
     corners = mesh.faces[faces]
     distance = ((mesh.vertices[corners] - positions[:, None]) ** 2).sum(axis=2)
     return corners[np.arange(len(corners)), distance.argmin(axis=1)]
+
+
+@kernel
+def locate_pixels(
+    right: np.ndarray, up: np.ndarray, heights: np.ndarray, axes: np.ndarray, face_ids: np.ndarray,
+    vertices: np.ndarray, faces: np.ndarray, crosses: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """(points (k, 3), barycentric weights (k, 3) in 0..1) of k pixels that show the faces `face_ids` (k,).
+
+    right, up, heights (k,): the coordinates of a point along the camera's axes (3, 3), see Viewpoint.axes.
+    vertices (n, 3) and faces (m, 3) of the mesh; crosses (m, 3): the faces' normals, of twice their area.
+    """
+    count = len(face_ids)
+    points, weights = np.empty((count, 3)), np.empty((count, 3))
+    for k in range(count):
+        px = right[k] * axes[0, 0] + up[k] * axes[1, 0] + heights[k] * axes[2, 0]
+        py = right[k] * axes[0, 1] + up[k] * axes[1, 1] + heights[k] * axes[2, 1]
+        pz = right[k] * axes[0, 2] + up[k] * axes[1, 2] + heights[k] * axes[2, 2]
+        points[k, 0], points[k, 1], points[k, 2] = px, py, pz
+        a, b, c = faces[face_ids[k]]
+        nx, ny, nz = crosses[face_ids[k]]
+        ax, ay, az = vertices[a]
+        bx, by, bz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
+        cx, cy, cz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az
+        px, py, pz = px - ax, py - ay, pz - az
+        square = max(nx * nx + ny * ny + nz * nz, 1e-300)
+        second = ((py * cz - pz * cy) * nx + (pz * cx - px * cz) * ny + (px * cy - py * cx) * nz) / square
+        third = ((by * pz - bz * py) * nx + (bz * px - bx * pz) * ny + (bx * py - by * px) * nz) / square
+        first = min(max(1 - second - third, 0.0), 1.0)
+        second, third = min(max(second, 0.0), 1.0), min(max(third, 0.0), 1.0)
+        total = first + second + third
+        weights[k, 0], weights[k, 1], weights[k, 2] = first / total, second / total, third / total
+    return points, weights
