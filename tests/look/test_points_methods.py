@@ -9,12 +9,11 @@ from haptic_glance import load
 from haptic_glance.gallery.demo import sample
 from haptic_glance.look.channels.channels import CHANNELS, OTHERS
 from haptic_glance.look.glance import Samples, samples_of_mesh
-from haptic_glance.look.kernels import pressed
 from haptic_glance.look.points import METHODS, detect, find_points, saliency
 from haptic_glance.look.points.find import Looked, check_name
 from haptic_glance.look.points.methods import MEANT
 from haptic_glance.look.points.options import Options
-from haptic_glance.look.points.touch import CELLS, DISC, WIDTH, imprints, recurrence, spread
+from haptic_glance.look.points.touch import CELLS, DISC, WIDTH, imprints, pressed, recurrence, spread
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.touch import Surface, press_at

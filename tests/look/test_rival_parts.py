@@ -7,9 +7,10 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.transform import Rotation
 
-from haptic_glance.look.kernels import fpfh, spin_images
 from haptic_glance.look.rivals import harris, heat_kernel, leifman, song, tasse
+from haptic_glance.look.rivals.leifman import spin_images
 from haptic_glance.look.rivals.samples import samples, unit_mesh
+from haptic_glance.look.rivals.tasse import fpfh
 from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import ball_mesh, raised_ball

@@ -6,10 +6,11 @@ import trimesh
 from scipy.ndimage import maximum_filter
 from scipy.special import erf
 
-from haptic_glance.look.kernels import gaussian_sums, scale_peaks, spaced, splat
+from haptic_glance.look.points.fuse import spaced
 from haptic_glance.look.rivals import corners, mesh_saliency, salient_points, sift
 from haptic_glance.look.rivals.maxima import local_maxima
-from haptic_glance.look.rivals.samples import gaussian_average, subdivide, surface_elements
+from haptic_glance.look.rivals.samples import gaussian_average, gaussian_sums, subdivide, surface_elements
+from haptic_glance.look.rivals.sift import scale_peaks, splat
 from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import as_mesh, ball_mesh, flat_grid, raised_ball

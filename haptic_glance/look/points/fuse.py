@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from haptic_glance.base.jit import kernel_of
 from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
-from ..kernels import spaced, suppress
-
+kernel = kernel_of(__file__)
 CLASSICAL = ("color", "intensity", "orientation")  # Itti, Koch and Niebur 1998, T [41]
 
 # T3.1.5. `VisAttAll` has the eight channels of T3.2.2; edge is added only in eq. 3.9 (methods `thesis_*`).
@@ -179,3 +179,57 @@ def continue_on_surface(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, ra
         points = queue[spaced(mesh.vertices[queue], radius, len(points), count)]
         radius /= 2
     return points[:count]
+
+
+@kernel
+def spaced(positions: np.ndarray, radius: float, first: int, limit: int) -> np.ndarray:
+    """Indices of positions (k, 3), in order, each farther than radius from all before it; the `first` ones stay.
+
+    limit: stop at so many.
+    """
+    kept, count = np.empty(len(positions), np.int64), 0
+    for i in range(len(positions)):
+        if count >= max(limit, first):
+            break
+        if i < first or _apart(positions, i, kept[:count], radius):
+            kept[count] = i
+            count += 1
+    return kept[:count]
+
+
+@kernel
+def _apart(positions, i, earlier, radius):
+    for k in earlier:
+        square = 0.0
+        for axis in range(3):
+            square += (positions[k, axis] - positions[i, axis]) ** 2
+        if square <= radius**2:
+            return False
+    return True
+
+
+@kernel
+def suppress(image: np.ndarray, radius: float, limit: int, floor: float) -> np.ndarray:
+    """(k,) i8 flat ids of at most `limit` maxima above `floor`, each outside the discs around those before it.
+
+    image (h, w) f8 is set to zero within `radius` pixels of each. Of equal pixels the first one is taken.
+    """
+    height, width = image.shape
+    extent, maxima = int(radius), []
+    tops, firsts = np.empty(height), np.empty(height, np.int64)  # largest value of each row, and its column
+    for r in range(height):
+        firsts[r] = image[r].argmax()
+        tops[r] = image[r, firsts[r]]
+    while len(maxima) < limit:
+        row = tops.argmax()
+        if tops[row] <= floor:
+            break
+        column = firsts[row]
+        maxima.append(row * width + column)
+        for r in range(max(row - extent, 0), min(row + extent + 1, height)):
+            for c in range(max(column - extent, 0), min(column + extent + 1, width)):
+                if (r - row) ** 2 + (c - column) ** 2 <= radius**2:
+                    image[r, c] = 0.0
+            firsts[r] = image[r].argmax()
+            tops[r] = image[r, firsts[r]]
+    return np.array(maxima, dtype=np.int64)

@@ -14,17 +14,20 @@ as the middle, without the paper's convex hull of a scaled embedding; vertices i
 pairs. The paper selects no points.
 """
 
+import math
+
 import numpy as np
 from scipy.ndimage import gaussian_filter
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
+from haptic_glance.base.jit import kernel_of
 from haptic_glance.mesh.mesh import Mesh
 
-from ..kernels import spin_images
 from .maxima import high_maxima
 from .samples import Samples, samples, unit_mesh
 
+kernel = kernel_of(__file__)
 SAMPLES = 1500
 RADII = (0.05, 0.1, 0.2)  # of the size: the supports of the spin images
 BINS = 8  # from the normal to the rim
@@ -105,3 +108,41 @@ def limb_ends(reach: np.ndarray) -> np.ndarray:
 
 def _fade(distance):
     return np.exp(-(distance**2) / (2 * SIGMA**2))
+
+
+@kernel
+def spin_images(
+    positions: np.ndarray, areas: np.ndarray, centres: np.ndarray, normals: np.ndarray, radius: float, bins: int
+) -> np.ndarray:
+    """(k, 2 bins, bins) shares of the area around each of k centres (k, 3) with normals (k, 3).
+
+    Rows are heights over the tangent plane from -radius to radius, columns distances from the normal's line up to it.
+    positions (n, 3) with areas (n,) make up the surface; each within radius counts in the four bins around it. An image
+    sums to one, or to zero where nothing is near. Source: Johnson and Hebert, Using spin images for efficient object
+    recognition in cluttered 3D scenes, PAMI 21(5), 1999.
+    """
+    images = np.zeros((len(centres), 2 * bins, bins))
+    for k in range(len(centres)):
+        for i in range(len(positions)):
+            square, height = 0.0, 0.0
+            for axis in range(3):
+                side = positions[i, axis] - centres[k, axis]
+                square += side * side
+                height += side * normals[k, axis]
+            if square <= radius**2:
+                aside = math.sqrt(max(square - height * height, 0.0))
+                _add(images[k], (height / radius + 1) * bins - 0.5, aside / radius * bins - 0.5, areas[i])
+        total = images[k].sum()
+        if total > 0:
+            images[k] /= total
+    return images
+
+
+@kernel
+def _add(image, row, column, amount):
+    """Shares an amount among the four bins around a place; what falls off the edge goes to the bin there."""
+    first, left = math.floor(row), math.floor(column)
+    for i, down in ((first, first + 1 - row), (first + 1, row - first)):
+        for j, right in ((left, left + 1 - column), (left + 1, column - left)):
+            place = min(max(i, 0), len(image) - 1), min(max(j, 0), image.shape[1] - 1)
+            image[place] += amount * down * right

@@ -14,13 +14,14 @@ import numpy as np
 from scipy import fft
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
+from haptic_glance.base.jit import kernel_of
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 
-from ..kernels import scale_peaks, splat
 from .maxima import check_values
 from .samples import subdivide
 
+kernel = kernel_of(__file__)
 VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
 PADDING = 16  # voxels around the box: the Fourier domain is periodic, and the widest Gaussian must not see its copy
 SIGMA = 1.0  # voxels: finer scales would show the grid
@@ -119,3 +120,53 @@ def _area_vectors(corners):
     """(normals times areas (s, 3), areas (s,)) of triangles (s, 3, 3)."""
     vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     return vectors, np.linalg.norm(vectors, axis=1)
+
+
+@kernel
+def scale_peaks(values: np.ndarray, floor: float) -> np.ndarray:
+    """(k,) i8 flat ids, in order, of values (scales, a, b, c) above `floor` that no neighbour of 80 exceeds.
+
+    The first and the last scale have none. At the border of the grid there are fewer neighbours.
+    """
+    scales, a, b, c = values.shape
+    peaks = []
+    for s in range(1, scales - 1):
+        for i in range(a):
+            for j in range(b):
+                for k in range(c):
+                    value = values[s, i, j, k]
+                    if value > floor and not _exceeded(values, value, s, i, j, k):
+                        peaks.append(((s * a + i) * b + j) * c + k)
+    return np.array(peaks, dtype=np.int64)
+
+
+@kernel
+def _exceeded(values, value, s, i, j, k):
+    _, a, b, c = values.shape
+    for scale in range(s - 1, s + 2):
+        for x in range(max(i - 1, 0), min(i + 2, a)):
+            for y in range(max(j - 1, 0), min(j + 2, b)):
+                for z in range(max(k - 1, 0), min(k + 2, c)):
+                    if values[scale, x, y, z] > value:
+                        return True
+    return False
+
+
+@kernel
+def splat(places: np.ndarray, values: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
+    """(d, a, b, c) f8 sums of values (s, d) over the eight grid points nearest to each of places (s, 3), by nearness.
+
+    places are in steps of the grid; all of these grid points must lie in its shape (a, b, c).
+    """
+    field = np.zeros((values.shape[1], *shape))
+    for i in range(len(places)):
+        x, y, z = np.floor(places[i]).astype(np.int64)
+        for a in range(2):
+            for b in range(2):
+                for c in range(2):
+                    near = abs(1 - a - (places[i, 0] - x))
+                    near *= abs(1 - b - (places[i, 1] - y))
+                    near *= abs(1 - c - (places[i, 2] - z))
+                    for column in range(values.shape[1]):
+                        field[column, x + a, y + b, z + c] += near * values[i, column]
+    return field
