@@ -22,6 +22,7 @@ from stages.salient_points.measure import read_points, read_saliency, read_stron
 from . import Params
 
 Findings = TypeVar("Findings", bound=Sized)
+Answer = TypeVar("Answer")
 # Sets with the settings of a section of the thesis.
 SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
 SETS_3_1 = SECTION_3_1, "princeton_3_1"  # the protocol of T3.1 on objects of our own and on published ones
@@ -266,7 +267,7 @@ class Results:
             self._known[name] = work()
         return self._known[name]
 
-    def recently(self, query: Hashable, work: Callable[[], Findings]) -> Findings:
+    def recently(self, query: Hashable, work: Callable[[], Answer]) -> Answer:
         """The result of some work on the rows, computed anew once RECENT others were asked for."""
         if query not in self._recent:
             self._recent[query] = work()
