@@ -27,6 +27,7 @@ from haptic_glance.base.files import existing, said_of, write_text
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.export import FORMATS, write_any
 from haptic_glance.lod.pictures import check_look, coloured, write_look
+from haptic_glance.lod.topology import parts_of
 from haptic_glance.lod.weight_files import check_suffix, write_weights
 from haptic_glance.look.points import Detection, detect
 from haptic_glance.look.points import saliency as saliency_of
@@ -103,7 +104,7 @@ def look_at(options: argparse.Namespace) -> None:
         report(options, f"{len(rows)} of {options.count} places: the mesh has no more")
     if options.weights:
         upright_mesh, note = upright_for(options.weights, mesh)
-        write_weights(options.weights, upright_mesh, detection.saliency)
+        write_weights(options.weights, upright_mesh, detection.saliency, parts_of(options.mesh))
         loss_note = dropped_from(options.mesh) if options.weights.suffix.lower() == ".glb" else ""
         for text in filter(None, (note, loss_note)):
             report(options, text)

@@ -50,11 +50,11 @@ from haptic_glance.lod.task import (
 from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
+from haptic_glance.mesh import obj
 from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
 from haptic_glance.mesh.gltf import as_glb
 from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.obj import absent
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
 LEAST_PERCENT = 0.01  # a bare tolerance from here on is more likely one in percent: few want 1 % of the diagonal
@@ -311,7 +311,7 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
 
 def dropped_from(path: Path) -> str:
     """The sentence that names the parts of a file that a Mesh has no place for; empty without such parts."""
-    lost_parts = not_read(as_glb(path)) + absent(path)
+    lost_parts = not_read(as_glb(path)) + obj.not_read(path)
     return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost_parts)}" if lost_parts else ""
 
 

@@ -38,6 +38,7 @@ COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
 OF_ONE = 7  # digits of texture coordinates and colours, which trimesh writes with as many places as the vertices
 SINGLE = (".glb", ".npz", ".ply", ".stl", ".usda")  # the formats of single precision
+WHITE = (255, 255, 255, 255)
 RUINED = 0.01  # of the diagonal: the written mesh would be another one than the mesh that was measured
 MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farther is seen to be elsewhere
 
@@ -51,8 +52,8 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
         The file.
     mesh : Mesh or any input of `as_mesh`
         The mesh.
-    parts : mapping of str to Mesh, optional
-        In a glb the nodes, by name.
+    parts : mapping of str to (k,) array of int, optional
+        In a glb the nodes, by name: the ids of their faces.
 
     Raises
     ------
@@ -130,8 +131,8 @@ def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> tr
         The mesh.
     name : str
         Prefix of the names of its parts, and of materials that have none of their own.
-    parts : mapping of str to Mesh, optional
-        Meshes by name, for a Scene with all of them, each with one part per image, the further ones numbered.
+    parts : mapping of str to (k,) array of int, optional
+        Ids of faces by name, for a Scene with a part for each name and image, the further ones numbered.
 
     Returns
     -------
@@ -228,8 +229,17 @@ def _material(texture, number, glb):
         arguments |= {"baseColorFactor": pixels[0, 0]} if plain else {"baseColorTexture": True}
     arguments = {"metallicFactor": 1.0, "roughnessFactor": 1.0, **arguments}  # what glTF takes for none
     if "baseColorTexture" in arguments:
-        arguments["baseColorTexture"] = Image.fromarray(pixels if clear else pixels[..., :3])
+        arguments["baseColorTexture"] = _colour_picture(arguments["baseColorTexture"], pixels, clear)
+        if not glb:
+            arguments.setdefault("baseColorFactor", WHITE)  # trimesh would darken the picture to 40 %
     return {name: _picture(value, glb) if name.endswith("Texture") else value for name, value in arguments.items()}
+
+
+def _colour_picture(content, pixels, clear):
+    """The picture's own file, where the pixels are still those of the file; else an image of the pixels."""
+    if isinstance(content, bytes) and np.array_equal(Image.open(io.BytesIO(content)).convert("RGBA"), pixels):
+        return content
+    return Image.fromarray(pixels if clear else pixels[..., :3])
 
 
 class _File:

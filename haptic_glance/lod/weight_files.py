@@ -15,11 +15,12 @@ from haptic_glance.mesh.up import with_stated_up
 
 from .export import check_precision, for_glb, write_glb
 from .simplify import check_weights
+from .topology import Parts
 
 NAME = "saliency"
 
 
-def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
+def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray, parts: Parts | None = None) -> None:
     """Write a mesh with a weight per vertex, in the format of the path's suffix.
 
     Parameters
@@ -33,6 +34,8 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
         The mesh of n vertices, in the coordinates that the file gets.
     weights : (n,) array
         Weights in 0..1.
+    parts : mapping of str to (k,) array of int, optional
+        In a glb the nodes, by name: the ids of their faces.
 
     Raises
     ------
@@ -54,8 +57,10 @@ def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
     with about(path.name):
         weights = check_weights(mesh, weights).astype(np.float32)
     check_precision(path, mesh, text="")
+    suffix = path.suffix.lower()
+    nodes = {"parts": parts} if suffix == ".glb" else {}
     with whole_file(path) as part:
-        part.write_bytes(WRITERS[path.suffix.lower()](mesh, weights))
+        part.write_bytes(WRITERS[suffix](mesh, weights, **nodes))
 
 
 def check_suffix(path: Path) -> None:
@@ -71,8 +76,8 @@ def _ply(mesh: Mesh, weights: np.ndarray) -> bytes:
     return with_stated_up(plain.export(file_type="ply"), ".ply", mesh.up)  # type: ignore[arg-type]
 
 
-def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
-    return write_glb(for_glb(mesh, attributes={f"_{NAME.upper()}": weights}))
+def _glb(mesh: Mesh, weights: np.ndarray, parts: Parts | None = None) -> bytes:
+    return write_glb(for_glb(mesh, parts=parts, attributes={f"_{NAME.upper()}": weights}))
 
 
 def _npz(mesh: Mesh, weights: np.ndarray) -> bytes:
@@ -106,4 +111,4 @@ def Mesh "mesh"
 """.encode()
 
 
-WRITERS: dict[str, Callable[[Mesh, np.ndarray], bytes]] = {".glb": _glb, ".npz": _npz, ".ply": _ply, ".usda": _usda}
+WRITERS: dict[str, Callable[..., bytes]] = {".glb": _glb, ".npz": _npz, ".ply": _ply, ".usda": _usda}

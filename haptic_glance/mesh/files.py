@@ -60,7 +60,27 @@ def load_unnamed(path: Path) -> Mesh:
     if not path.is_file():
         folder = "is a folder, not a mesh: `haptic-glance gallery` shows all meshes of a folder"
         raise MeshError(folder if path.is_dir() else "no such file")
-    return parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)))
+    mesh = parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)))
+    _check_steps(path, mesh)
+    return mesh
+
+
+SINGLE = (".stl", ".ply", ".glb", ".gltf")  # the formats that usually hold single precision
+COARSE = 1e-3  # of the diagonal: steps between coordinates that change normals, and so saliency and touch
+
+
+def _check_steps(path, mesh):
+    """Warns where an object lies so far from the origin that the coordinates of its file have coarse steps."""
+    with np.errstate(over="ignore"):
+        rounded = mesh.vertices.astype(np.float32)
+    step = np.spacing(np.abs(rounded).max(initial=0))
+    is_single = path.suffix.lower() in SINGLE and np.array_equal(rounded, mesh.vertices)
+    if is_single and step > COARSE * mesh.diagonal:
+        remedy = "move the object to the origin before it is exported"
+        share = 100 * step / mesh.diagonal
+        warnings.warn(
+            f"{path.name}: its coordinates have steps of {share:.2g} % of the diagonal: {remedy}", stacklevel=4
+        )
 
 
 def as_mesh(source: MeshLike) -> Mesh:

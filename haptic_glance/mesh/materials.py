@@ -33,15 +33,17 @@ BESIDE = "beside_colour"  # in the metadata of a part
 def beside_colour(material: Any) -> dict[str, Any] | None:
     """The other properties of a glTF material, as arguments of trimesh's PBRMaterial; None of other materials.
 
-    A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image. That of
-    colour is True where there is one: it is an image of the Texture.
+    A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image. The
+    picture of colour, which is an image of the Texture, is the bytes of its file, and else True.
     """
     if not isinstance(material, trimesh.visual.material.PBRMaterial):
         return None
     properties = {name: getattr(material, name) for name in FACTORS} | {
         name: _file(getattr(material, name)) for name in MAPS
     }
-    properties["baseColorTexture"] = material.baseColorTexture is not None or None
+    if material.baseColorTexture is not None:
+        content = _file(material.baseColorTexture)
+        properties["baseColorTexture"] = content if isinstance(content, bytes) else True
     return {name: value for name, value in properties.items() if value is not None}
 
 
@@ -79,6 +81,7 @@ USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
 NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines", 6: "fans of triangles"}  # modes that are not read
+KEPT_BESIDE_COLOURS = ("name", "baseColorFactor", "doubleSided", "pbrMetallicRoughness", "extensions", "extras")
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
 
 
@@ -90,15 +93,22 @@ def not_read(content: bytes) -> list[str]:
     whole = map(str, extensions) if isinstance(extensions, list) else ()  # extensions of the scene
     names += [name for name in whole if name.startswith(("KHR_lights_", "KHR_xmp"))]
     names += [f"picture {entry[ABSENT]}, not beside it" for entry in _stated_in(tree, "images") if ABSENT in entry]
+    with suppress(*MALFORMED):
+        names += ["asset.copyright"] if tree["asset"].get("copyright") else []
     textures, samplers = (_stated_in(tree, name) for name in ("textures", "samplers"))
     with suppress(*MALFORMED):
         primitives = [primitive for mesh in _stated_in(tree, "meshes") for primitive in mesh["primitives"]]
-        coloured = all("COLOR_0" in entry["attributes"] and "material" not in entry for entry in primitives)
-        expected = (*DERIVED, "COLOR_0") if coloured else DERIVED
+        materials = _stated_in(tree, "materials")
+        shown = [materials[number] for number in {entry["material"] for entry in primitives if "material" in entry}]
+        keeps_colours = not any("baseColorTexture" in material or "diffuseTexture" in str(material)
+                                for material in map(_flat, shown))  # fmt: skip
+        if keeps_colours and any("COLOR_0" in entry["attributes"] for entry in primitives):
+            names += [name for material in shown for name in _flat(material) if name not in KEPT_BESIDE_COLOURS]
+        expected = (*DERIVED, "COLOR_0") if keeps_colours else DERIVED
         names += [name for primitive in primitives for name in primitive["attributes"] if name not in expected]
         names += [NO_SURFACE[entry["mode"]] for entry in primitives if entry.get("mode") in NO_SURFACE]
         names += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
-        for material in _stated_in(tree, "materials"):
+        for material in materials:
             names += material.get("extensions", {})
             for name, use in _uses(material):
                 texture = textures[use["index"]]
@@ -128,8 +138,12 @@ def _stated_in(tree, name):
 
 def _uses(material):
     """[(name of a picture, how a glTF material uses it)]."""
-    entries = material | material.get("pbrMetallicRoughness", {})
-    return [(name, use) for name, use in entries.items() if isinstance(use, dict) and "index" in use]
+    return [(name, use) for name, use in _flat(material).items() if isinstance(use, dict) and "index" in use]
+
+
+def _flat(material):
+    """The properties of a glTF material and of its metal and roughness, in one dict."""
+    return material | material.get("pbrMetallicRoughness", {})
 
 
 def join_parts(
@@ -148,11 +162,10 @@ def join_parts(
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     faces = np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)])
     vertices = np.concatenate([part.vertices for part in parts])
-    colored = [part_colors for part in parts if (part_colors := vertex_colors(part)) is not None]
-    colors = np.concatenate(colored) if len(colored) == len(parts) else None
+    colors = _colours_of_all(parts)
     if every_colour and colors is None:
         parts = [_as_picture(part) for part in parts]
-    texture = texture_of(parts)
+    texture = texture_of(parts) if colors is None else None
     if order is not None and colors is None:
         first, ids = merge_equal_rows(np.concatenate([order, vertices]))
         if first.max() < len(order):
@@ -171,9 +184,42 @@ def _placed(scene):
             part = source.copy(include_visual=not isinstance(visual, trimesh.visual.TextureVisuals))
             if isinstance(visual, trimesh.visual.TextureVisuals):
                 part.visual = trimesh.visual.TextureVisuals(visual.uv, visual.material)
+                if "color" in visual.vertex_attributes:
+                    part.visual.vertex_attributes["color"] = visual.vertex_attributes["color"]
                 part.vertex_attributes.update(source.vertex_attributes)
             parts.append(part.apply_transform(transform))
     return parts
+
+
+def _colours_of_all(parts):
+    """(n, 3) u1 of the vertices of all parts where one has colours per vertex and none has a picture; else None.
+
+    As in glTF, the plain colour of a material is a factor, and a part without colours is white.
+    """
+    if any(_colours_per_vertex(part) is not None for part in parts) and all(map(_is_plain, parts)):
+        return np.concatenate([_plain_colours(part) for part in parts])
+    return None
+
+
+def _colours_per_vertex(part):
+    """(n, 3) u1 or None: the colours of a part's vertices, also of those beside a glTF material."""
+    beside = getattr(part.visual, "vertex_attributes", {}).get("color")
+    return vertex_colors(part) if beside is None else trimesh.visual.color.to_rgba(beside)[:, :3]
+
+
+def _is_plain(part):
+    """Whether a part has neither a picture nor colours of its faces nor a material other than glTF's."""
+    if isinstance(part.visual, trimesh.visual.ColorVisuals):
+        return part.visual.kind != "face"
+    material = getattr(part.visual, "material", None)
+    return isinstance(material, trimesh.visual.material.PBRMaterial) and material.baseColorTexture is None
+
+
+def _plain_colours(part):
+    """(n, 3) u1: the colours of a part's vertices, white by default, times the colour of its material."""
+    colors, factor = _colours_per_vertex(part), getattr(getattr(part.visual, "material", None), "baseColorFactor", None)
+    colors = np.full((len(part.vertices), 3), 255, dtype=np.uint8) if colors is None else colors
+    return colors if factor is None else np.rint(colors * (np.asarray(factor)[:3] / 255)).astype(np.uint8)
 
 
 def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray | None:

@@ -55,8 +55,14 @@ class Beside:
     __getitem__ = get
 
 
-def absent(path: Path) -> list[str]:
-    """The material file of an OBJ file, or the pictures that it names, that are not beside it; none of other files."""
+OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)\s")
+
+
+def not_read(path: Path) -> list[str]:
+    """Names of what an OBJ file says of materials and a Mesh has not; none of other files.
+
+    Files that are not beside it, and the pictures of other properties than colour.
+    """
     library = re.search(rb"(?m)^[ \t]*mtllib\s([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
     beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
     kind, text = "materials", b""
@@ -64,4 +70,5 @@ def absent(path: Path) -> list[str]:
         text = beside.get(library[1].decode(errors="replace").strip()) if library else b""
         kind = "picture"
         trimesh.exchange.obj.parse_mtl(text, beside)
-    return [f"{kind} {name}, not beside it" for name in dict.fromkeys(beside.absent)]
+    others = OTHER_MAPS.findall(text if isinstance(text, str) else text.decode(errors="replace"))
+    return [*(f"{kind} {name}, not beside it" for name in dict.fromkeys(beside.absent)), *dict.fromkeys(others)]

@@ -248,7 +248,7 @@ def test_a_learned_touch_is_not_compared_with_itself():
     """Two objects with samples drawn alike: with itself counted each touch would favour its own object."""
     random = np.random.default_rng(0)
     samples, places = random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3))
-    scores = Library(("one", "two"), samples, places, False)._own.reshape(2, TOUCHES, 2)
+    scores = Library(("one", "two"), samples, places, False)._evidence.reshape(2, TOUCHES, 2)
     ahead = np.stack([scores[0, :, 0] - scores[0, :, 1], scores[1, :, 1] - scores[1, :, 0]])
     assert abs(ahead.mean()) < 0.05
 

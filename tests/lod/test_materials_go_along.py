@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from trimesh.visual.material import PBRMaterial
 
 from haptic_glance import as_mesh, to_trimesh
 from haptic_glance.cli.saliency import run as look_at
-from haptic_glance.cli.simplify import run
+from haptic_glance.cli.simplify import dropped_from, run
 from haptic_glance.lod.export import write_any
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
@@ -153,14 +154,67 @@ def test_a_numbered_name_takes_no_other_part_s_place(tmp_path, names):
     assert parts_of(tmp_path / "out.glb").keys() == {"wheel", "wheel_1", "wheel_2", "wheel_1_1"}
 
 
-@pytest.mark.parametrize("plain", [0, 1])
-def test_colours_that_not_all_parts_have_are_said_to_be_dropped(tmp_path, plain):
-    parts = [trimesh.creation.icosphere(1) for _ in range(2)]
-    for part in parts[plain:]:
-        part.visual.vertex_colors = np.full((len(part.vertices), 4), 200, dtype=np.uint8)
-    (tmp_path / "two.glb").write_bytes(trimesh.Scene(parts).export(file_type="glb"))
-    assert not_read((tmp_path / "two.glb").read_bytes()) == ["COLOR_0"] * plain
-    assert (load(tmp_path / "two.glb").colors is None) == bool(plain)
+COLOURS = np.random.default_rng(0).integers(256, size=(42, 4), dtype=np.uint8)
+OTHERS = {  # a part beside one with colours: its colour, and what is dropped
+    "no material": ({}, 255, []),
+    "a plain material": ({"baseColorFactor": [102, 51, 0, 255], "roughnessFactor": 0.4}, [102, 51, 0],
+                         ["roughnessFactor"]),
+    "a picture": ({"baseColorTexture": Image.new("RGB", (2, 2), (9, 9, 9))}, None, ["COLOR_0"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_colours_per_vertex_are_kept_where_no_part_has_a_picture(tmp_path, name):
+    material, expected, dropped = OTHERS[name]
+    coloured, other = trimesh.creation.icosphere(1), ball(0, **material) if material else trimesh.creation.box()
+    other.apply_translation([3, 0, 0])
+    coloured.visual.vertex_colors = COLOURS
+    (tmp_path / "two.glb").write_bytes(trimesh.Scene([coloured, other]).export(file_type="glb"))
+    mesh = load(tmp_path / "two.glb")
+    assert set(not_read((tmp_path / "two.glb").read_bytes())) - {"metallicFactor"} == set(dropped)
+    assert (mesh.colors is None) == (expected is None) and (mesh.texture is None) == (expected is not None)
+    if mesh.colors is not None:
+        is_coloured = mesh.vertices[:, 0] < 1.5
+        assert {*map(tuple, mesh.colors[is_coloured])} == {*map(tuple, COLOURS[:, :3])}
+        assert (mesh.colors[~is_coloured] == expected).all()
+
+
+def test_a_material_without_a_picture_multiplies_the_colours_beside_it(tmp_path):
+    part = ball(0, name="paint", baseColorFactor=[255, 51, 0, 255])
+    part.visual.vertex_attributes["color"] = np.full((len(part.vertices), 4), 100, np.uint8)
+    (tmp_path / "paint.glb").write_bytes(trimesh.Scene(part).export(file_type="glb"))
+    assert (load(tmp_path / "paint.glb").colors == [100, 20, 0]).all()
+
+
+def test_the_copyright_of_a_file_is_said_to_be_dropped(tmp_path):
+    (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
+    rewritten(tmp_path / "art.glb", lambda tree: tree["asset"].update(copyright="CC BY"))
+    assert not_read((tmp_path / "art.glb").read_bytes()) == ["asset.copyright"]
+
+
+def test_the_picture_of_colour_keeps_its_file_until_its_pixels_change(tmp_path):
+    part = ball(0, baseColorTexture=picture((200, 40, 40), "JPEG"))
+    (tmp_path / "art.glb").write_bytes(trimesh.Scene(part).export(file_type="glb"))
+    content = pictures(tmp_path / "art.glb", tree_of(tmp_path / "art.glb")[0]["materials"][0])["baseColorTexture"]
+    assert content.startswith(b"\xff\xd8")
+    mesh = load(tmp_path / "art.glb")
+    write_any(tmp_path / "same.glb", mesh)
+    painted = replace(mesh.texture, images=(255 - mesh.texture.images[0],))
+    write_any(tmp_path / "painted.glb", replace(mesh, texture=painted))
+    for name, kept in (("same.glb", True), ("painted.glb", False)):
+        (material,) = tree_of(tmp_path / name)[0]["materials"]
+        assert (pictures(tmp_path / name, material)["baseColorTexture"] == content) == kept
+    again = load(tmp_path / "painted.glb").texture.images[0]
+    assert (again[..., :3] == painted.images[0][..., :3]).all()
+
+
+def test_a_material_file_does_not_darken_the_picture_and_names_the_maps_that_are_lost(tmp_path):
+    write_any(tmp_path / "ball.obj", as_mesh(ball(0, baseColorTexture=picture((200, 40, 40)))))
+    lines = (tmp_path / "ball.mtl").read_text().splitlines()
+    assert [line.split()[1:] for line in lines if line.startswith("Kd ")] == [["1.00000000"] * 3]
+    with (tmp_path / "ball.mtl").open("a") as file:
+        file.write("\nmap_Bump -bm 1 bumps.png\nNs 20\n")
+    assert dropped_from(tmp_path / "ball.obj").endswith(": map_Bump")
 
 
 def test_a_glb_of_weights_says_what_it_drops(tmp_path, capsys):

@@ -217,3 +217,15 @@ def test_non_manifold_faces_stay_and_duplicate_and_degenerate_ones_go_with_a_not
     mesh, notes = clean(load(path))
     assert len(mesh.faces) == 1  # the face seen from the back goes: all of the surface was doubled
     assert notes == [f"1 {flaw} faces removed" for flaw in ("degenerate", "duplicate", "back-to-back")]
+
+
+@pytest.mark.parametrize(("suffix", "place", "warned"), [
+    ("stl", 2e5, True), ("ply", 2e5, True), ("glb", 2e5, True), ("obj", 2e5, False), ("stl", 1e3, False),
+])  # fmt: skip
+def test_single_precision_far_from_the_origin_is_named(tmp_path, recwarn, suffix, place, warned):
+    far = trimesh.creation.icosphere(subdivisions=2)
+    far.apply_translation([place, 0, 0])
+    far.export(tmp_path / f"far.{suffix}")
+    load_as_stated(tmp_path / f"far.{suffix}")
+    message = f"far.{suffix}: its coordinates have steps of 0.45 % of the diagonal: move the object to the origin"
+    assert [message in str(warning.message) for warning in recwarn] == [True] * warned
