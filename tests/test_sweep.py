@@ -1,5 +1,6 @@
 """The sweep appends tidy rows, replaces those of a repeated job, and ends with a table."""
 
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -89,6 +90,14 @@ def root(tmp_path, monkeypatch):
     for stage in sweep.NEEDED:
         write_json(tmp_path / "data/household_four" / stage / "there.json", {})
     return tmp_path
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("setting", ["lod.rings=two", "sets=[household_four]", "+meshes.unit=mm"])
+def test_a_setting_that_no_job_reads_is_refused(root, setting):
+    name = setting.partition("=")[0]
+    with pytest.raises(ParamsError, match=rf"^{re.escape(name)} does not change a sweep: its jobs read salient_points"):
+        sweep.prepare(["-m", "data=household_four", setting])
 
 
 @pytest.mark.slow

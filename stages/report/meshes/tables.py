@@ -26,6 +26,7 @@ from stages.report.results import (
     NotRun,
     Results,
     dataset_text,
+    either,
     some,
 )
 from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
@@ -103,12 +104,14 @@ def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
 
     Without those of one method on other backgrounds.
     """
-    names, accepted = results.datasets("lod"), set(methods)
+    names, methods = results.datasets("lod"), [*methods]
     sets = [
         name for name in names
         if name not in (ON_GREY, ON_WHITE)
-        and (not accepted or accepted & set(results.rows("lod", name)["method"].replace(UNSEEN)))
+        and (not methods or {*methods} & {*results.rows("lod", name)["method"].replace(UNSEEN)})
     ]  # fmt: skip
+    if names and methods:
+        return some(sets, f"no mesh was simplified by {either(methods)}", "lod", runnable=False)
     return some(sets, "no measurements of lod", "lod")
 
 
