@@ -217,11 +217,12 @@ def test_a_material_file_does_not_darken_the_picture_and_names_the_maps_that_are
     assert dropped_from(tmp_path / "ball.obj").endswith(": map_Bump")
 
 
-def test_a_glb_of_weights_says_what_it_drops(tmp_path, capsys):
+def test_a_glb_of_weights_keeps_the_nodes_and_says_what_it_drops(tmp_path, capsys):
     (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
     rewritten(tmp_path / "art.glb", lambda tree: tree.update(animations=[{"channels": [], "samplers": []}]))
     look_at([str(tmp_path / "art.glb"), "--method", "height", "--weights", str(tmp_path / "weights.glb")])
     assert "dropped from art.glb, since they cannot be carried over: animations" in capsys.readouterr().err
+    assert parts_of(tmp_path / "weights.glb").keys() == {"varnish", "metal"}
 
 
 @pytest.mark.parametrize("wrong", [3, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])

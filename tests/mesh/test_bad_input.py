@@ -221,11 +221,16 @@ def test_non_manifold_faces_stay_and_duplicate_and_degenerate_ones_go_with_a_not
 
 @pytest.mark.parametrize(("suffix", "place", "warned"), [
     ("stl", 2e5, True), ("ply", 2e5, True), ("glb", 2e5, True), ("obj", 2e5, False), ("stl", 1e3, False),
+    ("double.ply", 2e5, False),
 ])  # fmt: skip
 def test_single_precision_far_from_the_origin_is_named(tmp_path, recwarn, suffix, place, warned):
     far = trimesh.creation.icosphere(subdivisions=2)
     far.apply_translation([place, 0, 0])
-    far.export(tmp_path / f"far.{suffix}")
+    if suffix == "double.ply":
+        content = ply(far.vertices.tolist(), far.faces.tolist()).replace(b"property float", b"property double")
+        (tmp_path / "far.double.ply").write_bytes(content)
+    else:
+        far.export(tmp_path / f"far.{suffix}")
     load_as_stated(tmp_path / f"far.{suffix}")
     message = f"far.{suffix}: its coordinates have steps of 0.45 % of the diagonal: move the object to the origin"
     assert [message in str(warning.message) for warning in recwarn] == [True] * warned

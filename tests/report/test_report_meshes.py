@@ -136,6 +136,11 @@ def stated(results, statistic, **fields):
     return differences(results, claim(key="k", section="s", sentence="Sentence.", statistic=statistic, **fields))
 
 
+def test_a_set_without_any_of_the_methods_is_said_to_lack_them(plain):
+    with pytest.raises(NotRun, match="no mesh was simplified by nobody or nothing"):
+        data_sets(plain, ("nobody", "nothing"))
+
+
 ERROR = {"metric": "metro_mean"}
 
 
