@@ -267,7 +267,7 @@ def hint_at_pictures(options: Namespace, mesh: Mesh) -> None:
     counted = options.attributes or options.free_borders or options.backend == "pymeshlab" or "hinted" in options
     if not counted and mesh.texture and max(image.size for image in mesh.texture.images) > 4:
         options.hinted = True
-        report("the error counts the shape alone; with --attributes uv=1 the picture on it moves less")
+        report("the error counts the shape alone; --attributes uv=1 counts the picture, too: compare the colours")
 
 
 def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh, parts: Parts) -> None:

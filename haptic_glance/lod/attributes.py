@@ -2,23 +2,25 @@
 
 Each comes from the closest point of the original surface. Texture coordinates are transferred chart by chart: a chart
 is a patch of faces whose coordinates are continuous across the edges between them, a seam is where they are not. A face
-of the coarse mesh takes the chart under its centre, so that no face shows the stretch of image between two charts.
+of the coarse mesh takes the chart under its centre, so that no face shows the stretch of image between two charts, and
+all faces around a vertex within a chart share its coordinates, so that the picture is torn nowhere else.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from haptic_glance.mesh.mesh import Mesh, Texture, edge_pairs
+from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.nearest import SurfaceIndex
 from haptic_glance.mesh.rays import barycentric
 
-SAME = 1e-6  # texture coordinates this close are continuous across an edge; an image has some 1e3 pixels per side
+from .seams import SAME, Corners, charts, explained, joined, own_sides
+
 INWARDS = 1e-3  # of the way to the face's centre: a corner on a seam then lies on its own side of it
-BEYOND = 1.0  # barycentric: how far past the closest face its coordinates are extrapolated
-FAR = 50.0  # the same from the face under the centre to the corners, some tens of the original's faces away
+FAR = 50.0  # barycentric: how far the map under a centre is extrapolated to corners some tens of faces away
+ROUNDING = 1e-9  # barycentric: a point this close to a corner is the corner
+STEPS, DAMPING = 8, 0.8  # of Jacobi's method: each leaves at most 0.6 of the difference
 
 
 def carry(reference: Mesh, mesh: Mesh) -> Mesh:
@@ -26,9 +28,11 @@ def carry(reference: Mesh, mesh: Mesh) -> Mesh:
 
     Colours (n, 3) are interpolated at the closest point of the reference's surface; a vertex at the position of one of
     the reference's takes its colour unchanged. Texture coordinates (m, 3, 2) are those of the chart under the face's
-    centre, at the closest point of each corner within the chart, extrapolated affinely where the corner lies past the
-    seam. The images stay unchanged. Colours that `mesh` has already stay, as those of a simplification whose error
-    counts them. Where the reference has neither, the mesh itself is returned.
+    centre, at the closest point of each vertex within the chart: faces share them, but across a seam of the original.
+    Vertices that moved take those of least squared error over the faces around. Beyond a seam a corner takes the end of
+    its chart, or the coordinates there where the picture repeats. The images stay unchanged. Colours that `mesh` has
+    already stay, as those of a simplification whose error counts them. Where the reference has neither, the mesh itself
+    is returned.
 
     Source: attributes at the closest point as in Cohen, Olano and Manocha 1998 (appearance-preserving simplification,
     section 3); the thesis has no attributes. Raises ValueError where the reference has no faces.
@@ -69,51 +73,129 @@ def closest(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     """The Texture of the faces of `mesh`, taken from the reference's."""
     assert reference.texture is not None
-    chart, jump = charts(reference)
-    corners = mesh.vertices[mesh.faces]
-    centres = corners.mean(axis=1)
-    index = SurfaceIndex(reference)
-    closest_faces = index.nearest(centres)[1]
-    inside = corners + INWARDS * (centres[:, None] - corners)
-    nearest = np.repeat(closest_faces, 3).reshape(-1, 3)  # in charts of one face; in the others it is searched for
-    sources = _by_value(chart)
-    for number, faces in _by_value(chart[closest_faces]).items():
-        if len(sources[number]) > 1:
-            vertex_ids, ids = np.unique(reference.faces[sources[number]], return_inverse=True)
-            part = SurfaceIndex(Mesh(reference.vertices[vertex_ids], ids.reshape(-1, 3)))
-            nearest[faces] = sources[number][part.nearest(inside[faces].reshape(-1, 3))[1]].reshape(-1, 3)
-    nearest, corner_points = nearest.ravel(), corners.reshape(-1, 3)
-    weights = index.weights(inside.reshape(-1, 3), nearest)
-    uv = _extrapolated(reference, nearest, weights, corner_points, BEYOND).reshape(*mesh.faces.shape, 2)
-    # A corner across a seam between two ends of one chart (the back of a cylinder) got the coordinates of the other
-    # end.
-    at_centre = np.repeat(index.weights(centres, closest_faces), 3, axis=0)
-    ahead = _extrapolated(reference, np.repeat(closest_faces, 3), at_centre, corner_points, FAR).reshape(uv.shape)
-    astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[closest_faces]][:, None] / 2
-    uv[astray] = ahead[astray]
-    return replace(reference.texture, uv=uv, image=reference.texture.image[closest_faces])
+    chart, seams = charts(reference)
+    search = ChartSearch(reference, chart)
+    centres = mesh.vertices[mesh.faces].mean(axis=1)
+    under = search.index.nearest(centres)[1].astype(np.int64)
+    weights = search.index.weights(centres, under)
+    # All corners of a vertex within a chart share one closest point, so that their coordinates are equal bit for bit.
+    size = int(chart.max()) + 1
+    pairs, number = np.unique(mesh.faces * size + chart[under][:, None], return_inverse=True)
+    vertex_ids, wanted = np.divmod(pairs, size)
+    number, vertices = number.reshape(-1, 3), mesh.vertices[vertex_ids]
+    closest = search.closest(vertices, wanted)
+    uv = closest.uv[number]
+    in_seamed = np.isin(chart[under], seams.chart)
+    if in_seamed.any():
+        centre = Centres(centres[in_seamed], under[in_seamed], weights[in_seamed])
+        uv[in_seamed] = _on_own_sides(search, seams, vertices, closest, number[in_seamed], centre)
+    fixed = (closest.points == vertices).all(axis=1) | _at_ends(seams, closest)
+    steps = uv - closest.uv[number]
+    off_line = np.abs(steps - np.rint(steps)).max(axis=2) > SAME  # on another side, where the picture does not repeat
+    uv = _fitted(mesh.face_areas, uv, _uv_at(reference, under, weights), number, fixed[number] | off_line)
+    return replace(reference.texture, uv=uv, image=reference.texture.image[under])
 
 
-def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """(chart (m,) of each face, jump (charts,)); a corner farther off than half the jump has crossed a seam.
+@dataclass(frozen=True)
+class Closest:
+    """Points (k, 3) of a mesh, at barycentric weights (k, 3) of its faces (k,), and the coordinates uv (k, 2) there."""
 
-    jump is the median length, in texture coordinates, of the jumps across the seams with the chart on both sides;
-    infinite where it has none.
+    points: np.ndarray
+    faces: np.ndarray
+    weights: np.ndarray
+    uv: np.ndarray
+
+
+@dataclass(frozen=True)
+class Centres:
+    """Centres (k, 3) of coarse faces, and the reference's faces (k,) under them, at barycentric weights (k, 3)."""
+
+    points: np.ndarray
+    faces: np.ndarray
+    weights: np.ndarray
+
+
+class ChartSearch:
+    """The closest points of a textured mesh within its charts (m,)."""
+
+    def __init__(self, mesh: Mesh, chart: np.ndarray) -> None:
+        self.mesh, self.chart, self.index = mesh, chart, SurfaceIndex(mesh)
+        self.faces_of = _by_value(chart)
+
+    def nearest(self, points: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+        """(k,) faces closest to points (k, 3), of the charts `wanted` (k,)."""
+        nearest = self.index.nearest(points)[1].astype(np.int64)
+        foreign = np.flatnonzero(self.chart[nearest] != wanted)  # few: only their charts are searched apart
+        for number, places in _by_value(wanted[foreign]).items():
+            source, rows = self.faces_of[number], foreign[places]
+            nearest[rows] = source[0]
+            if len(source) > 1:
+                vertex_ids, ids = np.unique(self.mesh.faces[source], return_inverse=True)
+                part = SurfaceIndex(Mesh(self.mesh.vertices[vertex_ids], ids.reshape(-1, 3)))
+                nearest[rows] = source[part.nearest(points[rows])[1]]
+        return nearest
+
+    def closest(self, points: np.ndarray, wanted: np.ndarray) -> Closest:
+        """The Closest to points (k, 3) in the charts `wanted` (k,)."""
+        return self.within(points, self.nearest(points, wanted))
+
+    def within(self, points: np.ndarray, faces: np.ndarray) -> Closest:
+        """The Closest to points (k, 3) in faces (k,); corners have their own coordinates, unrounded."""
+        weights = self.index.weights(points, faces)
+        weights[weights < ROUNDING] = 0
+        weights[weights > 1 - ROUNDING] = 1
+        places = np.einsum("ij,ijk->ik", weights, self.mesh.vertices[self.mesh.faces[faces]])
+        return Closest(places, faces, weights, _uv_at(self.mesh, faces, weights))
+
+
+def _on_own_sides(search, seams, vertices, closest, number, centre):
+    """(k, 3, 2) texture coordinates of the corners of faces, on the sides of the seams where their centres lie.
+
+    vertices (n, 3) and the Closest to them; number (k, 3): which of them the corners are. centre: Centres of the faces.
     """
-    assert mesh.texture is not None
-    uv, image = mesh.texture.uv, mesh.texture.image
-    first, second, length = _shared_edges(mesh)
-    continuous = (length <= SAME) & (image[first] == image[second])
-    graph = sparse.coo_matrix(
-        (np.ones(continuous.sum()), (first[continuous], second[continuous])), shape=(len(uv), len(uv))
-    )
-    count, chart = connected_components(graph, directed=False)
-    jump = np.full(count, np.inf)
-    seam = ~continuous & (chart[first] == chart[second])
-    lengths = length[seam]
-    for number, edges in _by_value(chart[first[seam]]).items():
-        jump[number] = np.median(lengths[edges])
-    return chart, jump
+    number, faces = number.ravel(), np.repeat(centre.faces, 3)
+    base, corners, wanted = closest.uv[number], vertices[number], search.chart[faces]
+    ahead = _extrapolated(search.mesh, faces, np.repeat(centre.weights, 3, axis=0), corners)
+    uv, points = base.copy(), closest.points[number]
+    # A point on a seam is on both sides: a place a little inwards decides.
+    ids = np.flatnonzero(_at_ends(seams, closest)[number])
+    inside = corners[ids] + INWARDS * (centre.points[ids // 3] - corners[ids])
+    side = search.within(corners[ids], search.nearest(inside, wanted[ids]))
+    uv[ids], points[ids] = side.uv, side.points
+    uv, points = own_sides(seams, Corners(number, wanted, points, uv, ahead))
+    other = np.flatnonzero(~explained(seams, wanted, uv - base, points - closest.points[number]))
+    base[other] = joined(seams, Corners(number[other], wanted[other], points[other], uv[other], ahead[other]))
+    return base.reshape(-1, 3, 2)
+
+
+def _at_ends(seams, closest):
+    """(k,) boolean: points between corners that lie where a chart ends."""
+    return (seams.at_end[closest.faces] | (closest.weights == 0)).all(axis=1)
+
+
+def _fitted(areas, uv, of_centres, number, fixed):
+    """(m, 3, 2): uv moved so that the centres of the faces, too, come as near as possible to their own of_centres.
+
+    Over a coarse face the picture is stretched evenly, and between exact corners it would lag behind. The result has
+    the least squared difference, integrated over faces of areas (m,) from corners and centres, by steps of Jacobi's
+    method on the mass matrix. number (m, 3): which corners move as one; those that are fixed (m, 3) do not move.
+    """
+    off = of_centres - uv.mean(axis=1)
+    radius = np.linalg.norm(uv - uv.mean(axis=1, keepdims=True), axis=2).max(axis=1)
+    off[np.linalg.norm(off, axis=1) > radius] = 0  # no place on the face: it folds over, or surfaces intersect here
+    starts = np.arange(0, number.size + 1, 3)
+    gather = sparse.csr_matrix(((~fixed).ravel().astype(np.float64), number.ravel(), starts))
+    spread = (gather.T @ sparse.diags(areas)).tocsr()
+    lumped = np.maximum(spread.sum(axis=1).A1[:, None], np.finfo(float).tiny)
+    target = 3 * (spread @ off)
+    step = np.zeros_like(target)
+    for _ in range(STEPS):
+        step += DAMPING * (target - spread @ (gather @ step) - lumped * step) / (2 * lumped)
+    return uv + np.where(fixed[..., None], 0, step[number])
+
+
+def _uv_at(mesh, faces, weights):
+    return np.einsum("ij,ijk->ik", weights, mesh.texture.uv[faces])
 
 
 def _by_value(numbers):
@@ -123,23 +205,12 @@ def _by_value(numbers):
     return dict(zip(values.tolist(), np.split(order, starts)[1:], strict=True))
 
 
-def _shared_edges(mesh):
-    """(first face (e,), second face (e,), length (e,) of the larger jump at the two ends) of the edges of two faces."""
-    tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
-    at_tail, at_head = mesh.texture.uv.reshape(-1, 2), np.roll(mesh.texture.uv, -1, axis=1).reshape(-1, 2)
-    is_reversed = (tails > heads)[:, None]
-    low, high = np.where(is_reversed, at_head, at_tail), np.where(is_reversed, at_tail, at_head)
-    first, second = edge_pairs(mesh.faces, len(mesh.vertices))
-    jumps = [np.linalg.norm(ends[first] - ends[second], axis=1) for ends in (low, high)]
-    return first // 3, second // 3, np.maximum(*jumps)
-
-
-def _extrapolated(mesh, faces, weights, points, beyond):
+def _extrapolated(mesh, faces, weights, points):
     """(k, 2) texture coordinates at barycentric weights (k, 3) of faces (k,), extrapolated affinely to points (k, 3).
 
-    By at most `beyond` barycentric units, since slivers would extrapolate them anywhere.
+    By at most FAR barycentric units, since slivers would extrapolate them anywhere.
     """
     with np.errstate(all="ignore"):
         step = np.nan_to_num(barycentric(mesh, faces, points) - weights)
-    step *= np.minimum(beyond / np.maximum(np.abs(step).max(axis=1, keepdims=True), beyond), 1)
-    return np.einsum("ij,ijk->ik", weights + step, mesh.texture.uv[faces])
+    step *= np.minimum(FAR / np.maximum(np.abs(step).max(axis=1, keepdims=True), FAR), 1)
+    return _uv_at(mesh, faces, weights + step)

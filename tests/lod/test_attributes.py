@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from haptic_glance.lod import attributes, simplify
-from haptic_glance.lod.attributes import carry, charts
+from haptic_glance.lod.attributes import carry
 from haptic_glance.lod.borders import close_borders, cut_borders
+from haptic_glance.lod.seams import charts
 from haptic_glance.mesh.mesh import Mesh, Texture
 
 from .conftest import GREY, sheet, tube
@@ -67,13 +68,13 @@ def test_face_takes_the_chart_under_its_centre_and_no_other():
 
 def test_charts_end_at_seams_and_at_other_materials():
     mesh = painted_sheet()
-    assert len(charts(mesh)[1]) == 1
+    assert (charts(mesh)[0] == 0).all()
     image = (mesh.vertices[mesh.faces][:, :, 0].mean(axis=1) > 0.5).astype(int)
     two = Mesh(mesh.vertices, mesh.faces, None, Texture(mesh.texture.uv, image, (GREY, GREY)))
-    chart, jump = charts(two)
+    chart, seams = charts(two)
     assert len(np.unique(chart)) == 2 and (chart == chart[0]).sum() == (image == image[0]).sum()
-    assert np.isinf(jump).all()
-    assert charts(tube())[1] == pytest.approx([1])
+    assert len(seams.chart) == 0
+    assert len(charts(tube())[1].chart) == 2 * 24
 
 
 @pytest.mark.parametrize("together", [1, 2])
