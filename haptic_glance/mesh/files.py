@@ -39,9 +39,9 @@ def load(path: str | Path) -> Mesh:
     Vertices keep the order of the file, since ground truth refers to them by index. STL and GLB repeat vertices at
     face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. A .gltf file is
     read as the GLB of what it refers to. The parts of a GLB scene are transformed and joined. The materials of a GLB,
-    and those of an OBJ whose material files lie next to it, become the texture of the mesh. A GLB with colours per vertex
-    and without a picture of colour gives these colours instead, times those of its materials. Of a point cloud (PLY or
-    OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
+    and those of an OBJ whose material files lie next to it, become the texture of the mesh. A GLB with colours per
+    vertex and without a picture of colour gives these colours instead, times those of its materials. Of a point cloud
+    (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
     haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
     camera. A GLB is y up, a .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or
     z, whichever the shape suggests (haptic_glance.mesh.upright).

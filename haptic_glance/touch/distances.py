@@ -40,8 +40,9 @@ def distances(
     A distance is positive where the surface lies below the array, zero at contact and negative where the cell is inside
     the object: then it is minus the distance to the surface along +normal (T4.3.1). A cell is inside when the first
     face below and the first face above are both seen from their back. Where only the one below is (an open mesh, mixed
-    orientation), the surface below counts. Of two faces at one height, where parts of the object touch, the one seen
-    from its back counts. If both numbers of cells are odd, the middle cell is the vertex itself, 0. A cell without a
+    orientation), the surface below counts. In a sheet, such as the surface that a depth camera sees, a cell with
+    nothing below is inside where the face above is seen from its back (`Surface.is_sheet`). Of two faces at one height,
+    where parts of the object touch, the one seen from its back counts. If both numbers of cells are odd, the middle cell is the vertex itself, 0. A cell without a
     surface within `max_distance`, the sensing depth in both directions, reports `max_distance`. By default that is the
     longer side of the array.
 

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,7 @@ from .kernels.faces import Taxels, face_tree
 from .kernels.measure import BELOW_TAXELS, FIRST_BELOW, MEASURE, PRESS
 
 FLAT = 1e-9  # of the cubed diagonal: a smaller volume is rounding
+SHEET = 0.1  # of the area; the open meshes of the data sets, with holes and gaps, have at most 0.08
 LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane is at it; 16 steps in f4
 
 
@@ -59,7 +60,16 @@ class Surface:
 
         centres (k, 3), axes (k, 3, 3), pitches (k,), all f8. The result for an array does not depend on the others.
         """
-        return self._run(MEASURE, centres, axes, cells, np.array(pitches))
+        return self._run(MEASURE, centres, axes, cells, np.array(pitches), self.is_sheet)
+
+    @cached_property
+    def is_sheet(self) -> bool:
+        """Whether the surface is open over a large side, as a depth camera's: its area vectors do not cancel.
+
+        Their sum is 0 for a closed surface, half of the area for half a ball, and all of it for a plane.
+        """
+        areas = self.mesh.face_areas
+        return bool(np.linalg.norm(areas @ self.mesh.face_normals) > SHEET * areas.sum())
 
     def first_below(
         self, centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray, window: float

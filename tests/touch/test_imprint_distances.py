@@ -232,3 +232,28 @@ def test_a_closed_mesh_that_is_inside_out_is_warned_of_and_its_repair_is_not(rec
         Surface(inside_out)
     assert press(repair(inside_out), 0).max() == 1
     assert not recwarn.list
+
+
+def bowl():
+    """(Mesh of a bowl z = x² + y² that is seen from inside and open everywhere else, its lowest vertex)."""
+    side = np.linspace(-0.5, 0.5, 61)
+    x, y = (values.ravel() for values in np.meshgrid(side, side))
+    ids = np.arange(61 * 61).reshape(61, 61)
+    low, right, up, far = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, :-1], ids[1:, 1:]))
+    faces = np.concatenate([np.column_stack([low, right, far]), np.column_stack([low, far, up])])
+    return Mesh(np.column_stack([x, y, x**2 + y**2]), faces), int(ids[30, 30])
+
+
+def test_the_walls_of_a_bowl_that_a_camera_saw_are_felt_although_nothing_is_below_them():
+    mesh, lowest = bowl()
+    steps = 0.03 * np.arange(-2, 3)
+    assert Surface(mesh).is_sheet
+    felt = distances(mesh, [lowest], (5, 5), 0.03)[0]
+    assert felt == pytest.approx(-(steps**2 + steps[:, None] ** 2), abs=3e-4)
+
+
+def test_holes_make_no_sheet():
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    assert not Surface(Mesh(ball.vertices, ball.faces)).is_sheet
+    assert not Surface(Mesh(ball.vertices, ball.faces[64:])).is_sheet  # a twentieth of the faces, here and there
+    assert Surface(Mesh(ball.vertices, ball.faces[ball.triangles_center[:, 2] > 0])).is_sheet

@@ -40,10 +40,12 @@ def measure(
     centres: np.ndarray,
     axes: np.ndarray,
     pitches: np.ndarray,
+    sheet: bool,
 ) -> np.ndarray:
     """(k, rows, cols) signed distances of arrays at centres (k, 3) with axes (k, 3, 3), inf where missed.
 
     blocks, boxes, children: the face_tree; lift: the distance from the plane within which a face counts on both sides.
+    sheet: whether a cell with nothing below may be inside the object, whose other side was not measured.
     """
     rows, columns = cells
     distances = np.empty((len(centres), rows, columns))
@@ -54,7 +56,7 @@ def measure(
         below[:], back[:], out[:] = -np.inf, False, False
         frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
         search(blocks, boxes, children, frame, cells, stack, projected, below, back, np.inf, None)
-        if maybe_inside(back, above):
+        if maybe_inside(back, below, sheet, above):
             frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal, 0.0)
             search(blocks, boxes, children, frame, cells, stack, projected, above, out, np.inf, None)
         for i in range(rows):
@@ -205,14 +207,18 @@ BELOW_TAXELS = UntilWorthCompiling(below_taxels, __file__, budget=12_800)  # cel
 
 
 @helper
-def maybe_inside(back: np.ndarray, above: np.ndarray) -> bool:
-    """True if any cell sees the face below from the back and must search upwards: above is -inf there, else inf."""
-    any_back = False
+def maybe_inside(back: np.ndarray, below: np.ndarray, sheet: bool, above: np.ndarray) -> bool:
+    """True if any cell must search upwards: above is -inf there, else inf.
+
+    A cell that sees the face below from the back, and in a sheet also a cell with no face below.
+    """
+    any_inside = False
     for i in range(len(back)):
         for j in range(back.shape[1]):
-            any_back = any_back or back[i, j]
-            above[i, j] = -np.inf if back[i, j] else np.inf
-    return any_back
+            inside = back[i, j] or (sheet and below[i, j] == -np.inf)
+            any_inside = any_inside or inside
+            above[i, j] = -np.inf if inside else np.inf
+    return any_inside
 
 
 @kernel
