@@ -105,7 +105,7 @@ def look_at(options: argparse.Namespace) -> None:
     if options.weights:
         upright_mesh, note = upright_for(options.weights, mesh)
         write_weights(options.weights, upright_mesh, detection.saliency, parts_of(options.mesh))
-        loss_note = dropped_from(options.mesh) if options.weights.suffix.lower() == ".glb" else ""
+        loss_note = dropped_from(options.mesh, mesh) if options.weights.suffix.lower() == ".glb" else ""
         for text in filter(None, (note, loss_note)):
             report(options, text)
     if options.out or options.picture:

@@ -302,16 +302,16 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     extent = np.ptp(original.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
-    if loss_note := dropped_from(path):
+    if loss_note := dropped_from(path, original):
         report(loss_note)
     mesh, notes = repaired(original)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
     return original, mesh
 
 
-def dropped_from(path: Path) -> str:
-    """The sentence that names the parts of a file that a Mesh has no place for; empty without such parts."""
-    lost_parts = not_read(as_glb(path)) + obj.not_read(path)
+def dropped_from(path: Path, mesh: Mesh) -> str:
+    """The sentence that names the parts of a mesh's file that a Mesh has no place for; empty without such parts."""
+    lost_parts = not_read(as_glb(path), mesh.colors is not None) + obj.not_read(path)
     return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost_parts)}" if lost_parts else ""
 
 

@@ -81,12 +81,15 @@ USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
 NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines", 6: "fans of triangles"}  # modes that are not read
-KEPT_BESIDE_COLOURS = ("name", "baseColorFactor", "doubleSided", "pbrMetallicRoughness", "extensions", "extras")
+KEPT_BESIDE_COLOURS = ("baseColorFactor", "pbrMetallicRoughness", "extensions", "extras")
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
 
 
-def not_read(content: bytes) -> list[str]:
-    """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like."""
+def not_read(content: bytes, has_colors: bool = False) -> list[str]:
+    """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like.
+
+    has_colors: whether the Mesh has colours per vertex, which stand for the materials.
+    """
     tree = _header(content)
     names = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
     extensions = tree.get("extensionsUsed") if isinstance(tree, dict) else None
@@ -99,12 +102,9 @@ def not_read(content: bytes) -> list[str]:
     with suppress(*MALFORMED):
         primitives = [primitive for mesh in _stated_in(tree, "meshes") for primitive in mesh["primitives"]]
         materials = _stated_in(tree, "materials")
-        shown = [materials[number] for number in {entry["material"] for entry in primitives if "material" in entry}]
-        keeps_colours = not any("baseColorTexture" in material or "diffuseTexture" in str(material)
-                                for material in map(_flat, shown))  # fmt: skip
-        if keeps_colours and any("COLOR_0" in entry["attributes"] for entry in primitives):
-            names += [name for material in shown for name in _flat(material) if name not in KEPT_BESIDE_COLOURS]
-        expected = (*DERIVED, "COLOR_0") if keeps_colours else DERIVED
+        if has_colors:
+            names += [name for material in materials for name in _flat(material) if name not in KEPT_BESIDE_COLOURS]
+        expected = (*DERIVED, "COLOR_0") if has_colors else DERIVED
         names += [name for primitive in primitives for name in primitive["attributes"] if name not in expected]
         names += [NO_SURFACE[entry["mode"]] for entry in primitives if entry.get("mode") in NO_SURFACE]
         names += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
@@ -202,9 +202,15 @@ def _colours_of_all(parts):
 
 
 def _colours_per_vertex(part):
-    """(n, 3) u1 or None: the colours of a part's vertices, also of those beside a glTF material."""
+    """(n, 3) u1 or None: the colours of a part's vertices, also of those beside a glTF material.
+
+    White beside a material, as many programs write it, says nothing.
+    """
     beside = getattr(part.visual, "vertex_attributes", {}).get("color")
-    return vertex_colors(part) if beside is None else trimesh.visual.color.to_rgba(beside)[:, :3]
+    if beside is None:
+        return vertex_colors(part)
+    colors = trimesh.visual.color.to_rgba(beside)[:, :3]
+    return None if (colors == 255).all() else colors
 
 
 def _is_plain(part):
@@ -212,7 +218,8 @@ def _is_plain(part):
     if isinstance(part.visual, trimesh.visual.ColorVisuals):
         return part.visual.kind != "face"
     material = getattr(part.visual, "material", None)
-    return isinstance(material, trimesh.visual.material.PBRMaterial) and material.baseColorTexture is None
+    without_picture = getattr(material, "baseColorTexture", None) is None or part.visual.uv is None
+    return isinstance(material, trimesh.visual.material.PBRMaterial) and without_picture
 
 
 def _plain_colours(part):

@@ -171,12 +171,33 @@ def test_colours_per_vertex_are_kept_where_no_part_has_a_picture(tmp_path, name)
     coloured.visual.vertex_colors = COLOURS
     (tmp_path / "two.glb").write_bytes(trimesh.Scene([coloured, other]).export(file_type="glb"))
     mesh = load(tmp_path / "two.glb")
-    assert set(not_read((tmp_path / "two.glb").read_bytes())) - {"metallicFactor"} == set(dropped)
+    content, has_colors = (tmp_path / "two.glb").read_bytes(), mesh.colors is not None
+    assert set(not_read(content, has_colors)) - {"metallicFactor", "name", "doubleSided"} == set(dropped)
     assert (mesh.colors is None) == (expected is None) and (mesh.texture is None) == (expected is not None)
     if mesh.colors is not None:
         is_coloured = mesh.vertices[:, 0] < 1.5
         assert {*map(tuple, mesh.colors[is_coloured])} == {*map(tuple, COLOURS[:, :3])}
         assert (mesh.colors[~is_coloured] == expected).all()
+
+
+def test_white_beside_materials_leaves_them_and_the_surface_whole(tmp_path):
+    ball = trimesh.creation.icosphere(2)
+    halves = [ball.submesh([np.arange(start, start + 160)], append=True) for start in (0, 160)]
+    for half, colour in zip(halves, ([255, 0, 0, 255], [0, 0, 255, 255]), strict=True):
+        half.visual = TextureVisuals(material=PBRMaterial(baseColorFactor=colour, roughnessFactor=0.4))
+        half.visual.vertex_attributes["color"] = np.full((len(half.vertices), 4), 255, np.uint8)
+    (tmp_path / "halves.glb").write_bytes(trimesh.Scene(halves).export(file_type="glb"))
+    mesh = load(tmp_path / "halves.glb")
+    assert mesh.watertight and mesh.colors is None
+    assert {tuple(image[0, 0]) for image in mesh.texture.images} == {(255, 0, 0, 255), (0, 0, 255, 255)}
+
+
+def test_a_picture_without_coordinates_does_not_hide_the_colours(tmp_path):
+    part = ball(0, baseColorTexture=picture((9, 9, 9)))
+    part.visual.vertex_attributes["color"] = np.full((len(part.vertices), 4), 100, np.uint8)
+    (tmp_path / "bare.glb").write_bytes(trimesh.Scene(part).export(file_type="glb"))
+    rewritten(tmp_path / "bare.glb", lambda tree: tree["meshes"][0]["primitives"][0]["attributes"].pop("TEXCOORD_0"))
+    assert (load(tmp_path / "bare.glb").colors == 100).all()
 
 
 def test_a_material_without_a_picture_multiplies_the_colours_beside_it(tmp_path):
@@ -214,7 +235,7 @@ def test_a_material_file_does_not_darken_the_picture_and_names_the_maps_that_are
     assert [line.split()[1:] for line in lines if line.startswith("Kd ")] == [["1.00000000"] * 3]
     with (tmp_path / "ball.mtl").open("a") as file:
         file.write("\nmap_Bump -bm 1 bumps.png\nNs 20\n")
-    assert dropped_from(tmp_path / "ball.obj").endswith(": map_Bump")
+    assert dropped_from(tmp_path / "ball.obj", load(tmp_path / "ball.obj")).endswith(": map_Bump")
 
 
 def test_a_glb_of_weights_keeps_the_nodes_and_says_what_it_drops(tmp_path, capsys):

@@ -19,8 +19,11 @@ SHAPES = {
 }
 
 
+KERNELS = [(measure.measure, (False,)), (measure.measure, (True,)), (measure.first_below, (0.1,))]
+
+
 @pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize(("kernel", "more"), [(measure.measure, (False,)), (measure.measure, (True,)), (measure.first_below, (0.1,))])
+@pytest.mark.parametrize(("kernel", "more"), KERNELS)
 def test_distances_are_equal_bit_for_bit(name, kernel, more):
     mesh, random = Mesh(SHAPES[name].vertices, SHAPES[name].faces), np.random.default_rng(0)
     tree = Surface(mesh)._tree
