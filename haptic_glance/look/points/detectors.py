@@ -21,7 +21,7 @@ from ..rivals.maxima import local_maxima
 from ..views import FOUR
 from ..weights.attention import standardise
 from ..weights.svm import POINTS, select_far_points
-from .fuse import continue_on_surface, fuse, merge_views
+from .fuse import TERMS, continue_on_surface, fuse, merge_views
 from .options import SELECTIONS, Detection, Options
 
 
@@ -59,6 +59,14 @@ class FusedDetector:
         if count is not None:
             points = continue_on_surface(mesh, points, saliency, options.radius, count)
         return Detection(points, min(strong, len(points)), saliency)
+
+
+class SummedDetector(FusedDetector):
+    """The average of channels that are sums of their maps (T eq. 3.1 to 3.6 and 3.8 to the letter)."""
+
+    def fused(self, sight: ViewMaps, _options: Options) -> np.ndarray:
+        maps = self.maps(sight)
+        return fuse(maps, {channel: TERMS.get(channel, 1) for channel in maps})
 
 
 class WeightedDetector(FusedDetector):

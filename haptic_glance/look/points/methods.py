@@ -21,6 +21,7 @@ from .detectors import (
     FusedDetector,
     MergedDetector,
     RandomPoints,
+    SummedDetector,
     SurfaceDetector,
     SvmDetector,
     WeightedDetector,
@@ -57,6 +58,10 @@ METHODS: dict[str, Detector] = {
     "random": RandomPoints(),
     **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
     **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
+    **{
+        f"{name}Summed": SummedDetector((COMBINATIONS | WITHOUT_COLOUR)[name])
+        for name in ("VisAtt", "VisAttAll", "VisAttAllNoColour")
+    },
     "VisAttCurvP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(COMBINATIONS["Curv"])),
     "VisAttSymP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(["symmetry"])),
     **{name: FusedDetector([channel]) for name, channel in SYMMETRIES.items()},
