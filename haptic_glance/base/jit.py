@@ -119,6 +119,24 @@ class Files(IndexDataCacheFile):
     def _data_name(self, number: int) -> str:
         return super()._data_name(number).replace(f".{number}.nbc", f".{uuid.uuid4().hex}.nbc")
 
+    def _load_index(self) -> dict[Any, str]:
+        """The names of the files of machine code, by key; none where the index is damaged: it is then written anew."""
+        return _undamaged(super()._load_index) or {}
+
+    def _load_data(self, name: str) -> Any:
+        """The content of a file of machine code, or None where it is damaged: the kernel is then compiled anew."""
+        return _undamaged(super()._load_data, name)
+
+
+def _undamaged(load: Callable[..., Any], *arguments: Any) -> Any:
+    """What load(*arguments) reads, or None where the file is cut off or holds something else."""
+    try:
+        return load(*arguments)
+    except OSError:  # no damage: numba knows what to do about it
+        raise
+    except Exception:  # damaged pickles raise errors of many kinds
+        return None
+
 
 class Shared(FunctionCache):
     """A kernel's place on disk: of processes that need the kernel, one compiles it, and the others wait and load it."""

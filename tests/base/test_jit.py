@@ -63,6 +63,16 @@ def test_a_cache_that_cannot_be_written_to_is_done_without(tmp_path, monkeypatch
     assert hits_of(tmp_path / "one", "2 * x") == 0
 
 
+@pytest.mark.parametrize("ending, share", [(".nbc", 0.5), (".nbc", 0), (".nbi", 0.5), (".nbi", 0), (".nbi", None)])
+def test_a_damaged_kernel_is_compiled_anew_and_kept(tmp_path, monkeypatch, ending, share):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
+    assert hits_of(tmp_path / "one", "2 * x") == 0
+    (kept_file,) = (tmp_path / "cache").rglob(f"*{ending}")
+    content = kept_file.read_bytes()
+    kept_file.write_bytes(b"no pickle" if share is None else content[: int(share * len(content))])
+    assert hits_of(tmp_path / "one", "2 * x") == 0 and hits_of(tmp_path / "one", "2 * x") == 1
+
+
 def test_little_work_is_interpreted_and_more_is_compiled(tmp_path, monkeypatch):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
     double = double_in(tmp_path / "one", "2 * x")
