@@ -316,6 +316,10 @@ INTENSE = (7, 10)  # numbers a line of a PTS with an intensity and a colour, and
 FORMATS = (*TEXT, ".pcd", ".las")
 UNIT = 0.05  # how far the length of a normal may be from 1
 LARGEST_ORIGIN = 1e-9  # a viewpoint nearer to zero than this was not set by who wrote the file
+SAMPLE = 2000  # points that show whether they are the view of one camera
+CONE, OUTSIDE = 50.0, 0.02  # degrees between a camera's axis and what it sees, and the share of points farther off
+BEHIND = 3.0  # times the distance to the neighbours: farther points in the same direction lie behind or before
+COVERED = 0.4  # of the points, with others behind or before: one view has 0 to 0.4, a whole object 0.44 to 0.9
 
 
 def read_cloud(content: bytes, suffix: str) -> Cloud:
@@ -405,13 +409,32 @@ def _units(vectors):
 def _sensor(points, viewpoint):
     """The sensor's place: a PCD's viewpoint is zero where its writer knew none, and in a camera's frame.
 
-    It is a camera's where no point lies around it.
+    It is a camera's where no point lies around it, and where the points are what one camera sees.
     """
     finite = points[np.isfinite(points).all(axis=1)]
     if not len(finite) or np.abs(viewpoint).max() > LARGEST_ORIGIN:
         return viewpoint
     low, high = finite.min(axis=0), finite.max(axis=0)
-    return None if ((low <= 0) & (high >= 0)).all() else viewpoint
+    return None if ((low <= 0) & (high >= 0)).all() or not _is_one_view(finite) else viewpoint
+
+
+def _is_one_view(points):
+    """Whether a camera at the origin may have seen all points (n, 3): in its cone, hardly any behind others.
+
+    A point is behind another, or before it, where points that are near in direction are far in space. `visible` does
+    not tell: of a close object it sees the far side between the points, and of noisy points it sees few.
+    """
+    try:
+        points = usable(Cloud(points[np.linspace(0, len(points) - 1, min(SAMPLE, len(points))).astype(int)])).points
+    except MeshError:  # which the whole cloud then raises
+        return True
+    rays = points / np.linalg.norm(points, axis=1, keepdims=True)
+    axis = rays.mean(axis=0)
+    if np.mean(rays @ axis < np.cos(np.radians(CONE)) * np.linalg.norm(axis)) > OUTSIDE:
+        return False
+    near = KDTree(rays).query(rays, NEIGHBOURS + 1)[1]
+    spread = np.linalg.norm(points[near] - points[:, None], axis=2).max(axis=1)
+    return np.mean(spread > BEHIND * KDTree(points).query(points, NEIGHBOURS + 1)[0][:, -1]) < COVERED
 
 
 def _is_number(word):

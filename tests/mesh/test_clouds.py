@@ -16,8 +16,10 @@ from pypcd4 import Encoding, PointCloud
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.mesh import MeshError, clean, load
 from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, read_cloud, surface_of
-from haptic_glance.mesh.mesh import unit
+from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.rays import RayScene
 
+ROOT = Path(__file__).parents[2]
 RANDOM = np.random.default_rng(0)
 BALL = unit(RANDOM.normal(size=(1200, 3)))
 COLORS = np.tile(np.array([[200, 10, 30]], np.uint8), (len(BALL), 1))
@@ -115,6 +117,41 @@ def test_what_was_not_seen_stays_a_hole():
 def test_a_sensor_within_a_hollow_sees_its_inside():
     mesh = surface_of(Cloud(BALL, sensor=np.zeros(3)))
     assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) < -0.9).mean() > 0.99
+
+
+SHAPES = {
+    "ball": lambda: trimesh.creation.icosphere(4),
+    "box": lambda: trimesh.creation.box((1, 0.7, 0.5)),
+    "dromedary": lambda: trimesh.load(ROOT / "samples/dromedary.glb", force="mesh"),
+}
+
+
+def as_pcd(points, viewpoint="0 0 0 1 0 0 0"):
+    made = PointCloud.from_xyz_points(points.astype(np.float32))
+    file = io.BytesIO()
+    made.save(file, Encoding.ASCII)
+    return file.getvalue().replace(b"VIEWPOINT 0.0 0.0 0.0 1.0 0.0 0.0 0.0", f"VIEWPOINT {viewpoint}".encode())
+
+
+@pytest.mark.parametrize("count", [2000, 20_000])
+@pytest.mark.parametrize("place", ["on the ground", "beside"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_viewpoint_of_zeros_is_a_sensor_where_the_points_are_what_it_sees(shape, place, count):
+    solid = SHAPES[shape]()
+    solid.apply_translation(-solid.bounds.mean(axis=0))
+    solid.apply_scale(1 / solid.extents.max())
+    floor = [0.1, 1e-3 - solid.bounds[0][1], 0]
+    offset = np.array(floor if place == "on the ground" else [0.2, 0.3, 1.5])
+    points = trimesh.sample.sample_surface(solid, count, seed=0)[0] + offset
+    assert read_cloud(as_pcd(points), ".pcd").sensor is None
+    assert read_cloud(as_pcd(points, "5 0 0 1 0 0 0"), ".pcd").sensor.tolist() == [5, 0, 0]
+    if place == "beside":
+        scene = RayScene(Mesh(np.asarray(solid.vertices), np.asarray(solid.faces)))
+        rays = unit(points)
+        hits = scene.cast(np.tile(-offset, (count, 1)), rays)
+        noise = 0.002 * RANDOM.normal(size=count)
+        view = ((hits.distance + noise)[:, None] * rays)[hits.hit]
+        assert read_cloud(as_pcd(view), ".pcd").sensor.tolist() == [0, 0, 0]
 
 
 @pytest.mark.slow
