@@ -1,6 +1,5 @@
 """The public functions: they take a mesh in any form, and lengths and face counts as text."""
 
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.lod.export import face_count
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
 from haptic_glance.lod.pictures import coloured
@@ -156,7 +156,7 @@ def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: flo
 
     cells, pitch, _ = check_array(cells, pitch)
     if wrong := misfit(cells, pitch / diameter):
-        warnings.warn(f"pitch={text!r}: {wrong}", stacklevel=3)
+        warn_caller(f"pitch={text!r}: {wrong}")
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:
@@ -207,7 +207,7 @@ def _settled(source: MeshLike, remedy: str, reason: str = "") -> Mesh:
         return mesh
     name = Path(source).name if isinstance(source, str | Path) else "the mesh"
     mesh, note = assumed(mesh, reason or f"{name} does not say which axis points up", remedy)
-    warnings.warn(note, stacklevel=3)
+    warn_caller(note)
     return mesh
 
 

@@ -14,7 +14,7 @@ import haptic_glance
 from haptic_glance import Mesh, detect, doors, find_points, load, press, press_many, saliency, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.lod.export import write_any
-from haptic_glance.studio.specimen import open_file
+from haptic_glance.studio.specimen import open_content, open_file
 from haptic_glance.touch.layout import Layout
 
 COUNT = 5
@@ -196,6 +196,27 @@ def test_a_mesh_compares_by_content_and_keeps_its_arrays_to_itself(body):
     assert mesh != Mesh(body[0] + 1, body[1]) and mesh != Mesh(*body, up="y") and mesh != "mesh"
     small = len(pickle.dumps(Mesh(*body)))
     assert mesh.adjacency.nnz and len(pickle.dumps(mesh)) == small and pickle.loads(pickle.dumps(mesh)) == mesh
+
+
+def test_warnings_name_the_line_that_called_and_the_studio_notes_them(body, tmp_path):
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    inwards = Mesh(np.asarray(ball.vertices), np.asarray(ball.faces)[:, ::-1])
+    ball.apply_translation([2e5, 0, 0])
+    ball.export(path := tmp_path / "far (1).stl")
+    calls = [
+        lambda: load(path), lambda: load(path, up="z"), lambda: haptic_glance.as_mesh(path),
+        lambda: haptic_glance.normalise(path), lambda: haptic_glance.Surface(inwards), lambda: press(inwards, 7),
+        lambda: press_many(inwards, [7, 9]), lambda: press(Mesh(*body), 7, pitch="1m", unit="mm"),
+        lambda: saliency(body),
+    ]  # fmt: skip
+    for call in calls:
+        with pytest.warns(UserWarning) as caught:
+            call()
+        assert {warning.filename for warning in caught} == {__file__}
+    with pytest.warns(UserWarning, match="far"):
+        opened = open_file(path)
+    for specimen in (opened, open_content(path.name, path.read_bytes())):
+        assert specimen.note.startswith("its coordinates have steps of 0.45 % of the diagonal: move the object")
 
 
 @pytest.mark.slow

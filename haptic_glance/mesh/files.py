@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from haptic_glance.base.extras import MissingExtra, about
 from haptic_glance.base.lazy import trimesh
+from haptic_glance.base.warner import warn_caller
 
 from . import clouds, gltf, obj, ply
 from .axes import AUTO
@@ -62,7 +63,8 @@ def load_unnamed(path: Path) -> Mesh:
         folder = "is a folder, not a mesh: `haptic-glance gallery` shows all meshes of a folder"
         raise MeshError(folder if path.is_dir() else "no such file")
     mesh = parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)))
-    _check_steps(path, mesh)
+    if coarse := coarse_steps(path, mesh):
+        warn_caller(f"{path.name}: {coarse}")
     return mesh
 
 
@@ -70,8 +72,8 @@ SINGLE = (".stl", ".ply", ".glb", ".gltf")  # the formats that usually hold sing
 COARSE = 1e-3  # of the diagonal: steps between coordinates that change normals, and so saliency and touch
 
 
-def _check_steps(path, mesh):
-    """Warns where an object lies so far from the origin that the coordinates of its file have coarse steps."""
+def coarse_steps(path: Path, mesh: Mesh) -> str:
+    """The fault of a file whose object lies so far from the origin that its coordinates have coarse steps; else ""."""
     with np.errstate(over="ignore"):
         rounded = mesh.vertices.astype(np.float32)
     step = np.spacing(np.abs(rounded).max(initial=0))
@@ -79,9 +81,8 @@ def _check_steps(path, mesh):
     if is_single and step > COARSE * mesh.diagonal:
         remedy = "move the object to the origin before it is exported"
         share = 100 * step / mesh.diagonal
-        warnings.warn(
-            f"{path.name}: its coordinates have steps of {share:.2g} % of the diagonal: {remedy}", stacklevel=4
-        )
+        return f"its coordinates have steps of {share:.2g} % of the diagonal: {remedy}"
+    return ""
 
 
 def as_mesh(source: MeshLike) -> Mesh:

@@ -17,7 +17,7 @@ from haptic_glance.lod.weight_files import write_weights
 from haptic_glance.look.points import METHODS
 from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import normalise, rotate_to_z_up
-from haptic_glance.mesh.files import load_unnamed, mesh_files, parse
+from haptic_glance.mesh.files import coarse_steps, load_unnamed, mesh_files, parse
 from haptic_glance.mesh.headers import MeshError
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
@@ -155,15 +155,20 @@ def open_file(path: Path, up: str | None = None) -> Specimen:
     """The Specimen of a mesh, a cloud, a scan, or a mesh of the pipeline (.npz). MeshError, ValueError, OSError."""
     if path.suffix.lower() == STORED:
         return Specimen(read_mesh(path), path.stem, "z up, as the pipeline stores it", path)
-    mesh, note = upright_by(load_unnamed(path), path, up)
-    return Specimen(mesh, path.stem, note, path)
+    return _upright(load_unnamed(path), path, up, path)
 
 
 def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
     """The Specimen of an uploaded file; no other file is read, so an OBJ comes without its materials."""
     path = Path(name)
-    mesh, note = upright_by(parse(content, path.suffix.lower()), path, up)
-    return Specimen(mesh, path.stem, note)
+    return _upright(parse(content, path.suffix.lower()), path, up)
+
+
+def _upright(mesh: Mesh, path: Path, up: str | None, place: Path | None = None) -> Specimen:
+    """The Specimen of a mesh as its file has it; the note says what is wrong with it first, then the axis."""
+    coarse = coarse_steps(path, mesh)
+    mesh, note = upright_by(mesh, path, up)
+    return Specimen(mesh, path.stem, f"{coarse}; {note}" if coarse else note, place)
 
 
 def turned(specimen: Specimen, up: str) -> Specimen:

@@ -7,12 +7,12 @@ there. `rigid` is the plate that the sentence describes. On saddles the pitch sh
 (T4.4.3).
 """
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.mesh import Mesh
 
 from .surface import Surface, as_surface, check_vertices, sensor_axes, sensor_normals
@@ -66,10 +66,10 @@ def distances(
     missed = vertices[(cell_distances == max_distance).all(axis=(1, 2))]
     if len(missed):
         rest_text = f" and {len(missed) - 1} others" if len(missed) > 1 else ""
-        warnings.warn(
+        warn_caller(
             f"the array touches nothing at vertex {missed[0]}{rest_text}: the faces there look inwards "
-            "(`haptic_glance.repair` turns them), or the place is narrower than a cell", stacklevel=3,
-        )  # fmt: skip
+            "(`haptic_glance.repair` turns them), or the place is narrower than a cell"
+        )
     if contact == "tangent" and rows % 2 and columns % 2:
         cell_distances[:, rows // 2, columns // 2] = 0.0
     return cell_distances

@@ -1,12 +1,12 @@
 """A mesh prepared for touching, the normal of the array's plane, and the directions of the array's rows and columns."""
 
 import math
-import warnings
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.axes import Axis, axis_named, to_z_up
 from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
@@ -47,10 +47,9 @@ class Surface:
     def __init__(self, mesh: MeshLike) -> None:
         self.mesh = mesh = as_mesh(mesh)
         if _inside_out(mesh):
-            warnings.warn(
+            warn_caller(
                 "the faces of the closed mesh look inwards, so that an array misses its surface: "
-                "`haptic_glance.repair` turns them outwards",
-                stacklevel=2,
+                "`haptic_glance.repair` turns them outwards"
             )
         solid = mesh.face_areas > 0
         self._tree = face_tree(mesh.vertices[mesh.faces[solid]], 2 * mesh.face_areas[solid])
