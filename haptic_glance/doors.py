@@ -23,7 +23,7 @@ from haptic_glance.mesh.files import MeshLike, as_mesh, as_stated
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius
 from haptic_glance.mesh.up import assumed
-from haptic_glance.touch.skin import METRES, Metres, length
+from haptic_glance.touch.skin import METRES, Layer, Metres, length
 
 MESHES = {  # public function: its arguments that are meshes
     **dict.fromkeys(
@@ -114,7 +114,7 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
         if isinstance(unit := values["unit"], str):
             if unit not in METRES:
                 raise ValueError(f"unit={unit!r}: give a number of metres, or one of {', '.join(METRES)}")
-            values["unit"] = METRES[unit]
+            values["unit"] = unit = METRES[unit]
         for name in ("pitch", metric):
             if isinstance(text := values[name], str):
                 try:
@@ -123,6 +123,11 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
                     raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
                 real = name == "pitch" and isinstance(amount, Metres)
                 values[name] = float(amount) / (values["unit"] if real else 1)
+        if "layer" in values:
+            name, whole = next(iter(values.items()))
+            if not isinstance(getattr(whole, "mesh", whole), Mesh):
+                values[name] = whole = as_mesh(whole)
+            _warn_of_units(getattr(whole, "mesh", whole), values["layer"], values["cells"], values["pitch"], unit)
         return function(*bound.args, **bound.kwargs)
 
     return work
@@ -157,6 +162,22 @@ def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: flo
     cells, pitch, _ = check_array(cells, pitch)
     if wrong := misfit(cells, pitch / diameter):
         warn_caller(f"pitch={text!r}: {wrong}")
+
+
+def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float, unit: float) -> None:
+    """Warns where the array, its layer or the object has a size that only a wrong unit explains."""
+    from haptic_glance.touch.distances import check_array
+    from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
+
+    cells, pitch, _ = check_array(cells, pitch)
+    diameter = centre_and_radius(mesh)[1] / RADIUS
+    if not (diameter > 0 and np.ndim(unit) == 0 and 0 < unit < np.inf):  # which the function refuses
+        return
+    wrong = misfit(cells, pitch / diameter)
+    if not wrong and (wrong := misfit_of_layer(layer, max(cells) * pitch * unit, diameter * unit)):
+        wrong = f"{wrong}; is the unit of length right?"
+    if wrong:
+        warn_caller(f"pitch={pitch:g}, unit={unit:g}: {wrong}")
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:

@@ -119,6 +119,23 @@ def test_forces_take_lengths_as_texts(body):
             haptic_glance.press_forces(mesh, *place, layer, depth=0.002, **wrong)
 
 
+@pytest.mark.parametrize("sizes, words", [
+    ({}, "it feels one point; is the unit of length right?"),
+    ({"pitch": 0.4}, "the array is 6.4 m long under a layer of 0.002 m, the object 6"),
+    ({"pitch": 0.4, "unit": 1e-5}, "more than the object, 0.0006"),
+    ({"pitch": 9.0, "unit": "mm"}, "is the unit of length right?"),
+    ({"pitch": "1mm", "unit": "mm"}, ""), ({"pitch": 0.4, "unit": 0.001}, ""),
+])  # fmt: skip
+def test_units_of_forces_that_do_not_fit_are_warned_of(body, sizes, words):
+    mesh = Mesh(*body)
+    place = mesh.vertices[[7]], haptic_glance.sensor_axes(haptic_glance.sensor_normals(mesh, [7]))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        haptic_glance.press_forces(body, *place, haptic_glance.Layer(), depth=1e-4, **sizes)
+    assert len(caught) == bool(words) and all(words in str(warning.message) for warning in caught)
+    assert all(warning.filename == __file__ for warning in caught)
+
+
 FORMS = {
     "path": lambda mesh, path: path,
     "arrays": lambda mesh, path: (mesh.vertices, mesh.faces),

@@ -39,7 +39,7 @@ from haptic_glance.touch.distances import CONTACTS, check_array, distances_at
 from haptic_glance.touch.force import press_forces
 from haptic_glance.touch.places import DEFAULT_COUNT, Places, UserMesh, read_user_mesh
 from haptic_glance.touch.press import normalise
-from haptic_glance.touch.quasi_tangent import misfit
+from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
 from haptic_glance.touch.skin import LAYER_UNITS, METRES, Layer, Metres, Skin, indent, length
 from haptic_glance.touch.surface import sensor_axes
 
@@ -261,9 +261,10 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     lengths_in_units(options, user_mesh.unit)
     if wrong := misfit(options.cells, options.pitch):
         report_progress(wrong)
-    if options.load is not None and options.layer.thickness > (size := user_mesh.unit * options.metres):
-        thick = f"the layer is {options.layer.thickness:g} m thick, more than the object, {size:.3g} m across"
-        report_progress(f"{thick}: is --unit {options.unit} right?")
+    if options.load is not None:
+        size = user_mesh.unit * options.metres
+        if wrong := misfit_of_layer(options.layer, max(options.cells) * options.pitch * size, size):
+            report_progress(f"{wrong}: is --unit {options.unit} right?")
     if options.at[0] == "salient":
         report_progress("looking at it, to find what is salient")
     return user_mesh

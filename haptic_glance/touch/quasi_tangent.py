@@ -10,6 +10,7 @@ from haptic_glance.mesh.mesh import Mesh, unit
 
 from .distances import CONTACTS, check_array, distances, distances_at
 from .press import normalise
+from .skin import Layer
 from .surface import LIFT, Surface, as_surface, check_vertices, sensor_axes, sensor_normals, touchable
 
 DEPTH = 0.25  # of the array's longer side: how far the elastic skin yields
@@ -117,6 +118,17 @@ def misfit(cells: Sequence[int], pitch: float) -> str:
         return f"{size}: it feels one point; {doubt}"
     wrong = f"{size}: most cells will miss it; take fewer or a smaller pitch"
     return "" if length <= 1 else f"{wrong}; {doubt}" if length > LARGE else wrong
+
+
+def misfit_of_layer(layer: Layer, length: float, size: float) -> str:
+    """The fault of a layer on an array, both far from the size of real sensors or of the object, in metres; else ""."""
+    if layer.thickness > size:
+        return f"the layer is {layer.thickness:g} m thick, more than the object, {size:.3g} m across"
+    if layer.thickness < SMALL * length:
+        return (
+            f"the array is {length:.3g} m long under a layer of {layer.thickness:g} m, the object {size:.3g} m across"
+        )
+    return ""
 
 
 def touch(surface: Surface, vertices: ArrayLike, cells: tuple[int, int], pitch: float, sensor: str) -> Touched:

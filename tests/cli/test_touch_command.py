@@ -286,6 +286,7 @@ def test_window_without_a_display_is_refused_before_any_work(file, tmp_path, mon
         (["--pitch", "1mm", "--unit", "m"], "is the unit of length right?"),
         (["--pitch", "0.2"], "is the unit of length right?"),
         (["--load", "1", "--unit", "mm", "--layer", "thickness=3,modulus=1e9"], "m across: is --unit mm right?"),
+        (["--load", "1", "--unit", "m", "--layer", "thickness=1e-6"], "m across: is --unit m right?"),
         (["--cells", 40, 4, "--pitch", 0.1], "most cells will miss it"),
         (["--cells", 1, 1, "--pitch", 2], "every imprint is flat"),
     ],
