@@ -16,7 +16,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Skin, Surface
 
 from .exploration import MOST, PLACES, Exploration
-from .library import CELLS, learn, primitives
+from .library import CELLS, check_names, learn, primitives
 
 with from_extra():
     import gymnasium
@@ -52,6 +52,8 @@ class TouchUntilSure(gymnasium.Env):
     ------
     ValueError
         For fewer than two objects, for a mesh that cannot be touched, and for a `most` that is no whole number from 1.
+    TypeError
+        For meshes that are no mapping, and for names that are no texts.
     MissingExtra
         Where Gymnasium is not installed.
 
@@ -67,6 +69,8 @@ class TouchUntilSure(gymnasium.Env):
     def __init__(
         self, meshes: Mapping[str, MeshLike] | None = None, most: int = MOST, skin: Skin | None = None
     ) -> None:
+        if meshes is not None:
+            check_names(meshes)
         upright = {name: rotate_to_z_up(as_mesh(mesh)) for name, mesh in (meshes or {}).items()}
         self.meshes = primitives() if meshes is None else {name: normalise(mesh) for name, mesh in upright.items()}
         if not (isinstance(most, int | np.integer) and most >= 1):

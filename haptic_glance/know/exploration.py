@@ -36,6 +36,8 @@ class Exploration:
     ------
     ValueError
         For an object of another scale, or with another axis up.
+    TypeError
+        For a `random` that is no Generator, such as a seed.
 
     Examples
     --------
@@ -51,6 +53,8 @@ class Exploration:
     """
 
     def __init__(self, library: Library, surface: "MeshLike | Surface", random: np.random.Generator) -> None:
+        if not isinstance(random, np.random.Generator):
+            raise TypeError(f"random must be a numpy.random.Generator such as default_rng(0), got {random!r}")
         self.library = library
         self.surface = as_surface(surface if isinstance(surface, Surface) else as_mesh(surface))
         check_scale(self.surface.mesh)

@@ -164,6 +164,8 @@ def learn(
     ValueError
         For fewer than two meshes, and for a mesh that cannot be touched or has another scale; the message names the
         mesh.
+    TypeError
+        For meshes that are no mapping, and for names that are no texts.
 
     Examples
     --------
@@ -174,10 +176,19 @@ def learn(
     >>> Exploration(library, shapes["cylinder"], np.random.default_rng(0)).finish()
     'cylinder'
     """
+    check_names(meshes)
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
     upright = {name: rotate_to_z_up(as_mesh(meshes[name])) for name in sorted(meshes)}
     return _library(tuple(_Named(name, mesh, seed, turned, skin) for name, mesh in upright.items()), placed)
+
+
+def check_names(meshes: object) -> None:
+    """Raises TypeError for meshes that are no mapping, and for names that are no texts."""
+    if not isinstance(meshes, Mapping):
+        raise TypeError(f"meshes must be a mapping from names to meshes, got {type(meshes).__name__}")
+    if wrong := [name for name in meshes if not isinstance(name, str)]:
+        raise TypeError(f"meshes must have texts as names, got {wrong[0]!r}")
 
 
 def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:

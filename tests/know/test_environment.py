@@ -73,6 +73,9 @@ def test_bad_input_is_named_and_changes_nothing(task):
     for most in (0, 1.5, np.nan):
         with pytest.raises(ValueError, match="a whole number of touches, at least one"):
             TouchUntilSure(most=most)
+    for meshes, words in (([], "be a mapping"), ([*task.meshes.values()], "be a mapping"), ({1: 0}, "have texts")):
+        with pytest.raises(TypeError, match=f"meshes must {words}"):
+            TouchUntilSure(meshes)
     with pytest.raises(ValueError, match="unknown option 'nme'"):
         task.reset(options={"nme": "box"})
 

@@ -175,6 +175,16 @@ def test_an_object_may_lie_anywhere_unless_it_is_placed_and_a_known_place_helps(
     assert beliefs[0].known == "bump" and not beliefs[1].known
 
 
+def test_arguments_of_the_wrong_kind_are_named(library, shapes):
+    ball, box = shapes["ball"], shapes["box"]
+    with pytest.raises(TypeError, match=r"random must be a numpy.random.Generator such as .*, got 0"):
+        Exploration(library, ball, 0)
+    with pytest.raises(TypeError, match="meshes must be a mapping from names to meshes, got list"):
+        learn([ball, box])
+    with pytest.raises(TypeError, match="meshes must have texts as names, got 1"):
+        learn({1: ball, "box": box})
+
+
 def test_what_cannot_be_learned_or_felt_is_named(library, shapes):
     with pytest.raises(ValueError, match="at least two"):
         learn({"ball": shapes["ball"]})
