@@ -10,7 +10,6 @@ import argparse
 import io
 import itertools
 import re
-import warnings
 from collections.abc import Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import replace
@@ -24,6 +23,7 @@ from scipy.spatial import KDTree
 from haptic_glance.base.files import whole_file
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import with_stated_up
@@ -119,7 +119,7 @@ def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, 
         message = f"{path.name}: single precision moves vertices by {100 * share:.2g} % of the diagonal: {remedy}"
         if share > RUINED:
             raise ValueError(message)
-        warnings.warn(message, stacklevel=3)
+        warn_caller(message)
 
 
 def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:

@@ -95,7 +95,8 @@ def _row(claim: Claim, results: Results) -> Row:
         pair_names = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
         decides = effect in judgement.chosen
         pairs += ((claim.key, name, value, decides) for name, value in zip(pair_names, effect.differences, strict=True))
-    return row | _numbers(judgement) | _words(judgement, results) | _readings(judgement, judgements, not_run), pairs
+    words = _words(judgement, judgements[0], results)
+    return row | _numbers(judgement) | words | _readings(judgement, judgements, not_run), pairs
 
 
 @dataclass(frozen=True)
@@ -196,13 +197,16 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
     return {"cause": CAUSES[rank], **need_columns}
 
 
-def _words(judgement: Judgement, results: Results) -> dict[str, str]:
-    """Columns tested_on, by_set, carries and validity."""
+def _words(judgement: Judgement, written: Judgement, results: Results) -> dict[str, str]:
+    """Columns tested_on, by_set, carries and validity; written: the claim as it is written, if that can be tested."""
     claim, set_effects, selection = judgement.claim, judgement.set_effects, judgement.chosen
     missing = [] if results.own_meshes else judgement.missing
     words = tested_on(claim, results, [effect.dataset for effect in selection])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
-    invalid_sets = [f"{dataset_text(effect.dataset)}: {effect.validity}" for effect in set_effects if effect.validity]
+    invalid_sets = _invalid_sets(judgement)
+    if judgement is not written:
+        words += f"; in the reading {judgement.name}, since as written it cannot be tested"
+        invalid_sets += [f"as written, {text}" for text in _invalid_sets(written)]
     for effect in selection:
         if np.isnan(effect.interval[1]):
             count = len(effect.differences)
@@ -212,6 +216,10 @@ def _words(judgement: Judgement, results: Results) -> dict[str, str]:
         "tested_on": words, "validity": "; ".join(invalid_sets), "carries": _carries(claim, selection, set_effects),
         "by_set": "; ".join(map(_set_text, set_effects)) if len(set_effects) > 1 else "",
     }  # fmt: skip
+
+
+def _invalid_sets(judgement: Judgement) -> list[str]:
+    return [f"{dataset_text(effect.dataset)}: {effect.validity}" for effect in judgement.set_effects if effect.validity]
 
 
 def _carries(claim: Claim, chosen: Sequence[Effect], measured: Sequence[Effect]) -> str:

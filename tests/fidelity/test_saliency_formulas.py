@@ -1,5 +1,7 @@
 """T3.1.1 and T3.2, eq. 3.1 to 3.9: conspicuity maps and their averages, in plain loops of numpy and scipy."""
 
+from types import SimpleNamespace
+
 import numpy as np
 from scipy import ndimage
 
@@ -7,6 +9,7 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.channels import conspicuity
 from haptic_glance.look.channels.channels import mask_at_size
 from haptic_glance.look.channels.colour import LINEAR, MECHANISMS
+from haptic_glance.look.points.detectors import FusedDetector, SummedDetector
 from haptic_glance.look.points.fuse import COMBINATIONS, fuse
 from haptic_glance.look.views import View, render
 from haptic_glance.mesh.mesh import Mesh
@@ -92,13 +95,17 @@ def printed(picture, channel, mended=False):
     return conspicuity(MESH, view, [channel], size, filled=False, formulas=formulas)[channel]
 
 
-def correlation(computed, literal, mask):
-    """Of two maps over the object; pixel k of the library's, a quarter of the picture, lies at 4 k + 1.5 of it."""
+def at_quarter(literal, mask):
+    """The literal map at the pixels of the library's: pixel k, of a quarter of the picture, lies at 4 k + 1.5 of it."""
     scale = round(mask.shape[0] / literal.shape[0])
-    places = np.stack(np.mgrid[: computed.shape[0], : computed.shape[1]]) * 4 + 1.5
-    literal = ndimage.map_coordinates(np.asarray(literal, dtype=np.float64), places / scale, order=1, mode="nearest")
+    places = np.stack(np.mgrid[: mask.shape[0] // 4, : mask.shape[1] // 4]) * 4 + 1.5
+    return ndimage.map_coordinates(np.asarray(literal, dtype=np.float64), places / scale, order=1, mode="nearest")
+
+
+def correlation(computed, literal, mask):
+    """Of two maps over the object."""
     inside = computed > 0
-    return float(np.corrcoef(computed[inside], literal[inside])[0, 1])
+    return float(np.corrcoef(computed[inside], at_quarter(literal, mask)[inside])[0, 1])
 
 
 def test_normalisation(picture, agreement):
@@ -115,17 +122,23 @@ def test_normalisation(picture, agreement):
     agreement("difference", max(apart))
 
 
+def intensity(rgb):
+    return across_scales(pyramid(rgb.mean(axis=2) / 255))
+
+
 def test_intensity(picture, agreement):
     rgb, mask = picture
-    literal = across_scales(pyramid(rgb.mean(axis=2) / 255))
-    agreement("r", correlation(printed(picture, "intensity"), literal, mask))
+    agreement("r", correlation(printed(picture, "intensity"), intensity(rgb), mask))
+
+
+def orientation(rgb):
+    levels = pyramid(rgb.mean(axis=2) / 255)
+    return sum(n(across_scales([gabor_energy(level, angle) for level in levels])) for angle in (0, 45, 90, 135))
 
 
 def test_orientation(picture, agreement):
     rgb, mask = picture
-    levels = pyramid(rgb.mean(axis=2) / 255)
-    literal = sum(n(across_scales([gabor_energy(level, angle) for level in levels])) for angle in (0, 45, 90, 135))
-    agreement("r", correlation(printed(picture, "orientation"), literal, mask))
+    agreement("r", correlation(printed(picture, "orientation"), orientation(rgb), mask))
 
 
 def opponents(rgb):
@@ -135,13 +148,17 @@ def opponents(rgb):
     return (red, green), (blue, yellow)
 
 
-def color_likeness(picture, mended):
-    rgb, mask = picture
-    literal = 0
+def color(rgb, mended=False):
+    total = 0
     for first, second in opponents(rgb):
         centre, surround = pyramid(first - second), pyramid(first - second if mended else second - first)
-        literal = literal + across_scales(centre, surround, mended)
-    return correlation(printed(picture, "color", mended), literal, mask)
+        total = total + across_scales(centre, surround, mended)
+    return total
+
+
+def color_likeness(picture, mended):
+    rgb, mask = picture
+    return correlation(printed(picture, "color", mended), color(rgb, mended), mask)
 
 
 def test_color(picture, agreement):
@@ -161,11 +178,26 @@ def test_the_sign_of_color(picture):
     assert round(np.corrcoef(*maps)[0, 1], 2) == 0.86
 
 
+def dkl(rgb):
+    return sum(across_scales(pyramid(plane)) for plane in np.moveaxis(LINEAR[rgb] @ MECHANISMS.T, 2, 0))
+
+
 def test_dkl(picture, agreement):
     rgb, mask = picture
-    planes = np.moveaxis(LINEAR[rgb] @ MECHANISMS.T, 2, 0)
-    literal = sum(across_scales(pyramid(plane)) for plane in planes)
-    agreement("r", correlation(printed(picture, "dkl"), literal, mask))
+    agreement("r", correlation(printed(picture, "dkl"), dkl(rgb), mask))
+
+
+def test_sums(picture, agreement):
+    """eq. 3.8 of the sums of eq. 3.1 to 3.6; of means the intensity would weigh as much as DKL, not a third."""
+    rgb, mask = picture
+    sums = {"intensity": intensity, "orientation": orientation, "color": color, "dkl": dkl}
+    literal = sum(at_quarter(formula(rgb), mask) for formula in sums.values()) / len(sums)
+    sight = SimpleNamespace(maps={channel: printed(picture, channel) for channel in sums})
+    computed = SummedDetector(sums).fused(sight, None)
+    inside = computed > 0
+    agreement("r", float(np.corrcoef(computed[inside], literal[inside])[0, 1]))
+    plain = FusedDetector(sums).fused(sight, None)
+    assert np.corrcoef(plain[inside], literal[inside])[0, 1] < 0.99
 
 
 def luminance(rgb):

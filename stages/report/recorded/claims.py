@@ -165,15 +165,16 @@ def claims(
 SHARED = "Filters learned by sight help beyond their architecture:"
 BEYOND: dict[str, Any] = {"section": "ours", "printed": 1}
 INITIAL = reading("random side with its initial statistics", second={"weights": "random_initial"})
+SIMULATED = "frozen_coarse_by_chance_random"  # the sentence on the thesis's sensor, on simulated imprints of its size
 BETTER = "Frozen visual filters tell recorded touches apart better than guessing."
 NETWORKS = [
     *claims("frozen_over_guessing", BETTER, ACCURACY, GUESSING, [name for name in SETTINGS if name != SLIP]),
     *claims("frozen_over_guessing", BETTER, ACCURACY, {"metric": "majority"}, [SLIP], statistic="over_commonest"),
     *claims("frozen_by_guessing", "On a pressure array frozen visual filters are hardly better than guessing.",
-            GUESSING, ACCURACY, ARRAY, margin=GUESS,
+            GUESSING, ACCURACY, ARRAY, margin=GUESS, of=SIMULATED,
             note="the thesis's own largest lead; 28 x 50 cells, the thesis has 16 x 16"),
     *claims("instant_by_guessing", "One reading of 7 x 3 cells is hardly better than guessing what is grasped.",
-            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM),
+            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM), of=SIMULATED,
             note="another hand than BiGS's; at random, other fingers of a grasp are trained on"),
     *claims("series_over_instant", "A series of readings tells grasped objects apart better than one of 7 x 3 cells.",
             {"data": "schunk"}, {"data": "schunk_coarse"}, HAND, shared=shared_by(Split.RANDOM),

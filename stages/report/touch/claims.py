@@ -38,6 +38,7 @@ POINTS: dict[str, Any] = {
     "touch": "touch",  # places worth touching
 }
 ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart": APART | PLAIN}
+ROWS |= {"_15": SIX | FEW}  # as many imprints of each object as the thesis had
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
 MIXED = (  # five touches; of one touch there is nothing to combine: mixed, its test part would be in training, too
     ("combined before the split", "touches_5_mixed"),
@@ -92,7 +93,7 @@ OF_FOUR = {("group", "four"): "the four least alike of six", ("group", "four_dra
 def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     """A claim that touch at the first points of its key is better than at the second; end: of the key, for the ROWS."""
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
-    readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
+    readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end in ("_apart", "_15") else (FIFTEEN,)))
     section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
     sets: dict[str, Any] = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
     return Claim(
@@ -173,6 +174,8 @@ CLAIMS = [
     by_points("equal_over_itti", "Touch guided by the thesis's attention is better than by the classical one."),
     by_points("itti_over_blind", "Touch guided by the classical model is better than blind touch."),
     by_points("equal_over_blind", "Touch guided by the thesis's attention is better than blind touch."),
+    by_points("equal_over_blind", "The thesis's attention beats blind touch where each object has 15 imprints.", "_15",
+              of="equal_over_blind"),
     by_points("equal_over_blind", "The thesis's attention beats blind touch with four objects too.", "_four"),
     by_points("equal_over_blind", "The thesis's attention beats blind touch over all classifiers.", "_all"),
     by_points("equal_over_blind", "The thesis's attention beats blind touch where no training touch overlaps.",
