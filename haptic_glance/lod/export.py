@@ -70,8 +70,9 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
     glb with all that its materials say, and with the files of pictures that nobody changed; ply gets the texture's
     colour at each vertex instead; off and stl have neither. A glb has normals, for which creases double vertices, too.
-    obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned here
-    (`haptic_glance.mesh.up.upright_for`); the other formats get a comment that names the axis.
+    obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects
+    +y up and metres, but nothing is turned here (`haptic_glance.mesh.up.upright_for`); the other formats get a comment
+    that names the axis.
 
     Examples
     --------

@@ -42,9 +42,9 @@ def distances(
     face below and the first face above are both seen from their back. Where only the one below is (an open mesh, mixed
     orientation), the surface below counts. In a sheet, such as the surface that a depth camera sees, a cell with
     nothing below is inside where the face above is seen from its back (`Surface.is_sheet`). Of two faces at one height,
-    where parts of the object touch, the one seen from its back counts. If both numbers of cells are odd, the
-    middle cell is the vertex itself, 0. A cell without a surface within `max_distance`, the sensing depth in both directions, reports `max_distance`. By default that is the
-    longer side of the array.
+    where parts of the object touch, the one seen from its back counts. If both numbers of cells are odd, the middle
+    cell is the vertex itself, 0. A cell without a surface within `max_distance`, the sensing depth in both directions,
+    reports `max_distance`. By default that is the longer side of the array.
 
     The thesis uses the centre of the face that the ray hits as the surface point (T figure 4.7). Here it is the exact
     intersection, so that the imprint does not depend on the triangulation.

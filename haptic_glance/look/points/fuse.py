@@ -27,7 +27,7 @@ COMBINATIONS = {
     "VisAttAll": (*CLASSICAL, "contrast", "curvature", "dkl", "entropy", "symmetry"),
     "Curv": ("curvature",),
 }
-# How many maps the printed sums of T eq. 3.1 to 3.6 have; the channels are their means, which eq. 3.8 weights otherwise.
+# How many maps the sums of T eq. 3.1 to 3.6 have; the channels are their means, which eq. 3.8 weights otherwise.
 TERMS = {"intensity": 6, "orientation": 4, "color": 12, "dkl": 18}
 WITHOUT_COLOUR = {  # T figure 3.3a
     f"{name}NoColour": tuple(channel for channel in COMBINATIONS[name] if channel not in ("color", "dkl"))
