@@ -238,7 +238,9 @@ def _material(texture, number, glb):
 
 def _colour_picture(content, pixels, clear):
     """The picture's own file, where the pixels are still those of the file; else an image of the pixels."""
-    if isinstance(content, bytes) and np.array_equal(Image.open(io.BytesIO(content)).convert("RGBA"), pixels):
+    if isinstance(content, bytes) and np.array_equal(
+        np.asarray(Image.open(io.BytesIO(content)).convert("RGBA")), pixels
+    ):
         return content
     return Image.fromarray(pixels if clear else pixels[..., :3])
 

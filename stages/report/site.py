@@ -61,7 +61,7 @@ FINDINGS = (
             "points of accuracy more than blind touch", "touch"),
     Finding("keep_metro", "contradicted", "Fails: neighbourhoods kept unchanged raise the error",
             "times the error of plain simplification", "meshes", "times:", 2),
-    Finding("simulation_helps_5", "contradicted", "Fails: imprints of a simulated skin make real touches harder to tell",
+    Finding("simulation_helps_5", "contradicted", "Fails: imprints of a simulated skin make real touch harder to tell",
             "points of accuracy more than without them", "recorded"),
 )  # fmt: skip
 UNCLEAR = """<li><h3>Most sentences of the thesis are not that clear</h3><p>Of {count} sentences of the thesis,
