@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from haptic_glance.base.warner import warn_caller
+from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.lod.export import face_count
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
 from haptic_glance.lod.pictures import coloured
@@ -164,13 +165,18 @@ def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: flo
         warn_caller(f"pitch={text!r}: {wrong}")
 
 
+@weak_cache
+def _diameter(mesh: Mesh) -> float:
+    return float(centre_and_radius(mesh)[1] / RADIUS)
+
+
 def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float, unit: float) -> None:
     """Warns where the array, its layer or the object has a size that only a wrong unit explains."""
     from haptic_glance.touch.distances import check_array
     from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
 
     cells, pitch, _ = check_array(cells, pitch)
-    diameter = centre_and_radius(mesh)[1] / RADIUS
+    diameter = _diameter(mesh)
     if not (diameter > 0 and np.ndim(unit) == 0 and 0 < unit < np.inf):  # which the function refuses
         return
     wrong = misfit(cells, pitch / diameter)

@@ -143,8 +143,7 @@ def prepare(argv: Sequence[str]) -> None:
     Raises ParamsError that names the nearest right name, and for a set that params.yaml does not switch on.
     """
     options = dict(word.split("=", 1) for word in argv if is_override(word) and not word.startswith("hydra"))
-    groups = [path.name for path in conf_folder().iterdir() if path.is_dir()]
-    unused = composed([]).keys() - {*SECTIONS, *groups, "seed"}
+    unused = composed([]).keys() - {*SECTIONS, "profile", "seed"}
     for key, values in options.items():
         if key.lstrip("+~").partition(".")[0] in unused and key != "meshes.folder":  # which data=folder asks for
             raise ParamsError(f"{key} does not change a sweep: its jobs read {', '.join(SECTIONS)} and seed")

@@ -25,7 +25,7 @@ from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
 from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.materials import bake_texture
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, colour_factor
 from haptic_glance.mesh.up import with_stated_up
 
 from .feasibility import InfeasibleTarget, SimplifyError
@@ -88,7 +88,7 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     if suffix not in PICTURED:
         mesh = bake_texture(mesh)
     elif suffix == ".obj" and mesh.texture is not None:  # its materials have no more
-        mesh = replace(mesh, texture=replace(mesh.texture, materials=()))
+        mesh = replace(mesh, texture=_in_pictures(mesh.texture))
     loaded = for_glb(mesh, path.stem, named) if suffix == ".glb" else to_trimesh(mesh, path.stem)
     least = OF_ONE if suffix == ".obj" else 1
     digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), least)
@@ -102,6 +102,14 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
             part = stack.enter_context(whole_file(path.parent / name))
             data = extra.encode() if isinstance(extra, str) else extra
             part.write_bytes(with_stated_up(data, suffix, mesh.up) if name == path.name else data)
+
+
+def _in_pictures(texture):
+    """The Texture without materials, whose colours go into its pictures."""
+    factors = [np.append(colour_factor(material), 1) for material in texture.materials]
+    images = [image if (factor == 1).all() else np.rint(image * factor).astype(np.uint8)
+              for image, factor in zip(texture.images, factors, strict=True)]  # fmt: skip
+    return replace(texture, images=tuple(images), materials=())
 
 
 def check_precision(path: Path, mesh: Mesh, text: str = ", or write text (.obj, .off)") -> None:

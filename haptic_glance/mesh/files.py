@@ -41,7 +41,8 @@ def load(path: str | Path) -> Mesh:
     face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. A .gltf file is
     read as the GLB of what it refers to. The parts of a GLB scene are transformed and joined. The materials of a GLB,
     and those of an OBJ whose material files lie next to it, become the texture of the mesh. A GLB with colours per
-    vertex and without a picture of colour gives these colours instead, times those of its materials. Of a point cloud
+    vertex and without a picture of colour gives these colours instead, times those of its materials, unless two colours
+    meet at one place: they would open the surface. Of a point cloud
     (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
     haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
     camera. A GLB is y up, a .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or
@@ -78,7 +79,7 @@ def coarse_steps(path: Path, mesh: Mesh) -> str:
         rounded = mesh.vertices.astype(np.float32)
     step = np.spacing(np.abs(rounded).max(initial=0))
     is_single = path.suffix.lower() in SINGLE and np.array_equal(rounded, mesh.vertices)
-    if is_single and step > COARSE * mesh.diagonal:
+    if is_single and 0 < COARSE * mesh.diagonal < step:
         remedy = "move the object to the origin before it is exported"
         share = 100 * step / mesh.diagonal
         return f"its coordinates have steps of {share:.2g} % of the diagonal: {remedy}"

@@ -163,6 +163,8 @@ def join_parts(
     faces = np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)])
     vertices = np.concatenate([part.vertices for part in parts])
     colors = _colours_of_all(parts)
+    if colors is not None and _tears(parts, vertices, faces, colors):
+        colors = None
     if every_colour and colors is None:
         parts = [_as_picture(part) for part in parts]
     texture = texture_of(parts) if colors is None else None
@@ -199,6 +201,15 @@ def _colours_of_all(parts):
     if any(_colours_per_vertex(part) is not None for part in parts) and all(map(_is_plain, parts)):
         return np.concatenate([_plain_colours(part) for part in parts])
     return None
+
+
+def _tears(parts, vertices, faces, colors):
+    """Whether colours beside materials would open the surface: two colours at one place are two vertices."""
+    if all(isinstance(part.visual, trimesh.visual.ColorVisuals) for part in parts):
+        return False
+    used = np.unique(faces)
+    rows = vertices[used]
+    return len(np.unique(np.column_stack([rows, colors[used]]), axis=0)) > len(np.unique(rows, axis=0))
 
 
 def _colours_per_vertex(part):

@@ -74,7 +74,7 @@ class Texture:
             mask, (h, w) = numbers == number, self.images[number].shape[:2]
             across, up = (np.floor(uv[mask] * (w, h)) % (w, h)).astype(np.int64).T  # of any size, before the cast
             pixels = self.images[number][h - 1 - up, across, :3]
-            rgb[mask] = np.rint(pixels * _factor(self.materials[number]))
+            rgb[mask] = np.rint(pixels * colour_factor(self.materials[number]))
         return rgb
 
 
@@ -254,7 +254,7 @@ def _copied(values: Any, kind: type) -> np.ndarray:
     return np.array(values, dtype=kind, order="C")
 
 
-def _factor(material):
+def colour_factor(material):
     """(3,) of a picture's colours; a plain colour, without a picture, is in the image already."""
     if not material or "baseColorTexture" not in material or material.get("baseColorFactor") is None:
         return np.ones(3)

@@ -25,6 +25,7 @@ WORDS = (*DECIDED, MIXED, DEPENDS, UNTESTABLE, "open")
 NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
 FEW, HUNDRED = 5, 100  # units
 PROPOSED = "T6.3"  # the section that proposes future work, and states no result
+WRITTEN = "as written"  # the name of the reading that a claim itself is
 CAUSES = (  # of open verdicts
     "not run", "no spread", f"{FEW} units or fewer a set", f"fewer than {HUNDRED} units needed",
     f"{HUNDRED} units or more needed", "more splits of the same data would not decide", "hardly an effect",
@@ -121,7 +122,7 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
     A reading on data sets of its own was run where the first of them was. Raises NotRun where no reading was run.
     """
     judgements, errors, not_run = [], [], []
-    for name, variant in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
+    for name, variant in [(WRITTEN, claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
         try:
             set_effects, missing = effects(variant, results)
         except NotRun as error:
@@ -160,7 +161,7 @@ def over_readings(words: Sequence[str]) -> str:
 
 def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: Sequence[str]) -> dict[str, str]:
     """Columns verdict and readings: the word and the effect in each reading, the judged one first; those not run."""
-    if len(judgements) == 1 and judged_one.name == "as written" and not not_run:
+    if len(judgements) == 1 and judged_one.name == WRITTEN and not not_run:
         return {}
     ordered = sorted(judgements, key=lambda reading: reading is not judged_one)
     texts = [f"{reading.name}: {reading.word} {_interval_text(effect_of(reading.chosen))}" for reading in ordered]
@@ -198,15 +199,18 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
 
 
 def _words(judgement: Judgement, written: Judgement, results: Results) -> dict[str, str]:
-    """Columns tested_on, by_set, carries and validity; written: the claim as it is written, if that can be tested."""
+    """Columns tested_on, by_set, carries and validity; written: the first of the claim's readings that were run."""
     claim, set_effects, selection = judgement.claim, judgement.set_effects, judgement.chosen
     missing = [] if results.own_meshes else judgement.missing
     words = tested_on(claim, results, [effect.dataset for effect in selection])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
     invalid_sets = _invalid_sets(judgement)
-    if judgement is not written:
-        words += f"; in the reading {judgement.name}, since as written it cannot be tested"
-        invalid_sets += [f"as written, {text}" for text in _invalid_sets(written)]
+    if judgement.name != WRITTEN:
+        was_run = written.name == WRITTEN
+        words += (
+            f"; in the reading {judgement.name}, since as written it {'cannot be tested' if was_run else 'was not run'}"
+        )
+        invalid_sets += [f"{WRITTEN}, {text}" for text in _invalid_sets(written) if was_run]
     for effect in selection:
         if np.isnan(effect.interval[1]):
             count = len(effect.differences)

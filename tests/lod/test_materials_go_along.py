@@ -192,6 +192,23 @@ def test_white_beside_materials_leaves_them_and_the_surface_whole(tmp_path):
     assert {tuple(image[0, 0]) for image in mesh.texture.images} == {(255, 0, 0, 255), (0, 0, 255, 255)}
 
 
+def test_colours_that_meet_at_an_edge_do_not_open_the_surface(tmp_path):
+    box = trimesh.creation.box()
+    corners = trimesh.Trimesh(box.vertices[box.faces].reshape(-1, 3), np.arange(36).reshape(12, 3), process=False)
+    corners.visual = TextureVisuals(material=PBRMaterial(baseColorFactor=[255, 255, 255, 255], roughnessFactor=0.4))
+    corners.visual.vertex_attributes["color"] = np.repeat(COLOURS[:12], 3, axis=0)
+    (tmp_path / "box.glb").write_bytes(trimesh.Scene(corners).export(file_type="glb"))
+    mesh = load(tmp_path / "box.glb")
+    assert mesh.watertight and len(mesh.vertices) == 8 and mesh.colors is None
+    assert "COLOR_0" in not_read((tmp_path / "box.glb").read_bytes(), mesh.colors is not None)
+
+
+def test_an_obj_gets_the_colour_of_a_material_in_its_picture(tmp_path):
+    mesh = as_mesh(ball(0, baseColorTexture=picture((200, 40, 40)), baseColorFactor=[128, 255, 255, 255]))
+    write_any(tmp_path / "ball.obj", mesh)
+    assert np.abs(bake_texture(load(tmp_path / "ball.obj")).colors - [100, 40, 40]).max() <= 1
+
+
 def test_a_picture_without_coordinates_does_not_hide_the_colours(tmp_path):
     part = ball(0, baseColorTexture=picture((9, 9, 9)))
     part.visual.vertex_attributes["color"] = np.full((len(part.vertices), 4), 100, np.uint8)

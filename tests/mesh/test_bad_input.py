@@ -234,3 +234,9 @@ def test_single_precision_far_from_the_origin_is_named(tmp_path, recwarn, suffix
     load_as_stated(tmp_path / f"far.{suffix}")
     message = f"far.{suffix}: its coordinates have steps of 0.45 % of the diagonal: move the object to the origin"
     assert [message in str(warning.message) for warning in recwarn] == [True] * warned
+
+
+def test_an_object_without_extent_has_no_coarse_steps(tmp_path, recwarn):
+    (tmp_path / "point.ply").write_bytes(ply([(1, 1, 1)] * 3, [(0, 1, 2)]))
+    load_as_stated(tmp_path / "point.ply")
+    assert not [warning for warning in recwarn if "steps" in str(warning.message)]
