@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.base.files import read_json, write_arrays, write_mesh, write_text
-from stages.annotations.__main__ import found, run
+from stages.annotations.__main__ import found_share, run
 from stages.engine.rows import read_rows
 from stages.weights.ground_truth import spread_on_surface
 
@@ -73,4 +73,4 @@ def test_marks_where_people_looked_agree_with_gaze(measured, ball):
 
 def test_near_is_a_share_of_the_diagonal(ball):
     ours, theirs = top(ball, 1), np.argsort(ball.vertices[:, 2])[:1]
-    assert found(ball, ours, theirs, near=0.5) == 0 and found(ball, ours, theirs, near=1.0) == 1
+    assert found_share(ball, ours, theirs, near=0.5) == 0 and found_share(ball, ours, theirs, near=1.0) == 1
