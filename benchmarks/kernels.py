@@ -34,8 +34,8 @@ from .imprints import by_trimesh
 SECONDS = 1.0  # of the processor for the pairs of a kernel
 PAIRS = (7, 25)  # but at least and at most so many
 
-# A case is made by a function that returns two calls without arguments, ours and the peer's. What both need is made
-# before; a mesh of which ours would remember something is handed to it anew.
+# A function makes a case: it prepares the data of both sides and returns two calls without arguments, ours and the
+# peer's. Each call of ours gets a new copy of a mesh whose results the library would cache.
 Call = Callable[[], object]
 
 

@@ -129,7 +129,7 @@ class Files(IndexDataCacheFile):
 
 
 def _undamaged(load: Callable[..., Any], *arguments: Any) -> Any:
-    """What load(*arguments) reads, or None where the file is cut off or holds something else."""
+    """The result of load(*arguments), or None where the file is cut off or holds something else."""
     try:
         return load(*arguments)
     except OSError:  # no damage: numba knows what to do about it

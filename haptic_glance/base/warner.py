@@ -1,4 +1,4 @@
-"""Warnings that name the line of whoever called the package, however deep in it they arise."""
+"""Warnings that name the line that called the package, however deep in the package they arise."""
 
 import sys
 import warnings

@@ -172,7 +172,7 @@ class _Search:
 
 
 def joined(seams: Seams, corners: Corners) -> np.ndarray:
-    """(k, 2): uv of corners, the same for all those of one number that the distance of their points explains."""
+    """(k, 2): uv of corners; corners of one number share it where the distance of their points explains the gap."""
     uv, pending = corners.uv.copy(), np.arange(len(corners.uv))
     while len(pending):
         _, first, inverse = np.unique(corners.number[pending], return_index=True, return_inverse=True)

@@ -74,7 +74,7 @@ COARSE = 1e-3  # of the diagonal: steps between coordinates that change normals,
 
 
 def coarse_steps(path: Path, mesh: Mesh) -> str:
-    """The fault of a file whose object lies so far from the origin that its coordinates have coarse steps; else ""."""
+    """A sentence where an object lies so far from the origin that its file has coarse steps; else an empty text."""
     with np.errstate(over="ignore"):
         rounded = mesh.vertices.astype(np.float32)
     step = np.spacing(np.abs(rounded).max(initial=0))

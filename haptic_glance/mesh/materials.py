@@ -86,7 +86,7 @@ DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of verti
 
 
 def not_read(content: bytes, has_colors: bool = False) -> list[str]:
-    """Names of what a GLB's bytes say of materials and vertices and a Mesh has not; also of animations and the like.
+    """Names the properties of a GLB's materials and vertices that a Mesh cannot hold, and animations and the like.
 
     has_colors: whether the Mesh has colours per vertex, which stand for the materials.
     """

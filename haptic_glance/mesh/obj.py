@@ -59,7 +59,7 @@ OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)
 
 
 def not_read(path: Path) -> list[str]:
-    """Names of what an OBJ file says of materials and a Mesh has not; none of other files.
+    """Names the properties of an OBJ file's materials that a Mesh cannot hold; returns no names for other files.
 
     Files that are not beside it, and the pictures of other properties than colour.
     """

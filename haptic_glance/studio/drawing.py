@@ -1,4 +1,4 @@
-"""What was felt, drawn: the array on the object in the scene, and imprints and beliefs as HTML in a panel.
+"""Draws a touch: the array on the object in the scene, and imprints and beliefs as HTML in a panel.
 
 Cells have no smoothing, and bars have their numbers beside them.
 """

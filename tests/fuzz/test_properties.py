@@ -1,4 +1,4 @@
-"""What every mesh gets at the public doors: a result with the promised properties, or a reason.
+"""Every mesh gets a result with the promised properties at the public doors, or a reason.
 
 The meshes are closed and open ones, with the faults that scanned and modelled meshes have.
 """
