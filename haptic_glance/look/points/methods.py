@@ -29,11 +29,12 @@ from .detectors import (
     facing_viewer,
     height,
 )
-from .fuse import COMBINATIONS, WITHOUT_COLOUR
+from .fuse import CLASSICAL, COMBINATIONS, WITHOUT_COLOUR
 from .glance import GlanceDetector, deep_features
 from .options import Detection, Detector, Options
 from .touch import TouchDetector
 
+SUMMED = "Summed"  # behind the name of a method: with the sums of T eq. 3.1 to 3.6
 SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5
 WEIGHTED = (
     "equal",
@@ -59,11 +60,14 @@ METHODS: dict[str, Detector] = {
     **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
     **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
     **{
-        f"{name}Summed": SummedDetector((COMBINATIONS | WITHOUT_COLOUR)[name])
-        for name in ("VisAtt", "VisAttAll", "VisAttAllNoColour")
+        f"{name}{SUMMED}": SummedDetector(channels)
+        for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()
+        if name != "Curv"  # a channel alone has the same points
     },
-    "VisAttCurvP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(COMBINATIONS["Curv"])),
-    "VisAttSymP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(["symmetry"])),
+    f"VisAttCurvP{SUMMED}": MergedDetector(SummedDetector(CLASSICAL), FusedDetector(COMBINATIONS["Curv"])),
+    f"VisAttSymP{SUMMED}": MergedDetector(SummedDetector(CLASSICAL), FusedDetector(["symmetry"])),
+    "VisAttCurvP": MergedDetector(FusedDetector(CLASSICAL), FusedDetector(COMBINATIONS["Curv"])),
+    "VisAttSymP": MergedDetector(FusedDetector(CLASSICAL), FusedDetector(["symmetry"])),
     **{name: FusedDetector([channel]) for name, channel in SYMMETRIES.items()},
     **{name: WeightedDetector(name, CHANNELS) for name in WEIGHTED},
     **{name: SvmDetector(name, CHANNELS) for name in SVMS},
