@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from haptic_glance.know.split import Split, shared_by
+from haptic_glance.look.points.methods import METHODS, SUMMED
 
 from .drawing import label
 from .results import Results, dataset_text
@@ -34,6 +35,9 @@ class Pick:
     names: tuple[str, ...] = ()
     lowest: bool = False
     but: tuple[str, ...] = ()
+
+
+Methods = str | tuple[str, ...] | Pick  # of one side of a claim
 
 
 def highest_of(*names: str, but: tuple[str, ...] = ()) -> Pick:
@@ -78,6 +82,26 @@ SCALED = (  # "The entire data is standardized beforehand using z-transform", an
 )
 ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
 NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
+
+
+SUMS = "sums of maps, as eq. 3.1 to 3.6 print them"  # the channels are means of these maps
+
+
+def in_sums(*sides: Methods) -> tuple[Reading, ...]:
+    """The reading of a claim on the methods of its first and second side with SUMS; none where sums change nothing."""
+    summed = tuple(map(_summed, sides))
+    changes = {side: {"method": methods} for side, methods in zip(("first", "second"), summed, strict=False)}
+    return () if summed == sides else (reading(SUMS, **changes),)
+
+
+def _summed(methods: Methods) -> Methods:
+    if isinstance(methods, Pick):
+        return replace(methods, names=tuple(map(_summed, methods.names)))
+    if not isinstance(methods, str):
+        return tuple(map(_summed, methods))
+    base, dash, way = methods.partition("-")
+    base = "VisAtt" if base == "itti" else base
+    return f"{base}{SUMMED}{dash}{way}" if f"{base}{SUMMED}" in METHODS else methods
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,6 +27,7 @@ from PIL import Image
 
 from haptic_glance.base.files import whole_file
 from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.look.points.methods import SUMMED
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.rays import RayScene, barycentric
 
@@ -118,6 +119,8 @@ def label(name: object) -> str:
     """A method's name in words, with its way of keeping neighbourhoods where there is one, but without `_seen`."""
     text = str(name)
     base, _, way = text.rpartition("-")
+    if text.endswith(SUMMED):
+        return f"{label(text.removesuffix(SUMMED))}, sums"
     words = LABELS.get(text) or LABELS.get(text.removesuffix("_seen")) or text.replace("_", " ")
     return f"{label(base)}, {way}" if way in WAYS else words
 

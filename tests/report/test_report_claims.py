@@ -9,7 +9,7 @@ import pytest
 from stages.engine.statistics import interval, p_value
 from stages.report import effects, topics
 from stages.report.__main__ import write_claims
-from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
+from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.effects import STATISTICS, differences
 from stages.report.results import SECTION_3_1, NotRun
@@ -403,3 +403,10 @@ def test_a_set_without_rows_is_named_and_the_others_decide(sets_of_rows):
     row = pooled(results, "absent", "one", "two")
     assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
     assert pooled(results, "absent", "one")["by_set"] == ""
+
+
+def test_a_reading_in_sums_names_each_combination_anew_and_leaves_the_other_methods():
+    (sums,) = in_sums("itti", lowest_of("VisAttCon-area", "SymLat", "heat_kernel"))
+    assert sums.changes["first"] == {"method": "VisAttSummed"}
+    assert sums.changes["second"] == {"method": lowest_of("VisAttConSummed-area", "SymLat", "heat_kernel")}
+    assert in_sums("SymLat", "Curv") == ()

@@ -14,7 +14,7 @@ import pandas as pd
 
 from stages.bench import PER_OBJECT, has_seen
 from stages.engine.statistics import BROKEN, interval
-from stages.report.claims import POINTS, Claim, Pick, highest_of, reading
+from stages.report.claims import POINTS, Claim, Pick, highest_of, in_sums, reading
 from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.pareto import attention_seconds
@@ -34,7 +34,6 @@ from stages.report.words import shared_notes
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"
-SUMS = "sums of maps, as eq. 3.1 to 3.6 print them"
 NO_RIVALS = (OURS, ANY_POSE, HUMAN)  # our models, and the ceiling
 BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
 SAME = ("VisAtt",)  # the classical model under the thesis's name
@@ -172,15 +171,14 @@ def in_colour(key: str, sentence: str, method: str) -> Claim:
 CLAIMS = [
     closer_to_gaze("equal_over_itti_gaze", "T3.2.2", "All channels with equal weights (VisAttAll) beat the classical "
                    "model.", "VisAttAll", CLASSICAL, dataset=OF_3_2, readings=(
-                       reading(SUMS, first={"method": "VisAttAllSummed"}, second={"method": "VisAttSummed"}),
+                       *in_sums("VisAttAll", CLASSICAL),
                        reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1])),
                        reading("our formulas", dataset=GAZED),
                        reading("our formulas, black background filtered", dataset=(ON_BLACK, OF_3_2[1])))),
     closer_to_gaze("grey_colour", "T3.1.1", "Although the objects are grey, the colour channels improve the detection "
                    "of regions of interest.", "VisAttAll", "VisAttAllNoColour", dataset=GREY_3_1,
                    readings=(reading("our formulas", dataset=ON_BLACK),
-                             reading(SUMS, first={"method": "VisAttAllSummed"},
-                                     second={"method": "VisAttAllNoColourSummed"}))),
+                             *in_sums("VisAttAll", "VisAttAllNoColour"))),
     learned_to_gaze("guided_ed_gaze", "T3.2.2", "Weights learned by Euclidean distance predict attention better than "
                     "equal ones.", "guided_ed_seen"),
     learned_to_gaze("guided_ssim_gaze", "T3.2.2", "Weights learned by similarity predict attention better than equal "

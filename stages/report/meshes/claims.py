@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from stages.report.claims import Claim, Pick, highest_of, lowest_of, reading
+from stages.report.claims import Claim, Methods, highest_of, in_sums, lowest_of, reading
 from stages.report.drawing import label
 from stages.report.results import (
     COLOURED,
@@ -66,7 +66,6 @@ PHRASES = {
     ("method", COMBINATIONS): "mean of the combinations", ("method", REST): "mean of the other combinations",
     ("target", LOW): "1,500 faces", ("target", HIGH): "3,000 faces", ("target", (LOW, HIGH)): "1,500 and 3,000 faces",
 }  # fmt: skip
-Methods = str | tuple[str, ...] | Pick
 # Neighbourhoods of three rings shrink where they leave no room for the target, or only cells where all three fit count.
 FIT = (reading("only where three rings fit", where={"shrunk": False}),)
 claim = partial(Claim, stage="lod", dataset=OF_OURS, over=("item",), scale=1.0, phrases=PHRASES, readings=FIT)
@@ -218,9 +217,15 @@ CLAIMS = [
 ]  # fmt: skip
 # T3.1.2 takes four principal viewpoints; T3.1.5 retains those of T figure 3.2, which has twelve.
 FOUR_VIEWS = reading("four principal viewpoints", dataset=(*SETS_3_1_FOUR, *GAZED))
-CLAIMS = [
-    replace(entry, readings=(*entry.readings, FOUR_VIEWS)) if entry.dataset == OF_3_1 else entry for entry in CLAIMS
-]
+
+
+def of_section_3_1(entry: Claim) -> Claim:
+    """The claim with the readings that T3.1.5 has: of its viewpoints, and of its equations where it names methods."""
+    sides = [side["method"] for side in (entry.first, entry.second) if isinstance(side, dict) and "method" in side]
+    return replace(entry, readings=(*entry.readings, FOUR_VIEWS, *in_sums(*sides)))
+
+
+CLAIMS = [of_section_3_1(entry) if entry.dataset == OF_3_1 else entry for entry in CLAIMS]
 
 metro, seen = (
     partial(lower, section, metric, **of_3_2, target=(LOW, HIGH))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from haptic_glance.look.points import METHODS
+from haptic_glance.look.points.methods import METHODS, SUMMED
 from haptic_glance.look.weights.weights import GLANCE
 from stages.engine.statistics import interval
 from stages.report.drawing import WAYS, label
@@ -212,8 +212,8 @@ NAMES = {  # short, the thesis's, in the order of its figure 3.6; then those of 
 
 
 def fixed(method: str) -> bool:
-    """Whether a method keeps neighbourhoods of fixed size: no way of keeping them stands behind its name."""
-    return method.rpartition("-")[2] not in WAYS
+    """Whether a method is one of the thesis's tables: no way of keeping neighbourhoods, nor sums, behind its name."""
+    return method.rpartition("-")[2] not in WAYS and not method.endswith(SUMMED)
 
 
 def short(method: str) -> str:
