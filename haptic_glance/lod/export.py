@@ -260,7 +260,7 @@ class _File:
         self.content = content
         self.format = "PNG" if content.startswith(b"\x89PNG") else "JPEG"
 
-    def save(self, file: IO[bytes], format: str) -> None:  # noqa: ARG002
+    def save(self, file: IO[bytes], format: str) -> None:
         file.write(self.content)
 
 

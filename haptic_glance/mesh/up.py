@@ -28,7 +28,7 @@ def add_up(command: argparse.ArgumentParser, remark: str = "") -> None:
     command.add_argument("--up", metavar="AXIS", type=_axis, help=f"{text}, by the shape{remark and '; '}{remark})")
     parse = command.parse_known_args
 
-    def joined(args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None):  # noqa: ANN202
+    def joined(args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None):
         words = list(args or [])
         for place in range(len(words) - 1, 0, -1):
             if words[place - 1] == "--up" and re.match(r"-[xyzXYZ\d.]", words[place]):

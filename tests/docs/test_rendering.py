@@ -4,8 +4,8 @@ import pytest
 
 pytest.importorskip("sphinx")
 
-from _extensions.docstrings import as_rst, linked  # noqa: E402
-from docutils.core import publish_string  # noqa: E402
+from _extensions.docstrings import as_rst, linked
+from docutils.core import publish_string
 
 
 def html(lines):

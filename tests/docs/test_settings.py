@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("sphinx")
-from _extensions.settings import settings  # noqa: E402
+from _extensions.settings import settings
 
-from stages.code import stage_names  # noqa: E402
-from stages.engine.settings import schema_of  # noqa: E402
+from stages.code import stage_names
+from stages.engine.settings import schema_of
 
 ROOT = Path(__file__).parents[2]
 

@@ -23,7 +23,7 @@ from stages.lod import Params
 from stages.lod.data_set import simplify_all
 
 pytest.importorskip("distributed", reason="the cluster extra is not installed")
-from stages.engine import cluster  # noqa: E402  # needs that extra
+from stages.engine import cluster  # needs that extra
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 300  # seconds, on a machine that does much else

@@ -1,103 +1,21 @@
 """Renders an object at one level by ray casting, and compares frames: structural errors and displacements."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from haptic_glance.base.similarity import WINDOW, ssim_map
+from haptic_glance.mesh.mesh import unit
+from haptic_glance.mesh.rays import barycentric
 
 from ..perceptual import ssim_error
+from .camera import Box, Camera, Pose
 from .chain import Level
 
 if TYPE_CHECKING:
     from .frames import Frames  # which imports this module
-from dataclasses import dataclass
-
-from haptic_glance.mesh.mesh import unit
-from haptic_glance.mesh.rays import barycentric
-
-from .camera import Box, Camera, Pose
-
-
-def shaded(frames: "Frames", frame: int, levels: Sequence[Level], only: int | None = None) -> np.ndarray:
-    """(h, w, 3) f8 rgb, 0 to 255, of a frame with one level per object.
-
-    only: an object, outside of whose box the picture may be incomplete.
-    """
-    h, w = frames.scene.cameras[frame].size
-    image, depth = np.zeros((h * w, 3)), np.full(h * w, np.inf)
-    for item, level in enumerate(levels):
-        if only is not None and not _overlap(frames, frame, only, item):
-            continue
-        rendering = frames.rendering(frame, item, level)
-        nearer = rendering.depth < depth[rendering.pixels]
-        pixels = rendering.pixels[nearer]
-        depth[pixels], image[pixels] = rendering.depth[nearer], frames.colors(frame, item, level)[nearer]
-    return image.reshape(h, w, 3)
-
-
-def picture(frames: "Frames", frame: int, levels: Sequence[Level], only: int | None = None) -> np.ndarray:
-    """(h, w) f8 luminance, 0 to 255, of a frame; see `shaded`."""
-    return shaded(frames, frame, levels, only) @ LUMA
-
-
-def picture_error(frames: "Frames", frame: int, levels: Sequence[Level]) -> float:
-    """1 - SSIM of the whole frame (Wang et al. 2004, T [63]) against the full one."""
-    return ssim_error(picture(frames, frame, frames.full), picture(frames, frame, levels))
-
-
-def structure_lost(frames: "Frames", frame: int, item: int, first: Level, second: Level) -> float:
-    """1 - SSIM between an object at two levels, the others at full detail: see `structures_lost`."""
-    levels, pictures, visible = list(frames.full), [], []
-    for level in (first, second):
-        levels[item] = level
-        pictures.append(picture(frames, frame, levels, only=item))
-        visible.append(frames.rendering(frame, item, level).pixels[frames.visible(frame, item, level)])
-    return _lost(frames, frame, item, pictures[0], pictures[1], np.union1d(visible[0], visible[1]))
-
-
-def structures_lost(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
-    """(o,) mean of 1 - SSIM against the full frame, over the pixels that show each object in either picture."""
-    before, after = picture(frames, frame, frames.full), picture(frames, frame, levels)
-    owners = [frames.owners(frame, side) for side in (frames.full, levels)]
-    regions = [np.flatnonzero((owners[0] == item) | (owners[1] == item)) for item in range(len(levels))]
-    return np.array([_lost(frames, frame, item, before, after, pixels) for item, pixels in enumerate(regions)])
-
-
-def displacement_picture(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
-    """(h, w) f4 displacement in pixels of what a frame with these levels shows, NaN where it shows nothing."""
-    owner = frames.owners(frame, levels)
-    image = np.full(owner.shape, np.nan, np.float32)
-    for item, level in enumerate(levels):
-        pixels = frames.rendering(frame, item, level).pixels
-        visible = owner[pixels] == item
-        image[pixels[visible]] = frames.displacements(frame, item, level)[visible]
-    return image.reshape(frames.scene.cameras[frame].size)
-
-
-def _lost(frames, frame, item, before, after, pixels):
-    """Mean of 1 - SSIM of two pictures over pixels of an object; outside of its box they may be incomplete."""
-    if not len(pixels):
-        return 0.0
-    box = _padded(frames, frame, item)
-    dissimilarity = np.zeros(before.shape)
-    dissimilarity[box] = 1 - ssim_map(before[box], after[box])
-    return float(dissimilarity.ravel()[pixels].mean())
-
-
-def _padded(frames, frame, item):
-    """The object's box padded by the window on all sides, within the screen."""
-    h, w = frames.scene.cameras[frame].size
-    top, bottom, left, right = frames.boxes[frame][item]
-    rows = slice(max(min(top, h - WINDOW) - WINDOW, 0), min(max(bottom, WINDOW) + WINDOW, h))
-    return rows, slice(max(min(left, w - WINDOW) - WINDOW, 0), min(max(right, WINDOW) + WINDOW, w))
-
-
-def _overlap(frames, frame, first, second):
-    (rows, columns), (top, bottom, left, right) = _padded(frames, frame, first), frames.boxes[frame][second]
-    return rows.start < bottom and top < rows.stop and columns.start < right and left < columns.stop
-
 
 LIT = 230  # brightness of a face that points at the camera
 DARK = 0.25  # of it is left on faces seen edge-on, or silhouettes would vanish in the black background
@@ -190,3 +108,82 @@ def nearest_two(renderings: Sequence[Rendering], pixels: int) -> tuple[np.ndarra
         first[rendering.pixels] = np.where(nearer, rendering.depth, before)
         owner[rendering.pixels[nearer]] = item
     return first, second, owner
+
+
+def shaded(frames: "Frames", frame: int, levels: Sequence[Level], only: int | None = None) -> np.ndarray:
+    """(h, w, 3) f8 rgb, 0 to 255, of a frame with one level per object.
+
+    only: an object, outside of whose box the picture may be incomplete.
+    """
+    h, w = frames.scene.cameras[frame].size
+    image, depth = np.zeros((h * w, 3)), np.full(h * w, np.inf)
+    for item, level in enumerate(levels):
+        if only is not None and not _overlap(frames, frame, only, item):
+            continue
+        rendering = frames.rendering(frame, item, level)
+        nearer = rendering.depth < depth[rendering.pixels]
+        pixels = rendering.pixels[nearer]
+        depth[pixels], image[pixels] = rendering.depth[nearer], frames.colors(frame, item, level)[nearer]
+    return image.reshape(h, w, 3)
+
+
+def picture(frames: "Frames", frame: int, levels: Sequence[Level], only: int | None = None) -> np.ndarray:
+    """(h, w) f8 luminance, 0 to 255, of a frame; see `shaded`."""
+    return shaded(frames, frame, levels, only) @ LUMA
+
+
+def picture_error(frames: "Frames", frame: int, levels: Sequence[Level]) -> float:
+    """1 - SSIM of the whole frame (Wang et al. 2004, T [63]) against the full one."""
+    return ssim_error(picture(frames, frame, frames.full), picture(frames, frame, levels))
+
+
+def structure_lost(frames: "Frames", frame: int, item: int, first: Level, second: Level) -> float:
+    """1 - SSIM between an object at two levels, the others at full detail: see `structures_lost`."""
+    levels, pictures, visible = list(frames.full), [], []
+    for level in (first, second):
+        levels[item] = level
+        pictures.append(picture(frames, frame, levels, only=item))
+        visible.append(frames.rendering(frame, item, level).pixels[frames.visible(frame, item, level)])
+    return _lost(frames, frame, item, pictures[0], pictures[1], np.union1d(visible[0], visible[1]))
+
+
+def structures_lost(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
+    """(o,) mean of 1 - SSIM against the full frame, over the pixels that show each object in either picture."""
+    before, after = picture(frames, frame, frames.full), picture(frames, frame, levels)
+    owners = [frames.owners(frame, side) for side in (frames.full, levels)]
+    regions = [np.flatnonzero((owners[0] == item) | (owners[1] == item)) for item in range(len(levels))]
+    return np.array([_lost(frames, frame, item, before, after, pixels) for item, pixels in enumerate(regions)])
+
+
+def displacement_picture(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
+    """(h, w) f4 displacement in pixels of what a frame with these levels shows, NaN where it shows nothing."""
+    owner = frames.owners(frame, levels)
+    image = np.full(owner.shape, np.nan, np.float32)
+    for item, level in enumerate(levels):
+        pixels = frames.rendering(frame, item, level).pixels
+        visible = owner[pixels] == item
+        image[pixels[visible]] = frames.displacements(frame, item, level)[visible]
+    return image.reshape(frames.scene.cameras[frame].size)
+
+
+def _lost(frames, frame, item, before, after, pixels):
+    """Mean of 1 - SSIM of two pictures over pixels of an object; outside of its box they may be incomplete."""
+    if not len(pixels):
+        return 0.0
+    box = _padded(frames, frame, item)
+    dissimilarity = np.zeros(before.shape)
+    dissimilarity[box] = 1 - ssim_map(before[box], after[box])
+    return float(dissimilarity.ravel()[pixels].mean())
+
+
+def _padded(frames, frame, item):
+    """The object's box padded by the window on all sides, within the screen."""
+    h, w = frames.scene.cameras[frame].size
+    top, bottom, left, right = frames.boxes[frame][item]
+    rows = slice(max(min(top, h - WINDOW) - WINDOW, 0), min(max(bottom, WINDOW) + WINDOW, h))
+    return rows, slice(max(min(left, w - WINDOW) - WINDOW, 0), min(max(right, WINDOW) + WINDOW, w))
+
+
+def _overlap(frames, frame, first, second):
+    (rows, columns), (top, bottom, left, right) = _padded(frames, frame, first), frames.boxes[frame][second]
+    return rows.start < bottom and top < rows.stop and columns.start < right and left < columns.stop
