@@ -20,6 +20,7 @@ from stages.engine.run import Rows, StageRun
 from .splits import SPLITS, random_split, split_number
 
 WITHOUT_TWICE = tuple(scaling for scaling in SCALINGS if scaling != TWICE)
+UNREDUCED = "unreduced"
 COUNTS = {"six": 6, "four": 4}  # the first by the alphabet; as many at random; and those most alike
 
 
@@ -51,11 +52,12 @@ def measure(run: StageRun, images: dict[str, np.ndarray], repetitions: int) -> N
 
     method: all touches; selected: without those that resemble a touch of another class of the set, taken out before
     the split as in the thesis; selected_control: without as many of each class, at random; selected_training: taken out
-    of the training part alone, tested on all others. metric: accuracy by split (folds: within the training part of the
-    random split), share_similar (touches that resemble one of another class), and what finds a dead classifier
-    (train_accuracy, commonest_share; of all touches). The random split is run by all scalings but on the first six and
-    four. Groups: `six_drawn` and `four_drawn` are drawn anew in each repetition; `six_alike` and `four_alike` are the
-    classes with the largest share of touches that resemble one of any other class.
+    of the training part alone, tested on all others; unreduced: all touches of all classes, their features not reduced
+    to twelve components. metric: accuracy by split (folds: within the training part of the random split), share_similar
+    (touches that resemble one of another class), and what finds a dead classifier (train_accuracy, commonest_share; of
+    all touches). The random split is run by all scalings but on the first six and four, and so are the blocks of all
+    classes. Groups: `six_drawn` and `four_drawn` are drawn anew in each repetition; `six_alike` and `four_alike` are
+    the classes with the largest share of touches that resemble one of any other class.
     """
     with threadpool_limits(1):  # equal sums on any number of cores
         touches = describe(images)
@@ -125,7 +127,10 @@ def _set_rows(class_set: ClassSet, touches: Touches, seed: int) -> Iterator[dict
     share = {"metric": "share_similar", "value": 1 - is_distinct.sum() / len(is_distinct)}
     yield {**common, "chosen": names, "method": "all", **share, "repetition": class_set.repetitions[0]}
     parts = {"all": touches, "selected": touches.of(is_distinct), "selected_training": touches}
-    for method, part in (parts | {"selected_control": touches.of(is_distinct)}).items():
+    parts["selected_control"] = touches.of(is_distinct)
+    if class_set.group == "all":
+        parts[UNREDUCED] = touches
+    for method, part in parts.items():
         counts = {name: int((part.labels == name).sum()) for name in sorted(class_set.classes)}
         poorest = min(counts, key=lambda name: counts[name])
         if counts[poorest] < MIN_IMPRINTS:
@@ -138,19 +143,23 @@ def _set_rows(class_set: ClassSet, touches: Touches, seed: int) -> Iterator[dict
             if method == "selected_control":
                 part = touches.of(as_many(touches.labels, is_distinct, np.random.default_rng(number)))
             scalings = (TRAINING,) if class_set.group in COUNTS else SCALINGS if method == "all" else WITHOUT_TWICE
-            rows = _split_rows(part, method, number, class_set.folds, scalings)
+            rows = _split_rows(part, method, number, class_set, scalings)
             yield from ({**common, "method": method, "repetition": repetition, **row} for row in rows)
 
 
-def _split_rows(touches: Touches, method: str, number: int, folds: bool, scalings: tuple[str, ...]) -> Iterator[dict]:
+def _split_rows(
+    touches: Touches, method: str, number: int, class_set: ClassSet, scalings: tuple[str, ...]
+) -> Iterator[dict]:
     samples, labels, selected = touches.samples, touches.labels, method == "selected_training"
     for split, draw in SPLITS.items():
         train, test = draw(labels, number)
         if selected:
             train = train[~confusable(touches.alike[np.ix_(train, train)], labels[train])]
         validity = split == Split.RANDOM and method == "all"
-        for scaling in scalings if split == Split.RANDOM else (TRAINING,):
-            prepared = Prepared.from_split(samples, labels, (train, test), scaling=scaling)
+        is_wide = split == Split.RANDOM or (class_set.group == "all" and method in ("all", UNREDUCED))
+        for scaling in scalings if is_wide else (TRAINING,):
+            kind = "reduced" if method == UNREDUCED else "features"
+            prepared = Prepared.from_split(samples, labels, (train, test), kind, scaling)
             for name in CLASSIFIERS:
                 answers = prepared.predict(name, number, with_training=validity)
                 row = {"classifier": name, "scaling": scaling, "split": split, "train": len(train), "test": len(test)}
@@ -159,7 +168,7 @@ def _split_rows(touches: Touches, method: str, number: int, folds: bool, scaling
                 yield {**row, "metric": "accuracy", "value": value, "seconds": seconds}
                 if validity:
                     yield from ({**row, **cells} for cells in answers.validity)
-    if folds and not selected:
+    if class_set.folds and method not in ("selected_training", UNREDUCED):
         for name in CLASSIFIERS:
             value = _cross_validated(name, samples, labels, number)
             row = {"classifier": name, "scaling": TRAINING, "split": Split.FOLDS}

@@ -176,7 +176,13 @@ def _select(
     for column, value in patterns.items():
         rows = _some(rows[[fnmatch(str(name), value) for name in rows[column]]], claim, f"{column} like {value}")
     for column, value in picks.items():
-        rows = rows[rows[column] == _picked(rows, claim, column, value, other)]
+        reasons = reasons_of(results, claim, rows)
+        valid = rows[reasons == ""] if len(reasons) else rows  # a refused row makes no method the best
+        try:
+            choice = _picked(valid, claim, column, value, other)
+        except NotRun:
+            choice = _picked(rows, claim, column, value, other)
+        rows = rows[rows[column] == choice]
     keys = [*claim.over, *claim.within]
     for column in keys:
         if column not in rows:
@@ -211,6 +217,7 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
 def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
     rival = other.get(column) if isinstance(other, dict) else None
     out = [*pick.but, *listed(rival or ())]
+    _some(rows, claim, column)
     rows = rows[[not any(fnmatch(str(name), str(pattern)) for pattern in out) for name in rows[column]]]
     rows = rows[rows[column].isin(pick.names)] if pick.names else rows
     _some(rows, claim, f"other {column} than {either(out)}" if out else column)
@@ -244,7 +251,7 @@ class Effect:
 
     @property
     def testable(self) -> bool:
-        """Whether at most a fifth of the pairs is invalid; else the differences are those of all pairs."""
+        """Whether at most a fifth of the pairs is invalid."""
         return len(self.refused) <= TOO_MANY * self.pairs
 
     @property
@@ -369,11 +376,15 @@ def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
 
 
 def _effect(claim: Claim, results: Results, name: str) -> Effect:
-    """The effect on one set; of all pairs where too many of them are invalid."""
+    """The effect on one set, of its valid pairs, or of all pairs where none is valid."""
     causes, pairs = invalid(results, claim)
-    if len(causes) > TOO_MANY * pairs:
-        claim = replace(claim, checked=False)
-    values = differences(results, claim).map(lambda value: float(f"{value:.6g}"))  # as it is written in a CSV
+    try:
+        values = differences(results, claim)
+    except NotRun:
+        if not pairs:
+            raise
+        values = differences(results, replace(claim, checked=False))
+    values = values.map(lambda value: float(f"{value:.6g}"))  # as it is written in a CSV
     return Effect(name, values, claim.share, tuple(causes), pairs)
 
 

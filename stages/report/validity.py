@@ -24,6 +24,7 @@ UNMEASURED = "nobody measured whether the training was saturated"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
+LEAST, NOISE_NEARER = "distance", "noise is nearer by this measure"
 CHANGES = ("weight_change", "layer_weight_change")  # of a tuned network
 SEQUENCES, SUM = ("method", "split", "repetition", "training", "frames", "cells"), "cnn"  # trials by contours
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
@@ -96,13 +97,21 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
 
 
 @check("fixation")
-def half_random(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows that compare the attention of VGG16 alone: its fully connected layers start from random weights.
+def attentive(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of the least distance of a method whose distances exceed those of noise, and rows of VGG16 alone.
 
-    No package has the trained ones, and the thesis replaces the last layers alone.
+    The least distance rewards many centres, as noise has them. The fully connected layers of VGG16 start from random
+    weights: no package has the trained ones, and the thesis replaces the last layers alone.
     """
-    alone = set(rows["method"]) == {RANDOM_LAYERS} and not rows["metric"].eq("accuracy").any()
-    return pd.Series(FROM_RANDOM if alone else "", index=rows.index)
+    if set(rows["method"]) == {RANDOM_LAYERS} and not rows["metric"].eq("accuracy").any():
+        return pd.Series(FROM_RANDOM, index=rows.index)
+    least = rows["metric"] == LEAST
+    if not least.any():
+        return pd.Series("", index=rows.index)
+    means = results.rows(stage, dataset, metric=LEAST).groupby(["method", "task"])["value"].mean()
+    poor = means.index[means > means.get(("control", "random"), float("inf"))]
+    is_poor = pd.Series(pd.MultiIndex.from_frame(rows[["method", "task"]]).isin(poor), index=rows.index)
+    return (least & is_poor).map({True: NOISE_NEARER, False: ""})
 
 
 @check("weights")

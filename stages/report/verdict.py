@@ -7,6 +7,7 @@ disagree make it depend on the reading. `holding` corrects for the claims of a c
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -94,7 +95,7 @@ def _row(claim: Claim, results: Results) -> Row:
     for effect in judgement.set_effects:
         start = f"{effect.dataset}/" if len(claim.sets) > 1 else ""
         pair_names = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
-        decides = effect in judgement.chosen
+        decides = any(effect is entry for entry in judgement.used)
         pairs += ((claim.key, name, value, decides) for name, value in zip(pair_names, effect.differences, strict=True))
     words = _words(judgement, judgements[0], results)
     return row | _numbers(judgement) | words | _readings(judgement, judgements, not_run), pairs
@@ -114,6 +115,12 @@ class Judgement:
     def word(self) -> str:
         """The word that the judged sets come to."""
         return word_of(self.chosen, self.claim.unit)
+
+    @cached_property
+    def used(self) -> Sequence[Effect]:
+        """The effects of the judged sets that the numbers come from."""
+        effect = effect_of(self.chosen)
+        return effect.sets if isinstance(effect, PooledEffect) else [effect]
 
 
 def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[str]]:
@@ -166,7 +173,10 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: S
     ordered = sorted(judgements, key=lambda reading: reading is not judged_one)
     texts = [f"{reading.name}: {reading.word} {_interval_text(effect_of(reading.chosen))}" for reading in ordered]
     texts += [f"{name}: not run" for name in not_run]
-    return {"verdict": over_readings([reading.word for reading in judgements]), "readings": "; ".join(texts)}
+    words, written = [reading.word for reading in judgements], judgements[0]
+    if written is not judged_one and any(len(effect.refused) < effect.pairs for effect in written.used):
+        words.append(verdict(*effect_of(written.chosen).interval[1:]))  # of its valid pairs, which count as a reading
+    return {"verdict": over_readings(words), "readings": "; ".join(texts)}
 
 
 def _numbers(judgement: Judgement) -> dict[str, object]:
@@ -176,7 +186,7 @@ def _numbers(judgement: Judgement) -> dict[str, object]:
     pooled = isinstance(effect, PooledEffect)
     columns = {"verdict": word, "effect": mean, "low": low, "high": high, "p": effect.p_value, "over": claim.pairs}
     columns |= {"units": len(effect.units), "shared": np.nan if pooled else effect.share}
-    columns |= {"pairs": sum(len(single.differences) for single in judgement.chosen)}
+    columns |= {"pairs": sum(len(single.differences) for single in judgement.used)}
     columns |= {"i2": effect.pooled.i2} if pooled else {}
     return columns | _open(claim, effect) if word == "open" else columns
 
@@ -202,7 +212,7 @@ def _words(judgement: Judgement, written: Judgement, results: Results) -> dict[s
     """Columns tested_on, by_set, carries and validity; written: the first of the claim's readings that were run."""
     claim, set_effects, selection = judgement.claim, judgement.set_effects, judgement.chosen
     missing = [] if results.own_meshes else judgement.missing
-    words = tested_on(claim, results, [effect.dataset for effect in selection])
+    words = tested_on(claim, results, [effect.dataset for effect in judgement.used])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
     invalid_sets = _invalid_sets(judgement)
     if judgement.name != WRITTEN:

@@ -213,7 +213,7 @@ CLAIMS = [
     svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",
                    "object", "views", "objects", of="svm_per_object"),
     *(
-        on_gaze(key=f"best_over_{fixed}", section="T3.2.4", stage="attention_checks", scale=1, unit="NSS",
+        on_gaze(key=f"best_over_{fixed}", section="ours", stage="attention_checks", scale=1, unit="NSS",
                 dataset=GAZED,
                 sentence=f"The most salient of 62 viewpoints show where people look better than {views} do.",
                 where={"method": "equal", "metric": "nss"},

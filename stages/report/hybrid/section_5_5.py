@@ -295,7 +295,7 @@ OURS = on_both_splits(
            "fusion_entropy", "fusion_entropy_raw", DARK),
 )  # fmt: skip
 new_objects = partial(
-    Claim, section="T6.3", stage="transfer", dataset="furniture", over=("item",), phrases=PHRASES,
+    Claim, section="ours", stage="transfer", dataset="furniture", over=("item",), phrases=PHRASES,
     where={"metric": NEW_OBJECTS, "severity": (1, 2, 5, 10)},
 )  # fmt: skip
 DEVICE = [

@@ -180,7 +180,7 @@ CLAIMS = [
           "Methods with many points (SDC, 3DH) distort at low resolution.", ("corners", "harris"), COMBINATIONS, LOW,
           **of_3_1),
     *(
-        lower("T3.1.3", metric, f"area_{short}",
+        lower("ours", metric, f"area_{short}",
               f"Neighbourhoods by the area of the salient region lead to a lower error ({kind}).",
               BY_AREA, tuple(f"{name}-area" for name in BY_AREA), **printed)
         for metric, short, kind in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))

@@ -60,7 +60,7 @@ TOUCHES = [
            of="real_selection_four_drawn",
            readings=(NO_SVM, *SCALED)),
     *(
-        on_set(group, key=f"real_selection_control_{group}", first={"method": "selected"},
+        on_set(group, key=f"real_selection_control_{group}", section="ours", first={"method": "selected"},
                second={"method": "selected_control"}, note="mean of all classifiers", readings=(NO_SVM, *SCALED),
                sentence="Selection of real touches is better than as many left out at random.")
         for group in ("six_drawn", "six_alike", "all")
@@ -124,7 +124,7 @@ def over_commonest(results: Results, claim: Claim) -> pd.Series:
     return side(results, claim, claim.first, None) - commonest(results)
 
 
-BEST = "minus the best of five classifiers, in any scaling, on the numbers themselves"
+BEST = "minus the best of five classifiers, in any scaling, on the numbers themselves or on twelve components"
 
 
 @statistic("over_classifiers")
@@ -134,9 +134,13 @@ def over_classifiers(results: Results, claim: Claim) -> pd.Series:
     Another stage has their rows, of the same splits: of features of the pressure array, of bare electrodes.
     """
     key, where = claim.over[0], {"metric": "accuracy", "split": claim.where["split"]}
-    where |= {"group": "all", "method": "all"} if "pressure" in claim.where["data"] else {"palm": "all"}
+    where |= {"group": "all", "method": ("all", "unreduced")} if "pressure" in claim.where["data"] else {"palm": "all"}
     rows = results.measured("recorded", claim.sets[0], **where)
-    ways = [name for name in ("classifier", "scaling", "scaled", "components") if name in rows]
+    ways = [
+        name
+        for name in ("classifier", "method", "scaling", "scaled", "components")
+        if name in rows and rows[name].notna().any()
+    ]
     first = side(results, claim, claim.first, None)
     table = (
         rows[rows["classifier"] != "majority"].pivot_table(index=key, columns=ways, values="value").reindex(first.index)

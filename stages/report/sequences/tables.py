@@ -171,7 +171,7 @@ BASES = [
         readings=(reading("beside classifiers without the map, too",
                           second={"classifier": highest_of(*WITH_MAP, *NO_MAP)}),)),
     *(
-        cnn(key=f"contours_both_over_{alone}", section="T4.4.8", second={"classifier": f"cnn_{alone}"},
+        cnn(key=f"contours_both_over_{alone}", section="ours", second={"classifier": f"cnn_{alone}"},
             sentence=f"Images and normals together beat the {alone} alone.")
         for alone in ("images", "normals")
     ),

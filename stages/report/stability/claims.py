@@ -1,4 +1,4 @@
-"""Claims of T6.3 on a denoising autoencoder before recognition by touch, and claims on the stability of attention."""
+"""Claims on a denoising autoencoder before recognition by touch (T6.3), and on the stability of attention."""
 
 from haptic_glance.know.split import Split
 from stages.report.claims import Claim, reading
@@ -77,8 +77,9 @@ STABILITY = [
 
 CLAIMS = [
     Claim(
-        key=f"{first.removeprefix(f'{PLAIN}_')}_over_{'none' if second == PLAIN else 'median'}_{fault}", section="T6.3",
-        sentence=sentence, stage=STAGE, dataset=DENOISED, first={"features": first}, second={"features": second},
+        key=f"{first.removeprefix(f'{PLAIN}_')}_over_{'none' if second == PLAIN else 'median'}_{fault}",
+        section="T6.3" if second == PLAIN else "ours", sentence=sentence, stage=STAGE, dataset=DENOISED,
+        first={"features": first}, second={"features": second},
         where={"perturbation": fault, "split": Split.RANDOM, "classifier": "knn", "metric": "accuracy"},
         within=("severity",), phrases=PHRASES,
     )

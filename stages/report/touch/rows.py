@@ -3,6 +3,7 @@
 `METHODS` maps the thesis's samplings to methods.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -26,6 +27,20 @@ METHODS = {  # sampling of the thesis: its method; enhanced visual attention is 
     "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": EQUAL,
 }  # fmt: skip
 BLIND = ("random", *(f"random_{draw}" for draw in range(2, 6)))  # draws of blind touch
+# The mean share of six objects that two random sets have in common: a deck is dealt again when it is used up.
+COMMON = {SETS_4_2[0]: 0.0859, SETS_4_2[1]: 0.0238, SETS_4_2[2]: 0.0}
+
+
+def shared_objects(*datasets: str) -> float:
+    """The test over training share of splits that are as much alike as random sets of objects, for `interval`.
+
+    datasets: that of each random set; one name stands for any number of its sets. Two sets with a share r of their
+    objects in common correlate by r, and so do repeated splits with a share of r / (1 - r) (Nadeau and Bengio 2003).
+    """
+    counts = Counter(datasets * 2 if len(datasets) == 1 else datasets)
+    pairs = sum(count * (count - 1) * COMMON.get(name, 0.0) for name, count in counts.items())
+    common = pairs / (counts.total() * (counts.total() - 1))
+    return common / (1 - common)
 
 
 @dataclass(frozen=True)
@@ -78,7 +93,8 @@ def accuracies(rows: pd.DataFrame, split: Split = Split.RANDOM) -> dict[str, flo
     of_split, share = values[splits == split], shared_by(split)
     if "set" in accuracy_rows and accuracy_rows["set"].notna().any():
         split_rows = accuracy_rows[splits == split]
-        of_split, share = split_rows.groupby(["dataset", "set"])["value"].mean(), 0.0
+        of_split = split_rows.groupby(["dataset", "set"])["value"].mean()
+        share = shared_objects(*of_split.index.get_level_values("dataset"))
     ends = zip(("accuracy", "low", "high"), within(of_split, share), strict=True)
     by_split = {name: values[splits == name] for name in (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)}
     means = {f"accuracy_{name}": group.mean() if len(group) else np.nan for name, group in by_split.items()}
