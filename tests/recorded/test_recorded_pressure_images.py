@@ -34,7 +34,9 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
     scalings = accuracy.groupby(["group", "method", "split"])["scaling"].unique().map(list)
     assert scalings["six_alike", "all", "random"] == ["training", "beforehand", "components", "min_max"]
     assert scalings["six_drawn", "selected_control", "random"] == ["training", "beforehand", "min_max"]
-    assert scalings["six", "all", "random"] == scalings["all", "all", "blocks"] == ["training"]
+    assert scalings["six", "all", "random"] == scalings["six", "all", "blocks"] == ["training"]
+    assert scalings["all", "all", "blocks"] == scalings["six_alike", "all", "random"]
+    assert scalings["all", "unreduced", "blocks"] == ["training", "beforehand", "min_max"]
     dead = rows[rows["metric"].isin(["train_accuracy", "commonest_share"])]
     assert set(dead["split"]) == {"random"} and set(dead["method"]) == {"all"}
     assert dead["value"].between(1 / 7, 1).all()  # of seven classes

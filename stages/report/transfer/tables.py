@@ -258,7 +258,7 @@ PLAIN = both(
           readings=PRINTED_RATE),
     claim("frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
           "metric", "accuracy", "chance", readings=PRINTED_RATE, mode="frozen"),
-    claim("frozen_coarse_by_chance", "T5.4", "With 16 x 16 sensels frozen filters are hardly better than guessing.",
+    claim("frozen_coarse_by_chance", "T5.4", "With 16 x 16 simulated sensels frozen filters are hardly better than guessing.",
           "metric", "chance", "accuracy", GUESS, readings=PRINTED_RATE, note=REAL, data=COARSE, mode="frozen"),
     claim("fine_over_coarse_frozen", "T5.4", "A finer array makes touch more like sight: frozen filters gain by it.",
           "data", FINE, COARSE, readings=PRINTED_RATE, note=REAL, mode="frozen"),
