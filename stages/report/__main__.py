@@ -52,8 +52,9 @@ interval. The words:
 - *not testable*: more than a fifth of the pairs is invalid. The column *invalid* counts the causes. Otherwise invalid
   pairs are left out. A pair is invalid where a method found no point, kept less than one ring of a neighbourhood, gave
   one answer for nearly all samples, was less accurate than guessing or, by the least distance to fixations, farther
-  than noise, left nothing out, started from random layers that the thesis has trained, was tuned by a training that stopped while it still improved, or of which nobody measured
-  whether it did; or where both sides are the same mesh, unless the sentence is about when that happens.
+  than noise, left nothing out, started from random layers that the thesis has trained, was tuned by a training that
+  stopped while it still improved, or of which nobody measured whether it did; or where both sides are the same mesh,
+  unless the sentence is about when that happens.
 - *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
 
 The set that follows the printed protocol judges a sentence of the thesis, or the first set where none follows it to the
@@ -66,9 +67,10 @@ sentences of this project about its own model, judged by all their sets.
 An interval is a bootstrap over the outermost units: classes with their objects, objects with their draws. Copies of a
 shape are one unit. An interval over objects carries to other objects of this kind. An interval over repetitions is a
 bootstrap over repeated splits of the same imprints, widened for the imprints that the splits share (Nadeau and Bengio
-2003): it is about these few objects alone. Random sets that share objects are widened alike. Several sets are pooled by random effects; three sets or more that differ
-have the interval of Hartung and Knapp, which carries to other sets. A set of two units is left out beside others. *In
-each set* says that the interval of each set excludes zero on the same side while the pooled interval does not.
+2003): it is about these few objects alone. Random sets that share objects are widened alike. Several sets are pooled by
+random effects; three sets or more that differ have the interval of Hartung and Knapp, which carries to other sets. A
+set of two units is left out beside others. *In each set* says that the interval of each set excludes zero on the same
+side while the pooled interval does not.
 
 The column *holds* says whether a decided verdict holds among all claims of its chapter, at a false discovery rate of
 5 % (Benjamini and Hochberg 1995), by p, which follows from the interval. The column *open* says why an open claim is
