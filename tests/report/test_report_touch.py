@@ -2,6 +2,7 @@
 
 import re
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from stages.report.results import SETS_4_2, NotRun
 from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
 from stages.report.touch import claims, touches
-from stages.report.touch.rows import PRINTED
+from stages.report.touch.rows import COMMON, PRINTED, shared_objects
 from tests.report.frames import verdicts
 
 GLANCE = {
@@ -129,3 +130,16 @@ def test_a_folder_of_ones_own_has_recognition_of_its_groups_with_intervals_and_n
     shown = built.shown.set_index(["group", "tested on", "places"])["kNN, %"]
     place = "3 objects (group mine)", "regions that no training touch overlaps", "glance"
     assert re.match(r"(49|50|51) \[", shown[place]) and "Not run: set four left out." in built.notes
+
+
+def test_random_sets_count_the_objects_that_they_share():
+    for name, common in COMMON.items():
+        columns = ["set", "group", "metric", "item"]
+        shares = pd.read_csv(f"reports/measurements/{name}/classification.csv.gz", usecols=columns, low_memory=False)
+        shares = shares[(shares["metric"] == "similar_share") & (shares["group"] == "six")].dropna(subset=["item"])
+        hands = shares.groupby("set")["item"].agg(set)
+        overlaps = [len(first & second) / 6 for first, second in combinations(hands, 2)]
+        assert np.mean(overlaps) == pytest.approx(common, abs=5e-5)
+        assert shared_objects(name) == pytest.approx(common / (1 - common))
+    first = next(iter(COMMON))
+    assert shared_objects(first, "another") == 0 < shared_objects(first, first, "another") < shared_objects(first)

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from stages.report import meshes
-from stages.report.claims import Claim
+from stages.report.claims import Claim, highest_of, reading
 from stages.report.effects import Effect, differences, effect_of, invalid
 from stages.report.meshes import tables
 from stages.report.results import SECTION_3_1
@@ -22,6 +22,7 @@ from stages.report.validity import (
     GUESSING,
     NO_POINT,
     NO_RING,
+    NOISE_NEARER,
     NOTHING_OUT,
     ONE_CLASS,
     SAME,
@@ -156,9 +157,44 @@ def test_an_object_keeps_its_valid_target(measure):
 def test_more_than_a_fifth_cannot_be_tested_unless_the_claim_is_about_all_rows(measure):
     results = measure("lod", simplified(without_points=5))
     row, unchecked = (judge([claim], results).iloc[0] for claim in (OVER, replace(OVER, checked=False)))
-    assert row["verdict"] == "not testable" and row["holds"] == "" and row["effect"] > 10  # of all pairs
+    assert row["verdict"] == "not testable" and row["holds"] == ""
+    assert row["effect"] == pytest.approx(1.05, abs=0.05)  # of the valid pairs
     assert row["validity"] == f"test: 5 of 24 pairs invalid: {NO_POINT} (5)"
     assert unchecked["verdict"] != "not testable" and unchecked["validity"] == "" and unchecked["pairs"] == COUNT
+
+
+def test_where_no_pair_is_valid_the_numbers_are_of_all_pairs(measure):
+    row = judge([OVER], measure("lod", simplified(without_points=2 * COUNT))).iloc[0]
+    assert row["verdict"] == "not testable" and row["effect"] == 99 and row["pairs"] == COUNT
+
+
+def test_a_refused_row_makes_no_method_the_best(measure):
+    rows = simplified(without_points=5)  # five errors of 100 make x the worst
+    worse = rows[rows["method"] == "x"].assign(method="y", points=9, value=lambda frame: frame["value"].clip(2.5, 2.5))
+    results = measure("lod", pd.concat([rows, worse]))
+    claim = replace(OVER, first={"method": highest_of("x", "y")})
+    assert differences(results, claim).mean() == pytest.approx(1.5)
+    assert differences(results, replace(claim, checked=False)).mean() > 10
+
+
+def test_the_valid_pairs_of_a_refused_claim_count_as_a_reading(measure):
+    rows = simplified(without_points=5)
+    other = rows[rows["method"] == "x"].assign(method="y", points=9, value=lambda frame: 0.6 + 0.01 * frame["value"])
+    results = measure("lod", pd.concat([rows, other.assign(value=other["value"].clip(upper=0.7))]))
+    claim = replace(OVER, readings=(reading("y", first={"method": "y"}),))
+    row = judge([claim], results).iloc[0]
+    assert (
+        row["effect"] < 0
+        and row["verdict"] == "depends on the reading"
+        and "as written: not testable" in row["readings"]
+    )
+
+
+def test_pairs_and_sets_are_those_that_the_effect_is_of(measure):
+    valid, poor = simplified(), simplified(without_points=5).assign(dataset="other")
+    results = measure("lod", pd.concat([valid, poor]))
+    row = judge([replace(OVER, dataset=("test", "other"))], results).iloc[0]
+    assert row["pairs"] == row["units"] == COUNT and row["tested_on"].startswith("test, ")
 
 
 def test_the_effect_is_of_all_testable_sets_or_else_of_all_sets():
@@ -254,6 +290,14 @@ def test_attention_of_vgg_alone_is_refused_but_not_its_accuracy_or_a_mean_with_a
     alone, mixed, accuracy = {"metric": "pcc", "method": "vgg16-last_block"}, {"metric": "pcc"}, {"metric": "accuracy"}
     for where, words in ((alone, [FROM_RANDOM]), (mixed, ["", ""]), (accuracy, [""])):
         assert causes(results, "fixation", "test", results.rows("fixation", **where)).tolist() == words
+
+
+def test_a_map_farther_from_fixations_than_noise_is_refused_by_the_least_distance_alone(measure):
+    rows = pd.DataFrame({"dataset": "test", "method": ["control", "near", "far"], "task": ["random", "a", "a"]})
+    rows = pd.concat([rows.assign(metric=name, value=[0.2, 0.1, 0.3]) for name in ("distance", "distance_mean")])
+    results = measure("fixation", rows)
+    for metric, words in (("distance", ["", "", NOISE_NEARER]), ("distance_mean", ["", "", ""])):
+        assert causes(results, "fixation", "test", results.rows("fixation", metric=metric)).tolist() == words
 
 
 def test_an_svm_worse_than_calling_all_background_refuses_its_kind_of_pixels_also_where_it_is_a_mean(measure):
