@@ -9,17 +9,18 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import ConvexHull, KDTree
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.lazy import cv2, trimesh
+from haptic_glance.base.text import rows_of, text_of
 
 from .axes import directions
 from .headers import MeshError
-from .mesh import Mesh, whole
+from .mesh import Mesh, unit, whole
 
 LEAST = 50  # points; fewer hold no shape
 MOST = 300_000  # points that a surface is made of; of more, as many are drawn
@@ -100,6 +101,10 @@ def usable(cloud: Cloud) -> Cloud:
 
 
 NORMAL_NEIGHBOURS = 12
+LEVEL, ALIKE = 0.3, 0.5  # sines and cosine: neighbours on one piece of surface, whose normals lie on one side of it
+BORDER = 1.0  # times the spacing over the extent: so many neighbours disagree along a line across a cloud
+TURNED = 0.25  # of the normals: more that look to the wrong side harm the surface
+OPEN = 0.2  # of the area: a cloud with more of it missing may show the inside of an object
 VIEWS = 32  # directions from which points are looked at
 DISTANCE = 3.0  # of the eye, in radii of the cloud
 FLIP = 1.3  # exponent of the sphere that points are mirrored on: larger sees more, and through gaps
@@ -129,6 +134,38 @@ def normals_of(points: np.ndarray, sensor: np.ndarray | None = None) -> np.ndarr
     for _ in range(ROUNDS):
         side = np.tanh(votes + PULL * (cosines * side[near]).mean(axis=1))
     return normals * _sign(side)[:, None]
+
+
+def checked_normals(cloud: Cloud) -> tuple[Cloud, str]:
+    """The Cloud, without its normals where they have the wrong sides, and a sentence on the reason; else an empty text.
+
+    Where neighbours disagree, or all normals look into a closed object, `normals_of` gives the sides. It decides only
+    if more than TURNED of the normals disagree with it, and its own neighbours agree better.
+    """
+    if cloud.normals is None:
+        return cloud, ""
+    points, normals = (part := usable(cloud)).points, unit(part.normals)
+    apart = _disagreement(points, normals)
+    into = (normals * (points - points.mean(axis=0))).sum() < 0
+    is_whole = cloud.sensor is not None or np.linalg.norm(normals.mean(axis=0)) < OPEN
+    if apart * np.sqrt(len(points)) < BORDER and not (into and is_whole):
+        return cloud, ""
+    sides = normals_of(points, cloud.sensor)
+    turned = np.mean((normals * sides).sum(axis=1) < 0)
+    mended = turned > 1 - TURNED and is_whole or turned > TURNED and _disagreement(points, sides) < apart
+    note = f"{100 * turned:.0f} % of its normals look to the wrong side, so normals are estimated from the points"
+    return (replace(cloud, normals=None), note) if mended else (cloud, "")
+
+
+def _disagreement(points, normals):
+    """The share of neighbours on one piece of surface whose normals lie on opposite sides of it."""
+    near = KDTree(points).query(points, NEIGHBOURS + 1)[1][:, 1:]
+    ways, others = unit(points[near] - points[:, None]), normals[near]
+    cosines = np.einsum("ni,nki->nk", normals, others)
+    level = np.abs(cosines) > ALIKE
+    for sines in (np.einsum("nki,ni->nk", ways, normals), np.einsum("nki,nki->nk", ways, others)):
+        level &= np.abs(sines) < LEVEL
+    return ((cosines < 0) & level).sum() / max(level.sum(), 1)
 
 
 def visible(points: np.ndarray, eye: np.ndarray) -> np.ndarray:
@@ -312,7 +349,9 @@ def _depth(away):
 
 
 TEXT = (".xyz", ".pts", ".asc")
-INTENSE = (7, 10)  # numbers a line of a PTS with an intensity and a colour, and with a normal, too
+INTENSE = (7, 10)  # numbers a line with an intensity and a colour, and with a normal, too
+NORMALS = (("normal_x", "normal_y", "normal_z"), ("nx", "ny", "nz"))  # names of their columns
+FIRST = (*(names[0] for names in NORMALS), "r", "red")  # names of the first column of a normal or a colour
 FORMATS = (*TEXT, ".pcd", ".las")
 UNIT = 0.05  # how far the length of a normal may be from 1
 LARGEST_ORIGIN = 1e-9  # a viewpoint nearer to zero than this was not set by who wrote the file
@@ -327,7 +366,8 @@ def read_cloud(content: bytes, suffix: str) -> Cloud:
 
     Text has a point a line: x y z, then three numbers that are a normal if their length is 1 on all lines, and
     else a colour of 0..255, then the other of the two; what follows is ignored, so are lines that hold no numbers.
-    Between the place and the colour a PTS may have an intensity, which scanners write; a normal comes before it.
+    Between the place and the colour may be an intensity, which scanners write; a normal comes before it. A header with
+    the names of all columns (x y z nx ny nz r g b) goes before this order.
     """
     if suffix in TEXT:
         return _text(content, suffix)
@@ -337,28 +377,42 @@ def read_cloud(content: bytes, suffix: str) -> Cloud:
 def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
     """The Cloud of a PLY without faces, as trimesh reads it."""
     table = loaded.metadata.get("_ply_raw", {}).get("vertex", {}).get("data")
-    normals = _columns(table, ("nx", "ny", "nz")) if table is not None else None
+    normals = _columns(table, NORMALS[1]) if table is not None else None
     colors = np.asarray(loaded.colors)
     rgb = colors[:, :3].astype(np.uint8) if colors.shape == (len(loaded.vertices), 4) else None
     return Cloud(np.asarray(loaded.vertices, np.float64), _units(normals), rgb)
 
 
 def _text(content, suffix):
-    lines = content.decode("latin-1").replace(",", " ").replace(";", " ").splitlines()
-    rows = [line for line in lines if len(line.split()) >= 3 and _is_number(line.split()[0])]
+    rows, header = rows_of(text_of(content))
+    rows = [words for _, words in rows if len(words) >= 3]
     if not rows:
         raise MeshError("no line of the point cloud holds three numbers")
-    width = min(len(row.split()) for row in rows)
-    values = np.loadtxt(io.StringIO("\n".join(rows)), usecols=range(width), ndmin=2)
+    width = min(map(len, rows))
+    values = np.loadtxt([" ".join(words[:width]) for words in rows], ndmin=2)
     normals = colors = None
-    first = 4 if suffix == ".pts" and width in INTENSE and _units(values[:, 3:6]) is None else 3
-    for start in range(first, min(width, first + 6) - 2, 3):
+    for start in _starts(values, [word.strip("/#").lower() for word in header if word.strip("/#")], suffix):
         three = values[:, start : start + 3]
         if normals is None and _units(three) is not None:
             normals = _units(three)
-        elif colors is None and three.min() >= 0 and three.max() <= 255 and three.max() > 1:
+        elif colors is None and _are_bytes(three):
             colors = three.astype(np.uint8)
     return Cloud(values[:, :3], normals, colors)
+
+
+def _starts(values, header, suffix):
+    """The columns with which normals and colours may begin: by the names in the header, else by the numbers."""
+    width = values.shape[1]
+    if len(header) == width and header[0] == "x":
+        return [start for start, name in enumerate(header[: width - 2]) if name in FIRST]
+    three = values[:, 3:6]
+    is_plain = _units(three) is not None or suffix != ".pts" and _are_bytes(three)
+    first = 4 if width in INTENSE and not is_plain else 3
+    return range(first, min(width, first + 6) - 2, 3)
+
+
+def _are_bytes(values):
+    return values.min(initial=0) >= 0 and 1 < values.max(initial=0) <= 255 and bool((values % 1 == 0).all())
 
 
 def _pcd(content):
@@ -372,7 +426,7 @@ def _pcd(content):
     points = _columns(data, ("x", "y", "z"))
     if points is None:
         raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
-    normals = _columns(data, ("normal_x", "normal_y", "normal_z")) if "normal_x" in fields else None
+    normals = next((_columns(data, names) for names in NORMALS if names[0] in fields), None)
     colors = pcd.decode_rgb(np.ascontiguousarray(data["rgb"])) if "rgb" in fields else None
     return Cloud(points, _units(normals), colors, _sensor(points, np.array(pcd.metadata.viewpoint[:3])))
 
@@ -435,11 +489,3 @@ def _is_one_view(points):
     near = KDTree(rays).query(rays, NEIGHBOURS + 1)[1]
     spread = np.linalg.norm(points[near] - points[:, None], axis=2).max(axis=1)
     return np.mean(spread > BEHIND * KDTree(points).query(points, NEIGHBOURS + 1)[0][:, -1]) < COVERED
-
-
-def _is_number(word):
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

@@ -63,7 +63,7 @@ def load_unnamed(path: Path) -> Mesh:
     if not path.is_file():
         folder = "is a folder, not a mesh: `haptic-glance gallery` shows all meshes of a folder"
         raise MeshError(folder if path.is_dir() else "no such file")
-    mesh = parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)))
+    mesh = parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)), name=path.name)
     if coarse := coarse_steps(path, mesh):
         warn_caller(f"{path.name}: {coarse}")
     return mesh
@@ -146,11 +146,16 @@ def _converted(source):
 
 
 def parse(
-    content: bytes, suffix: str, resolver: trimesh.resolvers.Resolver | None = None, every_colour: bool = False
+    content: bytes,
+    suffix: str,
+    resolver: trimesh.resolvers.Resolver | None = None,
+    every_colour: bool = False,
+    name: str = "the point cloud",
 ) -> Mesh:
     """As `load_as_stated`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, reads no other.
 
-    every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture.
+    every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture. name: of
+    the file, for a warning about its normals.
     """
     if suffix not in FORMATS:
         remedy = f"the formats are {', '.join(FORMATS)}; {CONVERT}"
@@ -164,7 +169,7 @@ def parse(
         content = READY[suffix](content) if suffix in READY else content
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)
-            mesh = _parsed(content, suffix, resolver, every_colour)
+            mesh = _parsed(content, suffix, resolver, every_colour, name)
         return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated_up(content) or AUTO)
     except (MeshError, MissingExtra):
         raise
@@ -177,7 +182,7 @@ def parse(
         raise MeshError(f"unreadable as {suffix[1:].upper()} ({reason}); {CONVERT}") from None
 
 
-def _parsed(content, suffix, resolver, every_colour):
+def _parsed(content, suffix, resolver, every_colour, name):
     if suffix == ".off":
         vertices, faces, colors = read_off(content)
         if len(faces):
@@ -187,7 +192,7 @@ def _parsed(content, suffix, resolver, every_colour):
     if suffix == clouds.DEPTH:
         return clouds.surface_of(clouds.read_depth(content, resolver and resolver.get))
     if suffix in clouds.FORMATS:
-        return clouds.surface_of(clouds.read_cloud(content, suffix))
+        return _surface(clouds.read_cloud(content, suffix), name)
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
         beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
@@ -203,8 +208,15 @@ def _parsed(content, suffix, resolver, every_colour):
         return loaded
     if isinstance(loaded, trimesh.PointCloud) and (suffix != ".ply" or "face" in loaded.metadata.get("_ply_raw", ())):
         with about("has no faces, so it is read as a point cloud", MeshError):
-            return _to_mesh(loaded, False, every_colour)
-    return _to_mesh(loaded, suffix == ".stl", every_colour)
+            return _to_mesh(loaded, False, every_colour, name)
+    return _to_mesh(loaded, suffix == ".stl", every_colour, name)
+
+
+def _surface(cloud, name):
+    cloud, note = clouds.checked_normals(cloud)
+    if note:
+        warn_caller(f"{name}: {note}")
+    return clouds.surface_of(cloud)
 
 
 def _open(content, suffix, resolver, **options):
@@ -222,13 +234,13 @@ def _open(content, suffix, resolver, **options):
     return next(iter(scene.geometry.values())) if len(scene.geometry) == 1 else scene
 
 
-def _to_mesh(loaded, merge, every_colour):
+def _to_mesh(loaded, merge, every_colour, name="the point cloud"):
     if loaded is None:
         raise MeshError("the file holds no geometry")
     if isinstance(loaded, trimesh.PointCloud) and (strips := _strips(loaded)) is not None:
         return _checked(np.asarray(loaded.vertices, dtype=np.float64), strips)
     if isinstance(loaded, trimesh.PointCloud):
-        return clouds.surface_of(clouds.cloud_of(loaded))
+        return _surface(clouds.cloud_of(loaded), name)
     if not isinstance(loaded, trimesh.Trimesh):
         raise MeshError(f"not a triangle mesh but a {type(loaded).__name__}")
     colors = None if merge else vertex_colors(loaded, of_faces=every_colour)

@@ -161,7 +161,7 @@ def open_file(path: Path, up: str | None = None) -> Specimen:
 def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
     """The Specimen of an uploaded file; no other file is read, so an OBJ comes without its materials."""
     path = Path(name)
-    return _upright(parse(content, path.suffix.lower()), path, up)
+    return _upright(parse(content, path.suffix.lower(), name=path.name), path, up)
 
 
 def _upright(mesh: Mesh, path: Path, up: str | None, place: Path | None = None) -> Specimen:

@@ -37,7 +37,7 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
         needs_files = painted or item.suffix in (DEPTH, ".gltf")
         beside = item.beside() if needs_files else {}
         resolver = ZipResolver({name: data for name, data in beside.items() if data})
-        parsed = parse(content, item.suffix, resolver if needs_files else None, every_colour=painted)
+        parsed = parse(content, item.suffix, resolver if needs_files else None, painted, item.file)
         raw, notes = clean(settled(parsed if item.up == AUTO else replace(parsed, up=item.up)))
         notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:

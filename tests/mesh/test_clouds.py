@@ -13,8 +13,9 @@ import pytest
 import trimesh
 from pypcd4 import Encoding, PointCloud
 
+from haptic_glance import load
 from haptic_glance.base.extras import MissingExtra
-from haptic_glance.mesh import MeshError, clean, load
+from haptic_glance.mesh import MeshError, clean, clouds
 from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, read_cloud, surface_of
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.rays import RayScene
@@ -23,7 +24,9 @@ ROOT = Path(__file__).parents[2]
 RANDOM = np.random.default_rng(0)
 BALL = unit(RANDOM.normal(size=(1200, 3)))
 COLORS = np.tile(np.array([[200, 10, 30]], np.uint8), (len(BALL), 1))
+INTENSITY = np.arange(len(BALL))[:, None] % 200
 TORUS = trimesh.creation.torus(1.0, 0.25, 64, 32)
+SHEET = Mesh(np.eye(3), np.array([[0, 1, 2]]))
 DEPTH = {"image": "a.png", "fx": 100.0, "fy": 100.0, "cx": 32.0, "cy": 32.0, "scale": 0.001}
 
 
@@ -31,8 +34,10 @@ def text(values):
     return "\n".join(" ".join(map(str, row)) for row in np.asarray(values).tolist()).encode()
 
 
-def pcd(encoding):
+def pcd(encoding, normals=()):
     made = PointCloud.from_xyzrgb_points(np.column_stack([BALL, PointCloud.encode_rgb(COLORS)]))
+    if normals:
+        made = PointCloud.from_points(np.hstack([BALL, BALL]), ("x", "y", "z", *normals), (np.float32,) * 6)
     file = io.BytesIO()
     made.save(file, encoding)
     return file.getvalue()
@@ -60,8 +65,19 @@ FILES = {
     "binary.pcd": lambda: pcd(Encoding.BINARY),
     "packed.pcd": lambda: pcd(Encoding.BINARY_COMPRESSED),
     "air.las": las,
+    "intense.xyz": lambda: text(np.hstack([BALL, INTENSITY / 7, COLORS])),
+    "named.xyz": lambda: b"//X Y Z Intensity R G B\n" + text(np.hstack([BALL, INTENSITY, COLORS])),
+    "last.asc": lambda: text(np.hstack([BALL, COLORS, INTENSITY])),
+    "decimals.xyz": lambda: text(BALL).replace(b".", b","),
+    "semicolons.xyz": lambda: b"X;Y;Z\n" + text(BALL).replace(b" ", b";").replace(b".", b","),
+    "mark.xyz": lambda: b"\xef\xbb\xbf" + text(BALL),
+    "wide.xyz": lambda: text(BALL).decode().encode("utf-16"),
+    "normals.pcd": lambda: pcd(Encoding.BINARY, ("normal_x", "normal_y", "normal_z")),
+    "short_names.pcd": lambda: pcd(Encoding.BINARY, ("nx", "ny", "nz")),
 }
-COLOURED = ("all.pts", "intense.pts", "intense_all.pts", "binary.pcd", "packed.pcd", "air.las")
+COLOURED = ("all.pts", "intense.pts", "intense_all.pts", "binary.pcd", "packed.pcd", "air.las", "intense.xyz",
+            "named.xyz", "last.asc")  # fmt: skip
+WITH_NORMALS = ("normals.xyz", "all.pts", "weighed.pts", "intense_all.pts", "normals.pcd", "short_names.pcd")
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -70,7 +86,7 @@ def test_every_format_gives_its_points_colours_and_normals(name):
     assert cloud.points == pytest.approx(BALL, abs=1e-4)
     assert name not in COLOURED or (cloud.colors == COLORS).all()
     assert cloud.normals is None or cloud.normals == pytest.approx(BALL)
-    assert (cloud.normals is not None) == (name in ("normals.xyz", "all.pts", "weighed.pts", "intense_all.pts"))
+    assert (cloud.normals is not None) == (name in WITH_NORMALS)
 
 
 PLY = trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply")
@@ -103,6 +119,53 @@ def test_normals_point_outwards_even_where_the_shape_has_a_hole():
     points, faces = trimesh.sample.sample_surface(TORUS, 4000, seed=0)
     alike = np.einsum("ij,ij->i", normals_of(np.asarray(points)), TORUS.face_normals[faces])
     assert (alike > 0.9).mean() > 0.99
+
+
+SIGNS = {
+    "random": RANDOM.choice([-1, 1], len(BALL)),
+    "towards the origin": -np.ones(len(BALL)),
+    "towards a far viewpoint": np.where(BALL[:, 2] > 0.2, 1, -1),
+}
+
+
+@pytest.mark.parametrize("signs", SIGNS)
+@pytest.mark.slow
+def test_normals_with_wrong_sides_are_estimated_anew_with_a_warning(signs, tmp_path):
+    (tmp_path / "scan.xyz").write_bytes(text(np.hstack([BALL, BALL * SIGNS[signs][:, None]])))
+    with pytest.warns(UserWarning, match=r"^scan.xyz: \d+ % of its normals look to the wrong side, so normals are est"):
+        mesh = load(tmp_path / "scan.xyz", up="z")
+    assert mesh.watertight and np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max() < 0.02
+    assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) > 0.9).all()
+
+
+@pytest.mark.parametrize("signs", SIGNS)
+def test_a_ply_and_a_pcd_without_right_normals_warn_too(signs, tmp_path, monkeypatch):
+    monkeypatch.setattr(clouds, "surface_of", lambda cloud: SHEET if cloud.normals is None else None)
+    normals = BALL * SIGNS[signs][:, None]
+    made = PointCloud.from_points(np.hstack([BALL, normals]), ("x", "y", "z", "nx", "ny", "nz"), (np.float32,) * 6)
+    made.save(tmp_path / "scan.pcd")
+    header = "ply\nformat ascii 1.0\nelement vertex 1200\n" + "".join(
+        f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")
+    )
+    (tmp_path / "scan.ply").write_bytes(header.encode() + b"end_header\n" + text(np.hstack([BALL, normals])))
+    for name in ("scan.pcd", "scan.ply"):
+        with pytest.warns(UserWarning, match=f"^{name}: .* % of its normals look to the wrong side"):
+            assert load(tmp_path / name, up="z").faces.tolist() == SHEET.faces.tolist()
+
+
+def test_right_normals_are_kept_also_of_thin_parts_of_few_flips_and_of_a_hollow():
+    plate, sides = trimesh.sample.sample_surface(trimesh.creation.box((1, 1, 0.01)), 3000, seed=0)
+    few = np.where(np.arange(len(BALL)) % 10, 1, -1)[:, None]
+    hollow = BALL[:, 2] < 0.2
+    for points, normals in (
+        (BALL, BALL),
+        (BALL, BALL * few),
+        (np.asarray(plate), trimesh.creation.box((1, 1, 0.01)).face_normals[sides]),
+        (BALL[hollow], BALL[hollow]),
+        (BALL[hollow], -BALL[hollow]),
+    ):
+        cloud = Cloud(points, normals)
+        assert clouds.checked_normals(cloud) == (cloud, "")
 
 
 @pytest.mark.slow
