@@ -24,7 +24,7 @@ from haptic_glance.base.files import whole_file
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
 from haptic_glance.base.warner import warn_caller
-from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.materials import bake_texture, pixels_of
 from haptic_glance.mesh.mesh import Mesh, colour_factor
 from haptic_glance.mesh.up import with_stated_up
 
@@ -246,9 +246,7 @@ def _material(texture, number, glb):
 
 def _colour_picture(content, pixels, clear):
     """The picture's own file, where the pixels are still those of the file; else an image of the pixels."""
-    if isinstance(content, bytes) and np.array_equal(
-        np.asarray(Image.open(io.BytesIO(content)).convert("RGBA")), pixels
-    ):
+    if isinstance(content, bytes) and np.array_equal(pixels_of(Image.open(io.BytesIO(content))), pixels):
         return content
     return Image.fromarray(pixels if clear else pixels[..., :3])
 

@@ -150,12 +150,12 @@ def parse(
     suffix: str,
     resolver: trimesh.resolvers.Resolver | None = None,
     every_colour: bool = False,
-    name: str = "the point cloud",
+    name: str = "the file",
 ) -> Mesh:
     """As `load_as_stated`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, reads no other.
 
     every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture. name: of
-    the file, for a warning about its normals.
+    the file, for warnings about its normals and pictures.
     """
     if suffix not in FORMATS:
         remedy = f"the formats are {', '.join(FORMATS)}; {CONVERT}"
@@ -197,7 +197,8 @@ def _parsed(content, suffix, resolver, every_colour, name):
         order = obj_vertices(content) if suffix == ".obj" else None
         beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
         opened = _open(content, suffix, beside)
-        set_apart(opened, content)
+        if damaged := set_apart(opened, content):
+            warn_caller(f"{name}: damaged, so left out: the picture {', the picture '.join(damaged)}")
         loaded = join_parts(opened, order, every_colour)
     else:
         skip = not (every_colour and suffix == ".ply")

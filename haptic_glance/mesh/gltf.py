@@ -102,10 +102,12 @@ def _pack(tree: dict[str, Any], resolver: trimesh.resolvers.Resolver | None) -> 
     for image in tree.get("images", []):
         if "uri" not in image:
             continue
-        data = _read(image["uri"], resolver)
+        data, name = _read(image["uri"], resolver), _name(image["uri"])
         if data is None:
-            image[ABSENT] = _name(image["uri"])
+            image[ABSENT] = name
             continue
+        if image["uri"][: len(DATA)].lower() != DATA:
+            image.setdefault("name", name)
         kind = next((kind for start, kind in KINDS.items() if data.startswith(start)), image.get("mimeType", ""))
         del image["uri"]
         image |= {"bufferView": len(tree.setdefault("bufferViews", [])), "mimeType": kind}

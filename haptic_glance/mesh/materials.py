@@ -6,6 +6,7 @@ properties of a glTF material are carried along, and their pictures stay undecod
 
 from __future__ import annotations
 
+import io
 import json
 import zlib
 from contextlib import suppress
@@ -52,17 +53,19 @@ def _file(image):
     return content() if content and image.format in ("PNG", "JPEG") else image
 
 
-def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
+def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str]:
     """Moves all pictures but those of colour from the materials of a file's Scene to the metadata of its parts.
 
     A copy of a part, as `join_parts` makes, would decode them. content: the bytes of a GLB, whose pictures on another
-    set of texture coordinates than the first are left out.
+    set of texture coordinates than the first are left out. Returns the names of damaged pictures, which are left out.
     """
     parts = [part for part in getattr(loaded, "geometry", {}).values() if isinstance(part, trimesh.Trimesh)]
     materials = {id(part): getattr(part.visual, "material", None) for part in parts}
+    tree = _header(content)
+    damaged = [name for name, picture in _pictures(tree, content) if not _is_sound(picture)]
     elsewhere = {
         (str(material.get("name")), name)
-        for material in _stated_in(_header(content), "materials")
+        for material in _stated_in(tree, "materials")
         for name, use in _uses(material)
         if use.get("texCoord")
     }
@@ -71,10 +74,46 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> None:
         part.metadata[BESIDE] = properties and {
             k: v for k, v in properties.items() if (str(properties.get("name")), k) not in elsewhere
         }
-    for material in materials.values():
+    for material in {id(material): material for material in materials.values()}.values():
         if isinstance(material, trimesh.visual.material.PBRMaterial):
             for name in MAPS:
                 setattr(material, name, None)
+        for name in ("baseColorTexture", "image"):
+            image = getattr(material, name, None)
+            _check_size(image)
+            if image is not None and not _is_sound(image):
+                damaged.append(f"of the material {material.name}" if material.name else "of a material without a name")
+                setattr(material, name, None)
+                for part in parts:
+                    if materials[id(part)] is material and part.metadata[BESIDE]:
+                        part.metadata[BESIDE].pop(name, None)
+    return damaged
+
+
+def _pictures(tree, content):
+    """Yields (name, bytes) of the pictures in a GLB; what is malformed is left to the parser."""
+    start, views = 28 + int.from_bytes(content[12:16], "little"), _stated_in(tree, "bufferViews")
+    for number, entry in enumerate(_stated_in(tree, "images")):
+        with suppress(*MALFORMED):
+            view = views[entry["bufferView"]]
+            first = start + view.get("byteOffset", 0)
+            yield str(entry.get("name", f"number {number}")), content[first : first + view["byteLength"]]
+
+
+def _is_sound(picture):
+    """Whether Pillow can read the head of a picture's bytes, or decode a picture, which then stays decoded."""
+    try:
+        Image.open(io.BytesIO(picture)) if isinstance(picture, bytes) else picture.load()
+    except (OSError, SyntaxError, ValueError):
+        return False
+    return True
+
+
+def pixels_of(image: Image.Image) -> np.ndarray:
+    """(h, w, 4) u1: the pixels of a picture, which may have 16 bits of grey: Pillow would clip them to white."""
+    if image.mode.startswith("I"):
+        image = Image.fromarray(np.clip(np.asarray(image) // 257, 0, 255).astype(np.uint8))
+    return np.asarray(image.convert("RGBA"))
 
 
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
@@ -342,7 +381,7 @@ def _image(part, known=None):
     if image is not None and getattr(part.visual, "uv", None) is not None:
         _check_size(image)
         if id(image) not in known:
-            known[id(image)] = np.asarray(image.convert("RGBA"))
+            known[id(image)] = pixels_of(image)
         return known[id(image)]
     color = getattr(material, "main_color", None)
     return np.asarray([204, 204, 204, 255] if color is None else color, dtype=np.uint8).reshape(1, 1, 4)

@@ -121,6 +121,36 @@ def test_what_is_not_beside_it_is_named(write, beside, tmp_path, capsys):
         parse(path.read_bytes(), ".gltf")
 
 
+@pytest.mark.parametrize(("first", "picture"), [(0, "number 0"), (60, "of the material painted")])
+def test_a_damaged_picture_is_left_out_by_name(first, picture, glb, tmp_path):
+    start = glb.index(b"\x89PNG") + first
+    (tmp_path / "scene.glb").write_bytes(glb[:start] + bytes(20) + glb[start + 20 :])
+    with pytest.warns(UserWarning, match=f"^scene.glb: damaged, so left out: the picture {picture}$"):
+        mesh = load(tmp_path / "scene.glb")
+    assert len(mesh.faces) == 400
+    run([str(tmp_path / "scene.glb"), "--faces", "300", "--out", str(tmp_path / "less.glb")])
+    assert len(load(tmp_path / "less.glb").faces) == 300
+
+
+def test_a_damaged_picture_beside_a_gltf_is_left_out_by_name(write, beside, tmp_path):
+    path = write(beside)
+    (tmp_path / "skin of it.png").write_bytes(b"no picture")
+    with pytest.warns(UserWarning, match=r"^scene.gltf: damaged, so left out: the picture skin of it.png$"):
+        load(path)
+
+
+def test_sixteen_bits_of_grey_keep_their_shades_and_their_file(tmp_path):
+    grey = np.linspace(0, 65535, 256).astype(np.uint16).reshape(16, 16)
+    ball, packed = trimesh.creation.icosphere(2), io.BytesIO()
+    Image.fromarray(grey).save(packed, "PNG")
+    material = PBRMaterial(baseColorTexture=Image.open(packed))
+    ball.visual = TextureVisuals(ball.vertices[:, :2] / 4 + 0.5, material=material)
+    ball.export(tmp_path / "ball.glb")
+    assert load(tmp_path / "ball.glb").texture.images[0][..., 0].tolist() == (grey // 257).tolist()
+    run([str(tmp_path / "ball.glb"), "--faces", "200", "--out", str(tmp_path / "less.glb")])
+    assert packed.getvalue() in (tmp_path / "less.glb").read_bytes()
+
+
 def test_a_file_outside_of_its_folder_is_not_read(tmp_path, write, beside):
     folder = tmp_path / "inner"
     folder.mkdir()
