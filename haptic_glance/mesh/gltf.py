@@ -20,6 +20,7 @@ DATA = "data:"
 KINDS = {b"\x89PNG": "image/png", b"\xff\xd8": "image/jpeg", b"RIFF": "image/webp"}  # of a picture, by its first bytes
 ALIGNED = 4  # bytes, of the parts of a GLB
 FLOAT, INTEGERS = 5126, {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2"}  # of the components of an accessor
+KINDS_OF_NUMBERS = INTEGERS | {FLOAT: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
@@ -60,13 +61,9 @@ def in_floats(content: bytes) -> bytes:
             return content
         views, binary = tree["bufferViews"], bytearray(content[start + 8 :])
         for entry in integers:
-            view, kind = views[entry["bufferView"]], np.dtype(INTEGERS[entry["componentType"]])
-            width = WIDTHS[entry["type"]]
-            strides = view.get("byteStride", width * kind.itemsize), kind.itemsize
-            first = view.get("byteOffset", 0) + entry.get("byteOffset", 0)
-            values = np.ndarray((entry["count"], width), kind, content, start + 8 + first, strides)
+            values = numbers_of(tree, entry, content)
             if entry.pop("normalized", False):
-                values = np.maximum(values / np.iinfo(kind).max, -1)
+                values = np.maximum(values / np.iinfo(values.dtype).max, -1)
             binary += b"\0" * (-len(binary) % ALIGNED)
             entry |= {"bufferView": len(views), "byteOffset": 0, "componentType": FLOAT}
             views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": 4 * values.size})
@@ -75,6 +72,18 @@ def in_floats(content: bytes) -> bytes:
         return _joined(tree, binary)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
         return content
+
+
+def numbers_of(tree: dict[str, Any], accessor: dict[str, Any], content: bytes) -> np.ndarray:
+    """(n, width): the numbers of an accessor of a GLB with this tree, as the bytes store them.
+
+    Raises LookupError, TypeError or ValueError for a malformed one.
+    """
+    view, kind = tree["bufferViews"][accessor["bufferView"]], np.dtype(KINDS_OF_NUMBERS[accessor["componentType"]])
+    width = WIDTHS[accessor["type"]]
+    strides = view.get("byteStride", width * kind.itemsize), kind.itemsize
+    first = 28 + int.from_bytes(content[12:16], "little") + view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    return np.ndarray((accessor["count"], width), kind, content, first, strides)
 
 
 def _joined(tree: dict[str, Any], binary: bytearray) -> bytes:

@@ -18,6 +18,7 @@ from PIL import Image
 
 from haptic_glance.base.lazy import trimesh
 
+from .gltf import numbers_of
 from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import MOST_UV, Mesh, Texture, content_of
 
@@ -143,8 +144,10 @@ def not_read(content: bytes, has_colors: bool = False) -> list[str]:
         materials = _stated_in(tree, "materials")
         if has_colors:
             names += [name for material in materials for name in _flat(material) if name not in KEPT_BESIDE_COLOURS]
-        expected = (*DERIVED, "COLOR_0") if has_colors else DERIVED
-        names += [name for primitive in primitives for name in primitive["attributes"] if name not in expected]
+        for primitive in primitives:
+            attributes = primitive["attributes"]
+            has_place = has_colors or _is_white(tree, attributes.get("COLOR_0"), content)
+            names += [name for name in attributes if name not in DERIVED and not (name == "COLOR_0" and has_place)]
         names += [NO_SURFACE[entry["mode"]] for entry in primitives if entry.get("mode") in NO_SURFACE]
         names += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
         for material in materials:
@@ -156,6 +159,14 @@ def not_read(content: bytes, has_colors: bool = False) -> list[str]:
                 names += [f"{name}.{key}" for key, usual in USUAL_SAMPLER.items() if sampler.get(key, usual) != usual]
                 names += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
     return [name for name in dict.fromkeys(names) if not name.endswith(READ)]
+
+
+def _is_white(tree, accessor, content):
+    """Whether an accessor, by its number, holds white alone, which changes no material."""
+    with suppress(*MALFORMED):
+        numbers = numbers_of(tree, tree["accessors"][accessor], content)
+        return bool((numbers == (1 if numbers.dtype.kind == "f" else np.iinfo(numbers.dtype).max)).all())
+    return False
 
 
 MALFORMED = AttributeError, LookupError, TypeError, ValueError

@@ -18,6 +18,7 @@ from haptic_glance.cli.simplify import dropped_from, run
 from haptic_glance.lod.export import write_any
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
+from haptic_glance.mesh.gltf import as_glb
 from haptic_glance.mesh.materials import bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh, Texture
 
@@ -189,6 +190,8 @@ def test_white_beside_materials_leaves_them_and_the_surface_whole(tmp_path):
     (tmp_path / "halves.glb").write_bytes(trimesh.Scene(halves).export(file_type="glb"))
     mesh = load(tmp_path / "halves.glb")
     assert mesh.watertight and mesh.colors is None
+    for content in ((tmp_path / "halves.glb").read_bytes(), as_glb(tmp_path / "halves.glb")):
+        assert "COLOR_0" not in not_read(content)
     assert {tuple(image[0, 0]) for image in mesh.texture.images} == {(255, 0, 0, 255), (0, 0, 255, 255)}
 
 
