@@ -33,10 +33,12 @@ MESHES = {  # public function: its arguments that are meshes
     ),
     **dict.fromkeys(("gaps_at", "press_forces"), ("surface",)),
     **dict.fromkeys(("metro", "perceptual"), ("reference", "mesh")),
+    "forces": (),
     "follow": ("mesh_or_surface",),
 }  # fmt: skip
 LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
-METRIC = {"press_forces": "depth", "gaps_at": "within"}  # public function: its argument in metres
+# public function: its argument in metres
+METRIC = {"press_forces": "depth", "gaps_at": "within", "layout_forces": "depth", "forces": "depth"}
 WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 TRIES = 8  # lower counts that are tried where one leaves a fold
 LOOKING = "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"  # depend on the axis that is up
@@ -112,23 +114,28 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
         bound = parameters.bind(*args, **kwargs)
         bound.apply_defaults()
         values = bound.arguments
-        if isinstance(unit := values["unit"], str):
+        if isinstance(unit := values.get("unit", 1.0), str):
             if unit not in METRES:
                 raise ValueError(f"unit={unit!r}: give a number of metres, or one of {', '.join(METRES)}")
             values["unit"] = unit = METRES[unit]
         for name in ("pitch", metric):
-            if isinstance(text := values[name], str):
+            if isinstance(text := values.get(name), str):
                 try:
                     amount = length(text)
                 except ValueError:
                     raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
                 real = name == "pitch" and isinstance(amount, Metres)
                 values[name] = float(amount) / (values["unit"] if real else 1)
-        if "layer" in values:
+        if "layer" in values and "gaps" not in values:
             name, whole = next(iter(values.items()))
             if not isinstance(getattr(whole, "mesh", whole), Mesh):
                 values[name] = whole = as_mesh(whole)
-            _warn_of_units(getattr(whole, "mesh", whole), values["layer"], values["cells"], values["pitch"], unit)
+            whole = getattr(whole, "mesh", whole)
+            if "layout" in values:
+                pitch = max(np.ptp(values["layout"].positions, axis=0).max(), np.sqrt(values["layout"].areas.max()))
+                _warn_of_units(whole, values["layer"], (1, 1), float(pitch), unit, "layout")
+            else:
+                _warn_of_units(whole, values["layer"], values["cells"], values["pitch"], unit)
         return function(*bound.args, **bound.kwargs)
 
     return work
@@ -170,8 +177,11 @@ def _diameter(mesh: Mesh) -> float:
     return float(centre_and_radius(mesh)[1] / RADIUS)
 
 
-def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float, unit: float) -> None:
-    """Warns where the array, its layer or the object has a size that only a wrong unit explains."""
+def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float, unit: float, name: str = "") -> None:
+    """Warns where the array, its layer or the object has a size that only a wrong unit explains.
+
+    name: of an argument in metres that holds the array, as it begins the sentence; "" for the pitch and the unit.
+    """
     from haptic_glance.touch.distances import check_array
     from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
 
@@ -183,7 +193,7 @@ def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float,
     if not wrong and (wrong := misfit_of_layer(layer, max(cells) * pitch * unit, diameter * unit)):
         wrong = f"{wrong}; is the unit of length right?"
     if wrong:
-        warn_caller(f"pitch={pitch:g}, unit={unit:g}: {wrong}")
+        warn_caller(f"{name or f'pitch={pitch:g}, unit={unit:g}'}: {wrong}")
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:

@@ -111,6 +111,18 @@ def test_forces_take_lengths_as_texts(body):
     assert felt.any() and (felt == numbers).all()
     gaps = haptic_glance.gaps_at(mesh, *place, within="2mm", pitch="0.15cm", unit="mm")
     assert np.allclose(gaps, haptic_glance.gaps_at(mesh, *place, within=0.002, pitch=1.5, unit=0.001))
+    metres = Mesh(mesh.vertices / 1000, mesh.faces), place[0] / 1000, place[1], layer
+    layout = Layout([[0, 0, 0]], [[0, 0, -1]], [1e-6])
+    for text, number in (("2mm", 0.002), ("0.05cm", 0.0005)):
+        felt = haptic_glance.layout_forces(*metres, layout, depth=text)
+        assert felt.any()
+        assert (
+            felt == haptic_glance.layout_forces(metres, place[0] / 1000, place[1], layer, layout, depth=number)
+        ).all()
+        felt = haptic_glance.forces(gaps, layer, 1e-6, depth=text)
+        assert (felt == haptic_glance.forces(gaps, layer, 1e-6, depth=number)).all()
+    with pytest.raises(ValueError, match="depth='deep': give a number"):
+        haptic_glance.forces(gaps, layer, 1e-6, depth="deep")
     for wrong, message in (
         ({"unit": "yd"}, "unit='yd': give a number"),
         ({"pitch": "wide"}, "pitch='wide': give a number"),
@@ -133,6 +145,18 @@ def test_units_of_forces_that_do_not_fit_are_warned_of(body, sizes, words):
         warnings.simplefilter("always")
         haptic_glance.press_forces(body, *place, haptic_glance.Layer(), depth=1e-4, **sizes)
     assert len(caught) == bool(words) and all(words in str(warning.message) for warning in caught)
+    assert all(warning.filename == __file__ for warning in caught)
+
+
+@pytest.mark.parametrize("scale, words", [(1.0, "layout: .* is the unit of length right"), (0.001, "")])
+def test_a_layout_that_does_not_fit_the_object_is_warned_of(body, scale, words):
+    mesh = Mesh(scale * body[0], body[1])
+    place = mesh.vertices[[7]], haptic_glance.sensor_axes(haptic_glance.sensor_normals(mesh, [7]))
+    taxels = Layout([[0, 0, 0], [0.008, 0, 0]], [[0, 0, -1]] * 2, [1e-5] * 2)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        haptic_glance.layout_forces((mesh.vertices, mesh.faces), *place, haptic_glance.Layer(), taxels, depth=1e-4)
+    assert len(caught) == bool(words) and all(re.match(words, str(warning.message)) for warning in caught)
     assert all(warning.filename == __file__ for warning in caught)
 
 

@@ -161,8 +161,8 @@ def forces(
     load : float or (k,) array_like, optional
         Newtons on the whole array along its approach, at which the approach ends (the sum is exact). Give `load` or
         `depth`.
-    depth : float or (k,) array_like, optional
-        Metres of approach after the first contact.
+    depth : float, str or (k,) array_like, optional
+        Metres of approach after the first contact; `haptic_glance.forces` also takes a text such as "2mm".
     cosines : float or array_like
         Cosine of each taxel's normal to the approach, by which the layer is indented less.
 

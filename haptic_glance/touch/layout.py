@@ -1,6 +1,7 @@
 """Taxels at any places: hexagonal arrays, fingertips, and layouts from a file."""
 
 import csv
+import io
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from haptic_glance.base.text import text_of
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from .distances import check_places
@@ -84,7 +86,8 @@ def read_layout(path: str | Path) -> Layout:
     Parameters
     ----------
     path : path
-        A row a taxel: columns x, y, z, nx, ny, nz in metres and area in square metres, in any order.
+        A row a taxel: columns x, y, z, nx, ny, nz in metres and area in square metres, in any order. Semicolons or
+        tabs may separate the columns; commas may then stand before decimals.
 
     Returns
     -------
@@ -96,12 +99,15 @@ def read_layout(path: str | Path) -> Layout:
     ValueError
         For a missing column or a value that is no number.
     """
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        reader = csv.DictReader(file, skipinitialspace=True)
-        absent_columns = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
-        if absent_columns:
-            raise ValueError(f"{path}: no column {', '.join(absent_columns)}; a layout has {','.join(COLUMNS)}")
-        rows = [_numbers(path, reader.line_num, row) for row in reader]
+    text = text_of(Path(path).read_bytes())
+    header = text.partition("\n")[0]
+    delimiter = next((mark for mark in ";\t" if mark in header), ",")
+    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, skipinitialspace=True)
+    names = [name.strip().lower() for name in reader.fieldnames or ()]
+    if absent_columns := [name for name in COLUMNS if name not in names]:
+        raise ValueError(f"{path}: no column {', '.join(absent_columns)}; a layout has {','.join(COLUMNS)}")
+    reader.fieldnames = names
+    rows = [_numbers(path, reader.line_num, row, delimiter) for row in reader]
     table = np.array(rows).reshape(len(rows), len(COLUMNS))
     try:
         return Layout(table[:, :3], table[:, 3:6], table[:, 6])
@@ -132,7 +138,7 @@ def layout_forces(
         The layer on the taxels.
     layout : Layout
         The taxels, from `read_layout`.
-    load, depth : float or (k,) array_like, optional
+    load, depth : float, str or (k,) array_like, optional
         Along the approach, as of `forces`.
 
     Returns
@@ -145,6 +151,12 @@ def layout_forces(
     ------
     ValueError
         As `forces` does.
+
+    Warns
+    -----
+    UserWarning
+        By `haptic_glance.layout_forces`, if only a wrong unit explains the sizes of the layout, the layer and the
+        object.
     """
     centres, axes = check_places(centres, axes)
     depths = layer.thickness if depth is None else checked_depths(depth, len(centres))
@@ -169,8 +181,8 @@ def layout_gaps(
     return gaps
 
 
-def _numbers(path, line, row):
+def _numbers(path, line, row, delimiter):
     try:
-        return [float(row[name]) for name in COLUMNS]
-    except (TypeError, ValueError):
+        return [float(row[name] if delimiter == "," else row[name].replace(",", ".")) for name in COLUMNS]
+    except (AttributeError, TypeError, ValueError):
         raise ValueError(f"{path}: line {line} has a taxel that is not seven numbers: {','.join(COLUMNS)}") from None

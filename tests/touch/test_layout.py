@@ -121,6 +121,16 @@ def test_a_layout_keeps_its_taxels_when_the_caller_s_arrays_change():
     assert not layout.positions.any()
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+@pytest.mark.parametrize("separator", [";", "\t", ","])
+def test_tables_of_spreadsheets_in_any_language_are_read(tmp_path, separator, encoding):
+    header, row = "X, y,z,nx,ny,nz,area,Näme\r\n", "0.5,0,-2.5e-3,0,0,-1,1e-06,tip\r\n"
+    text = (header + row).replace(".", "." if separator == "," else "\0").replace(",", separator).replace("\0", ",")
+    (tmp_path / "tip.csv").write_bytes(text.encode(encoding))
+    layout = read_layout(tmp_path / "tip.csv")
+    assert layout.positions.tolist() == [[0.5, 0, -0.0025]] and layout.areas.tolist() == [1e-6]
+
+
 @pytest.mark.parametrize(
     "text, words",
     [
