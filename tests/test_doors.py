@@ -116,9 +116,7 @@ def test_forces_take_lengths_as_texts(body):
     for text, number in (("2mm", 0.002), ("0.05cm", 0.0005)):
         felt = haptic_glance.layout_forces(*metres, layout, depth=text)
         assert felt.any()
-        assert (
-            felt == haptic_glance.layout_forces(metres, place[0] / 1000, place[1], layer, layout, depth=number)
-        ).all()
+        assert (felt == haptic_glance.layout_forces(*metres, layout, depth=number)).all()
         felt = haptic_glance.forces(gaps, layer, 1e-6, depth=text)
         assert (felt == haptic_glance.forces(gaps, layer, 1e-6, depth=number)).all()
     with pytest.raises(ValueError, match="depth='deep': give a number"):
