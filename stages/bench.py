@@ -166,7 +166,10 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
 
 
 def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
-    """{name: (Mesh, GroundTruth)} of the objects of one of SETS; `only` names some of them, none stands for all."""
+    """{name: (Mesh, GroundTruth)} of the objects of one of SETS; `only` names some of them, none stands for all.
+
+    An object whose mesh or gaze is of no use is named on stderr. Raises ValueError where no object is left.
+    """
     from haptic_glance.look.agreement import GroundTruth
     from stages.meshes import Params
     from stages.meshes.collect import prepare_mesh
@@ -177,11 +180,17 @@ def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
     files, objects = published_files(dataset, archive), {}
     settings = Params(dataset, str(archive), "y", "unknown", list(only), {}, False)
     for item in SOURCES[dataset](settings):
-        mesh, _ = prepare_mesh(item)
-        amounts = ground_truth_amounts(item.name, dataset, mesh, files.get(item.name, []))
-        if amounts is not None:
+        try:
+            mesh, _ = prepare_mesh(item)
+            amounts = ground_truth_amounts(item.name, dataset, mesh, files.get(item.name, []))
+            if amounts is None:
+                raise ValueError(f"no dataset_*/{item.name}.txt holds its gaze")
             density = spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal)
             objects[item.name] = mesh, GroundTruth(amounts, density, mesh.vertex_areas)
+        except ValueError as error:
+            report(f"{item.name} is left out: {error}")
+    if not objects:
+        raise ValueError(f"{archive} holds no mesh with gaze")
     return objects
 
 

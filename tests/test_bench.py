@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import trimesh
 
 from haptic_glance.look.agreement import METRICS, GroundTruth
 from haptic_glance.mesh.mesh import Mesh
@@ -179,6 +180,29 @@ def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):
 def test_rows_that_are_not_there_are_named_with_the_remedy(tmp_path):
     with pytest.raises(ValueError, match="rows.csv.gz: run it in a clone of the project, or name the rows by --rows"):
         bench.run(["--rows", str(tmp_path / "rows.csv.gz")])
+
+
+def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys):
+    tables, meshes = tmp_path / "dataset_x", tmp_path / "Models_3D"
+    tables.mkdir()
+    meshes.mkdir()
+    ball = trimesh.creation.icosphere(2)
+    rows = np.column_stack([ball.vertices, ball.vertices, ball.vertices[:, 2] > 0, ball.vertices[:, 0] > 0])
+    for name, seconds in (("good", 1), ("empty", 0), ("missing", 1), ("negative", -1)):
+        (meshes / f"{name}.obj").write_text(ball.export(file_type="obj", digits=17))
+        np.savetxt(tables / f"{name}.txt", rows * ([1] * 6 + [seconds, 1]), fmt="%.17g")
+    (tables / "missing.txt").rename(tables / "missing.csv")
+    assert list(bench.gazed("gaze", tmp_path)) == ["good"]
+    printed = capsys.readouterr().err
+    for words in (
+        "empty is left out: the ground truth is empty",
+        "missing is left out: no dataset_*/missing.txt holds its gaze",
+        "negative is left out: dataset_x/negative.txt: 73 rows hold NaN or negative seconds",
+    ):
+        assert f"bench: {words}" in printed
+    (meshes / "good.obj").unlink()
+    with pytest.raises(ValueError, match="holds no mesh with gaze"):
+        bench.gazed("gaze", tmp_path)
 
 
 @pytest.mark.slow

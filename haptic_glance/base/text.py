@@ -5,7 +5,7 @@ import re
 
 MARKS = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
 DECIMALS = re.compile(r"[-+]?\d*,\d+(e[-+]?\d+)?", re.IGNORECASE)
-NUMBER = re.compile(r"[-+]?(\d|[.,]\d|nan\b|inf)", re.IGNORECASE)  # how a line of numbers begins
+NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+|nan|inf)(e[-+]?\d+)?(?=[\s,;]|$)", re.IGNORECASE)
 SEEN = 100  # lines that show whether commas stand before decimals
 
 
@@ -19,7 +19,7 @@ def text_of(content: bytes) -> str:
 
 
 def rows_of(text: str) -> tuple[list[tuple[int, list[str]]], list[str]]:
-    """([(number of a line, its words)] of the lines that begin with a number, words of the line before the first).
+    """([(number of a line, its words)] from the first line on that begins with a number, words of the line before it).
 
     Blanks, semicolons and commas separate words. Commas stand before decimals instead where each word has at most one
     of them, and none has a point.
@@ -31,4 +31,4 @@ def rows_of(text: str) -> tuple[list[tuple[int, list[str]]], list[str]]:
     has_decimals = all(map(DECIMALS.fullmatch, with_comma)) and not any("." in word for word in words)
     lines = [(number, line.replace(",", "." if has_decimals else " ").replace(";", " ")) for number, line in lines]
     header = lines[first - 1][1].split() if first else []
-    return [(number, line.split()) for number, line in lines[first:] if NUMBER.match(line)], header
+    return [(number, line.split()) for number, line in lines[first:]], header

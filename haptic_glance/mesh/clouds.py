@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull, KDTree
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.lazy import cv2, trimesh
-from haptic_glance.base.text import rows_of, text_of
+from haptic_glance.base.text import NUMBER, rows_of, text_of
 
 from .axes import directions
 from .headers import MeshError
@@ -385,7 +385,7 @@ def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
 
 def _text(content, suffix):
     rows, header = rows_of(text_of(content))
-    rows = [words for _, words in rows if len(words) >= 3]
+    rows = [words for _, words in rows if len(words) >= 3 and NUMBER.match(words[0])]
     if not rows:
         raise MeshError("no line of the point cloud holds three numbers")
     width = min(map(len, rows))

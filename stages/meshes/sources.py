@@ -245,14 +245,21 @@ def _member(archive, name):
 def match_files(files: Mapping[str, Callable[[], bytes]], pattern: str) -> dict[str, tuple[str, Callable[[], bytes]]]:
     """The files whose path ends with a regular expression: dict name -> (path, function that reads the bytes).
 
-    The name is the group of the expression, with / as _. Raises FetchError when no file matches.
+    The name is the group of the expression, with / as _. Raises FetchError when no file matches, and when two files
+    have one name.
     """
     matches = [
         (re.search(rf"(?:^|/){pattern}$", path), path) for path in files if "/." not in path
     ]  # hidden files are skipped
-    matched = {match[1].replace("/", "_"): (path, files[path]) for match, path in matches if match}
+    matched = {}
+    for match, path in matches:
+        if match and (name := match[1].replace("/", "_")) in matched:
+            raise FetchError(f"{matched[name][0]} and {path} are both of {name}: keep one, or join them in one file")
+        if match:
+            matched[name] = path, files[path]
     if not matched:
-        raise FetchError(f"none of the {len(files)} files matches {pattern}: is it the published archive?")
+        form = re.sub(r"\(.*\)", "NAME", pattern).replace("[^/]+", "*").replace("\\", "")
+        raise FetchError(f"none of the {len(files)} files is called {form}: is it the published archive?")
     return matched
 
 

@@ -14,7 +14,6 @@ degree of visual angle) and CentricityAndVisibilityMaps/NAME_VIEW_visibility.txt
 vertices are those of 3DModels-Simplif/NAME.obj.
 """
 
-import io
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
@@ -23,10 +22,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
+from haptic_glance.base.text import rows_of, text_of
 from haptic_glance.look.marks import read_marks
 from haptic_glance.mesh.mesh import Mesh
 
 COLUMNS = 8
+SECONDS_AT, SECONDS = 6, ("sec", "dur", "time", "gaze", "fix", "dwell")  # the column, and how its names begin
+ORDER = "x y z nx ny nz seconds"
 MIN_MATCHED = 0.5  # of the rows; the published file with most padding (sofa) has 0.758
 OFF_MESH = 0.05  # of the diagonal; padding lies up to 0.033 from the nearest vertex (sofa)
 
@@ -35,7 +37,7 @@ def read_gaze(path_or_bytes: str | Path | bytes) -> tuple[np.ndarray, np.ndarray
     """(positions (k, 3), normals (k, 3), seconds (k,)), f8, units of the mesh file, from a file or its bytes.
 
     Normals are as published: not unit, and invalid in some files. Raises ValueError for other than eight columns, NaN
-    or negative seconds.
+    or negative seconds, and for a header whose columns have another order.
     """
     content = path_or_bytes if isinstance(path_or_bytes, bytes) else Path(path_or_bytes).read_bytes()
     rows = _rows(content, COLUMNS)
@@ -50,15 +52,27 @@ def read_cloud_gaze(content: bytes) -> np.ndarray:
 def _rows(content, columns):
     if not content.strip():
         raise ValueError("the gaze file is empty")
+    lines, header = rows_of(text_of(content))
+    lines = [(number, words) for number, words in lines if not words[0].startswith("#")]
+    if not lines:
+        raise ValueError(f"not a gaze file of numbers in {columns} columns: no line begins with a number")
+    names = [word.strip("#/").lower() for word in header]
+    place = next((i for i, name in enumerate(names) if name.startswith(SECONDS)), SECONDS_AT)
+    if len(names) == columns and (names[0] != "x" or place != SECONDS_AT):
+        order = f"{ORDER}{' label' if columns == COLUMNS else ''}"
+        raise ValueError(f"its columns are {' '.join(names)}: order them as {order}")
     try:
-        rows = np.loadtxt(io.BytesIO(content), ndmin=2)
+        rows = np.loadtxt([" ".join(words) for _, words in lines], ndmin=2)
     except ValueError as error:
         raise ValueError(f"not a gaze file of numbers in {columns} columns: {error}") from None
     if rows.shape[1] != columns:
         raise ValueError(f"a gaze file has {columns} columns, got {rows.shape[0]} rows of {rows.shape[1]}")
-    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1) | (rows[:, 6] < 0))
+    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1) | (rows[:, SECONDS_AT] < 0))
     if len(bad):
-        raise ValueError(f"{len(bad)} rows hold NaN or negative seconds, the first in line {bad[0] + 1}")
+        raise ValueError(
+            f"{len(bad)} rows hold NaN or negative seconds, the first in line {lines[bad[0]][0]}: remove them, or write"
+            " 0 seconds"
+        )
     return rows
 
 
@@ -78,19 +92,24 @@ def gaze_on_vertices(mesh: Mesh, positions: np.ndarray, seconds: np.ndarray, tol
     positions (k, 3) and seconds (k,): of `read_gaze`; tolerance: in units of the file, 0 since the published rows
     repeat the coordinates exactly. Vertices at the same position share its seconds equally. Rows without a vertex
     (`match_rows`) are left out: they are interpolated from their neighbours. Raises ValueError with the distances when
-    rows are off the mesh or less than half of them match.
+    rows are off the mesh or less than half of them match, and for NaN and negative seconds.
     """
+    seconds = np.asarray(seconds, dtype=np.float64)
+    if not (np.isfinite(positions).all() and (seconds >= 0).all() and (seconds < np.inf).all()):
+        raise ValueError("positions must be finite, and seconds finite and not negative: leave the other rows out")
     vertex, distance = match_rows(mesh, positions, tolerance)
-    _check_matches(vertex < 0, distance / max(mesh.diagonal, np.finfo(float).tiny))
+    size = max(mesh.diagonal, np.finfo(float).tiny)
+    times = np.linalg.norm(np.ptp(positions, axis=0)) / size
+    _check_matches(vertex < 0, distance / size, f"The rows are {times:.4g} times as large" * (not 0.2 < times < 5))
     n = len(mesh.vertices)
-    amounts = np.bincount(vertex[vertex >= 0], np.asarray(seconds)[vertex >= 0], minlength=n)
+    amounts = np.bincount(vertex[vertex >= 0], seconds[vertex >= 0], minlength=n)
     _, first, place, count = np.unique(
         mesh.vertices, axis=0, return_index=True, return_inverse=True, return_counts=True
     )
     return (amounts[first] / count)[place.ravel()]
 
 
-def _check_matches(unmatched, distance):
+def _check_matches(unmatched, distance, scale):
     off = np.flatnonzero(unmatched & (distance > OFF_MESH))
     if len(off) == 0 and unmatched.mean() <= 1 - MIN_MATCHED:
         return
@@ -99,7 +118,7 @@ def _check_matches(unmatched, distance):
     raise ValueError(
         f"{unmatched.sum()} of {len(unmatched)} gaze rows match no vertex and {len(off)} are off the mesh; distances as"
         f" shares of its diagonal: median {np.median(distance[unmatched]):.2%}, largest {lines}. Is it the file of this"
-        " mesh, in the units of the mesh file?"
+        f" mesh, in the units of the mesh file?{scale and f' {scale} as the mesh.'}"
     )
 
 

@@ -36,6 +36,7 @@ from stages.meshes.sources import (
 )
 
 from .gaze import (
+    MIN_MATCHED,
     annotations_on_vertices,
     fixation_files,
     fixations_on_vertices,
@@ -110,14 +111,21 @@ def published_files(source: str, folder: str | Path) -> dict[str, Files]:
     return {name: [tables[name], models[name]] for name in tables if name in models}
 
 
+ROUNDED = 5e-4  # of the diagonal: a row this near a vertex, where most have been rounded, is of the vertex
+
+
 def _gaze(files, _):
     (path, table), (_, model) = files
     # Coordinates agree exactly only with the mesh as published; normalising keeps the order of the vertices.
     mesh = parse(model(), ".obj")
     positions, _, seconds = _named(path, read_gaze, table())
     vertex, distance = match_rows(mesh, positions)
+    tolerance = 0.0
+    if np.mean(vertex < 0) > 1 - MIN_MATCHED:  # another program rounded the coordinates
+        tolerance = ROUNDED * mesh.diagonal
+        vertex, distance = match_rows(mesh, positions, tolerance)
     unmatched = np.flatnonzero(vertex < 0)
-    amounts = gaze_on_vertices(mesh, positions, seconds)
+    amounts = _named(path, lambda rows: gaze_on_vertices(mesh, rows, seconds, tolerance), positions)
     if len(unmatched):
         shares, lines = distance[unmatched] / mesh.diagonal, ", ".join(str(row + 1) for row in unmatched[:3])
         print(
@@ -137,7 +145,7 @@ def _gaze_clouds(files, _):
 
 
 def _named(path, read, content):
-    """Reads the bytes by `read`; its ValueError gets the name of the file."""
+    """The result of read(content); its ValueError gets the name of the file."""
     try:
         return read(content)
     except ValueError as error:
@@ -247,8 +255,10 @@ def spread_on_surface(mesh: Mesh, amounts: np.ndarray, sigma: float) -> np.ndarr
     that is not positive.
     """
     amounts = np.asarray(amounts, dtype=np.float64)
-    if amounts.shape != (len(mesh.vertices),) or not np.isfinite(amounts).all() or (amounts < 0).any():
-        raise ValueError(f"amounts must be {len(mesh.vertices)} finite values, not negative, got {amounts.shape}")
+    if amounts.shape != (len(mesh.vertices),):
+        raise ValueError(f"amounts must have shape ({len(mesh.vertices)},), one per vertex, got {amounts.shape}")
+    if not np.isfinite(amounts).all() or (amounts < 0).any():
+        raise ValueError("amounts must be finite and not negative: set missing values to 0")
     if not (np.isfinite(sigma) and sigma > 0):
         raise ValueError(f"sigma must be a positive length, got {sigma}")
     density = np.zeros(len(amounts))

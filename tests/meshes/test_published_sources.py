@@ -119,7 +119,7 @@ def test_an_absent_or_foreign_archive_is_named_with_the_remedy(archives, source,
             items(source, folder)
     (archives / "other").mkdir()
     (archives / "other/readme.txt").write_text("")
-    with pytest.raises(FetchError, match="none of the 1 files matches .* the published archive"):
+    with pytest.raises(FetchError, match="none of the 1 files is called .*: is it the published archive"):
         items(source, archives / "other")
 
 

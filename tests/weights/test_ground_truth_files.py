@@ -14,9 +14,14 @@ from haptic_glance.base.fetch import FetchError
 from haptic_glance.mesh import MeshError
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
-from stages.meshes.sources import FIXATION_MAPS, SOURCES, collection_files
+from stages.meshes.sources import FIXATION_MAPS, SOURCES, collection_files, match_files
 from stages.weights.gaze import fixation_files, fixations_on_vertices, gaze_on_vertices, match_rows, read_gaze
-from stages.weights.ground_truth import ground_truth_amounts, published_files, read_interest_points
+from stages.weights.ground_truth import (
+    ground_truth_amounts,
+    published_files,
+    read_interest_points,
+    spread_on_surface,
+)
 
 ARCHIVE = Path(__file__).parents[2] / "../shared/data/gaze.zip"
 BALL = trimesh.creation.icosphere(2)
@@ -39,6 +44,41 @@ def test_shuffled_rows_come_back_on_their_vertices(tmp_path):
         positions, normals, read = read_gaze(source)
         assert positions.shape == normals.shape == (len(seconds), 3)
         np.testing.assert_array_equal(gaze_on_vertices(MESH, positions, read), seconds)
+
+
+def test_tables_of_other_programs_are_read():
+    plain = b"".join(b"%.3f %d 2.5 0 0 1 0.25 0\n" % (i / 8, i) for i in range(5))
+    header = b"X Y Z nx ny nz Duration label\n"
+    for content in (
+        b"\xef\xbb\xbf" + plain,
+        plain.decode().encode("utf-16"),
+        header + plain,
+        plain.replace(b" ", b", "),
+        plain.replace(b".", b","),
+        (header + plain.replace(b".", b",")).replace(b" ", b";"),
+    ):
+        for expected, values in zip(read_gaze(plain), read_gaze(content), strict=True):
+            assert np.array_equal(values, expected)
+
+
+def test_rows_that_a_program_has_rounded_are_of_the_nearest_vertex(tmp_path):
+    (tmp_path / "Models_3D").mkdir()
+    (tmp_path / "dataset_x").mkdir()
+    (tmp_path / "Models_3D/ball.obj").write_text(BALL.export(file_type="obj", digits=17))
+    (tmp_path / "dataset_x/ball.txt").write_bytes(table(MESH.vertices.round(3), np.arange(162)))
+    files = published_files("gaze", tmp_path)["ball"]
+    assert ground_truth_amounts("ball", "gaze", MESH, files).tolist() == list(range(162))
+    (tmp_path / "dataset_x/ball.txt").write_bytes(table(MESH.vertices * 25.4, np.arange(162)))
+    with pytest.raises(ValueError, match=r"^dataset_x/ball.txt: 162 of 162 .* The rows are 25.4 times as large"):
+        ground_truth_amounts("ball", "gaze", MESH, files)
+
+
+def test_two_files_of_one_object_and_absent_ones_are_named():
+    files = {f"dataset_{person}/ball.txt": bytes for person in "ab"}
+    with pytest.raises(FetchError, match=r"^dataset_a/ball.txt and dataset_b/ball.txt are both of ball: keep one"):
+        match_files(files, r"dataset_[^/]+/([^/]+)\.txt")
+    with pytest.raises(FetchError, match=r"none of the 2 files is called \*/Models_3D/NAME.obj"):
+        match_files(files, r"[^/]+/Models_3D/([^/]+)\.obj")
 
 
 def test_rows_at_one_place_add_up_and_its_vertices_share_them():
@@ -80,6 +120,18 @@ ONE_AWAY = MESH.vertices * np.where(np.arange(162) == 100, 2, 1)[:, None]
         (lambda: read_gaze(b"0 0 0 0 0 1 1 0\n0 0 0 0 0 1 nan 0\n"), "line 2"),
         (lambda: read_gaze(b"0 0 0 0 0 1 -1 0\n"), "negative seconds"),
         (lambda: read_gaze(b"1 1 1 1 1 1 1 1\n1 1\n"), "not a gaze file of numbers"),
+        (
+            lambda: read_gaze(b"x,y,z,nx,ny,nz,label,Duration_ms\n0,0,0,0,0,1,1,250\n"),
+            "order them as x y z nx ny nz",
+        ),
+        (lambda: read_gaze(b"x y z nx ny nz s l\n0 0 0 0 0 1 nan 0\n"), "the first in line 2: remove them, or write 0"),
+        (lambda: gaze_on_vertices(MESH, MESH.vertices * 1000, np.ones(162)), "The rows are 1000 times as large as the"),
+        (
+            lambda: gaze_on_vertices(MESH, MESH.vertices, np.full(162, np.nan)),
+            "positions must be finite, and sec",
+        ),
+        (lambda: spread_on_surface(MESH, np.full(162, np.nan), 0.1), "amounts must be finite and not negative"),
+        (lambda: spread_on_surface(MESH, np.ones(163), 0.1), r"amounts must have shape \(162,\), one per vertex, got"),
     ],
 )
 def test_wrong_arguments_are_named_with_what_is_right(call, words):

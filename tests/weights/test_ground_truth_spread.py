@@ -103,7 +103,7 @@ def test_bad_meshes_have_finite_densities():
 @pytest.mark.parametrize(
     ("amounts", "sigma", "reason"),
     [
-        (np.ones(3), 0.1, "4 finite"),
+        (np.ones(3), 0.1, r"shape \(4,\), one per vertex"),
         (np.array([1, 1, 1, -1.0]), 0.1, "not negative"),
         (np.array([1, 1, 1, np.nan]), 0.1, "finite"),
         (np.array([0, 0, 0, 1.0]), 0.1, "in no face.*9"),
