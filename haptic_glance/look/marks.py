@@ -129,7 +129,7 @@ def _rows(path, content=None):
     """Yields (line number, line, row of typed values) of each mark."""
     lines = _text(path, content).split("\n")
     if lines[0].rstrip("\r") != ",".join(COLUMNS):
-        raise MarksError(f"{path}, line 1: the header is not {','.join(COLUMNS)}")
+        raise MarksError(f"{path}, line 1: the header is not {','.join(COLUMNS)}, with commas between the columns")
     for number, line in enumerate(lines[1:], start=2):
         line = line.rstrip("\r")
         if line:
@@ -145,7 +145,7 @@ def _text(path, content):
         return content.decode("utf-8-sig")  # spreadsheets write a byte order mark
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
-        raise MarksError(f"{path}, line {line}: not UTF-8 text; correct or remove the line") from None
+        raise MarksError(f"{path}, line {line}: not UTF-8 text; save the file as UTF-8") from None
 
 
 def _row(line):

@@ -15,6 +15,7 @@ vertices are those of 3DModels-Simplif/NAME.obj.
 """
 
 import re
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
@@ -23,7 +24,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from haptic_glance.base.text import rows_of, text_of
-from haptic_glance.look.marks import read_marks
+from haptic_glance.look.marks import MarksError, read_marks
 from haptic_glance.mesh.mesh import Mesh
 
 COLUMNS = 8
@@ -134,18 +135,26 @@ def annotations_on_vertices(mesh: Mesh, path: str | Path, content: bytes | None 
     a vertex does not exist or is farther than 1 % of the diagonal from the position of the mark.
     """
     marks, n = read_marks(path, content), len(mesh.vertices)
-    vertex = marks.vertex.to_numpy()
+    vertex, positions = marks.vertex.to_numpy(), marks[["x", "y", "z"]].to_numpy()
+    limit = TOLERANCE * max(mesh.diagonal, np.finfo(float).tiny)
+    if len(vertex) and 0 < vertex.min() and vertex.max() <= n:
+        as_counted, one_less = (
+            np.linalg.norm(positions - mesh.vertices[ids], axis=1) for ids in (np.minimum(vertex, n - 1), vertex - 1)
+        )
+        if (as_counted > limit).any() and (one_less <= limit).all():
+            raise ValueError(f"{path}: its vertices are counted from 1; count them from 0")
     outside = np.flatnonzero((vertex < 0) | (vertex >= n))
     if len(outside):
         raise ValueError(f"{path}, row {outside[0] + 1}: vertex {vertex[outside[0]]} is not in 0..{n - 1}")
-    lengths = np.linalg.norm(marks[["x", "y", "z"]].to_numpy() - mesh.vertices[vertex], axis=1)
+    lengths = np.linalg.norm(positions - mesh.vertices[vertex], axis=1)
     distance = lengths / max(mesh.diagonal, np.finfo(float).tiny)
     far = np.flatnonzero(distance > TOLERANCE)
     if len(far):
         lines = ", ".join(f"row {row + 1}: {distance[row]:.2%}" for row in far[:5])
         raise ValueError(
             f"{path}: {len(far)} of {len(marks)} marks are off the mesh, as shares of its diagonal {lines}; they belong"
-            " to another mesh or to an earlier version, and are not used: mark this mesh in the studio"
+            " to another mesh or to an earlier version, or are not in units of the normalised mesh, and are not used:"
+            " mark this mesh in the studio"
         )
     distinct = marks.drop_duplicates(["annotator", "vertex"])
     return np.bincount(distinct.vertex, minlength=n).astype(np.float64)
@@ -159,6 +168,11 @@ def marked_files(meshes: Iterable[tuple[str, Mesh]], folder: str | Path) -> dict
     it, so that its reader can say why it is of no use.
     """
     files = {path.stem: path for path in sorted(Path(folder).glob("*.csv"))}
+    for path in files.values():
+        try:
+            read_marks(path)
+        except MarksError as error:
+            print(f"marks are not used: {error}", file=sys.stderr)
     stems, strange = {}, {}
     for name, mesh in meshes:
         namesake = [name] if name in files else []
@@ -210,7 +224,7 @@ def fixations_on_vertices(files: Files, mesh: Mesh) -> np.ndarray:
 
 def _values(path, content, vertices):
     try:
-        values = np.array(content.split(), dtype=np.float64)
+        values = np.array(text_of(content).replace(",", ".").split(), dtype=np.float64)
     except ValueError as error:
         raise ValueError(f"{path}: not one number per line ({error})") from None
     if len(values) != vertices:

@@ -185,6 +185,13 @@ def test_a_vertex_has_the_mean_of_the_views_that_see_it_by_its_area(folder):
     assert looked(folder)[1] == 0 and looked(folder)[0] > 0  # no view sees the second
 
 
+def test_a_map_of_a_spreadsheet_is_read(folder):
+    expected, path = looked(folder).tolist(), folder / "FixationMaps/car-vasa_300norm.txt"
+    for content in (b"\xef\xbb\xbf0\n1.5\n8.25\n", b"0\r\n1,5\r\n8,25\r\n", "0\n1,5\n8,25".encode("utf-16")):
+        path.write_bytes(content)
+        assert looked(folder).tolist() == expected
+
+
 @pytest.mark.parametrize(
     ("text", "mesh", "says"),
     [
