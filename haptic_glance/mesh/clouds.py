@@ -144,7 +144,8 @@ def checked_normals(cloud: Cloud) -> tuple[Cloud, str]:
     """
     if cloud.normals is None:
         return cloud, ""
-    points, normals = (part := usable(cloud)).points, unit(part.normals)
+    part = usable(cloud)
+    points, normals = part.points, unit(np.asarray(part.normals))
     apart = _disagreement(points, normals)
     into = (normals * (points - points.mean(axis=0))).sum() < 0
     is_whole = cloud.sensor is not None or np.linalg.norm(normals.mean(axis=0)) < OPEN
@@ -159,7 +160,7 @@ def checked_normals(cloud: Cloud) -> tuple[Cloud, str]:
 
 def _disagreement(points, normals):
     """The share of neighbours on one piece of surface whose normals lie on opposite sides of it."""
-    near = KDTree(points).query(points, NEIGHBOURS + 1)[1][:, 1:]
+    near = np.asarray(KDTree(points).query(points, NEIGHBOURS + 1)[1])[:, 1:]
     ways, others = unit(points[near] - points[:, None]), normals[near]
     cosines = np.einsum("ni,nki->nk", normals, others)
     level = np.abs(cosines) > ALIKE

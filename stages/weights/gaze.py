@@ -137,7 +137,7 @@ def annotations_on_vertices(mesh: Mesh, path: str | Path, content: bytes | None 
     marks, n = read_marks(path, content), len(mesh.vertices)
     vertex, positions = marks.vertex.to_numpy(), marks[["x", "y", "z"]].to_numpy()
     limit = TOLERANCE * max(mesh.diagonal, np.finfo(float).tiny)
-    if len(vertex) and 0 < vertex.min() and vertex.max() <= n:
+    if len(vertex) and vertex.min() > 0 and vertex.max() <= n:
         as_counted, one_less = (
             np.linalg.norm(positions - mesh.vertices[ids], axis=1) for ids in (np.minimum(vertex, n - 1), vertex - 1)
         )
