@@ -75,7 +75,7 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
         part.metadata[BESIDE] = properties and {
             k: v for k, v in properties.items() if (str(properties.get("name")), k) not in elsewhere
         }
-    for material in {id(material): material for material in materials.values() if material}.values():
+    for material in {id(material): material for material in materials.values() if material is not None}.values():
         if isinstance(material, trimesh.visual.material.PBRMaterial):
             for name in MAPS:
                 setattr(material, name, None)
