@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull, KDTree
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.lazy import cv2, trimesh
-from haptic_glance.base.text import NUMBER, rows_of, text_of
+from haptic_glance.base.text import NUMBER, lines_of, text_of
 
 from .axes import directions
 from .headers import MeshError
@@ -385,12 +385,13 @@ def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
 
 
 def _text(content, suffix):
-    rows, header = rows_of(text_of(content))
-    rows = [words for _, words in rows if len(words) >= 3 and NUMBER.match(words[0])]
+    lines, _, header = lines_of(text_of(content))
+    sizes = [len(line.split()) if NUMBER.match(line) else 0 for line in lines]
+    rows = [line for line, size in zip(lines, sizes, strict=True) if size >= 3]
     if not rows:
         raise MeshError("no line of the point cloud holds three numbers")
-    width = min(map(len, rows))
-    values = np.loadtxt([" ".join(words[:width]) for words in rows], ndmin=2)
+    width = min(size for size in sizes if size >= 3)
+    values = np.loadtxt(rows, usecols=range(width), ndmin=2)
     normals = colors = None
     for start in _starts(values, [word.strip("/#").lower() for word in header if word.strip("/#")], suffix):
         three = values[:, start : start + 3]

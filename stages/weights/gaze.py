@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from haptic_glance.base.text import rows_of, text_of
+from haptic_glance.base.text import lines_of, text_of
 from haptic_glance.look.marks import MarksError, read_marks
 from haptic_glance.mesh.mesh import Mesh
 
@@ -53,9 +53,9 @@ def read_cloud_gaze(content: bytes) -> np.ndarray:
 def _rows(content, columns):
     if not content.strip():
         raise ValueError("the gaze file is empty")
-    lines, header = rows_of(text_of(content))
-    lines = [(number, words) for number, words in lines if not words[0].startswith("#")]
-    if not lines:
+    lines, first, header = lines_of(text_of(content))
+    numbers = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
+    if not numbers:
         raise ValueError(f"not a gaze file of numbers in {columns} columns: no line begins with a number")
     names = [word.strip("#/").lower() for word in header]
     place = next((i for i, name in enumerate(names) if name.startswith(SECONDS)), SECONDS_AT)
@@ -63,17 +63,15 @@ def _rows(content, columns):
         order = f"{ORDER}{' label' if columns == COLUMNS else ''}"
         raise ValueError(f"its columns are {' '.join(names)}: order them as {order}")
     try:
-        rows = np.loadtxt([" ".join(words) for _, words in lines], ndmin=2)
+        rows = np.loadtxt([lines[i] for i in numbers], ndmin=2)
     except ValueError as error:
         raise ValueError(f"not a gaze file of numbers in {columns} columns: {error}") from None
     if rows.shape[1] != columns:
         raise ValueError(f"a gaze file has {columns} columns, got {rows.shape[0]} rows of {rows.shape[1]}")
     bad = np.flatnonzero(~np.isfinite(rows).all(axis=1) | (rows[:, SECONDS_AT] < 0))
     if len(bad):
-        raise ValueError(
-            f"{len(bad)} rows hold NaN or negative seconds, the first in line {lines[bad[0]][0]}: remove them, or write"
-            " 0 seconds"
-        )
+        line, remedy = first + numbers[bad[0]] + 1, "remove them, or write 0 seconds"
+        raise ValueError(f"{len(bad)} rows hold NaN or negative seconds, the first in line {line}: {remedy}")
     return rows
 
 
