@@ -139,15 +139,16 @@ def normals_of(points: np.ndarray, sensor: np.ndarray | None = None) -> np.ndarr
 def checked_normals(cloud: Cloud) -> tuple[Cloud, str]:
     """The Cloud, without its normals where they have the wrong sides, and a sentence on the reason; else an empty text.
 
-    Where neighbours disagree, or all normals look into a closed object, `normals_of` gives the sides. It decides only
-    if more than TURNED of the normals disagree with it, and its own neighbours agree better.
+    Where neighbours disagree, or all normals look into a closed object or away from the sensor, `normals_of` gives the
+    sides. It decides only if more than TURNED of the normals disagree with it, and its own neighbours agree better.
     """
     if cloud.normals is None:
         return cloud, ""
     part = usable(cloud)
     points, normals = part.points, unit(np.asarray(part.normals))
     apart = _disagreement(points, normals)
-    into = (normals * (points - points.mean(axis=0))).sum() < 0
+    outwards = points - points.mean(axis=0) if cloud.sensor is None else cloud.sensor - points
+    into = (normals * outwards).sum() < 0
     is_whole = cloud.sensor is not None or np.linalg.norm(normals.mean(axis=0)) < OPEN
     if apart * np.sqrt(len(points)) < BORDER and not (into and is_whole):
         return cloud, ""

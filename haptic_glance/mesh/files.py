@@ -45,8 +45,9 @@ def load(path: str | Path) -> Mesh:
     meet at one place: they would open the surface. Of a point cloud
     (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
     haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
-    camera. A warning names a cloud whose normals have wrong sides, and a file with a damaged picture. A GLB is y up, a .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or
-    z, whichever the shape suggests (haptic_glance.mesh.upright).
+    camera. A warning names a cloud whose normals have wrong sides, and a file with a damaged picture. A GLB is y up, a
+    .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or z, whichever the shape
+    suggests (haptic_glance.mesh.upright).
     Raises MeshError with the file and the reason when it holds no usable mesh.
     """
     return settled(load_as_stated(path))

@@ -153,6 +153,14 @@ def test_a_ply_and_a_pcd_without_right_normals_warn_too(signs, tmp_path, monkeyp
             assert load(tmp_path / name, up="z").faces.tolist() == SHEET.faces.tolist()
 
 
+def test_normals_look_to_the_sensor_that_a_file_states():
+    bowl, sensor = BALL[BALL[:, 2] < -0.2], np.array([0, 0, 5.0])
+    seen = Cloud(bowl, -bowl, sensor=sensor)
+    assert clouds.checked_normals(seen) == (seen, "")
+    mended, note = clouds.checked_normals(Cloud(bowl, bowl, sensor=sensor))
+    assert mended.normals is None and note.startswith("100 % of its normals look to the wrong side")
+
+
 def test_right_normals_are_kept_also_of_thin_parts_of_few_flips_and_of_a_hollow():
     plate, sides = trimesh.sample.sample_surface(trimesh.creation.box((1, 1, 0.01)), 3000, seed=0)
     few = np.where(np.arange(len(BALL)) % 10, 1, -1)[:, None]
