@@ -104,8 +104,9 @@ def compare(metrics: Mapping[str, float], baseline: Mapping[str, float], toleran
     """Sentences on every metric that left its bounds or is missing; [] when all hold."""
     metrics, sentences = tolerances.with_pairs(metrics), []
     for name, value in tolerances.with_pairs(baseline).items():
-        rule, new_value = tolerances.of(name), metrics.get(name)
-        low, high = rule.bounds(value, tolerances.moves.get(name, 0.0))
+        if (new_value := metrics.get(name)) == value:
+            continue
+        low, high = tolerances.of(name).bounds(value, tolerances.moves.get(name, 0.0))
         if new_value is None:
             sentences.append(f"{name} is missing (baseline {value:g})")
         elif not low <= new_value <= high:
