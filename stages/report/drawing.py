@@ -94,6 +94,7 @@ METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E7
 MARKERS = "osD^vPX*"
 PALETTE = 160  # colours of a picture: a fourth of the bytes, and the shading of meshes still looks smooth
 SETTLED = 1_000  # pixels that still change their colour: to go on until all stay takes five times as long
+MARGIN = 0.12  # inches round a picture; its box is measured here, since "tight" would draw it once more
 SETTINGS: dict[Any, Any] = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
@@ -149,9 +150,12 @@ def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     """Writes a PNG of PALETTE colours without dates or versions, so that equal runs give equal bytes; the path."""
     buffer = io.BytesIO()
     uncompressed = {"compress_level": 0}  # read again at once
-    figure.savefig(buffer, dpi=dpi, bbox_inches="tight", pad_inches=0.12, pil_kwargs=uncompressed)
+    figure.set_dpi(dpi)
+    if figure.get_layout_engine():
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # all has its place now; a chart on the page is drawn again
+    figure.savefig(buffer, dpi=dpi, bbox_inches=figure.get_tightbbox().padded(MARGIN), pil_kwargs=uncompressed)
     plt.close(figure)
-    figure.set_layout_engine("none")  # all has its place now; a chart on the page is drawn again
     with Image.open(buffer) as image:
         indexed = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
     with whole_file(path) as part:

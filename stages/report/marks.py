@@ -197,7 +197,6 @@ def has_marks_alone(drawing: Drawing) -> bool:
 def vector(drawing: Drawing, name: str, alt: str) -> tuple[str, list[Mark]]:
     """(an svg element, its marks) of a drawing; name: makes the ids in it differ from those of other charts."""
     drawing.set_dpi(72)  # then a pixel is a typographic point, the unit of matplotlib's SVG
-    drawing.draw_without_rendering()
     box = drawing.get_tightbbox().padded(PAD)
     all_marks, buffer = marks(drawing), io.StringIO()
     with plt.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
