@@ -1,5 +1,6 @@
 """Meshes, views, imprints and runs that several folders test with."""
 
+import gc
 import shutil
 
 import numpy as np
@@ -22,6 +23,16 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 SIZE = (75, 100)
 CHANNELS = (*NINE, *OTHERS)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Keeps the garbage collector to the objects of tests: a pass over the modules of all tests takes a second."""
+    gc.disable()
+    result = yield
+    gc.freeze()
+    gc.enable()
+    return result
 
 
 def spot_maps(mesh, spot, viewpoints=TWELVE, width=0.15, channels=CHANNELS):
