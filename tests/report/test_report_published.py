@@ -37,11 +37,17 @@ def few_pixels_and_resamples():
         yield
 
 
-@pytest.fixture
-def published(tmp_path):
-    """The published results as a fresh clone has them, without what stages left in data/."""
+@pytest.fixture(scope="module")
+def unread():
+    """The published results, of which nothing was read yet."""
     workspace = Workspace(ROOT, "")
-    results = Results.published(workspace, workspace.settings(Params))
+    return Results.published(workspace, workspace.settings(Params))
+
+
+@pytest.fixture
+def published(unread, tmp_path):
+    """The published results as a fresh clone has them, without what stages left in data/."""
+    results = unread.unread()
     results.data, results.out = tmp_path / "data", tmp_path / "out"
     results.data.mkdir()
     (results.data / "reference").symlink_to(ROOT / "data/reference")
