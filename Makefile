@@ -8,6 +8,7 @@ gaze ?= ../shared/data/gaze.zip
 newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
+test quick foreign smoke: export OMP_NUM_THREADS = 1 # each core has a process; more threads would spin while they wait
 .DEFAULT_GOAL := help
 .PHONY: help repro studio test quick foreign smoke lint docs bench clean lock
 
