@@ -59,14 +59,14 @@ def test_a_sweep_goes_on_behind_a_job_that_fails_and_keeps_the_rows_of_each(root
         return job_rows("", "knn", 0.5).drop(columns=["job", "dataset"]).assign(seed=values["seed"]).to_dict("records")
 
     monkeypatch.setattr(sweep, "recognise", recognise)
-    monkeypatch.setattr(sweep.sys, "argv", ["sweep", "-m", "data=household_four", "seed=1,2,3,4"])
+    monkeypatch.setattr(sweep.sys, "argv", ["sweep", "-m", "data=household_four", "seed=2,3,4"])
     with pytest.raises(KeyboardInterrupt):
         sweep.job()
-    assert sorted(set(read_table(sweep.OUT)["seed"])) == [1, 3]
+    assert sorted(set(read_table(sweep.OUT)["seed"])) == [3]
     monkeypatch.setattr(sweep.sys, "argv", ["sweep", "-m", "data=household_four", "seed=2,5"])
     with pytest.raises(SystemExit, match="1 of 2 jobs failed: .*seed=2"):
         sweep.job()
-    assert sorted(set(read_table(sweep.OUT)["seed"])) == [1, 3, 5]
+    assert sorted(set(read_table(sweep.OUT)["seed"])) == [3, 5]
 
 
 def test_the_table_has_one_line_a_job_and_classifier():
@@ -81,12 +81,18 @@ def test_an_accuracy_is_at_most_one(value, step, shown):
     assert sweep.table(rows).accuracy.tolist() == [shown]
 
 
-@pytest.fixture
-def root(tmp_path, monkeypatch):
-    """A folder with a params.yaml that has another number of repetitions, and the files that jobs read."""
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(scope="module")
+def params():
+    """A params.yaml that has another number of repetitions."""
     values = compose.compose(["sets=[household_four]", "profile=smoke", "classification.repetitions=3"])
-    (tmp_path / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
+    return OmegaConf.to_yaml(OmegaConf.create(values))
+
+
+@pytest.fixture
+def root(params, tmp_path, monkeypatch):
+    """A folder with a params.yaml, and the files that jobs read."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "params.yaml").write_text(params)
     for stage in sweep.NEEDED:
         write_json(tmp_path / "data/household_four" / stage / "there.json", {})
     return tmp_path
