@@ -183,11 +183,8 @@ def test_the_valid_pairs_of_a_refused_claim_count_as_a_reading(measure):
     results = measure("lod", pd.concat([rows, other.assign(value=other["value"].clip(upper=0.7))]))
     claim = replace(OVER, readings=(reading("y", first={"method": "y"}),))
     row = judge([claim], results).iloc[0]
-    assert (
-        row["effect"] < 0
-        and row["verdict"] == "depends on the reading"
-        and "as written: not testable" in row["readings"]
-    )
+    assert row["effect"] < 0 and row["verdict"] == "depends on the reading"
+    assert "as written: not testable" in row["readings"]
 
 
 def test_pairs_and_sets_are_those_that_the_effect_is_of(measure):
