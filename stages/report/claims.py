@@ -87,11 +87,14 @@ NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
 SUMS = "sums of maps, as eq. 3.1 to 3.6 print them"  # the channels are means of these maps
 
 
-def in_sums(*sides: Methods) -> tuple[Reading, ...]:
-    """The reading of a claim on the methods of its first and second side with SUMS; none where sums change nothing."""
+def in_sums(*sides: Methods, **more: Any) -> tuple[Reading, ...]:
+    """The reading of a claim on the methods of its first and second side with SUMS; none where sums change nothing.
+
+    more: further fields that the reading changes.
+    """
     summed = tuple(map(_summed, sides))
     changes = {side: {"method": methods} for side, methods in zip(("first", "second"), summed, strict=False)}
-    return () if summed == sides else (reading(SUMS, **changes),)
+    return () if summed == sides else (reading(SUMS, **changes, **more),)
 
 
 def _summed(methods: Methods) -> Methods:

@@ -222,7 +222,7 @@ FOUR_VIEWS = reading("four principal viewpoints", dataset=(*SETS_3_1_FOUR, *GAZE
 def of_section_3_1(entry: Claim) -> Claim:
     """The claim with the readings that T3.1.5 has: of its viewpoints, and of its equations where it names methods."""
     sides = [side["method"] for side in (entry.first, entry.second) if isinstance(side, dict) and "method" in side]
-    return replace(entry, readings=(*entry.readings, FOUR_VIEWS, *in_sums(*sides)))
+    return replace(entry, readings=(*entry.readings, FOUR_VIEWS, *in_sums(*sides, dataset=(SECTION_3_1,))))
 
 
 CLAIMS = [of_section_3_1(entry) if entry.dataset == OF_3_1 else entry for entry in CLAIMS]
