@@ -34,7 +34,7 @@ from .tables import (  # fmt: skip
     by_object,
     data_sets,
     face_counts,
-    fixed,
+    is_drawn,
     ordered,
     paired_cells,
     short,
@@ -73,7 +73,7 @@ def figure_3_4(results: Results) -> Figure:
 def figure_3_5(results: Results) -> Figure:
     """Six panels, a row each method: distances, the same by face count, errors as seen, number of points."""
     dataset = results.printed(SECTION_3_1, "lod")
-    rows = paired_cells(results, methods=filter(fixed, set(results.rows("lod", dataset)["method"])), dataset=dataset)
+    rows = paired_cells(results, methods=filter(is_drawn, set(results.rows("lod", dataset)["method"])), dataset=dataset)
     methods, targets = ordered(set(rows["method"])), face_counts(rows)[:2]
     if PLAIN not in methods or len(methods) < 3:
         raise NotRun("no face count that plain QEM and two other methods reach", "lod", runnable=False)

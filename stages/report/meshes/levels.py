@@ -31,7 +31,7 @@ from .tables import (
     QSLIM,
     UNITS,
     WEIGHTED,
-    fixed,
+    is_drawn,
     paired_cells,
     size,
 )
@@ -106,7 +106,7 @@ def _valid(results: Results, claim: Claim, rows: pd.DataFrame) -> pd.DataFrame:
 def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
     """Frame objects x methods of a column, mean over the targets that all methods reach; no objects without ranks."""
     rows = results.measured(claim.stage, claim.sets[0], **claim.where, metric=metric)
-    rows = rows[[name not in (PLAIN, QSLIM) and fixed(name) for name in rows["method"]]]
+    rows = rows[[is_drawn(name) and name not in (PLAIN, QSLIM) for name in rows["method"]]]
     method_counts = rows.groupby(CELL)["method"].transform("nunique")
     rows = rows[method_counts == rows["method"].nunique()]
     table = rows.pivot_table(index="item", columns="method", values=column)

@@ -56,7 +56,7 @@ def build(results: Results) -> Table:
 def counted(rows: pd.DataFrame) -> pd.DataFrame:
     """The table's numbers for the rows of one set: a row a method and target, over the objects that have a mesh."""
     units = rows[rows["value"].notna() & (rows["metric"] == "metro_mean")]
-    units = units[[fixed(name) and name not in (PLAIN, QSLIM) for name in units["method"]]]
+    units = units[[is_drawn(name) and name not in (PLAIN, QSLIM) for name in units["method"]]]
     units = units.assign(
         without_points=units["points"] == 0,
         three_rings=(units["points"] > 0) & ~units["shrunk"].astype(bool),
@@ -119,7 +119,7 @@ def paired_cells(
     results: Results, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None,
     dataset: str | None = None, whole: bool = False,
 ) -> pd.DataFrame:  # fmt: skip
-    """Rows of these errors and methods (None: of all), only where all methods that were run reach the object's target.
+    """Rows of these errors and methods (None: of all but sums), only where all that were run reach the target.
 
     `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
     only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm. Methods that have
@@ -130,7 +130,8 @@ def paired_cells(
     times = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
     rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
-    rows = rows if methods is None else rows[rows["method"].isin(list(methods))]
+    asked = rows["method"].isin(list(methods)) if methods is not None else ~rows["method"].str.contains(SUMMED)
+    rows = rows[asked]
     rows = rows.merge(times, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
     methods_met = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
     method_counts = rows.assign(method=methods_met).groupby([*CELL, "metric"])["method"].transform("nunique")
@@ -212,8 +213,13 @@ NAMES = {  # short, the thesis's, in the order of its figure 3.6; then those of 
 
 
 def fixed(method: str) -> bool:
-    """Whether a method is one of the thesis's tables: no way of keeping neighbourhoods, nor sums, behind its name."""
-    return method.rpartition("-")[2] not in WAYS and not method.endswith(SUMMED)
+    """Whether a method keeps neighbourhoods of fixed size: no way of keeping them stands behind its name."""
+    return method.rpartition("-")[2] not in WAYS
+
+
+def is_drawn(method: str) -> bool:
+    """Whether a method is one of T figure 3.5, or beside these: fixed neighbourhoods, and maps that are no sums."""
+    return fixed(method) and SUMMED not in method
 
 
 def short(method: str) -> str:
