@@ -45,7 +45,7 @@ def load(path: str | Path) -> Mesh:
     meet at one place: they would open the surface. Of a point cloud
     (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
     haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
-    camera. A warning names a cloud whose normals have wrong sides, and a file with a damaged picture. A GLB is y up, a
+    camera. A warning names a cloud whose normals have wrong sides, and pictures that are unreadable. A GLB is y up, a
     .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or z, whichever the shape
     suggests (haptic_glance.mesh.upright).
     Raises MeshError with the file and the reason when it holds no usable mesh.
@@ -198,8 +198,8 @@ def _parsed(content, suffix, resolver, every_colour, name):
         order = obj_vertices(content) if suffix == ".obj" else None
         beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
         opened = _open(content, suffix, beside)
-        if damaged := set_apart(opened, content):
-            warn_caller(f"{name}: damaged, so left out: the picture {', the picture '.join(damaged)}")
+        if unreadable := set_apart(opened, content):
+            warn_caller(f"{name}: unreadable, so left out: the picture {', the picture '.join(unreadable)}")
         loaded = join_parts(opened, order, every_colour)
     else:
         skip = not (every_colour and suffix == ".ply")

@@ -58,12 +58,13 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
     """Moves all pictures but those of colour from the materials of a file's Scene to the metadata of its parts.
 
     A copy of a part, as `join_parts` makes, would decode them. content: the bytes of a GLB, whose pictures on another
-    set of texture coordinates than the first are left out. Returns the names of damaged pictures, which are left out.
+    set of texture coordinates than the first are left out. Returns the names of unreadable pictures, which are left
+    out, too.
     """
     parts = [part for part in getattr(loaded, "geometry", {}).values() if isinstance(part, trimesh.Trimesh)]
     materials = {id(part): getattr(part.visual, "material", None) for part in parts}
     tree = _header(content)
-    damaged = [name for name, picture in _pictures(tree, content) if not _is_sound(picture)]
+    unreadable = [name for name, picture in _pictures(tree, content) if not _is_readable(picture)]
     elsewhere = {
         (str(material.get("name")), name)
         for material in _stated_in(tree, "materials")
@@ -82,13 +83,14 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
         for name in ("baseColorTexture", "image"):
             image = getattr(material, name, None)
             _check_size(image)
-            if image is not None and not _is_sound(image):
-                damaged.append(f"of the material {material.name}" if material.name else "of a material without a name")
+            if image is not None and not _is_readable(image):
+                of_it = f"of the material {material.name}" if material.name else "of a material without a name"
+                unreadable.append(of_it)
                 setattr(material, name, None)
                 for part in parts:
                     if materials[id(part)] is material and part.metadata[BESIDE]:
                         part.metadata[BESIDE].pop(name, None)
-    return damaged
+    return unreadable
 
 
 def _pictures(tree, content):
@@ -101,10 +103,12 @@ def _pictures(tree, content):
             yield str(entry.get("name", f"number {number}")), content[first : first + view["byteLength"]]
 
 
-def _is_sound(picture):
+def _is_readable(picture):
     """Whether Pillow can read the head of a picture's bytes, or decode a picture, which then stays decoded."""
     try:
         Image.open(io.BytesIO(picture)) if isinstance(picture, bytes) else picture.load()
+    except Image.DecompressionBombError:
+        return True  # too large for a colour, which `_check_size` says; the others stay undecoded
     except (OSError, SyntaxError, ValueError):
         return False
     return True

@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+import warnings
 from urllib.parse import quote
 
 import numpy as np
@@ -125,17 +126,28 @@ def test_what_is_not_beside_it_is_named(write, beside, tmp_path, capsys):
 def test_a_damaged_picture_is_left_out_by_name(first, picture, glb, tmp_path):
     start = glb.index(b"\x89PNG") + first
     (tmp_path / "scene.glb").write_bytes(glb[:start] + bytes(20) + glb[start + 20 :])
-    with pytest.warns(UserWarning, match=f"^scene.glb: damaged, so left out: the picture {picture}$"):
+    with pytest.warns(UserWarning, match=f"^scene.glb: unreadable, so left out: the picture {picture}$"):
         mesh = load(tmp_path / "scene.glb")
     assert len(mesh.faces) == 400
     run([str(tmp_path / "scene.glb"), "--faces", "300", "--out", str(tmp_path / "less.glb")])
     assert len(load(tmp_path / "less.glb").faces) == 300
 
 
+def test_a_picture_beside_the_colour_that_is_too_large_to_open_harms_nothing(tmp_path, monkeypatch):
+    ball = trimesh.creation.icosphere(1)
+    material = PBRMaterial(baseColorTexture=Image.new("RGB", (8, 8)), emissiveTexture=Image.new("RGB", (32, 32)))
+    ball.visual = TextureVisuals(ball.vertices[:, :2] / 4 + 0.5, material=material)
+    ball.export(tmp_path / "ball.glb")
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 100)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        assert load(tmp_path / "ball.glb").texture.images[0].shape == (8, 8, 4)
+
+
 def test_a_damaged_picture_beside_a_gltf_is_left_out_by_name(write, beside, tmp_path):
     path = write(beside)
     (tmp_path / "skin of it.png").write_bytes(b"no picture")
-    with pytest.warns(UserWarning, match=r"^scene.gltf: damaged, so left out: the picture skin of it.png$"):
+    with pytest.warns(UserWarning, match=r"^scene.gltf: unreadable, so left out: the picture skin of it.png$"):
         load(path)
 
 
