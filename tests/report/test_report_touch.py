@@ -13,7 +13,7 @@ from stages.report.results import SETS_4_2, NotRun
 from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
 from stages.report.touch import claims, touches
-from stages.report.touch.rows import COMMON, PRINTED, shared_objects
+from stages.report.touch.rows import COMMON, PRINTED, accuracies, shared_objects
 from tests.report.frames import verdicts
 
 GLANCE = {
@@ -143,3 +143,9 @@ def test_random_sets_count_the_objects_that_they_share():
         assert shared_objects(name) == pytest.approx(common / (1 - common))
     first = next(iter(COMMON))
     assert shared_objects(first, "another") == 0 < shared_objects(first, first, "another") < shared_objects(first)
+
+
+def test_a_split_that_no_random_set_was_measured_by_has_no_accuracy():
+    rows = pd.DataFrame({"dataset": "a", "set": [1, 2], "split": "random", "metric": "accuracy", "value": [0.4, 0.6]})
+    assert accuracies(rows)["accuracy"] == 0.5
+    assert np.isnan(accuracies(rows, "regions")["accuracy"])

@@ -91,8 +91,8 @@ def accuracies(rows: pd.DataFrame, split: Split = Split.RANDOM) -> dict[str, flo
     accuracy_rows = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
     splits, values = accuracy_rows["split"].to_numpy(), accuracy_rows["value"].to_numpy(float)
     of_split, share = values[splits == split], shared_by(split)
-    if "set" in accuracy_rows and accuracy_rows["set"].notna().any():
-        split_rows = accuracy_rows[splits == split]
+    split_rows = accuracy_rows[splits == split]
+    if "set" in split_rows and split_rows["set"].notna().any():
         of_split = split_rows.groupby(["dataset", "set"])["value"].mean()
         share = shared_objects(*of_split.index.get_level_values("dataset"))
     ends = zip(("accuracy", "low", "high"), within(of_split, share), strict=True)
