@@ -175,7 +175,8 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: S
     texts += [f"{name}: not run" for name in not_run]
     words, written = [reading.word for reading in judgements], judgements[0]
     if written is not judged_one and any(len(effect.refused) < effect.pairs for effect in written.used):
-        words.append(verdict(*effect_of(written.chosen).interval[1:]))  # of its valid pairs, which count as a reading
+        # Its valid pairs count as a reading.
+        words.append(verdict(*effect_of(written.chosen).interval[1:], written.claim.unit))
     return {"verdict": over_readings(words), "readings": "; ".join(texts)}
 
 

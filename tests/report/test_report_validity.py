@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from stages.report import meshes
-from stages.report.claims import Claim, highest_of, reading
+from stages.report.claims import POINTS, Claim, highest_of, reading
 from stages.report.effects import Effect, differences, effect_of, invalid
 from stages.report.meshes import tables
 from stages.report.results import SECTION_3_1
@@ -185,6 +185,17 @@ def test_the_valid_pairs_of_a_refused_claim_count_as_a_reading(measure):
     row = judge([claim], results).iloc[0]
     assert row["effect"] < 0 and row["verdict"] == "depends on the reading"
     assert "as written: not testable" in row["readings"]
+
+
+def test_valid_pairs_without_a_difference_that_matters_are_a_decided_reading(measure):
+    rows = simplified(without_points=5)
+    is_valid = (rows["method"] == "x") & (rows["points"] > 0)
+    rows.loc[is_valid, "value"] = np.linspace(0.9, 1.1, is_valid.sum())
+    results = measure("lod", pd.concat([rows, simplified().query("method == 'x'").assign(method="y")]))
+    other = (reading("y", first={"method": "y"}),)
+    for unit_name, word in (("NSS", "supported"), (POINTS, "depends on the reading")):  # 0.1 is negligible in points
+        row = judge([replace(OVER, unit=unit_name, readings=other)], results).iloc[0]
+        assert row["verdict"] == word
 
 
 def test_pairs_and_sets_are_those_that_the_effect_is_of(measure):
