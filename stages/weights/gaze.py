@@ -57,9 +57,9 @@ def _rows(content, columns):
     numbers = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
     if not numbers:
         raise ValueError(f"not a gaze file of numbers in {columns} columns: no line begins with a number")
-    names = [word.strip("#/").lower() for word in header]
+    names = [name for word in header if (name := word.strip("#/").lower())]
     place = next((i for i, name in enumerate(names) if name.startswith(SECONDS)), SECONDS_AT)
-    if len(names) == columns and (names[0] != "x" or place != SECONDS_AT):
+    if len(names) == columns and ("x" in names[1:] or place != SECONDS_AT):
         order = f"{ORDER}{' label' if columns == COLUMNS else ''}"
         raise ValueError(f"its columns are {' '.join(names)}: order them as {order}")
     try:

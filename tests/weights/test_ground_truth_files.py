@@ -53,6 +53,7 @@ def test_tables_of_other_programs_are_read():
         b"\xef\xbb\xbf" + plain,
         plain.decode().encode("utf-16"),
         header + plain,
+        header.replace(b"X Y Z", b"pos_x pos_y pos_z") + plain,
         plain.replace(b" ", b", "),
         plain.replace(b".", b","),
         (header + plain.replace(b".", b",")).replace(b" ", b";"),
@@ -124,6 +125,7 @@ ONE_AWAY = MESH.vertices * np.where(np.arange(162) == 100, 2, 1)[:, None]
             lambda: read_gaze(b"x,y,z,nx,ny,nz,label,Duration_ms\n0,0,0,0,0,1,1,250\n"),
             "order them as x y z nx ny nz",
         ),
+        (lambda: read_gaze(b"# x y z nx ny nz label seconds\n0 0 0 0 0 1 1 0\n"), "its columns are x y z nx ny nz lab"),
         (lambda: read_gaze(b"x y z nx ny nz s l\n0 0 0 0 0 1 nan 0\n"), "the first in line 2: remove them, or write 0"),
         (lambda: gaze_on_vertices(MESH, MESH.vertices * 1000, np.ones(162)), "The rows are 1000 times as large as the"),
         (
