@@ -156,7 +156,7 @@ def _whole(rows: pd.DataFrame) -> pd.Series:
     keys = [column for column in ("group", "split", "classifier", "scaling", "repetition", "metric") if column in rows]
     count = rows["train"] + rows["test"]
     whole = count.where(rows["method"] == "all").groupby([rows[key] for key in keys], dropna=False).transform("max")
-    return (rows["method"] != "all") & (count == whole)
+    return rows["method"].str.startswith("selected", na=False) & (count == whole)
 
 
 def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:

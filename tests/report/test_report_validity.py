@@ -274,10 +274,10 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
 
 def test_a_selection_that_left_nothing_out_is_no_evidence(measure):
     common = {"dataset": "test", "group": "six", "split": "random", "classifier": "knn", "metric": "accuracy"}
-    rows = pd.DataFrame(common, index=range(6))
-    rows = rows.assign(method=["all", "selected", "selected_control"] * 2, repetition=np.repeat([0, 1], 3), value=0.6)
-    rows = rows.assign(train=75, test=[25, 25, 25, 25, 20, 20])
-    assert causes_in(measure("recorded", rows), "recorded") == ["", NOTHING_OUT, NOTHING_OUT, "", "", ""]
+    rows = pd.DataFrame(common, index=range(8)).assign(repetition=np.repeat([0, 1], 4), value=0.6)
+    rows = rows.assign(method=["all", "selected", "selected_control", "unreduced"] * 2)  # the last selects nothing
+    rows = rows.assign(train=75, test=[25, 25, 25, 25, 25, 20, 20, 25])
+    assert causes_in(measure("recorded", rows), "recorded") == ["", NOTHING_OUT, NOTHING_OUT, *[""] * 5]
 
 
 def test_an_svm_whose_answers_nobody_counted_is_no_evidence_beside_counted_ones(measure):
