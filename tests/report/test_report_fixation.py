@@ -156,7 +156,7 @@ VERDICTS = {
     "glance_over_ewigc": ("supported", 0.2),
     "excluded_least_masked": ("supported", 0.225),
     "ewigc_over_rest_resnet50_masked": ("supported", 0.25),
-    "ewigc_nearer_than_literature_least": ("supported", 10),
+    "ewigc_nearer_than_literature_least": ("not testable", 10),  # noise is nearer by this measure
     "noise_correlates_masked": ("supported", 0.2),
 }
 
@@ -176,7 +176,8 @@ def test_claims_turn_with_the_rows_and_name_what_was_not_run(gaze, written):
         row = judged_row(results, f"resnet_{key}")
         match = re.search(r"as written: not testable \+?([-\d.]+)", row["readings"])  # VGG16's layers are random
         assert float(match[1]) == pytest.approx(effect, rel=0.1)
-        assert row["effect"] == pytest.approx(0, abs=abs(effect) / 10)  # by frozen filters
+        is_least = key == "nearer_than_vgg_least"  # by which noise is nearer than both networks, so no reading is valid
+        assert row["effect"] == pytest.approx(effect if is_least else 0, abs=abs(effect) / 10)  # by frozen filters
     assert judged_row(results, "entropy_over_average")["verdict"] == "supported"
     assert judged_row(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
 
