@@ -158,7 +158,7 @@ def _split_rows(
         validity = split == Split.RANDOM and method == "all"
         is_wide = split == Split.RANDOM or (class_set.group == "all" and method in ("all", UNREDUCED))
         for scaling in scalings if is_wide else (TRAINING,):
-            kind = "reduced" if method == UNREDUCED else "features"
+            kind = "reduced" if method == UNREDUCED else "features"  # "reduced" samples are taken as they are
             prepared = Prepared.from_split(samples, labels, (train, test), kind, scaling)
             for name in CLASSIFIERS:
                 answers = prepared.predict(name, number, with_training=validity)

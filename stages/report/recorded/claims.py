@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
+from stages.recorded.pressure_images import UNREDUCED
 from stages.report.claims import NO_SVM, SCALE, SCALED, Claim, Side, highest_of, reading
 from stages.report.effects import side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED
@@ -134,7 +135,7 @@ def over_classifiers(results: Results, claim: Claim) -> pd.Series:
     Another stage has their rows, of the same splits: of features of the pressure array, of bare electrodes.
     """
     key, where = claim.over[0], {"metric": "accuracy", "split": claim.where["split"]}
-    where |= {"group": "all", "method": ("all", "unreduced")} if "pressure" in claim.where["data"] else {"palm": "all"}
+    where |= {"group": "all", "method": ("all", UNREDUCED)} if "pressure" in claim.where["data"] else {"palm": "all"}
     rows = results.measured("recorded", claim.sets[0], **where)
     ways = [
         name
