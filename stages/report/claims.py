@@ -99,12 +99,14 @@ def in_sums(*sides: Methods, **more: Any) -> tuple[Reading, ...]:
 
 def _summed(methods: Methods) -> Methods:
     if isinstance(methods, Pick):
-        return replace(methods, names=tuple(map(_summed, methods.names)))
-    if not isinstance(methods, str):
-        return tuple(map(_summed, methods))
-    base, dash, way = methods.partition("-")
+        return replace(methods, names=tuple(map(_with_sums, methods.names)))
+    return _with_sums(methods) if isinstance(methods, str) else tuple(map(_with_sums, methods))
+
+
+def _with_sums(method: str) -> str:
+    base, dash, way = method.partition("-")
     base = "VisAtt" if base == "itti" else base
-    return f"{base}{SUMMED}{dash}{way}" if f"{base}{SUMMED}" in METHODS else methods
+    return f"{base}{SUMMED}{dash}{way}" if f"{base}{SUMMED}" in METHODS else method
 
 
 @dataclass(frozen=True, kw_only=True)
