@@ -176,8 +176,7 @@ def _select(
     for column, value in patterns.items():
         rows = _some(rows[[fnmatch(str(name), value) for name in rows[column]]], claim, f"{column} like {value}")
     for column, value in picks.items():
-        reasons = reasons_of(results, claim, rows)
-        valid = rows[reasons == ""] if len(reasons) else rows  # a refused row makes no method the best
+        valid = _mostly_valid(rows, column, reasons_of(results, claim, rows))
         try:
             choice = _picked(valid, claim, column, value, other)
         except NotRun:
@@ -212,6 +211,14 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
                 middle = (side_values["first"] + side_values["second"]) / 2
                 values /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
     return values.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else values
+
+
+def _mostly_valid(rows: pd.DataFrame, column: str, reasons: pd.Series) -> pd.DataFrame:
+    """The valid rows of the values of a column that have enough of them: refused rows make no method the best."""
+    if reasons.empty:
+        return rows
+    refused = (reasons != "").groupby(rows[column]).transform("mean")
+    return rows[(reasons == "") & (refused <= TOO_MANY)]
 
 
 def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:

@@ -168,13 +168,14 @@ def test_where_no_pair_is_valid_the_numbers_are_of_all_pairs(measure):
     assert row["verdict"] == "not testable" and row["effect"] == 99 and row["pairs"] == COUNT
 
 
-def test_a_refused_row_makes_no_method_the_best(measure):
-    rows = simplified(without_points=5)  # five errors of 100 make x the worst
-    worse = rows[rows["method"] == "x"].assign(method="y", points=9, value=lambda frame: frame["value"].clip(2.5, 2.5))
-    results = measure("lod", pd.concat([rows, worse]))
+@pytest.mark.parametrize(("refused", "rival"), [(2, 2.5), (5, 1.5)])
+def test_neither_a_refused_row_nor_a_method_of_many_is_the_best(measure, refused, rival):
+    rows = simplified(without_points=refused)  # errors of 100; the valid ones of x are about 2
+    other = rows[rows["method"] == "x"].assign(method="y", points=9, value=rival)
+    results = measure("lod", pd.concat([rows, other]))
     claim = replace(OVER, first={"method": highest_of("x", "y")})
-    assert differences(results, claim).mean() == pytest.approx(1.5)
-    assert differences(results, replace(claim, checked=False)).mean() > 10
+    assert differences(results, claim).mean() == pytest.approx(rival - 1)
+    assert differences(results, replace(claim, checked=False)).mean() > 5
 
 
 def test_the_valid_pairs_of_a_refused_claim_count_as_a_reading(measure):
