@@ -356,7 +356,8 @@ def _depth(away):
 TEXT = (".xyz", ".pts", ".asc")
 INTENSE = (7, 10)  # numbers a line with an intensity and a colour, and with a normal, too
 NORMALS = (("normal_x", "normal_y", "normal_z"), ("nx", "ny", "nz"))  # names of their columns
-FIRST = (*(names[0] for names in NORMALS), "r", "red")  # names of the first column of a normal or a colour
+RED = ("r", "red")
+FIRST = (*(names[0] for names in NORMALS), *RED)  # names of the first column of a normal or a colour
 FORMATS = (*TEXT, ".pcd", ".las")
 UNIT = 0.05  # how far the length of a normal may be from 1
 LARGEST_ORIGIN = 1e-9  # a viewpoint nearer to zero than this was not set by who wrote the file
@@ -372,7 +373,7 @@ def read_cloud(content: bytes, suffix: str) -> Cloud:
     Text has a point a line: x y z, then three numbers that are a normal if their length is 1 on all lines, and
     else a colour of 0..255, then the other of the two; what follows is ignored, so are lines that hold no numbers.
     Between the place and the colour may be an intensity, which scanners write; a normal comes before it. A header with
-    the names of all columns (x y z nx ny nz r g b) goes before this order.
+    the names of all columns (x y z nx ny nz r g b) goes before this order; its colours may be fractions or shares of 1.
     """
     if suffix in TEXT:
         return _text(content, suffix)
@@ -397,19 +398,23 @@ def _text(content, suffix):
     width = min(size for size in sizes if size >= 3)
     values = np.loadtxt(rows, usecols=range(width), ndmin=2)
     normals = colors = None
-    for start in _starts(values, [word.strip("/#").lower() for word in header if word.strip("/#")], suffix):
-        three = values[:, start : start + 3]
-        if normals is None and _units(three) is not None:
+    header = [word.strip("/#").lower() for word in header if word.strip("/#")]
+    named = len(header) == width and header[0] == "x"
+    for start in _starts(values, header if named else [], suffix):
+        three, is_red = values[:, start : start + 3], named and header[start] in RED
+        if normals is None and not is_red and _units(three) is not None:
             normals = _units(three)
-        elif colors is None and _are_bytes(three):
+        elif colors is None and not named and _are_bytes(three):
             colors = three.astype(np.uint8)
+        elif colors is None and is_red and three.min() >= 0 and three.max() <= 255:
+            colors = np.rint(three * (255 if three.max() <= 1 else 1)).astype(np.uint8)
     return Cloud(values[:, :3], normals, colors)
 
 
 def _starts(values, header, suffix):
     """The columns with which normals and colours may begin: by the names in the header, else by the numbers."""
     width = values.shape[1]
-    if len(header) == width and header[0] == "x":
+    if header:
         return [start for start, name in enumerate(header[: width - 2]) if name in FIRST]
     three = values[:, 3:6]
     is_plain = _units(three) is not None or suffix != ".pts" and _are_bytes(three)

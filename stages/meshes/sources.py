@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 import numpy as np
@@ -242,15 +242,17 @@ def _member(archive, name):
     return next(read_members(archive, [name]))[1]
 
 
+ABOUT = re.compile("read[-_ ]?me|licen[cs]e", re.IGNORECASE)  # files about a collection
+
+
 def match_files(files: Mapping[str, Callable[[], bytes]], pattern: str) -> dict[str, tuple[str, Callable[[], bytes]]]:
     """The files whose path ends with a regular expression: dict name -> (path, function that reads the bytes).
 
-    The name is the group of the expression, with / as _. Raises FetchError when no file matches, and when two files
-    have one name.
+    The name is the group of the expression, with / as _. Hidden files, readmes and licences are skipped. Raises
+    FetchError when no file matches, and when two files have one name.
     """
-    matches = [
-        (re.search(rf"(?:^|/){pattern}$", path), path) for path in files if "/." not in path
-    ]  # hidden files are skipped
+    names = [path for path in files if "/." not in path and not ABOUT.fullmatch(PurePosixPath(path).stem)]
+    matches = [(re.search(rf"(?:^|/){pattern}$", path), path) for path in names]
     matched = {}
     for match, path in matches:
         if match and (name := match[1].replace("/", "_")) in matched:

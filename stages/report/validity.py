@@ -5,6 +5,7 @@ meshes whose errors say nothing about the kept points.
 """
 
 from collections.abc import Callable
+from math import log
 
 import pandas as pd
 
@@ -21,10 +22,24 @@ DEAF, WIDE = "svm", "min_max"  # a classifier that often gives one answer, but n
 UNKNOWN = "nobody counted the answers of a classifier that often gives one"
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 UNMEASURED = "nobody measured whether the training was saturated"
+DIVERGED, LOSS = "the training's loss is never below that of guessing", "curve_loss"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
 LEAST, NOISE_NEARER = "distance", "noise is nearer by this measure"
+TRAINING = (
+    "method",
+    "split",
+    "data",
+    "weights",
+    "pretrained",
+    "mode",
+    "size",
+    "touches",
+    "precision",
+    "repetition",
+    "passes",
+)
 CHANGES = ("weight_change", "layer_weight_change")  # of a tuned network
 SEQUENCES, SUM = ("method", "split", "repetition", "training", "frames", "cells"), "cnn"  # trials by contours
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
@@ -86,14 +101,36 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     """Rows of tuned networks whose training was stopped after some passes while it still improved, or may have been.
 
     A network that knows its test part has learned its training part. The changes of its weights are checked alike.
+    Accuracies of all networks, frozen ones too, are invalid where no pass had a loss below that of guessing.
     """
     is_accuracy = rows["metric"] == "accuracy"
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (is_accuracy | rows["metric"].isin(CHANGES))
     converged = rows["passes"] == "converged" if "passes" in rows else False
     train_accuracy = _beside(results, stage, dataset, rows, "train_accuracy")
     doubtful = tuned & ~converged & ~(is_accuracy & (rows["value"] >= SATURATED))
-    return pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
+    reasons = pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
         doubtful & train_accuracy.isna(), UNMEASURED)  # fmt: skip
+    return reasons.mask(is_accuracy & _diverged(results, stage, dataset)[rows.index], DIVERGED)
+
+
+def _diverged(results: Results, stage: str, dataset: str) -> pd.Series:
+    """Whether no pass of each row's training had a loss below that of guessing, the logarithm of the number of classes.
+
+    The pass that was kept is the one of the best validation; its loss is no less than the least.
+    """
+
+    def of_all() -> pd.Series:
+        all_rows = results.rows(stage, dataset)
+        try:
+            losses = results.measured(stage, dataset, metric=LOSS)
+        except NotRun:
+            return pd.Series(False, index=all_rows.index)
+        keys = [column for column in TRAINING if column in all_rows]
+        least = losses.groupby(keys, dropna=False, as_index=False)["value"].min()
+        loss = all_rows[keys].merge(least, on=keys, how="left")["value"].set_axis(all_rows.index)
+        return loss > log(max(all_rows["group"].nunique() if "group" in all_rows else 0, 2))
+
+    return results.once(("diverged", stage, dataset), of_all)
 
 
 @check("fixation")

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from haptic_glance.base.text import lines_of, text_of
+from haptic_glance.base.text import NUMBER, lines_of, text_of
 from haptic_glance.look.marks import MarksError, read_marks
 from haptic_glance.mesh.mesh import Mesh
 
@@ -57,6 +57,8 @@ def _rows(content, columns):
     numbers = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
     if not numbers:
         raise ValueError(f"not a gaze file of numbers in {columns} columns: no line begins with a number")
+    if sum(bool(NUMBER.match(word)) for word in header) > 1:  # names may have a number, such as nx 1 or label 2
+        raise ValueError(f"line {first} is no row of numbers, and no header: {' '.join(header)[:80]}")
     names = [name for word in header if (name := word.strip("#/").lower())]
     place = next((i for i, name in enumerate(names) if name.startswith(SECONDS)), SECONDS_AT)
     if len(names) == columns and ("x" in names[1:] or place != SECONDS_AT):
@@ -94,6 +96,8 @@ def gaze_on_vertices(mesh: Mesh, positions: np.ndarray, seconds: np.ndarray, tol
     rows are off the mesh or less than half of them match, and for NaN and negative seconds.
     """
     seconds = np.asarray(seconds, dtype=np.float64)
+    if not len(seconds):
+        raise ValueError("no row of gaze: positions and seconds are empty")
     if not (np.isfinite(positions).all() and (seconds >= 0).all() and (seconds < np.inf).all()):
         raise ValueError("positions must be finite, and seconds finite and not negative: leave the other rows out")
     vertex, distance = match_rows(mesh, positions, tolerance)

@@ -18,6 +18,7 @@ from stages.report.results import SECTION_3_1
 from stages.report.topics import build_one
 from stages.report.validity import (
     AS_PLAIN,
+    DIVERGED,
     FROM_RANDOM,
     GUESSING,
     NO_POINT,
@@ -271,6 +272,17 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     assert causes_in(measure(stage, pd.concat([rows, learned])), stage) == [UNTRAINED, "", "", ""]
     unknown = rows.drop(columns="passes").assign(value=[0.6, 0.96, 0.6, 0.6])  # nobody knows how far they were trained
     assert causes_in(measure(stage, unknown), stage) == [UNMEASURED, "", "", UNMEASURED]
+
+
+def test_a_network_whose_loss_never_falls_below_guessing_is_no_evidence(measure):
+    rows = pd.DataFrame(
+        {"dataset": "test", "metric": "accuracy", "value": 0.6, "repetition": range(4), "mode": "frozen"}
+    )
+    curves = [(0, 1, 1.4), (0, 2, 1.5), (1, 1, 1.4), (1, 2, 1.3), (2, 1, 1.3), (2, 2, 9.0)]  # four classes: 1.386
+    losses = pd.DataFrame(curves, columns=["repetition", "epoch", "value"]).assign(metric="curve_loss", mode="frozen")
+    classes = pd.DataFrame({"group": list("abcd"), "metric": "object_accuracy", "value": 0.6, "mode": "frozen"})
+    results = measure("transfer", pd.concat([rows, losses, classes]).assign(dataset="test"))
+    assert causes_in(results, "transfer") == [DIVERGED, "", "", ""]
 
 
 def test_a_selection_that_left_nothing_out_is_no_evidence(measure):

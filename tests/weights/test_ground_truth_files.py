@@ -82,6 +82,11 @@ def test_two_files_of_one_object_and_absent_ones_are_named():
         match_files(files, r"[^/]+/Models_3D/([^/]+)\.obj")
 
 
+def test_readmes_and_licences_are_no_objects():
+    names = "dataset_a/README.txt", "dataset_a/ball.txt", "dataset_b/read_me.txt", "dataset_b/License.txt"
+    assert list(match_files(dict.fromkeys(names, bytes), r"dataset_[^/]+/([^/]+)\.txt")) == ["ball"]
+
+
 def test_rows_at_one_place_add_up_and_its_vertices_share_them():
     doubled = Mesh(np.r_[MESH.vertices, MESH.vertices[:1]], MESH.faces)
     rows = np.r_[MESH.vertices, MESH.vertices[:1]]
@@ -117,6 +122,8 @@ ONE_AWAY = MESH.vertices * np.where(np.arange(162) == 100, 2, 1)[:, None]
         ),
         (lambda: read_gaze(b"1 2 3\n"), "8 columns, got 1 rows of 3"),
         (lambda: read_gaze(b" \n"), "is empty"),
+        (lambda: read_gaze(b"?0 0 0 0 0 1 1 0\n0 0 0 0 0 1 1 0\n"), "line 1 is no row of numbers, and no header: "),
+        (lambda: gaze_on_vertices(MESH, np.empty((0, 3)), np.empty(0)), "no row of gaze"),
         (lambda: read_gaze(b"a b c d e f g h\n"), "not a gaze file of numbers"),
         (lambda: read_gaze(b"0 0 0 0 0 1 1 0\n0 0 0 0 0 1 nan 0\n"), "line 2"),
         (lambda: read_gaze(b"0 0 0 0 0 1 -1 0\n"), "negative seconds"),
