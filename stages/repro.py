@@ -33,6 +33,7 @@ from stages.engine.settings import check_clone
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
 ATTEMPTS = 3  # of a stage that meets a lock of DVC
 LOGS = Path("build/logs")
+BLAS = "OPENBLAS_NUM_THREADS"  # a second thread saves no time on small matrices, and takes a core from another stage
 KEPT = "build/dvc.lock"  # the last sound copy of dvc.lock, which a killed run may leave half written
 REFRESH = 1.0  # seconds between two looks at the clock of what is running
 PLAIN = 60.0  # seconds between two lines of progress where stderr is no terminal; one comes with each start, too
@@ -130,6 +131,7 @@ def causes_of(error: BaseException) -> list[BaseException]:
 
 def run(root: Path) -> list[str]:
     """Runs all that changed below `root`; returns the stages that failed."""
+    os.environ.setdefault(BLAS, "1")
     context = multiprocessing.get_context("fork")  # DVC takes a second to load, once
     schedule = Schedule(*patient(lambda: read_graph(root)))
     (root / LOGS).mkdir(parents=True, exist_ok=True)

@@ -10,7 +10,7 @@ from stages.repro import Schedule, causes_of, patient
 
 NEEDS = {"a": set(), "b": {"a"}, "c": {"a"}, "d": {"b", "c"}}
 GRAPH = """stages:
-  a: {cmd: "cat source > a; echo said a", deps: [source], outs: [a]}
+  a: {cmd: "cat source > a; echo BLAS has $OPENBLAS_NUM_THREADS thread", deps: [source], outs: [a]}
   b: {cmd: "touch b_began; until [ -e c_began ]; do sleep 0.05; done; cat a > b", deps: [a], outs: [b]}
   c: {cmd: "touch c_began; until [ -e b_began ]; do sleep 0.05; done; cat a > c", deps: [a], outs: [c]}
   d: {cmd: "cat b c > d", deps: [b, c], outs: [d]}
@@ -84,6 +84,7 @@ def test_a_failing_stage_is_named_and_the_others_go_on_side_by_side_until_dvc_se
     (repository / "dvc.yaml").write_text(GRAPH.replace("cat a > b", "echo no such sensor >&2; exit 3"))
     process = repro(repository)
     assert process.returncode == 1 and (repository / "c").exists() and not (repository / "d").exists()
+    assert "BLAS has 1 thread" in process.stdout  # more would spin beside those of the other stage
     assert "b failed:\nno such sensor" in process.stderr and "left out: d" in process.stderr
     (repository / "dvc.yaml").write_text(GRAPH)
     process = repro(repository)
