@@ -27,19 +27,8 @@ GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
 LEAST, NOISE_NEARER = "distance", "noise is nearer by this measure"
-TRAINING = (
-    "method",
-    "split",
-    "data",
-    "weights",
-    "pretrained",
-    "mode",
-    "size",
-    "touches",
-    "precision",
-    "repetition",
-    "passes",
-)
+TRAINING = ("method", "split", "data", "weights", "pretrained", "mode", "size", "touches", "precision", "repetition",
+            "passes")  # fmt: skip
 CHANGES = ("weight_change", "layer_weight_change")  # of a tuned network
 SEQUENCES, SUM = ("method", "split", "repetition", "training", "frames", "cells"), "cnn"  # trials by contours
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""

@@ -57,7 +57,7 @@ def _rows(content, columns):
     numbers = [i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
     if not numbers:
         raise ValueError(f"not a gaze file of numbers in {columns} columns: no line begins with a number")
-    if sum(bool(NUMBER.match(word)) for word in header) > 1:  # names may have a number, such as nx 1 or label 2
+    if header and header[0][0] not in "#/" and sum(map(bool, map(NUMBER.match, header))) >= columns // 2:
         raise ValueError(f"line {first} is no row of numbers, and no header: {' '.join(header)[:80]}")
     names = [name for word in header if (name := word.strip("#/").lower())]
     place = next((i for i, name in enumerate(names) if name.startswith(SECONDS)), SECONDS_AT)

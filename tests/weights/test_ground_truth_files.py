@@ -62,6 +62,11 @@ def test_tables_of_other_programs_are_read():
             assert np.array_equal(values, expected)
 
 
+def test_words_with_numbers_before_the_rows_are_no_row():
+    for words in (b"# 0 0 0 0 0 1 1 0\n", b"// 1 2 3 4\n", b"people 32, objects 19, view 2\n"):
+        assert read_gaze(words + b"0 0 0 0 0 1 1 0\n")[2].tolist() == [1]
+
+
 def test_rows_that_a_program_has_rounded_are_of_the_nearest_vertex(tmp_path):
     (tmp_path / "Models_3D").mkdir()
     (tmp_path / "dataset_x").mkdir()
