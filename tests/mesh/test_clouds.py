@@ -71,6 +71,8 @@ FILES = {
     "shares.xyz": lambda: b"x y z red green blue\n" + text(np.hstack([BALL, COLORS / 255])),
     "fractions.xyz": lambda: b"x y z red green blue\n" + text(np.hstack([BALL, COLORS + 0.2])),
     "named_all.xyz": lambda: b"x y z nx ny nz r g b\n" + text(np.hstack([BALL, BALL, unit(COLORS / 255.0)])),
+    "unit.xyz": lambda: b"x y z red green blue\n" + text(np.hstack([BALL, unit(COLORS / 255.0)])),
+    "long.xyz": lambda: b"x y z nx ny nz r g b\n" + text(np.hstack([BALL, COLORS[:, ::-1], COLORS])),
     "decimals.xyz": lambda: text(BALL).replace(b".", b","),
     "semicolons.xyz": lambda: b"X;Y;Z\n" + text(BALL).replace(b" ", b";").replace(b".", b","),
     "mark.xyz": lambda: b"\xef\xbb\xbf" + text(BALL),
@@ -79,7 +81,7 @@ FILES = {
     "short_names.pcd": lambda: pcd(Encoding.BINARY, ("nx", "ny", "nz")),
 }
 COLOURED = ("all.pts", "intense.pts", "intense_all.pts", "binary.pcd", "packed.pcd", "air.las", "intense.xyz",
-            "named.xyz", "last.asc", "shares.xyz", "fractions.xyz")  # fmt: skip
+            "named.xyz", "last.asc", "shares.xyz", "fractions.xyz", "long.xyz")  # fmt: skip
 WITH_NORMALS = (
     "normals.xyz",
     "all.pts",
@@ -96,7 +98,8 @@ def test_every_format_gives_its_points_colours_and_normals(name):
     cloud = read_cloud(FILES[name](), Path(name).suffix)
     assert cloud.points == pytest.approx(BALL, abs=1e-4)
     assert name not in COLOURED or (cloud.colors == COLORS).all()
-    assert name != "named_all.xyz" or cloud.colors[0].tolist() == np.rint(unit(COLORS[:1] / 255.0) * 255)[0].tolist()
+    if name in ("named_all.xyz", "unit.xyz"):
+        assert cloud.colors[0].tolist() == (255 * unit(COLORS[:1] / 255.0)).round()[0].tolist()
     assert cloud.normals is None or cloud.normals == pytest.approx(BALL)
     assert (cloud.normals is not None) == (name in WITH_NORMALS)
 
