@@ -1,12 +1,13 @@
 """Stages side by side: what may start, what is left out, and the same dvc.lock as DVC itself writes."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from stages.repro import Schedule, causes_of, patient
+from stages.repro import BLAS, Schedule, causes_of, patient
 
 NEEDS = {"a": set(), "b": {"a"}, "c": {"a"}, "d": {"b", "c"}}
 GRAPH = """stages:
@@ -66,7 +67,10 @@ def test_a_stage_that_meets_a_lock_tries_again_and_other_errors_tell_their_cause
 
 def repro(folder: Path) -> subprocess.CompletedProcess[str]:
     line = [sys.executable, "-m", "stages.repro"]
-    return subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=300)  # b and c wait for each other
+    environment = {name: value for name, value in os.environ.items() if name != BLAS}  # Dask sets it in this process
+    return subprocess.run(  # b and c wait for each other
+        line, cwd=folder, env=environment, capture_output=True, text=True, timeout=300
+    )
 
 
 @pytest.fixture
