@@ -19,11 +19,10 @@ from haptic_glance.lod.export import face_count
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
 from haptic_glance.lod.pictures import coloured
 from haptic_glance.lod.task import repaired
-from haptic_glance.mesh.axes import AUTO, Axis, axis_named
-from haptic_glance.mesh.files import MeshLike, as_mesh, as_stated
+from haptic_glance.mesh.axes import AUTO, AXES, Axis, axis_named
+from haptic_glance.mesh.files import WITH_UP, MeshLike, as_mesh, as_stated, with_known_up
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.mesh.repair import RADIUS, centre_and_radius
-from haptic_glance.mesh.up import assumed
+from haptic_glance.mesh.repair import RADIUS, centre_and_radius, rotate_to_z_up
 from haptic_glance.touch.skin import METRES, Layer, Metres, length
 
 MESHES = {  # public function: its arguments that are meshes
@@ -33,27 +32,38 @@ MESHES = {  # public function: its arguments that are meshes
     ),
     **dict.fromkeys(("gaps_at", "press_forces"), ("surface",)),
     **dict.fromkeys(("metro", "perceptual"), ("reference", "mesh")),
+    "as_mesh": ("source",),
     "forces": (),
     "follow": ("mesh_or_surface",),
 }  # fmt: skip
 LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
 # public function: its argument in metres
 METRIC = {"press_forces": "depth", "gaps_at": "within", "layout_forces": "depth", "forces": "depth"}
-WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 TRIES = 8  # lower counts that are tried where one leaves a fold
-LOOKING = "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"  # depend on the axis that is up
+# They depend on the axis that is up, or tell it.
+LOOKING = "as_mesh", "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"
+PASSING = "clean", "normalise", "simplify"  # hand an axis that nobody has said on, unknown as it is
 
 
 def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     """The public function of a name, made of the one of the stages."""
-    wrapped = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING)
+    convert = as_stated if name in PASSING else as_mesh
+    work = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING, convert)
     if name in METRIC:
-        return with_metres(wrapped, METRIC[name])
-    return with_lengths(wrapped, LENGTHS[name], name in LOOKING) if name in LENGTHS else wrapped
+        work = with_metres(work, METRIC[name])
+    elif name in LENGTHS:
+        work = with_lengths(work, LENGTHS[name], name in LOOKING)
+    work.__module__ = __package__  # where pickle finds it
+    return work
 
 
-def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
-    """The function, its arguments of these names converted by `as_mesh`, but a Surface, which holds a Mesh.
+def takes_any_mesh(
+    function: Callable[..., Any],
+    names: Sequence[str],
+    looking: bool = False,
+    convert: Callable[[MeshLike], Mesh] = as_mesh,
+) -> Callable[..., Any]:
+    """The function, its arguments of these names converted to a Mesh, but a Surface, which holds one.
 
     looking: whether the function depends on the axis that points up, which is then warned of where the shape chose it.
     """
@@ -67,7 +77,7 @@ def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: 
             if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
                 silent = not looking or bound.arguments.get("up") is not None
                 remedy = "up={!r}" if "up" in parameters.parameters else WITH_UP
-                bound.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, remedy)
+                bound.arguments[name] = convert(mesh) if silent else with_known_up(mesh, remedy)
         return function(*bound.args, **bound.kwargs)
 
     return work
@@ -77,7 +87,7 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str], looking: bo
     """The function, its lengths as shares of the object's diameter, or as text such as "1mm" with unit="mm".
 
     unit: what the coordinates of the mesh are in. The diameter is that of the bounding sphere about the middle of the
-    bounding box, which is 1 for a normalised mesh. looking: as of `takes_any_mesh`.
+    bounding box of the upright object, which is 1 for a normalised mesh. looking: as of `takes_any_mesh`.
     """
     parameters = signature(function)
 
@@ -87,10 +97,10 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str], looking: bo
         bound.apply_defaults()
         name, whole = next(iter(bound.arguments.items()))
         if not isinstance(getattr(whole, "mesh", whole), Mesh):
-            bound.arguments[name] = whole = _settled(whole, WITH_UP) if looking else as_mesh(whole)
+            bound.arguments[name] = whole = with_known_up(whole, WITH_UP) if looking else as_mesh(whole)
         if unit is not None and not any(isinstance(bound.arguments[name], str) for name in names):
             raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
-        diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
+        diameter = _diameter(getattr(whole, "mesh", whole))
         for name in names:
             if bound.arguments[name] is not None:
                 value = bound.arguments[name]
@@ -126,6 +136,8 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
                     raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
                 real = name == "pitch" and isinstance(amount, Metres)
                 values[name] = float(amount) / (values["unit"] if real else 1)
+        if not isinstance(values.get("layer", Layer()), Layer):
+            raise TypeError(f"layer must be a Layer such as Layer(thickness=0.002), got {values['layer']!r}")
         if "layer" in values and "gaps" not in values:
             name, whole = next(iter(values.items()))
             if not isinstance(getattr(whole, "mesh", whole), Mesh):
@@ -174,7 +186,8 @@ def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: flo
 
 @weak_cache
 def _diameter(mesh: Mesh) -> float:
-    return float(centre_and_radius(mesh)[1] / RADIUS)
+    upright = mesh if mesh.up in (*AXES, AUTO) else rotate_to_z_up(mesh)  # another axis turns the box
+    return float(centre_and_radius(upright)[1] / RADIUS)
 
 
 def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float, unit: float, name: str = "") -> None:
@@ -229,23 +242,9 @@ def load(path: str | Path, up: Axis | None = None) -> Mesh:
     (12, 3)
     """
     if up is None:
-        return _settled(path, "load(path, up={!r})")
+        return with_known_up(path, "load(path, up={!r})")
     mesh = replace(as_stated(path), up=axis_named(up))
-    return _settled(mesh, "load(path, up={!r})", f"by the shape of {Path(path).name}") if mesh.up == AUTO else mesh
-
-
-def _settled(source: MeshLike, remedy: str, reason: str = "") -> Mesh:
-    """The Mesh of what is given; where nothing says which axis points up, a warning says which one is assumed.
-
-    reason: why the shape decides; by default that nothing else says it.
-    """
-    mesh = as_stated(source)
-    if mesh.up != AUTO:
-        return mesh
-    name = Path(source).name if isinstance(source, str | Path) else "the mesh"
-    mesh, note = assumed(mesh, reason or f"{name} does not say which axis points up", remedy)
-    warn_caller(note)
-    return mesh
+    return with_known_up(mesh, "load(path, up={!r})", f"by the shape of {Path(path).name}") if mesh.up == AUTO else mesh
 
 
 def simplify(
@@ -385,7 +384,7 @@ def repair(mesh: MeshLike) -> Mesh:
     >>> len(repair(soup).vertices)
     8
     """
-    return repaired(as_mesh(mesh))[0]
+    return repaired(as_stated(mesh))[0]
 
 
 class Shown:

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 import haptic_glance
-from haptic_glance import Mesh, detect, doors, find_points, load, press, press_many, saliency, simplify
+from haptic_glance import Mesh, detect, doors, find_points, know, load, press, press_many, saliency, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.lod.export import write_any
 from haptic_glance.studio.specimen import open_content, open_file
@@ -208,7 +208,35 @@ def test_faces_are_a_count_or_a_share(body):
         assert len(simplify(Mesh(*body), faces).faces) == 320
     with pytest.raises(ValueError, match="faces='None' is not a face count"):
         simplify(Mesh(*body), None)
-    assert simplify(body, 1.0) == Mesh(*body)
+    assert simplify(body, 1.0) == Mesh(*body, up="auto")
+
+
+def test_an_axis_that_nobody_said_is_warned_of_where_it_first_matters(body):
+    for passing in (
+        haptic_glance.normalise, haptic_glance.repair,
+        lambda m: haptic_glance.clean(m)[0], lambda m: simplify(m, "50%"),
+    ):  # fmt: skip
+        with warnings.catch_warnings(action="error"):
+            mesh = passing(body)
+        with pytest.warns(UserWarning, match="does not say which axis points up"):
+            find_points(mesh, 1)
+    small = haptic_glance.normalise(body)
+    for looking in (
+        haptic_glance.as_mesh, haptic_glance.Surface, lambda m: know.learn(know.primitives() | {"a": m}),
+        lambda m: know.Exploration(know.learn(know.primitives()), m, np.random.default_rng(0)),
+    ):  # fmt: skip
+        with pytest.warns(UserWarning, match="(the mesh|a) does not say which axis points up"):
+            looking(small)
+
+
+@pytest.mark.parametrize("name", doors.MESHES)
+def test_functions_travel_to_other_processes(name):
+    assert pickle.loads(pickle.dumps(getattr(haptic_glance, name))) is getattr(haptic_glance, name)
+
+
+def test_a_layer_that_is_none_is_named(body):
+    with pytest.raises(TypeError, match=r"layer must be a Layer .*got 0\.002"):
+        haptic_glance.press_forces(Mesh(*body), [[0, 0, 0]], [np.eye(3)], 0.002, load=1)
 
 
 def test_values_that_colour_a_mesh_are_one_per_vertex_and_finite(body):

@@ -65,6 +65,8 @@ KNOWN = (*PERTURBATIONS, FEW_TOUCHES)
 def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
     """(k, rows, cols) f4 in 0..1: imprints (k, r, c), u1 or floats in 0..1, under one of PERTURBATIONS.
 
-    Raises ValueError for other values, and for a severity out of range.
+    Raises ValueError for other values and names, and for a severity out of range.
     """
+    if name not in PERTURBATIONS:
+        raise ValueError(f"unknown disturbance {name!r}: choose one of {', '.join(PERTURBATIONS)}")
     return np.clip(PERTURBATIONS[name](as_shares(images), severity, random), 0, 1).astype(np.float32)

@@ -26,7 +26,8 @@ class Touches:
 
     name: the object's, for the random numbers; saliency: (n,) f8 in 0..1 per vertex, for simplification weighted by
     saliency; levels: {name of a simplified mesh: Mesh}, of data/SET/lod. `positions` (k, 3), `normals` (k, 3) and
-    `axes` (k, 3, 3) are those of the undisturbed array, `images` (k, rows, cols) its imprints.
+    `axes` (k, 3, 3) are those of the undisturbed array, `images` (k, rows, cols) its imprints. Raises ValueError for a
+    mesh with another axis than z up.
     """
 
     def __init__(
@@ -40,6 +41,8 @@ class Touches:
         levels: dict[str, Mesh] | None = None,
         seed: int = 0,
     ) -> None:
+        if mesh.up != "z":
+            raise ValueError(f"the object has {mesh.up} up, and its disturbances need z up: call rotate_to_z_up")
         self.name, self.mesh, self.cells, self.pitch = name, mesh, cells, pitch
         self.saliency, self.levels, self._seed = saliency, levels or {}, seed
         self.surface = Surface(mesh)

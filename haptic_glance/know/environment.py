@@ -10,13 +10,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from haptic_glance.base.extras import from_extra
-from haptic_glance.mesh import normalise, rotate_to_z_up
-from haptic_glance.mesh.files import MeshLike, as_mesh
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.files import MeshLike
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Skin, Surface
 
 from .exploration import MOST, PLACES, Exploration
-from .library import CELLS, check_names, learn, primitives
+from .library import CELLS, check_names, learn, primitives, upright_named
 
 with from_extra():
     import gymnasium
@@ -71,7 +71,7 @@ class TouchUntilSure(gymnasium.Env):
     ) -> None:
         if meshes is not None:
             check_names(meshes)
-        upright = {name: rotate_to_z_up(as_mesh(mesh)) for name, mesh in (meshes or {}).items()}
+        upright = {name: upright_named(name, mesh) for name, mesh in (meshes or {}).items()}
         self.meshes = primitives() if meshes is None else {name: normalise(mesh) for name, mesh in upright.items()}
         if not (isinstance(most, int | np.integer) and most >= 1):
             raise ValueError(f"an episode needs a whole number of touches, at least one, got most={most}")

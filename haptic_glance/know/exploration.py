@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from haptic_glance.mesh.files import MeshLike, as_mesh
+from haptic_glance.mesh.files import MeshLike, with_known_up
 from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import as_surface
@@ -56,7 +56,7 @@ class Exploration:
         if not isinstance(random, np.random.Generator):
             raise TypeError(f"random must be a numpy.random.Generator such as default_rng(0), got {random!r}")
         self.library = library
-        self.surface = as_surface(surface if isinstance(surface, Surface) else as_mesh(surface))
+        self.surface = as_surface(surface if isinstance(surface, Surface) else with_known_up(surface))
         check_scale(self.surface.mesh)
         if self.surface.mesh.up != "z":
             raise ValueError(

@@ -164,8 +164,8 @@ def similarity(images: ArrayLike, others: ArrayLike | None = None) -> np.ndarray
     """
     first, flat = _unit(images)
     second, second_flat = (first, flat) if others is None else _unit(others)
-    if first.shape[1] != second.shape[1]:
-        raise ValueError(f"imprints must have the same number of cells: {first.shape[1]} and {second.shape[1]}")
+    if others is not None and np.shape(images)[1:] != np.shape(others)[1:]:
+        raise ValueError(f"imprints must have equal cells: {np.shape(images)[1:]} and {np.shape(others)[1:]}")
     return np.clip(first @ second.T, -1, 1) + (flat[:, None] & second_flat[None])
 
 

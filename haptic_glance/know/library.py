@@ -18,7 +18,7 @@ from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.rng import rng
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
-from haptic_glance.mesh.files import FORMATS, MeshLike, as_mesh, names_of
+from haptic_glance.mesh.files import FORMATS, MeshLike, names_of, with_known_up
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.sampling import along_curve, sample_surface
 from haptic_glance.touch import Skin, Surface, press_at, sensor_axes
@@ -165,7 +165,12 @@ def learn(
         For fewer than two meshes, and for a mesh that cannot be touched or has another scale; the message names the
         mesh.
     TypeError
-        For meshes that are no mapping, and for names that are no texts.
+        For meshes that are no mapping, for names that are no texts, and for a skin that is none.
+
+    Warns
+    -----
+    UserWarning
+        For a mesh that does not say which axis points up.
 
     Examples
     --------
@@ -179,7 +184,9 @@ def learn(
     check_names(meshes)
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
-    upright = {name: rotate_to_z_up(as_mesh(meshes[name])) for name in sorted(meshes)}
+    if skin is not None and not callable(skin):
+        raise TypeError(f"skin must be a Skin such as Skin(noise=0.02), got {skin!r}")
+    upright = {name: upright_named(name, meshes[name]) for name in sorted(meshes)}
     return _library(tuple(_Named(name, mesh, seed, turned, skin) for name, mesh in upright.items()), placed)
 
 
@@ -189,6 +196,11 @@ def check_names(meshes: object) -> None:
         raise TypeError(f"meshes must be a mapping from names to meshes, got {type(meshes).__name__}")
     if wrong := [name for name in meshes if not isinstance(name, str)]:
         raise TypeError(f"meshes must have texts as names, got {wrong[0]!r}")
+
+
+def upright_named(name: str, mesh: MeshLike) -> Mesh:
+    """The Mesh turned to z up; a warning names it where nothing says which axis points up."""
+    return rotate_to_z_up(with_known_up(mesh, reason=f"{name} does not say which axis points up"))
 
 
 def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:
@@ -338,13 +350,13 @@ def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
     return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed, objects[0].skin)
 
 
-SCALE = 4  # the diagonal of a normalised object is 1 to 1.74; that of a damaged one may differ a little more
+SCALE = 0.87, 2.0  # the diagonal of a normalised object is 1 to 1.74; no object of half or double the size passes
 
 
 def check_scale(mesh: Mesh) -> None:
     """Raises ValueError for a mesh of another scale than that of `normalise`: the array would feel something else."""
-    if not 1 / SCALE < mesh.diagonal < SCALE:
-        raise ValueError(f"the object's diagonal is {mesh.diagonal:.3g}, not about 1 as in the library: normalise it")
+    if not SCALE[0] < mesh.diagonal < SCALE[1]:
+        raise ValueError(f"the object's diagonal is {mesh.diagonal:.3g}, not 1 to 1.74 as in the library: normalise it")
 
 
 @lru_cache(maxsize=256)

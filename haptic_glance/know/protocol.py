@@ -10,6 +10,7 @@ import numpy as np
 
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
+from haptic_glance.touch.skin import as_shares
 
 from .classifiers import CLASSIFIERS, COMPONENTS, TRAINING, check_name, scaled
 from .features import features
@@ -82,9 +83,9 @@ def evaluate(
 
     Parameters
     ----------
-    images_by_object : dict of str to (k, rows, cols) array of float
-        Imprints in 0..1 of two objects or more, at least 10 of each. Of every object as many are used, from the first,
-        as the object with the fewest has.
+    images_by_object : dict of str to (k, rows, cols) array
+        Imprints, bytes or numbers in 0..1, of two objects or more, at least 10 of each. Of every object as many are
+        used, from the first, as the object with the fewest has.
     classifier : str
         A name of CLASSIFIERS.
     repetitions : int
@@ -119,12 +120,19 @@ def evaluate(
     if repetitions < 1:
         raise ValueError(f"repetitions must be 1 or more, got {repetitions}")
     count = min(counts.values())
-    samples = np.concatenate([features(images_by_object[name][:count]) for name in names])
+    samples = np.concatenate([_features(images_by_object[name][:count]) for name in names])
     if len(shapes := {np.shape(images)[1:] for images in images_by_object.values()}) > 1:
         raise ValueError(f"imprints of several arrays, {sorted(shapes)}, tell objects apart by their size alone")
     prepared = prepare(samples, np.repeat(np.arange(len(names)), count), repetitions, seed)
     rows, _ = evaluate_prepared(prepared, len(names), classifier, seed)
     return [row for row in rows if row["metric"] == "accuracy"]
+
+
+def _features(images):
+    images = np.asarray(images)
+    samples = features(images / 255 if images.dtype == np.uint8 else images)
+    as_shares(images)  # refuses other values, which would tell objects apart by their scale
+    return samples
 
 
 def prepare(

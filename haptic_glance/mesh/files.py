@@ -22,12 +22,13 @@ from .headers import MeshError, check_header, stated_faces
 from .materials import join_parts, merge_equal_rows, obj_vertices, scale_colors, set_apart, texture_of, vertex_colors
 from .mesh import Mesh
 from .off import read_off
-from .up import UP_OF_FORMAT, stated_up
+from .up import UP_OF_FORMAT, assumed, stated_up
 from .upright import settled
 
 MeshLike: TypeAlias = (
     "Mesh | str | Path | trimesh.Trimesh | trimesh.Scene | trimesh.PointCloud | Cloud | tuple[ArrayLike, ArrayLike]"
 )
+WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
 READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
@@ -113,7 +114,8 @@ def as_mesh(source: MeshLike) -> Mesh:
     Notes
     -----
     Only a Mesh and some files state which axis points up. For the others the shape chooses y or z, as in `load`, so
-    that a file and its arrays have the same axis. A Mesh is z up unless it is made with another `up`.
+    that a file and its arrays have the same axis; `haptic_glance.as_mesh` warns of the choice. A Mesh is z up unless it
+    is made with another `up`.
 
     Examples
     --------
@@ -132,6 +134,20 @@ def as_stated(source: MeshLike) -> Mesh:
     if isinstance(source, str | Path):
         return load_as_stated(source)
     return replace(_converted(source), up=AUTO)
+
+
+def with_known_up(source: MeshLike, remedy: str = WITH_UP, reason: str = "") -> Mesh:
+    """As `as_mesh`; where nothing says which axis points up, a warning says which one is assumed.
+
+    remedy: a format of how to name another axis. reason: why the shape decides; by default that nothing else says it.
+    """
+    mesh = as_stated(source)
+    if mesh.up != AUTO:
+        return mesh
+    name = Path(source).name if isinstance(source, str | Path) else "the mesh"
+    mesh, note = assumed(mesh, reason or f"{name} does not say which axis points up", remedy)
+    warn_caller(note)
+    return mesh
 
 
 def _converted(source):

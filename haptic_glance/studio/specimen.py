@@ -89,7 +89,7 @@ class Specimen:
     @cached_property
     def unit(self) -> float:
         """One unit of `mesh`, in units of the file."""
-        return float(centre_and_radius(self.source)[1]) / RADIUS
+        return float(centre_and_radius(rotate_to_z_up(self.source))[1]) / RADIUS
 
     @cached_property
     def rays(self) -> RayScene:

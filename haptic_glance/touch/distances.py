@@ -109,7 +109,7 @@ def check_places(centres: ArrayLike, axes: ArrayLike) -> tuple[np.ndarray, np.nd
     """As `as_places`; raises ValueError if they are invalid."""
     centres, axes = as_places(centres, axes)
     if not np.isfinite(centres).all():
-        raise ValueError(f"centres must be finite and of shape (k, 3), got shape {centres.shape}")
+        raise ValueError(f"centres must be finite, got {centres[~np.isfinite(centres).all(axis=1)][0]}")
     # Right-handed, or front and back of every face would be exchanged.
     skew = np.abs(axes @ axes.transpose(0, 2, 1) - EYE)
     if not (skew <= SKEW).all() or (np.linalg.det(axes) < 0).any():

@@ -267,7 +267,9 @@ def contour(mesh_or_surface: Mesh | Surface, plane_points: ArrayLike) -> Section
 
 def _check_planes(planes):
     planes = np.asarray(planes, dtype=np.float64)
-    if planes.ndim != 3 or planes.shape[1:] != (3, 3) or not np.isfinite(planes).all():
+    if planes.ndim == 3 and planes.shape[1:] == (3, 3) and not np.isfinite(planes).all():
+        raise ValueError(f"a plane must be three finite points, got {planes[~np.isfinite(planes).all(axis=2)][0]}")
+    if planes.ndim != 3 or planes.shape[1:] != (3, 3):
         raise ValueError(
             f"a plane must be three finite points of shape (3, 3), its centre first; got {planes.shape[1:]}"
         )

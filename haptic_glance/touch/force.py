@@ -196,7 +196,7 @@ def forces(
         raise ValueError("gaps must have shape (k, ...), a row for each touch, got a number")
     if not (gaps > -np.inf).all():  # NaN fails as well
         raise ValueError("gaps must be numbers of metres, inf where nothing is in range")
-    areas, cosines = (np.broadcast_to(np.asarray(values, np.float64), gaps.shape[1:]) for values in (areas, cosines))
+    areas, cosines = (_per_taxel(*pair, gaps.shape[1:]) for pair in (("areas", areas), ("cosines", cosines)))
     _check_areas(areas)
     if len(wrong := cosines[~((cosines >= 0) & (cosines <= 1))]):
         raise ValueError(f"cosines must lie in 0..1, got {wrong[0]:g}")
@@ -265,6 +265,14 @@ def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) 
     distance = np.linalg.norm(slips, axis=-1)
     magnitude = np.minimum(layer.shear_stiffness * areas * distance, layer.friction * normal)
     return magnitude[..., None] * np.divide(slips, distance[..., None], out=np.zeros_like(slips), where=slips != 0)
+
+
+def _per_taxel(name, values, shape):
+    values = np.asarray(values, dtype=np.float64)
+    try:
+        return np.broadcast_to(values, shape)
+    except ValueError:
+        raise ValueError(f"{name} must be a number, or one per taxel: {shape}, got shape {values.shape}") from None
 
 
 def _check_areas(areas):

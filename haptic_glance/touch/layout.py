@@ -183,6 +183,8 @@ def layout_gaps(
 
 def _numbers(path, line, row, delimiter):
     try:
+        if None in row:
+            raise ValueError("more values than columns")
         return [float(row[name] if delimiter == "," else row[name].replace(",", ".")) for name in COLUMNS]
     except (AttributeError, TypeError, ValueError):
         raise ValueError(f"{path}: line {line} has a taxel that is not seven numbers: {','.join(COLUMNS)}") from None

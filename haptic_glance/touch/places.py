@@ -41,9 +41,14 @@ class UserMesh:
     name: str
 
     @cached_property
+    def upright(self) -> Mesh:
+        """The mesh turned to z up, in the file's units."""
+        return rotate_to_z_up(self.source)
+
+    @cached_property
     def mesh(self) -> Mesh:
         """The mesh that the array touches: upright, centred, its bounding sphere 1 unit across."""
-        return replace(normalise(rotate_to_z_up(self.source)), texture=None)
+        return replace(normalise(self.upright), texture=None)
 
     @cached_property
     def surface(self) -> Surface:
@@ -53,7 +58,7 @@ class UserMesh:
     @property
     def unit(self) -> float:
         """One unit of the mesh, in units of the file."""
-        return centre_and_radius(self.source)[1] / RADIUS
+        return centre_and_radius(self.upright)[1] / RADIUS
 
     @property
     def digits(self) -> int:
@@ -62,7 +67,7 @@ class UserMesh:
 
     def to_file(self, positions: np.ndarray) -> np.ndarray:
         """Positions (k, 3) in the mesh's frame, converted to the file's coordinates."""
-        return self.to_file_directions(positions) * self.unit + centre_and_radius(self.source)[0]
+        return self.to_file_directions(positions * self.unit + centre_and_radius(self.upright)[0])
 
     def to_file_directions(self, directions: np.ndarray) -> np.ndarray:
         """Directions (k, 3) in the mesh's frame, converted to the file's axes."""
@@ -70,7 +75,7 @@ class UserMesh:
 
     def from_file(self, positions: np.ndarray) -> np.ndarray:
         """Positions (k, 3) in the file's coordinates, converted to the mesh's frame."""
-        return (positions - centre_and_radius(self.source)[0]) / self.unit @ to_z_up(self.source.up).T
+        return (positions @ to_z_up(self.source.up).T - centre_and_radius(self.upright)[0]) / self.unit
 
     def places(self, at: list[str], count: int | None = None, method: str | None = None, seed: int = 0) -> Places:
         """The Places for the arguments of --at: `salient`, `random`, ids of vertices, positions x,y,z of the file."""

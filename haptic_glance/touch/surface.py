@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.axes import Axis, axis_named, to_z_up
-from haptic_glance.mesh.files import MeshLike, as_mesh
+from haptic_glance.mesh.files import MeshLike, with_known_up
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
 from .kernels.faces import Taxels, face_tree
@@ -32,7 +32,8 @@ class Surface:
     Warns
     -----
     UserWarning
-        For a closed mesh whose faces look inwards: the array would be inside, and miss the surface.
+        For a closed mesh whose faces look inwards: the array would be inside, and miss the surface. If nothing says
+        which axis points up.
 
     Examples
     --------
@@ -45,7 +46,7 @@ class Surface:
     """
 
     def __init__(self, mesh: MeshLike) -> None:
-        self.mesh = mesh = as_mesh(mesh)
+        self.mesh = mesh = with_known_up(mesh)
         if _inside_out(mesh):
             warn_caller(
                 "the faces of the closed mesh look inwards, so that an array misses its surface: "
@@ -134,6 +135,7 @@ def as_surface(mesh: Mesh | Surface) -> Surface:
     return mesh if isinstance(mesh, Surface) else _cached_surface(mesh)
 
 
+ROUNDED = 1e-6  # from 1, of the length of a unit normal
 CANCELLED = 1e-6  # length below which an average of unit normals is rounding error
 
 
@@ -214,7 +216,7 @@ def sensor_axes(normals: ArrayLike, up: Axis = "z") -> np.ndarray:
     Parameters
     ----------
     normals : (k, 3) array_like
-        Unit normals.
+        Normals, of any length.
     up : str or (3,) array_like
         The axis of the object that points up, a name or a vector.
 
@@ -240,6 +242,8 @@ def sensor_axes(normals: ArrayLike, up: Axis = "z") -> np.ndarray:
         raise ValueError(f"normals must have shape (k, 3), got {normals.shape}")
     if len(wrong := np.flatnonzero(~(np.isfinite(normals).all(axis=1) & normals.any(axis=1)))):
         raise ValueError(f"normals must be finite and not zero, got {normals[wrong[0]]} at place {wrong[0]}")
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.where(np.abs(lengths - 1) > ROUNDED, normals / lengths, normals)
     if (axis := axis_named(up)) != "z":
         return sensor_axes(normals @ to_z_up(axis).T) @ to_z_up(axis)
     polar = np.abs(normals[:, 2:]) > POLE

@@ -8,6 +8,7 @@ import pytest
 import trimesh
 from PIL import Image
 
+from haptic_glance import press
 from haptic_glance.cli.touch import POINT, parser, run
 from haptic_glance.look.points import find_points
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
@@ -102,14 +103,18 @@ def test_normals_and_axes_are_those_of_the_file(touched, file):
     assert np.allclose(arrays["axes"][:, 2], arrays["normals"]) and (arrays["axes"][:, 1, 1] > 0).all()
 
 
-@pytest.mark.parametrize("up", ["x", "y"])
+@pytest.mark.parametrize("up", ["x", "y", "0,1,1"])
 def test_coordinates_come_back_from_the_meshs_frame(up):
-    unturned = Mesh(bumpy().vertices, bumpy().faces, up=up)
+    unturned = Mesh(bumpy().vertices * [1, 2, 4] + [3, 0, 1], bumpy().faces, up=up)
     model = UserMesh(unturned, "ball")
     points = np.random.default_rng(0).random((5, 3))
     assert np.allclose(model.from_file(model.to_file(points)), points)
     assert np.allclose(model.to_file(model.mesh.vertices), unturned.vertices)
     assert np.allclose(model.mesh.vertices, normalise(rotate_to_z_up(unturned, up)).vertices)
+    lengths = [np.linalg.norm(np.ptp(mesh.vertices[[0, 9]], axis=0)) for mesh in (unturned, model.mesh)]
+    assert lengths[0] / lengths[1] == pytest.approx(model.unit)
+    image = press(unturned, 9, pitch="100mm", unit="m")  # as the command feels it
+    assert np.allclose(image, press(model.mesh, 9, pitch=0.1 / model.unit))
 
 
 def test_random_places_depend_on_the_seed_alone(touched, file):

@@ -1,5 +1,7 @@
 """Perturbations of touch on a shape whose imprints are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -100,6 +102,11 @@ def test_a_simplified_mesh_that_is_there_is_used(mesh):
 def test_severities_out_of_range_are_refused(touches, name, severity):
     with pytest.raises(ValueError, match="must"):
         TOUCH_PERTURBATIONS[name].apply(touches, severity, 0)
+
+
+def test_an_object_with_another_axis_up_is_refused(mesh):
+    with pytest.raises(ValueError, match="y up.* call rotate_to_z_up"):
+        touches_of(replace(mesh, up="y"))
 
 
 def test_rotations_turn_by_the_right_hand():

@@ -55,6 +55,8 @@ def test_bytes_and_shares_are_the_same_imprints_and_a_severity_out_of_range_is_r
             felt(name, wrong)
     with pytest.raises(ValueError, match=r"bytes, or numbers in 0\.\.1"):
         felt(name, severity, SLOPE.astype(np.float32))
+    with pytest.raises(ValueError, match="unknown disturbance 'noisy': choose one of"):
+        felt("noisy", severity)
 
 
 def test_an_array_that_is_not_square_loses_its_share_anywhere():

@@ -69,7 +69,7 @@ def test_an_object_is_explored_as_a_mesh_too_but_in_another_scale_it_is_refused(
     cone = shapes["cone"]
     first, again = (Exploration(library, form, rng(3, "cone")) for form in (cone, Surface(cone)))
     np.testing.assert_array_equal(first.candidates.positions, again.candidates.positions)
-    for scale in (0.1, 100):
+    for scale in (0.1, 0.5, 2, 100):
         with pytest.raises(ValueError, match="normalise it"):
             Exploration(library, Mesh(cone.vertices * scale, cone.faces), rng(3, "cone"))
 

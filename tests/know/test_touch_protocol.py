@@ -43,6 +43,12 @@ def test_rows_are_equal_from_run_to_run_but_for_the_seconds(bumps):
     assert [row["repetition"] for row in rows] == [0, 0, 1, 1]
 
 
+def test_bytes_are_the_imprints_whose_shares_they_are():
+    images = np.random.default_rng(0).random((12, 16, 16))
+    rows = evaluate({"shares": images, "bytes": np.round(images * 255).astype(np.uint8)}, "knn", 3)
+    assert max(row["value"] for row in rows) <= 0.5
+
+
 def test_every_object_gives_as_many_as_the_poorest(bumps):
     images = bumps(count=20)
     images["cup"] = images["cup"][:12]
@@ -192,6 +198,7 @@ def test_located_samples_keep_the_place_behind_the_components():
         (lambda bumps: evaluate(bumps() | {"cup": np.zeros((20, 4, 4))}, "knn"), "at least 8 x 8"),
         (lambda bumps: evaluate(bumps() | {"cup": np.zeros((20, 8, 8))}, "knn"), "imprints of several arrays"),
         (lambda bumps: evaluate(bumps(("cup",)), "knn"), "two objects"),
+        (lambda bumps: evaluate(bumps() | {"cup": np.full((20, 16, 16), 9.0)}, "knn"), "bytes, or numbers in 0..1"),
         (lambda bumps: evaluate(bumps(), "knn", 0), "repetitions must be 1 or more, got 0"),
         (lambda _: classifier("knn", 0, "places"), "kind must be one of features, located, reduced"),
         (lambda _: classifier("knn", scaling="none"), "scaling must be one of training, .*, min_max, got 'none'"),

@@ -217,6 +217,10 @@ def test_shear_sticks_slides_and_points_along_the_slip():
     assert np.array_equal(taxels.reshape(turning.shape), shear(normal, turning, LAYER, 1e-6))
 
 
+def test_axes_do_not_depend_on_the_length_of_a_normal():
+    assert np.allclose(sensor_axes([[2, 0, 2]]), sensor_axes(np.array([[1, 0, 1]]) / np.sqrt(2)))
+
+
 def pressed(**values):
     return forces(RANDOM[:2], LAYER, 1e-5, **values)
 
@@ -251,6 +255,7 @@ def pressed(**values):
         (lambda: shear(RANDOM * np.nan, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
         (lambda: shear(-RANDOM, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
         (lambda: shear(RANDOM, np.ones((40, 2)), LAYER, np.nan), "areas must be above 0 m2, got nan"),
+        (lambda: forces(RANDOM, LAYER, np.ones(3), load=1.0), r"areas must be a number, or one per taxel: .* \(3,\)"),
         (lambda: sensor_axes([[0, 0, np.nan]]), "normals must be finite and not zero, got .* at place 0"),
         (lambda: sensor_axes([[0, 0, 1], [0, 0, 0]]), "normals must be finite and not zero, got .* at place 1"),
     ],

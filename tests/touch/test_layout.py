@@ -139,6 +139,7 @@ def test_tables_of_spreadsheets_in_any_language_are_read(tmp_path, separator, en
         (HEAD, "layout.csv: layout: there are no taxels"),
         (HEAD + ROW + "1,0,0,0,0,-1,1e-6\n" + ROW, "taxels 1 and 3 are at one place; remove one"),
         (HEAD + ROW + "0,1,0,0,0,-1,\n", "layout.csv: line 3 has a taxel that is not seven numbers"),
+        (HEAD + ROW.strip() + ",7\n", "line 2 has a taxel that is not seven numbers"),
         (HEAD + "0,1,0\n", "line 2 has a taxel that is not seven numbers"),
         (HEAD + "0,nan,0,0,0,-1,1\n", "positions must be finite"),
         (HEAD + ROW + "0,1,0,0,0,-1,0\n", "taxel 2 has an area of 0"),

@@ -24,7 +24,7 @@ honeycomb = Layout(
     areas=np.full(count, np.sqrt(3) / 2 * PITCH**2),
 )
 
-ring = trimesh.creation.torus(0.006, 0.002)  # metres
+ring = trimesh.creation.torus(0.009, 0.002)  # metres
 mesh = Mesh(ring.vertices, ring.faces)
 felt = layout_forces(mesh, [[0, 0, 0.002]], sensor_axes([[0, 0, 1.0]]), Layer(), honeycomb, load=2.0)[0]
 
