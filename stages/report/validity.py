@@ -23,6 +23,7 @@ UNKNOWN = "nobody counted the answers of a classifier that often gives one"
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 UNMEASURED = "nobody measured whether the training was saturated"
 DIVERGED, LOSS = "the training's loss is never below that of guessing", "curve_loss"
+ONE_LABEL = "less accurate than one answer for all pixels"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
@@ -73,7 +74,9 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
                 lambda group: NUMBERS.get(str(group).partition("_")[0])
             )  # four of four_drawn
         share = _beside(results, stage, dataset, all_rows, "commonest_share")
-        reasons = (share.fillna(0) > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
+        # A classifier that is right more often than it gives its commonest answer tells the others apart.
+        deaf = _beside(results, stage, dataset, all_rows, "accuracy").fillna(0) <= share
+        reasons = (deaf & (share > (ONE_ANSWER * guess).fillna(MOST))).map({True: ONE_CLASS, False: ""})
         if share.notna().any() and "classifier" in all_rows:  # an older run counted the answers of some trials alone
             narrow = all_rows["classifier"].eq(DEAF) & (all_rows["scaling"] != WIDE if "scaling" in all_rows else True)
             reasons[share.isna() & narrow & all_rows["metric"].eq("accuracy")] = UNKNOWN
@@ -142,14 +145,14 @@ def attentive(results: Results, stage: str, dataset: str, rows: pd.DataFrame) ->
 
 @check("weights")
 def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Accuracies on kinds of pixels where an SVM is right less often than an answer of "background" for all of them."""
+    """Accuracies on kinds of pixels where an SVM is right less often than one answer for all of them."""
     if "background_alone" not in rows or not rows["metric"].eq("accuracy").all():
         return pd.Series("", index=rows.index)
     all_rows = results.rows(stage, dataset, metric="accuracy")
     means = all_rows.groupby(["training", "validation", "area"])[["value", "background_alone"]].mean()
     poor = means[means["value"] < means["background_alone"]].reset_index()
     kinds, bad = (pd.MultiIndex.from_frame(frame[["validation", "area"]]) for frame in (rows, poor))
-    return pd.Series(kinds.isin(bad), index=rows.index).map({True: GUESSING, False: ""})
+    return pd.Series(kinds.isin(bad), index=rows.index).map({True: ONE_LABEL, False: ""})
 
 
 @check("sequences")

@@ -14,7 +14,7 @@ import pandas as pd
 
 from stages.engine.statistics import discoveries
 
-from .claims import POINTS, Claim, tested_on
+from .claims import POINTS, Claim, Pick, tested_on
 from .effects import Effect, PooledEffect, deciding, effect_of, effects
 from .results import NotRun, Results, dataset_text, listed
 from .tables import number
@@ -24,6 +24,7 @@ MIXED, DEPENDS, UNTESTABLE = "mixed", "depends on the reading", "not testable"
 WORDS = (*DECIDED, MIXED, DEPENDS, UNTESTABLE, "open")
 # By unit: what nobody would act on. Stated before the claims were judged by it; other units have none.
 NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
+ALPHA = 0.05  # of a p-value
 FEW, HUNDRED = 5, 100  # units
 PROPOSED = "T6.3"  # the section that proposes future work, and states no result
 WRITTEN = "as written"  # the name of the reading that a claim itself is
@@ -113,8 +114,14 @@ class Judgement:
 
     @property
     def word(self) -> str:
-        """The word that the judged sets come to."""
-        return word_of(self.chosen, self.claim.unit)
+        """The word that the judged sets come to.
+
+        A rival that is the best of several on the same rows leads by chance, too: it contradicts a claim only where its
+        p-value times the number of rivals stays below 5 %.
+        """
+        word = word_of(self.chosen, self.claim.unit)
+        rivals = picked_from(self.claim)
+        return "open" if word == "contradicted" and effect_of(self.chosen).p_value * rivals > ALPHA else word
 
     @cached_property
     def used(self) -> Sequence[Effect]:
@@ -124,7 +131,7 @@ class Judgement:
 
 
 def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[str]]:
-    """(the claim as it is written, then in its other readings that were run; names of the others).
+    """(the claim as it is written, then in its other readings with an interval; the other readings, and why).
 
     A reading on data sets of its own was run where the first of them was. Raises NotRun where no reading was run.
     """
@@ -134,17 +141,32 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
             set_effects, missing = effects(variant, results)
         except NotRun as error:
             errors.append(error)
-            not_run.append(name)
+            not_run.append(f"{name}: not run")
             continue
         selection = deciding(variant, set_effects, results, strict=variant is not claim)
         judgement = Judgement(name, variant, set_effects, missing, selection)
         if variant is claim or (selection and np.isfinite(effect_of(selection).interval[1])):
             judgements.append(judgement)
         else:
-            not_run.append(name)
+            not_run.append(f"{name}: {_without_interval(judgement)}")
     if not judgements:
         raise errors[0]
     return judgements, not_run
+
+
+def picked_from(claim: Claim) -> int:
+    """The number of named values from which the second side, or a first side of errors, is picked by its mean."""
+    picks = (value for side in (claim.first, claim.second) if isinstance(side, Mapping) for value in side.values())
+    return max([len(pick.names) for pick in picks if isinstance(pick, Pick)], default=1) or 1
+
+
+def _without_interval(judgement: Judgement) -> str:
+    """`not testable, 2 of 3 pairs invalid: ...` of a reading that was run; `not run` where no set of it was judged."""
+    if not judgement.chosen:
+        return "not run"
+    if reasons := [effect.validity for effect in judgement.chosen if effect.validity]:
+        return f"{UNTESTABLE}, {'; '.join(reasons)}"
+    return f"{UNTESTABLE}, no interval"
 
 
 def word_of(effects: Sequence[Effect], unit: str) -> str:
@@ -172,7 +194,7 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: S
         return {}
     ordered = sorted(judgements, key=lambda reading: reading is not judged_one)
     texts = [f"{reading.name}: {reading.word} {_interval_text(effect_of(reading.chosen))}" for reading in ordered]
-    texts += [f"{name}: not run" for name in not_run]
+    texts += not_run
     words, written = [reading.word for reading in judgements], judgements[0]
     if written is not judged_one and any(len(effect.refused) < effect.pairs for effect in written.used):
         # Its valid pairs count as a reading.

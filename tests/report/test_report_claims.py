@@ -123,6 +123,16 @@ def test_best_and_worst_rival_are_picked_by_their_means_and_never_the_other_side
         differences(results, claim(first=side, second={"method": highest_of("absent")}))
 
 
+def test_the_best_of_several_rivals_contradicts_only_where_one_would_beyond_their_number(values):
+    differences = [0.1, 0.3, 0.3, 0.1, 0.0, 0.3]
+    columns = {"item": [f"o{k}" for k in range(6)] * 4, "method": np.repeat(["ours", "a", "b", "c"], 6)}
+    rows = values(**columns, value=[0.0] * 6 + differences + [-1.0] * 12)
+    sides = {"first": {"method": "ours"}, "second": {"method": "a"}}
+    picked = sides | {"second": {"method": highest_of("a", "b", "c")}}
+    one, best = (judge([claim(**fields)], rows).iloc[0] for fields in (sides, picked))
+    assert (one["verdict"], best["verdict"]) == ("contradicted", "open") and one["p"] == best["p"] > 0.05 / 3
+
+
 def test_differences_within_a_unit_are_relative_and_averaged_or_contrasted(values):
     columns = {"item": list("aaaa"), "target": ["1", "1", "2", "2"], "method": ["x", "y"] * 2, "value": [3, 1, 0, 0]}
     sides = {"first": {"method": "x"}, "second": {"method": "y"}}

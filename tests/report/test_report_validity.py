@@ -26,6 +26,7 @@ from stages.report.validity import (
     NOISE_NEARER,
     NOTHING_OUT,
     ONE_CLASS,
+    ONE_LABEL,
     SAME,
     UNIT,
     UNKNOWN,
@@ -258,6 +259,18 @@ def test_a_classifier_with_one_answer_for_nearly_all_is_invalid(measure, stage, 
         assert causes_in(measure(stage, rows.assign(group=group.format(name))), stage) == words
 
 
+def test_a_classifier_that_is_right_more_often_than_its_commonest_answer_is_valid(measure):
+    rows = {
+        "group": "six",
+        "classifier": "knn",
+        "repetition": [0, 0, 1, 1],
+        "metric": ["accuracy", "commonest_share"] * 2,
+    }
+    results = measure("classification", pd.DataFrame(rows | {"dataset": "test", "value": [0.5, 0.36, 0.3, 0.36]}))
+    accuracies = results.rows("classification", metric="accuracy")
+    assert (causes(results, "classification", "test", accuracies) == "").tolist() == [True, False]
+
+
 def test_a_kind_of_trial_that_is_less_accurate_than_guessing_is_invalid(measure):
     rows = pd.DataFrame({"dataset": "test", "group": "six", "metric": "accuracy", "repetition": [0, 1] * 2})
     rows = rows.assign(classifier=["svm", "svm", "knn", "knn"], value=[0.18, 0.12, 0.1, 0.9])
@@ -335,7 +348,7 @@ def test_an_svm_worse_than_calling_all_background_refuses_its_kind_of_pixels_als
     on_object = replace(claim, key="object", where={"metric": "accuracy", "area": "object"})
     table = judge([claim, on_object], results).set_index("key")
     assert table["verdict"].to_dict() == {"own": "not testable", "object": "supported"}
-    assert table.loc["own", "validity"] == f"meshes with human gaze: 4 of 4 pairs invalid: {GUESSING} (4)"
+    assert table.loc["own", "validity"] == f"meshes with human gaze: 4 of 4 pairs invalid: {ONE_LABEL} (4)"
     assert table.loc["object", "effect"] == pytest.approx(10.15)
 
 

@@ -253,7 +253,9 @@ CLAIMS = [
             sentence="Touching by saliency takes fewer touches than a random order."),
     claim(key="first_touch_by_saliency", sentence="The most salient place is the best first touch.",
           where=AT_RANDOM | {"stop": "fixed"} | ONE, first={"way": "saliency"}, second={"way": "random"}),
-    claim(key="sure_is_right", sentence="A belief of 95 % is right at least 95 times in 100.",
+    claim(key="sure_is_right", 
+          sentence="Of touches in random order, known ones held out at random, a belief of 95 % is right at least "
+                   "95 times in 100.",
           where=AT_RANDOM | {"metric": "accuracy_decided", "way": "random"}, first=SURE, second=HEADLINE),
     claim(key="product_too_sure", sentence="Multiplying the likelihoods of touches makes a robot too sure.",
           where=AT_RANDOM | FIXED | {"split": Split.REGIONS, "likelihood": "imprint_product"},

@@ -43,7 +43,8 @@ SHORT = {RESNET: "ResNet", VGG: "VGG16"}
 PHRASES = {
     ("method", "rival"): "", ("method", "control"): "",
     ("method", "*-frozen"): "frozen networks,", ("metric", "nearer_than_chance"): "",
-    ("metric", "nearer_than_middle"): "", ("view", VIEWS): "", ("view", ALL_VIEWS): "", ("over", "task"): "tasks",
+    ("metric", "nearer_than_middle"): "", ("view", VIEWS): "",
+    ("view", ALL_VIEWS): "maps averaged over all views", ("over", "task"): "tasks",
     ("metric", AS_PRINTED): "PCC the thesis's way, hidden vertices as zeros",
     ("metric", "pcc_tasks"): "PCC between tasks", ("metric", "distance"): "distance (nearest, which favours many "
     "centres)", ("metric", "distance_mean"): "distance (mean of all pairs)",

@@ -8,8 +8,10 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.engine.settings import conf_folder, load_params
 from stages.report.claims import Claim, Side, reading
 from stages.report.drawing import plt
+from stages.report.effects import difference, statistic
 from stages.report.items import Figure, Table
 from stages.report.networks import SEEN, SETS, SPLITS, accuracy, both, draw_matrices, everywhere, mean, measured, seen
 from stages.report.results import NotRun, Results, dataset_text
@@ -294,8 +296,21 @@ OURS = on_both_splits(
     joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
            "fusion_entropy", "fusion_entropy_raw", DARK),
 )  # fmt: skip
+
+
+@statistic("of_object_classes")
+def of_object_classes(results: Results, claim: Claim) -> pd.Series:
+    """First side minus second, object by object; the classes of the set are the units."""
+    values = difference(results, claim)
+    members = load_params(conf_folder() / f"data/{claim.sets[0]}.yaml")["meshes"]["classes"]
+    class_of = {item: name for name, items in members.items() for item in items}
+    pairs = pd.MultiIndex.from_arrays([values.index.map(class_of), values.index], names=["class", "item"])
+    return values.set_axis(pairs)
+
+
 new_objects = partial(
-    Claim, section="ours", stage="transfer", dataset="furniture", over=("item",), phrases=PHRASES,
+    Claim, section="ours", stage="transfer", dataset="furniture", over=("item",),
+    statistic="of_object_classes", phrases=PHRASES | {("over", "item"): "classes and objects"},
     where={"metric": NEW_OBJECTS, "severity": (1, 2, 5, 10)},
 )  # fmt: skip
 DEVICE = [

@@ -144,7 +144,7 @@ CLAIMS = [
     claim(key="wider_apart", section="T3.1.5", sentence="Methods differ more at lower resolutions.", **SHARE,
           first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic="spread", note="their standard deviation",
           **of_3_1),
-    seen("symmetry_alone", "Symmetry alone (SymLat, SymRad, 2Sym) is slightly better than VisAtt.",
+    seen("symmetry_alone", "Symmetry alone (SymLat, SymRad, 2Sym) is slightly better than VisAtt, or more than that.",
          CLASSICAL, SYMMETRIES),
     same(key="symmetry_same", sentence="The symmetry channels alone lead to roughly the same errors.",
          first={"method": ("SymRad", "2Sym")}, second={"method": "SymLat"}),
