@@ -60,7 +60,7 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     ParamsError that names the nearest right name, and for a set whose files are not there.
     """
     _check_names(overrides)
-    overrides = [quoted(override) for override in overrides]
+    overrides = [quoted(override, sweeps=False) for override in overrides]
     general = [override for override in overrides if not _set_of(override)]
     common = composed(general)
     values = {key: common[key] for key in SHARED}
@@ -109,12 +109,22 @@ def _is_published(values: dict[str, Any]) -> bool:
     return values | free == compose() | free
 
 
-STARTS = ("meshes", "recorded", "simulated_to_real", "recorded_networks")  # they read files that no stage has made
+STARTS = (
+    "meshes",
+    "weights",
+    "recorded",
+    "simulated_to_real",
+    "recorded_networks",
+)  # they read files that no stage has made
 
 
 def begins_with(sections: dict[str, Any], stage: str, dataset: str) -> str:
-    """The path whose change makes a set's first stage run again: its files, or its settings where they are fetched."""
-    return sections["meshes" if stage == "meshes" else "recorded"].get("folder") or f"conf/data/{dataset}.yaml"
+    """The path whose change makes a stage of STARTS run again: the set's files, or its settings where they are fetched.
+
+    The stage weights reads where people look, which an archive has beside its meshes.
+    """
+    folder = sections["meshes" if stage in ("meshes", "weights") else "recorded"].get("folder")
+    return str(Path(folder).expanduser()) if folder else f"conf/data/{dataset}.yaml"
 
 
 def absent(values: dict[str, Any]) -> dict[str, str]:
@@ -210,12 +220,12 @@ def _set_of(override: str) -> str:
     return first if first in groups()["data"] and "." in override.partition("=")[0] else ""
 
 
-def quoted(override: str) -> str:
+def quoted(override: str, sweeps: bool = True) -> str:
     """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents.
 
-    In a list, each part that needs quotes gets its own.
+    In a list, each part that needs quotes gets its own. sweeps: whether `a,b` is several values, or one such as `0,1,1`.
     """
-    if _is_parsed(override):
+    if _is_parsed(override, sweeps):
         return override
     key, _, value = override.partition("=")
     if value.startswith("[") and value.endswith("]"):
@@ -224,12 +234,12 @@ def quoted(override: str) -> str:
     return f"{key}={_in_quotes(value)}"
 
 
-def _is_parsed(override: str) -> bool:
+def _is_parsed(override: str, sweeps: bool = True) -> bool:
     try:
-        OverridesParser.create().parse_override(override)
+        parsed = OverridesParser.create().parse_override(override)
     except HydraException:
         return False
-    return True
+    return sweeps or not parsed.is_sweep_override()
 
 
 def _in_quotes(value: str) -> str:

@@ -111,6 +111,19 @@ def test_a_set_runs_only_its_stages_and_its_path_may_be_any():
 
 
 @pytest.mark.slow
+def test_a_home_folder_is_found_and_an_axis_may_have_commas(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    values = compose(["sets=[folder]", "meshes.folder=~/scans", "meshes.up=0,1,1"])
+    assert (
+        values["graph"]["meshes"] == {"folder": str(tmp_path / "scans")} and values["folder"]["meshes"]["up"] == "0,1,1"
+    )
+
+
+def test_changed_gaze_in_an_archive_of_meshes_is_learned_anew():
+    graph = compose(["sets=[gaze]", "gaze.meshes.folder=gaze.zip"])["graph"]
+    assert graph["weights"] == graph["meshes"] == {"gaze": "gaze.zip"}
+
+
 @pytest.mark.parametrize(
     "options", [["channels=judged", "classifier=all"], ["channels=blind", "conspicuity.channels=[fine_grained]"]]
 )

@@ -57,6 +57,7 @@ def counted(rows: pd.DataFrame) -> pd.DataFrame:
     """The table's numbers for the rows of one set: a row a method and target, over the objects that have a mesh."""
     units = rows[rows["value"].notna() & (rows["metric"] == "metro_mean")]
     units = units[[is_drawn(name) and name not in (PLAIN, QSLIM) for name in units["method"]]]
+    some(units, "no method of lod.methods keeps points", "lod", runnable=False)
     units = units.assign(
         without_points=units["points"] == 0,
         three_rings=(units["points"] > 0) & ~units["shrunk"].astype(bool),
