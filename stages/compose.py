@@ -223,7 +223,7 @@ def _set_of(override: str) -> str:
 def quoted(override: str, sweeps: bool = True) -> str:
     """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents.
 
-    In a list, each part that needs quotes gets its own. sweeps: whether `a,b` is several values, or one such as `0,1,1`.
+    In a list, each part that needs quotes gets its own. sweeps: whether `a,b` is several values, or one as in `0,1,1`.
     """
     if _is_parsed(override, sweeps):
         return override

@@ -169,7 +169,10 @@ def check_folder_of_several(options: argparse.Namespace) -> None:
 
 
 def check_outputs(mesh: Path, *paths: Path | None) -> None:
-    """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh or another one."""
+    """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh, another or materials.
+
+    The materials beside an OBJ that exists are its own.
+    """
     outputs = [path for path in paths if path]
     for path in outputs:
         if sum(output.resolve() == path.resolve() for output in outputs) > 1:
@@ -179,6 +182,10 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
         check_folder(path.parent, f"{path}: {path.parent}")
         if path.exists() and mesh.exists() and path.samefile(mesh):
             raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
+        if path.suffix.lower() == ".obj" and not path.exists():
+            for beside in (path.with_suffix(".mtl"), path.with_name(f"{path.stem}_0.png")):
+                if beside.exists():
+                    raise ValueError(f"{beside} is not of this mesh, and would be overwritten: choose another name")
 
 
 def check_options(options: argparse.Namespace) -> None:

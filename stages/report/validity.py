@@ -75,8 +75,8 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
             )  # four of four_drawn
         share = _beside(results, stage, dataset, all_rows, "commonest_share")
         # A classifier that is right more often than it gives its commonest answer tells the others apart.
-        deaf = _beside(results, stage, dataset, all_rows, "accuracy").fillna(0) <= share
-        reasons = (deaf & (share > (ONE_ANSWER * guess).fillna(MOST))).map({True: ONE_CLASS, False: ""})
+        deaf = _beside(results, stage, dataset, all_rows, "accuracy").fillna(0) <= share.fillna(0)
+        reasons = (deaf & (share.fillna(0) > (ONE_ANSWER * guess).fillna(MOST))).map({True: ONE_CLASS, False: ""})
         if share.notna().any() and "classifier" in all_rows:  # an older run counted the answers of some trials alone
             narrow = all_rows["classifier"].eq(DEAF) & (all_rows["scaling"] != WIDE if "scaling" in all_rows else True)
             reasons[share.isna() & narrow & all_rows["metric"].eq("accuracy")] = UNKNOWN

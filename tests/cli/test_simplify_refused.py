@@ -28,6 +28,15 @@ def test_the_mesh_itself_is_never_written_over(file, tmp_path, monkeypatch, link
     assert file.read_bytes() == content
 
 
+@pytest.mark.parametrize("name", ["other.mtl", "other_0.png"])
+def test_materials_of_another_mesh_are_never_written_over(file, tmp_path, name):
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(ValueError, match=f"{name} is not of this mesh"):
+        run([str(file), "--faces", "300", "--out", str(tmp_path / "other.obj")])
+    (tmp_path / "other.obj").write_text("an earlier result")
+    run([str(file), "--faces", "300", "--out", str(tmp_path / "other.obj")])
+
+
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
