@@ -41,7 +41,7 @@ sys.meta_path.insert(0, Missing())
 CORE = without(EXTRAS)  # what a core install is: none of the modules that the extras bring
 SIX = """
 import numpy as np
-from haptic_glance import Camera, Placed, Scene, budget, find_points, follow, load, press, saliency, simplify
+from haptic_glance import Camera, Placed, Scene, budget, find_points, follow, load, normalise, press, saliency, simplify
 from haptic_glance.know import learn, primitives
 
 mesh = load(sys.argv[1])
@@ -55,7 +55,7 @@ assert len(follow(mesh, plane, frames=4).images) == 4
 cameras = tuple(Camera((-far, 0.0, 0.5), (0.0, 0.0, 0.5), 40.0, (60, 80)) for far in (2.0, 4.0))
 scene = Scene((Placed("one", (0.0, 0.0, 0.0), 0.0, 1.0),), cameras, tolerance=1.0, kind="pixels")
 assert budget({"one": mesh}, scene).faces.max() <= len(mesh.faces)
-known = learn(primitives() | {"mine": mesh})
+known = learn(primitives() | {"mine": normalise(mesh)})
 assert known.belief().after(press(mesh, points[0]), mesh.vertices[points[0]]).probabilities
 """
 

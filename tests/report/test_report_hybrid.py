@@ -85,7 +85,10 @@ def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert judged.loc["sight_over_touch_objects", "verdict"] == "contradicted"
 
 
-def test_new_objects_are_judged_by_object(measure):
+OBJECTS = ("horse", "dog", "oldtimer", "urn", "dome_lamp", "lying_man", "long_sofa", "low_table")  # of seven classes
+
+
+def test_new_objects_are_judged_by_object_and_class(measure):
     """A head that knows 30 % of eight new objects after one touch and 50 % after five, ten points over the others."""
     random, entries = np.random.default_rng(0), []
     for name, worse in (("hybrid_head", 0.0), ("imagenet_head", 0.1), ("hybrid_nearest", 0.1)):
@@ -93,9 +96,10 @@ def test_new_objects_are_judged_by_object(measure):
             about = {"data": "hybrid", "method": name, "split": "objects", "repetition": 0, "severity": count}
             about |= {"perturbation": "new_object", "metric": NEW_OBJECTS, "seconds": 0.1 * count}
             values = share - worse + 0.02 * random.normal(size=8)
-            entries += [about | {"item": f"o{k}", "value": value} for k, value in enumerate(values)]
+            entries += [about | {"item": name, "value": value} for name, value in zip(OBJECTS, values, strict=True)]
     chance = {"data": "hybrid", "method": "chance", "metric": NEW_OBJECTS, "value": 1 / 8}
     results = measure("transfer", pd.concat([rows(), pd.DataFrame([*entries, chance])]), "furniture")
     judged = verdicts(results, "new_object_hybrid_over_imagenet", "new_object_over_guessing")
     assert judged.loc["new_object_hybrid_over_imagenet", "effect"] == pytest.approx(10, abs=3)
     assert judged.loc["new_object_over_guessing", "effect"] == pytest.approx(17.5, abs=3)
+    assert judged.loc["new_object_over_guessing", ["pairs", "units"]].tolist() == [8, 7]

@@ -59,7 +59,7 @@ def test_larger_run_stands_below_where_there_is_one(measure):
 
 def everywhere(measure, frame):
     """The results with these rows as printed and on the other data sets."""
-    return measure("sequences", pd.concat(frame.assign(dataset=name) for name in (PRINTED_SET, *MORE)))
+    return measure("sequences", pd.concat(frame.assign(dataset=name) for name in (PRINTED_SET, *MORE, "furniture")))
 
 
 judged = partial(verdicts, sequences.CLAIMS)
