@@ -18,6 +18,7 @@ examples:
 """
 
 import argparse
+import itertools
 import json
 import re
 from argparse import Namespace
@@ -32,7 +33,7 @@ from haptic_glance.base.extras import MissingExtra, about
 from haptic_glance.base.files import check_folder, existing, said_of
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.attribute_quadrics import check_attributes
-from haptic_glance.lod.export import COLORLESS, FORMATS, face_count, level_path, levels, write_any
+from haptic_glance.lod.export import COLORLESS, FORMATS, face_count, files_beside, level_path, levels, write_with_files
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
 from haptic_glance.lod.measures import NAMES, fewest_faces, format_table, measure_meshes
 from haptic_glance.lod.neighbourhood import NEIGHBOURHOODS, RINGS, neighbourhoods
@@ -51,7 +52,7 @@ from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh import obj
-from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
+from haptic_glance.mesh.files import files_of, load_unnamed, mesh_files, names_of
 from haptic_glance.mesh.gltf import as_glb
 from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
@@ -171,9 +172,10 @@ def check_folder_of_several(options: argparse.Namespace) -> None:
 def check_outputs(mesh: Path, *paths: Path | None) -> None:
     """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh, another or materials.
 
-    The materials beside an OBJ that exists are its own.
+    The materials beside an OBJ that exists are its own, unless the mesh refers to them.
     """
     outputs = [path for path in paths if path]
+    needed = files_of(mesh)
     for path in outputs:
         if sum(output.resolve() == path.resolve() for output in outputs) > 1:
             raise ValueError(f"{path} is named for two results: write them to two files")
@@ -182,10 +184,11 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
         check_folder(path.parent, f"{path}: {path.parent}")
         if path.exists() and mesh.exists() and path.samefile(mesh):
             raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
-        if path.suffix.lower() == ".obj" and not path.exists():
-            for beside in (path.with_suffix(".mtl"), path.with_name(f"{path.stem}_0.png")):
-                if beside.exists():
-                    raise ValueError(f"{beside} is not of this mesh, and would be overwritten: choose another name")
+        for file in (path, *files_beside(path)):
+            if file.exists() and any(file.samefile(other) for other in needed):
+                raise ValueError(f"{file} belongs to {mesh.name}, and would be overwritten: choose another name")
+            if file != path and not path.exists():
+                raise ValueError(f"{file} is not of this mesh, and would be overwritten: choose another name")
 
 
 def check_options(options: argparse.Namespace) -> None:
@@ -242,6 +245,10 @@ def run(argv: Sequence[str]) -> int:
 
 def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
     """Writes what is asked for of one file; prints its table, unless as JSON, and returns its figures."""
+    if not one_file(options):
+        check_outputs(
+            path, *(level_path(options.out, name, path, target, options.format) for target in targets(options))
+        )
     original, mesh = read(path, options.up)
     task, parts = prepare(mesh, options, path.stem), parts_of(path)
     by_target = {target: level for target in targets(options) if (level := reduce(task, options, target)) is not None}
@@ -251,9 +258,10 @@ def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
     out_paths = [level_path(options.out, name, path, target, options.format) for target in by_target]
     if one_file(options):
         out_paths = [options.out]
-    before = existing(*out_paths, options.picture)
+    before = existing(*out_paths, *itertools.chain.from_iterable(map(files_beside, out_paths)), options.picture)
+    written = []
     for out, level in zip(out_paths, meshes, strict=True):
-        write_level(out, task, level, original, parts)
+        written += write_level(out, task, level, original, parts)
     alone = not options.levels and options.method != PLAIN
     rival = plain(task, len(meshes[0].faces)) if alone else None
     hint_at_pictures(options, mesh)
@@ -263,7 +271,7 @@ def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
         print(summary(task, list(by_target) if options.levels else [method_label(options)], meshes, rival, errors))
     if options.picture:
         draw(task, meshes[0], options.picture)
-    report(said_of([path for path in (*out_paths, options.picture) if path], before))
+    report(said_of([path for path in (*written, options.picture) if path], before))
     rows = zip(out_paths, meshes, errors, strict=False)  # the rival's errors come last
     levels = [{"file": str(out), "faces": len(level.faces), **row} for out, level, row in rows]
     return {"mesh": str(path), "faces": len(task.mesh.faces), "levels": levels}
@@ -277,11 +285,14 @@ def hint_at_pictures(options: Namespace, mesh: Mesh) -> None:
         report("the error counts the shape alone; --attributes uv=1 counts the picture, too: compare the colours")
 
 
-def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh, parts: Parts) -> None:
-    """Writes one result in the file's coordinates, with the nodes of its scene, upright as its format has it."""
+def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh, parts: Parts) -> list[Path]:
+    """Writes one result in the file's coordinates, with the nodes of its scene, upright as its format has it.
+
+    Returns the files that were written.
+    """
     restored = task.restored(level)
     upright_mesh, note = upright_for(out, restored)
-    write_any(out, upright_mesh, moved_parts(parts, original, restored))
+    written = write_with_files(out, upright_mesh, moved_parts(parts, original, restored))
     if note:
         report(note)
     suffix, texture = out.suffix.lower(), task.source.texture
@@ -292,6 +303,7 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh
     ):
         colours = "colours of vertices" if suffix == ".ply" else "the colours of materials"
         report(f"{out.suffix} files have {colours} alone, dropped: {', '.join(sorted(names - COLOURS_OF))}")
+    return written
 
 
 def draw(task: SimplificationTask, level: Mesh, path: Path) -> None:

@@ -79,7 +79,11 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     >>> from haptic_glance import Mesh, write_any
     >>> write_any("triangle.ply", Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     """
-    path = Path(path)
+    write_with_files(Path(path), mesh, parts)
+
+
+def write_with_files(path: Path, mesh: Mesh, parts: Parts | None = None) -> list[Path]:
+    """As `write_any`; returns the files that were written, the mesh first, then materials and pictures beside it."""
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise ValueError(f"{path.name}: meshes are written as {', '.join(FORMATS)}, not as {suffix or 'no suffix'}")
@@ -102,6 +106,15 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
             part = stack.enter_context(whole_file(path.parent / name))
             data = extra.encode() if isinstance(extra, str) else extra
             part.write_bytes(with_stated_up(data, suffix, mesh.up) if name == path.name else data)
+    return [path, *(path.parent / name for name in beside)]
+
+
+def files_beside(path: Path) -> list[Path]:
+    """The files that exist under the names of materials and pictures that `write_any` writes beside an OBJ."""
+    if path.suffix.lower() != ".obj" or not path.parent.is_dir():
+        return []
+    name = re.compile(re.escape(path.stem) + r"(\.mtl|_(0|[1-9]\d?)\.png)")  # scan_2024.png is no hundredth picture
+    return sorted(file for file in path.parent.iterdir() if name.fullmatch(file.name))
 
 
 def _in_pictures(texture):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -325,6 +326,23 @@ def mesh_files(place: Path) -> list[Path]:
     if not files:
         raise MeshError(f"{place}: no mesh in this folder; the formats are {', '.join(FORMATS)}")
     return files
+
+
+def files_of(path: Path) -> list[Path]:
+    """The other files that an OBJ or a glTF and its materials refer to, as far as they exist; none of other formats."""
+    names_in = {".obj": obj.names_in, ".gltf": gltf.names_in}.get(path.suffix.lower())
+    found = _named_in(path, names_in) if names_in else []
+    return found + [picture for file in found if names_in is obj.names_in for picture in _named_in(file, obj.names_in)]
+
+
+def _named_in(path, names_in):
+    """The files that exist of those that a file names, beside it."""
+    found = []
+    with suppress(OSError):
+        for name in dict.fromkeys(names_in(path.read_bytes())):
+            with suppress(OSError, ValueError):  # a name that no file can have
+                found += [path.parent / name] if (path.parent / name).is_file() else []
+    return found
 
 
 def names_of(files: list[Path]) -> list[str]:

@@ -55,6 +55,19 @@ class Beside:
     __getitem__ = get
 
 
+NAMES = re.compile(rb"(?mi)^[ \t]*(mtllib|map_\w+|bump|disp|decal|norm|refl)[ \t]+(.+?)\s*$")
+
+
+def names_in(content: bytes) -> list[str]:
+    """The names of the files that an OBJ file, or a material file, refers to; those of materials also word by word."""
+    names = []
+    for kind, text in NAMES.findall(content):
+        name = text.decode(errors="replace")
+        words = name.split() if kind.lower() == b"mtllib" else [OPTION.sub("", name)]
+        names += [word.replace("\\", "/") for word in (name, *words)]
+    return names
+
+
 OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)\s")
 
 

@@ -84,6 +84,13 @@ def test_pictures_go_along(simplified, tmp_path, out):
     assert np.abs(simple.texture.uv - want).max() < 0.02
 
 
+def test_materials_beside_the_result_are_said_to_be_written_or_replaced(simplified, tmp_path):
+    write_any(tmp_path / "wrapped.obj", textured())
+    names = ", ".join(str(tmp_path / name) for name in ("out.obj", "out_0.png", "out.mtl"))
+    for kind in ("written", "replaced"):
+        assert f"{kind}: {names}\n" in simplified("--faces", 500, source=tmp_path / "wrapped.obj")[2]
+
+
 def test_format_without_colours_says_so(simplified, tmp_path):
     write_any(tmp_path / "wrapped.obj", textured())
     _, _, messages = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")

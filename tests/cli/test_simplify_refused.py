@@ -1,5 +1,6 @@
 """Requests that `haptic-glance simplify` refuses: the reason, the remedy, and nothing written."""
 
+import json
 import os
 import re
 
@@ -35,6 +36,44 @@ def test_materials_of_another_mesh_are_never_written_over(file, tmp_path, name):
         run([str(file), "--faces", "300", "--out", str(tmp_path / "other.obj")])
     (tmp_path / "other.obj").write_text("an earlier result")
     run([str(file), "--faces", "300", "--out", str(tmp_path / "other.obj")])
+
+
+@pytest.mark.parametrize(
+    ("out", "name"),
+    [
+        (["--out", "small.obj"], "small.mtl"),
+        (["--out", "small.obj"], "small_0.png"),
+        (["--out", "small.obj"], "small_11.png"),
+        (["--out", "x.glb", "--picture", "look.png"], "look.png"),
+        (["--levels", "50%", "--out", "results", "--format", "obj"], "results/wrapped_50pct.mtl"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["obj", "gltf"])
+def test_files_that_the_mesh_refers_to_are_never_written_over(file, tmp_path, monkeypatch, out, name, kind):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command, "read", lambda *_: pytest.fail("it was read before it was refused"))
+    (tmp_path / "results").mkdir()
+    for result in ("small.obj", "results/wrapped_50pct.obj"):  # of an earlier run, which had these materials
+        (tmp_path / result).write_text("an earlier result")
+    if kind == "gltf":
+        (tmp_path / "wrapped.gltf").write_text(json.dumps({"images": [{"uri": name}]}))
+    else:
+        material = name if name.endswith(".mtl") else "a b.txt"
+        (tmp_path / "wrapped.obj").write_text(f"mtllib {material}\n" + file.read_text())
+        (tmp_path / material).write_text(f"newmtl a\nmap_Kd -clamp on {name}\n")
+    (tmp_path / name).touch()
+    content = (tmp_path / name).read_bytes()
+    faces = [] if "--levels" in out else ["--faces", "300"]
+    with pytest.raises(ValueError, match=f"{name} belongs to wrapped.{kind}, and would be overwritten"):
+        run([f"wrapped.{kind}", *faces, *out])
+    assert (tmp_path / name).read_bytes() == content
+
+
+def test_results_in_a_folder_spare_the_materials_of_others(file, tmp_path):
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "ball_50pct.mtl").write_text("mine")
+    with pytest.raises(ValueError, match="ball_50pct.mtl is not of this mesh"):
+        run([str(file), "--levels", "50%", "--out", str(tmp_path / "results")])
 
 
 @pytest.mark.parametrize(
