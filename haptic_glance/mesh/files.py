@@ -20,7 +20,16 @@ from . import clouds, gltf, obj, ply
 from .axes import AUTO
 from .clouds import Cloud
 from .headers import MeshError, check_header, stated_faces
-from .materials import join_parts, merge_equal_rows, obj_vertices, scale_colors, set_apart, texture_of, vertex_colors
+from .materials import (
+    join_parts,
+    merge_equal_rows,
+    numbered,
+    obj_vertices,
+    scale_colors,
+    set_apart,
+    texture_of,
+    vertex_colors,
+)
 from .mesh import Mesh
 from .off import read_off
 from .up import UP_OF_FORMAT, assumed, stated_up
@@ -214,7 +223,7 @@ def _parsed(content, suffix, resolver, every_colour, name):
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
         beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
-        opened = _open(content, suffix, beside)
+        opened = _open(numbered(content), suffix, beside)
         if unreadable := set_apart(opened, content):
             warn_caller(f"{name}: unreadable, so left out: the picture {', the picture '.join(unreadable)}")
         loaded = join_parts(opened, order, every_colour)

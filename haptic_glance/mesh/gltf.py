@@ -44,7 +44,7 @@ def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -
         raise
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         raise MeshError(f"unreadable as GLTF ({type(error).__name__} in its JSON)") from None
-    return _joined(tree, binary)
+    return joined(tree, binary)
 
 
 def in_floats(content: bytes) -> bytes:
@@ -69,7 +69,7 @@ def in_floats(content: bytes) -> bytes:
             views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": 4 * values.size})
             binary += values.astype("<f4").tobytes()
         tree["buffers"][0]["byteLength"] = len(binary)
-        return _joined(tree, binary)
+        return joined(tree, binary)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
         return content
 
@@ -86,7 +86,8 @@ def numbers_of(tree: dict[str, Any], accessor: dict[str, Any], content: bytes) -
     return np.ndarray((accessor["count"], width), kind, content, first, strides)
 
 
-def _joined(tree: dict[str, Any], binary: bytearray) -> bytes:
+def joined(tree: dict[str, Any], binary: bytearray) -> bytes:
+    """The bytes of a GLB of a tree and its one buffer."""
     text = json.dumps(tree).encode()
     text += b" " * (-len(text) % ALIGNED)
     length = 12 + 8 + len(text) + 8 + len(binary)

@@ -18,7 +18,7 @@ from PIL import Image
 
 from haptic_glance.base.lazy import trimesh
 
-from .gltf import numbers_of
+from .gltf import joined, numbers_of
 from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import MOST_UV, Mesh, Texture, content_of
 
@@ -65,17 +65,16 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
     materials = {id(part): getattr(part.visual, "material", None) for part in parts}
     tree = _header(content)
     unreadable = [name for name, picture in _pictures(tree, content) if not _is_readable(picture)]
-    elsewhere = {
-        (str(material.get("name")), name)
-        for material in _stated_in(tree, "materials")
-        for name, use in _uses(material)
-        if use.get("texCoord")
-    }
+    elsewhere, stated = _on_other_coordinates(tree), _stated_in(tree, "materials")
+    left_out = {}
+    if elsewhere:  # the names are those of `numbered`
+        of_file: dict[int, Any] = {id(part): part for part in materials.values() if getattr(part, "name", None)}
+        for material in of_file.values():  # a part without a material has none, or one without a name
+            left_out[id(material)] = elsewhere[int(material.name)]
+            material.name = stated[int(material.name)].get("name")
     for part in parts:
-        properties = beside_colour(materials[id(part)])
-        part.metadata[BESIDE] = properties and {
-            k: v for k, v in properties.items() if (str(properties.get("name")), k) not in elsewhere
-        }
+        properties, unplaced = beside_colour(materials[id(part)]), left_out.get(id(materials[id(part)]), ())
+        part.metadata[BESIDE] = properties and {k: v for k, v in properties.items() if k not in unplaced}
     for material in {id(material): material for material in materials.values() if material is not None}.values():
         if isinstance(material, trimesh.visual.material.PBRMaterial):
             for name in MAPS:
@@ -91,6 +90,29 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
                     if materials[id(part)] is material and part.metadata[BESIDE]:
                         part.metadata[BESIDE].pop(name, None)
     return unreadable
+
+
+def numbered(content: bytes) -> bytes:
+    """The bytes of a GLB; materials have their numbers as names where one has pictures on other texture coordinates.
+
+    Names may be equal, or absent: `set_apart` tells the materials apart by the numbers, and gives the names back.
+    """
+    tree = _header(content)
+    if not _on_other_coordinates(tree):
+        return content
+    for number, material in enumerate(_stated_in(tree, "materials")):
+        material["name"] = str(number)
+    return joined(tree, bytearray(content[28 + int.from_bytes(content[12:16], "little") :]))
+
+
+def _on_other_coordinates(tree):
+    """[names of the pictures that a material has on another set of texture coordinates]; empty where none has any."""
+    names = []
+    with suppress(*MALFORMED):
+        names = [
+            {name for name, use in _uses(material) if use.get("texCoord")} for material in _stated_in(tree, "materials")
+        ]
+    return names if any(names) else []
 
 
 def _pictures(tree, content):

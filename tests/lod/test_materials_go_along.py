@@ -135,6 +135,25 @@ def test_what_cannot_be_carried_is_said_and_a_picture_on_other_coordinates_is_le
     assert "occlusionTexture" not in varnish and "normalTexture" in varnish
 
 
+@pytest.mark.parametrize("name", ["paint", None])
+def test_a_picture_on_other_coordinates_is_left_out_of_its_own_material_alone(tmp_path, name):
+    def change(tree):
+        for material in tree["materials"]:
+            material["normalTexture"]["texCoord"] = int(material.pop("name") == "3")
+            material |= {"name": name} if name else {}
+
+    parts = {f"{place}": ball(place, name=f"{place}", normalTexture=picture((place, 128, 255)),
+                              baseColorFactor=[place, 0, 0, 255]) for place in (0, 3)}  # fmt: skip
+    (tmp_path / "art.glb").write_bytes(trimesh.Scene(parts).export(file_type="glb"))
+    rewritten(tmp_path / "art.glb", change)
+    mesh = load(tmp_path / "art.glb")
+    reds = [image[0, 0, 0] for image in mesh.texture.images]
+    kept = {red: material for red, material in zip(reds, mesh.texture.materials, strict=True)}
+    assert "normalTexture" in kept[0] and "normalTexture" not in kept[3]
+    assert [material.get("name") for material in kept.values()] == [name, name]
+    assert not_read(as_glb(tmp_path / "art.glb")) == ["normalTexture.texCoord"]
+
+
 def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_bytes(simplified):
     def change(tree):
         tree["meshes"][0]["primitives"] += tree["meshes"][1]["primitives"]
