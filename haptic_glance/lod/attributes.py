@@ -19,6 +19,7 @@ from .seams import SAME, Corners, charts, explained, joined, own_sides
 
 INWARDS = 1e-3  # of the way to the face's centre: a corner on a seam then lies on its own side of it
 FAR = 50.0  # barycentric: how far the map under a centre is extrapolated to corners some tens of faces away
+TOUCHING = 1e-4  # of the diagonal: faces closer together than this touch; a thin sheet is thicker
 ROUNDING = 1e-9  # barycentric: a point this close to a corner is the corner
 STEPS, DAMPING = 8, 0.8  # of Jacobi's method: each leaves at most 0.6 of the difference
 
@@ -70,13 +71,34 @@ def closest(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return face, index.weights(points, face)
 
 
+def faces_under(index: SurfaceIndex, mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """(centres (m, 3) of the faces of a simplified mesh, faces (m,) of the original that are closest to them).
+
+    Of two faces that touch, as where two parts meet, the face that looks the same way counts.
+    """
+    centres = mesh.vertices[mesh.faces].mean(axis=1)
+    distances, found = index.nearest(centres)
+    found, normals, original = found.astype(np.int64), mesh.face_normals, index.mesh.face_normals
+    against = np.flatnonzero(np.einsum("ij,ij->i", normals, original[found]) < 0)
+    side = np.abs(normals[against]).argmax(axis=1)
+    side = 2 * side + (normals[against, side] < 0)
+    limit = TOUCHING * index.mesh.diagonal
+    for number, places in _by_value(side).items():  # the faces that look along an axis, or against it
+        source, rows = np.flatnonzero(original[:, number // 2] * (-1) ** number > 0), against[places]
+        if len(source):
+            apart, ids = SurfaceIndex(Mesh(index.mesh.vertices, index.mesh.faces[source])).nearest(centres[rows])
+            looks = np.einsum("ij,ij->i", normals[rows], original[source[ids]]) > 0
+            near = looks & (apart <= distances[rows] + limit)
+            found[rows[near]] = source[ids[near]]
+    return centres, found
+
+
 def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     """The Texture of the faces of `mesh`, taken from the reference's."""
     assert reference.texture is not None
     chart, seams = charts(reference)
     search = ChartSearch(reference, chart)
-    centres = mesh.vertices[mesh.faces].mean(axis=1)
-    under = search.index.nearest(centres)[1].astype(np.int64)
+    centres, under = faces_under(search.index, mesh)
     weights = search.index.weights(centres, under)
     # All corners of a vertex within a chart share one closest point, so that their coordinates are equal bit for bit.
     size = int(chart.max()) + 1

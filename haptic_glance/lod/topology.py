@@ -10,8 +10,9 @@ import numpy as np
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.mesh.gltf import SUFFIXES, as_glb
 from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.nearest import SurfaceIndex
 
-from .attributes import closest
+from .attributes import faces_under
 from .kernels.mesh import count_faults, face_components, opposites, signed_volumes, split_fans
 
 FOLD = -0.99  # cosine between neighbouring normals: folded back within 8 degrees of flat
@@ -185,6 +186,6 @@ def moved_parts(parts: Parts, mesh: Mesh, simplified: Mesh) -> Parts:
     owner = np.zeros(len(mesh.faces), dtype=np.int64)
     for number, name in enumerate(names):
         owner[parts[name]] = number
-    face, _ = closest(mesh, simplified.vertices[simplified.faces].mean(axis=1))
+    _, face = faces_under(SurfaceIndex(mesh), simplified)
     faces_by_part = {name: np.flatnonzero(owner[face] == number) for number, name in enumerate(names)}
     return {name: ids for name, ids in faces_by_part.items() if len(ids)}

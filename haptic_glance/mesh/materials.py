@@ -146,6 +146,7 @@ def pixels_of(image: Image.Image) -> np.ndarray:
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
+OF_THE_SCENE = ("KHR_lights_", "KHR_xmp", "KHR_materials_variants", "EXT_mesh_gpu_instancing")
 NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines", 6: "fans of triangles"}  # modes that are not read
 KEPT_BESIDE_COLOURS = ("baseColorFactor", "pbrMetallicRoughness", "extensions", "extras")
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
@@ -160,7 +161,7 @@ def not_read(content: bytes, has_colors: bool = False) -> list[str]:
     names = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
     extensions = tree.get("extensionsUsed") if isinstance(tree, dict) else None
     whole = map(str, extensions) if isinstance(extensions, list) else ()  # extensions of the scene
-    names += [name for name in whole if name.startswith(("KHR_lights_", "KHR_xmp"))]
+    names += [name for name in whole if name.startswith(OF_THE_SCENE)]
     names += [f"picture {entry[ABSENT]}, not beside it" for entry in _stated_in(tree, "images") if ABSENT in entry]
     with suppress(*MALFORMED):
         names += ["asset.copyright"] if tree["asset"].get("copyright") else []

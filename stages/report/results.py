@@ -409,7 +409,8 @@ class Results:
     def lods(self, name: str, method: str, dataset: str | None = None) -> list[tuple[str, Mesh]]:
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
         paths = [path for path in files_below(self.folder("lod", dataset) / name) if path.match(f"{method}_*.npz")]
-        some(paths, f"no lod/{name}/{method}_*.npz", "lod")
+        message = f"lod/{name} has no mesh by {method}: lod.methods lacks the method, or it reached no face count"
+        some(paths, message, "lod", runnable=False)
         levels = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
         return sorted(levels, key=lambda item: (-len(item[1].faces), item[0]))
 

@@ -155,6 +155,28 @@ def test_faces_go_with_the_closest_face(file):
     assert moved_parts({}, joined, joined) == {} == parts_of(file)  # only a GLB has nodes
 
 
+@pytest.mark.parametrize("reverse", [False, True])
+def test_faces_of_parts_that_touch_stay_with_their_part(reverse):
+    left, right = (trimesh.creation.box().subdivide().subdivide() for _ in range(2))
+    right.apply_translation((1, 0, 0))  # the right side of one is the left side of the other
+    whole = trimesh.util.concatenate([right, left] if reverse else [left, right])
+    count = len(left.faces)
+    parts = {"first": np.arange(count), "second": np.arange(count, 2 * count)}
+    order = np.random.default_rng(0).permutation(2 * count)
+    mesh = Mesh(np.asarray(whole.vertices), np.asarray(whole.faces))
+    moved = moved_parts(parts, mesh, Mesh(mesh.vertices, mesh.faces[order]))
+    assert {name: set(order[ids]) for name, ids in moved.items()} == {name: set(ids) for name, ids in parts.items()}
+
+
+def test_a_thin_sheet_keeps_its_parts_where_its_faces_were_turned():
+    sheet = trimesh.creation.box(extents=(1, 1, 0.002)).subdivide().subdivide()
+    mesh = Mesh(np.asarray(sheet.vertices), np.asarray(sheet.faces))
+    top = mesh.vertices[mesh.faces][..., 2].min(axis=1) > 0
+    parts = {"top": np.flatnonzero(top), "rest": np.flatnonzero(~top)}
+    moved = moved_parts(parts, mesh, Mesh(mesh.vertices, mesh.faces[:, ::-1]))
+    assert set(moved["top"]) == set(parts["top"])
+
+
 @pytest.mark.parametrize("up", ["z", "y"])
 @pytest.mark.slow
 def test_a_glb_stands_as_the_format_has_it_and_other_formats_stay(file, tmp_path, capsys, up):
