@@ -7,7 +7,12 @@ import re
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
+
 from haptic_glance.base.lazy import trimesh
+
+from .materials import obj_vertices
+from .polygons import refined
 
 NUMBERED = [b"v"], [b"vt"], [b"vn"], [b"f"]  # the first words of lines of numbers
 NUMBER = r"\s+[-+]?[\d.]+(?:e[-+]?\d+)?(?=\s)"
@@ -18,7 +23,10 @@ OPTION = re.compile(
 
 
 def plain(content: bytes) -> bytes:
-    """An OBJ's bytes without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers."""
+    """An OBJ's bytes without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers.
+
+    A concave polygon begins at another corner, or becomes triangles, where the parser's fan would fold it.
+    """
     content = content.removeprefix(codecs.BOM_UTF8)  # the parser would miss the first vertex
     content = content.replace(b"\t", b" ") if b"\t" in content else content
     # a line that ends with a backslash goes on: its numbers would grow together
@@ -30,7 +38,31 @@ def plain(content: bytes) -> bytes:
         start = content.rfind(b"\n", 0, comment.start()) + 1
         return b"" if content[start : comment.start()].split(None, 1)[:1] in NUMBERED else comment[0]
 
-    return re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content
+    return _unfolded(re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content)
+
+
+POLYGON = re.compile(rb"(?m)^f((?: +-?\d[-/\d]*){4,})(?= *\r?$)")
+
+
+def _unfolded(content):
+    polygons = [match[1].split() for match in POLYGON.finditer(content)]
+    if not polygons:
+        return content
+    words = re.sub(rb"/\S*", b"", b" ".join(b" ".join(corners) for corners in polygons)).split()
+    try:
+        ids, vertices = np.array(words).astype(np.int64), obj_vertices(content)
+    except ValueError:  # which the parser names
+        return content
+    ids[ids > 0] -= 1
+    rings = refined(ids, np.array([len(corners) for corners in polygons]), vertices)
+    numbers = iter(range(len(polygons)))
+
+    def lines(polygon: re.Match[bytes]) -> bytes:
+        number = next(numbers)
+        parts = [[polygons[number][corner] for corner in ring] for ring in rings.get(number, ())]
+        return b"\n".join(b"f " + b" ".join(part) for part in parts) or polygon[0]
+
+    return POLYGON.sub(lines, content) if rings else content
 
 
 class Beside:

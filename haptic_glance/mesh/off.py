@@ -8,6 +8,7 @@ import re
 import numpy as np
 
 from .headers import MeshError
+from .polygons import fans, refined
 
 KEYWORD = re.compile(rb"\s*(?:#[^\n]*\s+)*(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s#\d])([ \t]+BINARY[^\n]*\n)?")
 COUNTS = re.compile(rb"\s*(?:#[^\n]*\s+)*\d+[ \t]+\d+(?:[ \t]+\d+)?[ \t]*(?:#[^\n]*)?\r?\n")
@@ -16,9 +17,10 @@ COUNTS = re.compile(rb"\s*(?:#[^\n]*\s+)*\d+[ \t]+\d+(?:[ \t]+\d+)?[ \t]*(?:#[^\
 def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     """(vertices (n, 3) f8, faces (m, 3) i8, colors (n, 3) u1 or None) of an OFF file's bytes, in the order of the file.
 
-    A polygon becomes a fan of triangles about its first vertex; one of fewer than three vertices, which is a point or a
-    line, is left out. Fourth coordinates divide the others. Colours of faces are not read. Raises MeshError with the
-    reason for any other file, before it allocates more than the file fills.
+    A polygon becomes a fan of triangles about its first vertex, or others where a fan would fold a concave one; one of
+    fewer than three vertices, which is a point or a line, is left out. Fourth coordinates divide the others. Colours of
+    faces are not read. Raises MeshError with the reason for any other file, before it allocates more than the file
+    fills.
     """
     if COUNTS.match(content):  # a plain file may leave the word out
         content = b"OFF\n" + content
@@ -35,7 +37,7 @@ def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]
             vertices = vertices / table[:, 3:4]
     first = spans["place"] + spans["normals"]
     colors = _bytes(table[:, first : table.shape[1] - spans["texture"]]) if colored else None
-    return vertices, _triangles(polygons), colors
+    return vertices, _triangles(polygons, vertices), colors
 
 
 def _text(content, dimensional, width, colored):
@@ -80,10 +82,17 @@ def _binary(content, dimensional, width, colored):
     return table, polygons
 
 
-def _triangles(polygons):
-    """(m, 3) i8 faces: a fan about the first vertex of each polygon."""
+def _triangles(polygons, vertices):
+    """(m, 3) i8 faces: a fan about the first vertex of each polygon, or triangles without folds of a concave one."""
     if any(len(polygon) != 3 for polygon in polygons):
-        polygons = [(ring[0], *pair) for ring in polygons for pair in zip(ring[1:], ring[2:], strict=False)]
+        ids = np.array([corner for polygon in polygons for corner in polygon], dtype=np.int64)
+        rings = refined(ids, np.array([len(polygon) for polygon in polygons]), vertices)
+        polygons = [
+            [polygon[corner] for corner in ring]
+            for number, polygon in enumerate(polygons)
+            for ring in rings.get(number, [range(len(polygon))])
+        ]
+        polygons = fans(polygons)
     return np.array(polygons, dtype=np.int64).reshape(-1, 3)
 
 

@@ -1,10 +1,12 @@
 """PLY files whose faces have three, four or more corners, as triangles that the parser reads."""
 
 import re
+from contextlib import suppress
 
 import numpy as np
 
 from .headers import MeshError
+from .polygons import fans, refined
 
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"}
 TYPES |= {"float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2"}
@@ -24,21 +26,58 @@ def plain(content: bytes) -> bytes:
 def triangulated(content: bytes) -> bytes:
     """A PLY's bytes; each polygon of a binary one becomes a fan of triangles about its first vertex, in their order.
 
-    Where all faces have three corners, or four, and where they have another list, the bytes stay as they are. Single
-    values of a face go to each of its triangles. Raises MeshError for a file that ends in a face.
+    Where all faces have three corners, or four, and where they have another list, the bytes stay as they are. A concave
+    polygon, also of text, that a fan would fold begins at another corner, or becomes triangles. Single values of a face
+    go to each of its triangles. Raises MeshError for a file that ends in a face.
     """
     end = END.search(content)
     lines = content[: end.end()].decode("latin-1").splitlines() if end else ["", "ascii"]
+    if end and "ascii" in lines[1]:
+        with suppress(ValueError, LookupError):  # which the parser names
+            return _unfolded_text(content, end.end(), _elements(lines))
     if not end or "ascii" in lines[1]:
         return content
-    order, offset = ">" if "big" in lines[1] else "<", end.end()
+    order, offset, vertices = ">" if "big" in lines[1] else "<", end.end(), np.zeros((0, 3))
     for name, rows, properties in _elements(lines):
         lists = [words for words in properties if words[0] == "list"]
         if name == "face" and len(lists) == 1 and lists[0][-1] in CORNERS and rows:
-            return _fans(content, lines, end.end(), offset, rows, properties, order)
+            return _fans(content, lines, end.end(), offset, rows, properties, order, vertices)
         if lists:  # what follows begins at a place that is not known
             break
+        if name == "vertex":
+            with suppress(ValueError, LookupError):
+                kind = np.dtype([(words[1], order + TYPES[words[0]]) for words in properties])
+                table = np.frombuffer(content, kind, rows, offset)
+                vertices = np.stack([table[axis] for axis in "xyz"], axis=1).astype(np.float64)
         offset += rows * sum(np.dtype(TYPES[words[0]]).itemsize for words in properties)
+    return content
+
+
+def _unfolded_text(content, begin, elements):
+    """The bytes of a PLY of text, whose body begins at a place, with polygons that a fan does not fold."""
+    rows, at, table, axes = content[begin:].splitlines(), 0, [], []
+    for name, count, properties in elements:
+        lists = [place for place, words in enumerate(properties) if words[0] == "list"]
+        if name == "face" and len(lists) == 1 and properties[lists[0]][-1] in CORNERS:
+            faces, place = [row.split() for row in rows[at : at + count]], lists[0]
+            sizes = np.array([int(face[place]) for face in faces])
+            if (sizes <= 3).all() or list(map(len, faces)) != (len(properties) + sizes).tolist():
+                break
+            vertices = np.array([[float(words[axis]) for axis in axes] for words in map(bytes.split, table)])
+            polygons = [face[place + 1 : place + 1 + k] for face, k in zip(faces, sizes, strict=True)]
+            rings = refined(np.array([int(corner) for ring in polygons for corner in ring]), sizes, vertices)
+            for number, parts in rings.items():
+                face, polygon = faces[number], polygons[number]
+                behind = face[place + 1 + len(polygon) :]
+                new = [[*face[:place], b"%d" % len(ring), *(polygon[k] for k in ring), *behind] for ring in parts]
+                rows[at + number] = b"\n".join(map(b" ".join, new))
+            more = count + sum(len(parts) - 1 for parts in rings.values())
+            header = re.sub(rb"(?m)^element face \d+", b"element face %d" % more, content[:begin])
+            return header + b"\n".join(rows) + b"\n" if rings else content
+        if name == "vertex":
+            axes = [[words[-1] for words in properties].index(axis) for axis in "xyz"]
+            table = rows[at : at + count]
+        at += count
     return content
 
 
@@ -53,25 +92,40 @@ def _elements(lines):
     return elements
 
 
-def _fans(content, lines, begin, at, rows, properties, order):
+def _fans(content, lines, begin, at, rows, properties, order, vertices):
+    """The bytes with triangles for polygons, or with quads that a fan does not fold."""
     place = next(i for i, words in enumerate(properties) if words[0] == "list")
     number, ids = (np.dtype(order + TYPES[kind]) for kind in properties[place][1:3])
     sizes = [np.dtype(TYPES[words[0]]).itemsize if words[0] != "list" else 0 for words in properties]
     before, after = sum(sizes[:place]), sum(sizes[place:])
     starts, corners = _rows(content, at, rows, "big" if order == ">" else "little", number, ids.itemsize, before, after)
-    if (corners == corners[0]).all() and corners[0] in (3, 4):
+    if (corners == 3).all():
         return content
-    triangles = np.maximum(corners - 2, 0)
-    face = np.repeat(np.arange(rows), triangles)
-    second = np.arange(len(face)) - np.repeat(np.cumsum(triangles) - triangles, triangles) + 1
     octets = np.frombuffer(content, np.uint8)
 
     def taken(first, size):  # (faces, size) bytes from a place of each
         return octets[first[:, None] + np.arange(size)]
 
-    ring = starts[face] + before + number.itemsize
+    rings = starts + before + number.itemsize
+    within = np.arange(corners.sum()) - np.repeat(np.cumsum(corners) - corners, corners)
+    named = taken(np.repeat(rings, corners) + ids.itemsize * within, ids.itemsize).view(ids).ravel()
+    unfolded = refined(named.astype(np.int64), corners, vertices)
+    if (corners == 4).all():
+        rotated = octets.copy()
+        for face, ((first, *_),) in unfolded.items():
+            quad = slice(rings[face], rings[face] + 4 * ids.itemsize)
+            rotated[quad] = np.roll(octets[quad], -first * ids.itemsize)
+        return rotated.tobytes() if unfolded else content
+    triangles = np.maximum(corners - 2, 0)
+    face = np.repeat(np.arange(rows), triangles)
+    second = np.arange(len(face)) - np.repeat(np.cumsum(triangles) - triangles, triangles) + 1
+    chosen = np.stack([np.zeros_like(second), second, second + 1], axis=1)
+    firsts = np.cumsum(triangles) - triangles
+    for place, parts in unfolded.items():
+        chosen[firsts[place] : firsts[place] + triangles[place]] = fans(parts)
+    ring = rings[face]
     parts = [taken(starts[face], before), np.full((len(face), 1), 3, np.uint8)]
-    parts += [taken(ring + corner * ids.itemsize, ids.itemsize) for corner in (0, second, second + 1)]
+    parts += [taken(ring + corner * ids.itemsize, ids.itemsize) for corner in chosen.T]
     parts += [taken(ring + corners[face] * ids.itemsize, after)]
     stop = starts[-1] + before + number.itemsize + corners[-1] * ids.itemsize + after
     header = "\n".join(lines) + "\n"

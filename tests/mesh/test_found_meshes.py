@@ -14,7 +14,9 @@ from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
 from haptic_glance.lod import colour_error
+from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.polygons import refined
 from haptic_glance.studio.mystery import gather
 from haptic_glance.touch.press import as_shown
 
@@ -114,6 +116,54 @@ def test_a_binary_ply_of_mixed_polygons_has_the_triangles_of_each(tmp_path, orde
     (tmp_path / "mixed.ply").write_bytes(head.encode() + b"end_header\n" + body[:-2])
     with pytest.raises(MeshError, match="truncated: it ends in a face"):
         load(tmp_path / "mixed.ply")
+
+
+ARROW = [(0, 0), (4, 0), (4, 4), (3, 1)]  # an area of 4
+COMB = [(0, 0), (5, 0), (5, 3), (4, 3), (4, 1), (3, 1), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)]  # of 11
+
+
+def polygon_file(kind, points, rings):
+    """The bytes of a file of flat polygons: obj, off, or ply with values before and behind the list of each face."""
+    rows = [f"{x} {y} 0" for x, y in points]
+    listed = [" ".join(map(str, (len(ring), *ring))) for ring in rings]
+    if kind == "obj":
+        faces = ["f " + " ".join(f"{corner + 1}/{corner + 1}" for corner in ring) for ring in rings]
+        return "\n".join([f"v {row}" for row in rows] + [f"vt {x} {y}" for x, y in points] + faces).encode()
+    if kind == "off":
+        return "\n".join(["OFF", f"{len(rows)} {len(rings)} 0", *rows, *listed]).encode()
+    header = f"ply\nformat {kind} 1.0\nelement vertex {len(rows)}\n"
+    header += "".join(f"property float {axis}\n" for axis in "xyz") + f"element face {len(rings)}\n"
+    header += "property uchar before\nproperty list uchar int vertex_indices\nproperty uchar behind\nend_header\n"
+    if kind == "ascii":
+        return header.encode() + "\n".join([*rows, *(f"7 {text} 8" for text in listed)]).encode()
+    order = ">" if "big" in kind else "<"
+    vertices = np.array([(*point, 0) for point in points], dtype=order + "f4").tobytes()
+    faces = (bytes([7, len(ring)]) + np.array(ring, dtype=order + "i4").tobytes() + b"\x08" for ring in rings)
+    return header.encode() + vertices + b"".join(faces)
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("shape", [ARROW, COMB])
+@pytest.mark.parametrize("kind", ["obj", "off", "ascii", "binary_little_endian", "binary_big_endian"])
+def test_a_concave_polygon_is_not_folded(kind, shape, beside):
+    points = [*shape, (10, 0), (11, 0), (11, 1), (10, 1)]
+    others = [range(len(shape), len(points)), range(len(shape), len(points) - 1)] if beside else []
+    for turn in range(len(shape)):
+        ring = np.roll(np.arange(len(shape)), turn)
+        content = polygon_file(kind, points, [ring, *others])
+        mesh = parse(content, f".{kind if kind in ('obj', 'off') else 'ply'}")
+        assert len(mesh.faces) == len(shape) - 2 + 3 * beside and (mesh.face_normals[:, 2] > 0).all()
+        assert mesh.face_areas.sum() == pytest.approx((4 if shape is ARROW else 11) + 1.5 * beside)
+
+
+BENT = [(0, 0, 0), (4, 0, 0), (4, 4, 3), (3, 1, 0)]
+CROSSED = [(0, 0, 0), (4, 1, 0), (4, 0, 0), (0, 2, 0)]
+CONVEX = [(0, 0, 0), (2, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0)]
+
+
+@pytest.mark.parametrize("points", [BENT, CROSSED, CONVEX, [(0, 0, 0)] * 4, [(np.nan, 0, 0)] * 4])
+def test_other_polygons_keep_their_fan(points):
+    assert refined(np.arange(len(points)), np.array([len(points)]), np.array(points, dtype=float)) == {}
 
 
 @pytest.mark.slow
