@@ -25,7 +25,8 @@ OPTION = re.compile(
 def plain(content: bytes) -> bytes:
     """An OBJ's bytes without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers.
 
-    A concave polygon begins at another corner, or becomes triangles, where the parser's fan would fold it.
+    Numbers of corners count from the first line. A concave polygon begins at another corner, or becomes triangles,
+    where the parser's fan would fold it.
     """
     content = content.removeprefix(codecs.BOM_UTF8)  # the parser would miss the first vertex
     content = content.replace(b"\t", b" ") if b"\t" in content else content
@@ -38,7 +39,32 @@ def plain(content: bytes) -> bytes:
         start = content.rfind(b"\n", 0, comment.start()) + 1
         return b"" if content[start : comment.start()].split(None, 1)[:1] in NUMBERED else comment[0]
 
-    return _unfolded(re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content)
+    return _unfolded(_counted(re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content))
+
+
+KINDS = b"v", b"vt", b"vn"  # in the order of the numbers of a corner
+BACK = re.compile(rb"(?m)^f [^\n]*[ /]-\d")
+
+
+def _counted(content):
+    """The bytes with numbers that count from the first line; the parser counts -1 back from the end of the file."""
+    if not BACK.search(content):
+        return content
+    counts, lines = dict.fromkeys(KINDS, 0), content.split(b"\n")
+    for place, line in enumerate(lines):
+        word, *corners = line.split() or [b""]
+        if word in KINDS:
+            counts[word] += 1
+        elif word == b"f":
+            with suppress(ValueError):  # which the parser names
+                parts = [zip(corner.split(b"/"), counts.values(), strict=False) for corner in corners]
+                numbers = [[_forwards(number, count) for number, count in part] for part in parts]
+                lines[place] = b"f " + b" ".join(map(b"/".join, numbers))
+    return b"\n".join(lines)
+
+
+def _forwards(number, count):
+    return b"%d" % (int(number) + count + 1) if number.startswith(b"-") else number
 
 
 POLYGON = re.compile(rb"(?m)^f((?: +-?\d[-/\d]*){4,})(?= *\r?$)")
@@ -53,8 +79,7 @@ def _unfolded(content):
         ids, vertices = np.array(words).astype(np.int64), obj_vertices(content)
     except ValueError:  # which the parser names
         return content
-    ids[ids > 0] -= 1
-    rings = refined(ids, np.array([len(corners) for corners in polygons]), vertices)
+    rings = refined(ids - 1, np.array([len(corners) for corners in polygons]), vertices)
     numbers = iter(range(len(polygons)))
 
     def lines(polygon: re.Match[bytes]) -> bytes:

@@ -156,6 +156,18 @@ def test_a_concave_polygon_is_not_folded(kind, shape, beside):
         assert mesh.face_areas.sum() == pytest.approx((4 if shape is ARROW else 11) + 1.5 * beside)
 
 
+@pytest.mark.parametrize("beside", ["", "/{0}", "//{0}", "/{0}/{0}"])
+def test_numbers_that_count_back_count_from_the_line_of_the_face(beside):
+    """A square and an arrow, each behind its own corners, as exporters of several objects write them."""
+    face = "f " + " ".join(str(number) + beside.format(number) for number in (-4, -3, -2, -1))
+    lines = []
+    for shape in ([(0, 0), (1, 0), (1, 1), (0, 1)], [(x + 5, y) for x, y in ARROW]):
+        lines += [f"v {x} {y} 0" for x, y in shape] + [f"vt {x} {y}" for x, y in shape] + ["vn 0 0 1"] * 4 + [face]
+    mesh = parse("\n".join([*lines, ""]).encode(), ".obj")
+    assert len(mesh.faces) == 4 and mesh.face_areas.sum() == pytest.approx(1 + 4) and mesh.used.size == 8
+    assert (mesh.face_normals[:, 2] > 0).all()
+
+
 BENT = [(0, 0, 0), (4, 0, 0), (4, 4, 3), (3, 1, 0)]
 CROSSED = [(0, 0, 0), (4, 1, 0), (4, 0, 0), (0, 2, 0)]
 CONVEX = [(0, 0, 0), (2, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0)]
