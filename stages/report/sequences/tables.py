@@ -80,7 +80,7 @@ def table_4_9(results: Results) -> Table:
     count_text = ", ".join(f"{int(row.sequences):,} ({dataset_text(row.Index)})" for row in records(sizes))
     chance = ", ".join(f"{dataset_text(row.Index)} {percent(row.chance, 1)} %" for row in records(sizes))
     words = {"not_run": results.left_out(STAGE), "counted": count_text, "chance": chance, "trained": trained(results)}
-    best = Ranking(text_table.columns[-1], among=["objects", "split"], exempt=[PRINTED])
+    best = Ranking(f"{label(GUIDED)}, %", among=["objects", "split"], exempt=[PRINTED])
     return Table(frame, text_table, words, best)
 
 
