@@ -24,7 +24,7 @@ from haptic_glance.base.files import whole_file
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
 from haptic_glance.base.warner import warn_caller
-from haptic_glance.mesh.materials import bake_texture, pixels_of
+from haptic_glance.mesh.materials import WHITE, bake_texture, pixels_of
 from haptic_glance.mesh.mesh import Mesh, colour_factor
 from haptic_glance.mesh.up import with_stated_up
 
@@ -38,7 +38,6 @@ COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
 OF_ONE = 7  # digits of texture coordinates and colours, which trimesh writes with as many places as the vertices
 SINGLE = (".glb", ".npz", ".ply", ".stl", ".usda")  # the formats of single precision
-WHITE = (255, 255, 255, 255)
 RUINED = 0.01  # of the diagonal: the written mesh would be another one than the mesh that was measured
 MOST_MOVED = 1e-4  # of the diagonal: a vertex that single precision moves farther is seen to be elsewhere
 

@@ -27,9 +27,11 @@ FACTORS = (
     "doubleSided",
 )  # fmt: skip
 MAPS = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+WHITE, GREY = (255, 255, 255, 255), (204, 204, 204, 255)  # colours of no material: in a GLB, in other files
 COLOURS_OF = {"baseColorFactor", "baseColorTexture"}
 BRIGHT = 2  # a float colour above it is one of 0..255: computed ones of 0..1 may end a little above 1
 BESIDE = "beside_colour"  # in the metadata of a part
+OF_NO_MATERIAL = {"doubleSided": False}  # a part of a GLB without a material has glTF's default one, which is white
 
 
 def beside_colour(material: Any) -> dict[str, Any] | None:
@@ -74,7 +76,8 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
             material.name = stated[int(material.name)].get("name")
     for part in parts:
         properties, unplaced = beside_colour(materials[id(part)]), left_out.get(id(materials[id(part)]), ())
-        part.metadata[BESIDE] = properties and {k: v for k, v in properties.items() if k not in unplaced}
+        properties = properties and {k: v for k, v in properties.items() if k not in unplaced}
+        part.metadata[BESIDE] = properties or (dict(OF_NO_MATERIAL) if tree else None)
     for material in {id(material): material for material in materials.values() if material is not None}.values():
         if isinstance(material, trimesh.visual.material.PBRMaterial):
             for name in MAPS:
@@ -421,8 +424,8 @@ def _image(part, known=None):
         if id(image) not in known:
             known[id(image)] = pixels_of(image)
         return known[id(image)]
-    color = getattr(material, "main_color", None)
-    return np.asarray([204, 204, 204, 255] if color is None else color, dtype=np.uint8).reshape(1, 1, 4)
+    unstated = WHITE if part.metadata.get(BESIDE) else GREY
+    return np.asarray(getattr(material, "main_color", unstated), dtype=np.uint8).reshape(1, 1, 4)
 
 
 def _check_size(image):

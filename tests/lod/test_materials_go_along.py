@@ -225,6 +225,21 @@ def test_colours_that_meet_at_an_edge_do_not_open_the_surface(tmp_path):
     assert "COLOR_0" in not_read((tmp_path / "box.glb").read_bytes(), mesh.colors is not None)
 
 
+def test_a_part_without_a_colour_is_white_as_gltf_says(tmp_path):
+    bare = trimesh.creation.icosphere(subdivisions=2).apply_translation([6, 0, 0])
+    scene = trimesh.Scene({"red": ball(0, baseColorFactor=[255, 0, 0, 255]), "steel": ball(3, metallicFactor=0.5)})
+    scene.add_geometry(bare, "bare", "bare")
+    (tmp_path / "three.glb").write_bytes(scene.export(file_type="glb"))
+    mesh = load(tmp_path / "three.glb")
+    parts = np.rint(mesh.vertices[:, 0] / 3).astype(int)
+    expected = np.array([[255, 0, 0], [255, 255, 255], [255, 255, 255]])
+    assert (bake_texture(mesh).colors == expected[parts]).all()
+    write_any(tmp_path / "again.glb", mesh)
+    materials = tree_of(tmp_path / "again.glb")[0]["materials"]
+    assert [material.get("doubleSided", False) for material in materials] == [False] * 3
+    assert ["baseColorFactor" in material["pbrMetallicRoughness"] for material in materials].count(True) == 1
+
+
 def test_an_obj_gets_the_colour_of_a_material_in_its_picture(tmp_path):
     mesh = as_mesh(ball(0, baseColorTexture=picture((200, 40, 40)), baseColorFactor=[128, 255, 255, 255]))
     write_any(tmp_path / "ball.obj", mesh)
