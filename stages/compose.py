@@ -9,6 +9,7 @@ git ignores all files but headlines.json; out=FOLDER names another folder.
 
 import argparse
 import difflib
+import os
 import re
 import sys
 from collections.abc import Sequence
@@ -192,7 +193,7 @@ def _check_run(values: dict[str, Any]) -> None:
         raise ParamsError(f"sets=[{','.join(sets)}] names {', '.join(twice)} twice")
     if not (isinstance(workers, int) and (workers == -1 or workers >= 1)):
         raise ParamsError(f"parallel.workers={workers} must be 1 or more, or -1 for one a core")
-    out = Path(values["out"])
+    out = Path(os.path.normpath(values["out"]))
     if values["out"] and (out.is_file() or out == Path("/") or out.parts[0] in TREE):
         raise ParamsError(f"out={out} is no folder for results: write out=runs/NAME")
     if backend not in BACKENDS:

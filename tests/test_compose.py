@@ -192,6 +192,8 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("parallel.workers=0", "parallel.workers=0 must be 1 or more, or -1"),
         ("parallel.workers=many", "parallel.workers=many must be 1 or more, or -1"),
         ("out=/", "out=/ is no folder for results"),
+        ("out=reports/../stages/new", "out=stages/new is no folder for results"),
+        ("household.lod.targets=[50%,1500,1500]", "lod.targets names 1500 twice"),
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
         ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),
         ("conspicuity.channels=[colour]", "unknown name 'colour': did you mean color?"),

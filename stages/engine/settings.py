@@ -178,7 +178,10 @@ def check_names(section: str, values: dict[str, Any]) -> None:
         except ModuleNotFoundError:  # the stage says which package it needs
             continue
         parts = values[key] if isinstance(values[key], list | dict) else [values[key]]
-        for value in map(str, parts):  # YAML reads 12 as a number
+        names = list(map(str, parts))  # YAML reads 12 as a number
+        if twice := [value for value in dict.fromkeys(names) if names.count(value) > 1]:
+            raise ParamsError(f"{section}.{key} names {', '.join(twice)} twice")
+        for value in names:
             try:
                 if callable(known):
                     known(value)
