@@ -201,7 +201,10 @@ def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys
     ):
         assert f"bench: {words}" in printed
     (meshes / "good.obj").unlink()
-    with pytest.raises(ValueError, match="holds no mesh with gaze"):
+    with (
+        pytest.warns(UserWarning, match="good is left out: no Models_3D/good.obj holds its mesh"),
+        pytest.raises(ValueError, match="holds no mesh with gaze"),
+    ):
         bench.gazed("gaze", tmp_path)
 
 

@@ -21,6 +21,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from scipy.spatial import KDTree
 
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.look.camera import Viewpoint, pixel_rays, project
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
@@ -108,6 +109,8 @@ def published_files(source: str, folder: str | Path) -> dict[str, Files]:
         return {name: [file] for name, file in clouds.items()}
     files = collection_files(folder, *GAZE)
     tables, models = match_files(files, r"dataset_[^/]+/([^/]+)\.txt"), match_files(files, r"Models_3D/([^/]+)\.obj")
+    for name in sorted(set(tables) - set(models)):
+        warn_caller(f"{name} is left out: no Models_3D/{name}.obj holds its mesh")
     return {name: [tables[name], models[name]] for name in tables if name in models}
 
 
