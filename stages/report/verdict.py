@@ -98,8 +98,9 @@ def _row(claim: Claim, results: Results) -> Row:
         pair_names = (start + "/".join(map(str, listed(pair))) for pair in effect.differences.index)
         decides = any(effect is entry for entry in judgement.used)
         pairs += ((claim.key, name, value, decides) for name, value in zip(pair_names, effect.differences, strict=True))
-    words = _words(judgement, judgements[0], results)
-    return row | _numbers(judgement) | words | _readings(judgement, judgements, not_run), pairs
+    row |= _numbers(judgement) | _words(judgement, judgements[0], results)
+    row |= _readings(judgement, judgements, not_run)
+    return row | (_open(judgement.claim, effect_of(judgement.chosen)) if row["verdict"] == "open" else {}), pairs
 
 
 @dataclass(frozen=True)
@@ -180,12 +181,15 @@ def word_of(effects: Sequence[Effect], unit: str) -> str:
 
 
 def over_readings(words: Sequence[str]) -> str:
-    """The word of a claim from those of its readings: the first that can be tested, unless another contradicts it.
+    """The word of a claim from those of its readings: the first that can be tested, unless readings contradict.
 
-    A reading in which the data sets disagree contradicts a decided word, too.
+    A reading in which the data sets disagree contradicts a decided word, too. An open word depends on the reading where
+    one reading supports the claim and another contradicts it.
     """
     words = [word for word in words if word != UNTESTABLE] or [UNTESTABLE]
-    return DEPENDS if words[0] in DECIDED and {*words} & {*DECIDED, MIXED} != {words[0]} else words[0]
+    opposed = {"supported", "contradicted"} <= {*words}
+    differs = words[0] in DECIDED and {*words} & {*DECIDED, MIXED} != {words[0]}
+    return DEPENDS if opposed or differs else words[0]
 
 
 def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: Sequence[str]) -> dict[str, str]:
@@ -203,20 +207,19 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: S
 
 
 def _numbers(judgement: Judgement) -> dict[str, object]:
-    """The word with its numbers, and where it is open what would decide it."""
+    """The word with its numbers."""
     effect, word, claim = effect_of(judgement.chosen), judgement.word, judgement.claim
     mean, low, high = effect.interval
     pooled = isinstance(effect, PooledEffect)
     columns = {"verdict": word, "effect": mean, "low": low, "high": high, "p": effect.p_value, "over": claim.pairs}
     columns |= {"units": len(effect.units), "shared": np.nan if pooled else effect.share}
     columns |= {"pairs": sum(len(single.differences) for single in judgement.used)}
-    columns |= {"i2": effect.pooled.i2} if pooled else {}
-    return columns | _open(claim, effect) if word == "open" else columns
+    return columns | ({"i2": effect.pooled.i2} if pooled else {})
 
 
 def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
-    """Columns needed, needed_of and cause: the number of units that would decide a claim at its present effect and
-    spread.
+    """Columns needed, needed_of and cause of an open claim: the number of units that would decide it at its present
+    effect and spread.
 
     A claim is decided if its interval excludes zero, or shows no difference.
     """

@@ -10,7 +10,7 @@ from scipy import ndimage
 from skimage.filters import threshold_multiotsu
 
 from haptic_glance.deep.cam import grad_cam
-from haptic_glance.look.weights.convexity import convexity
+from haptic_glance.look.weights.convexity import convexity, nearest_convexity
 from haptic_glance.mesh.mesh import Mesh
 from stages.fixation.fusion import fuse, highest_level, subtractive_clusters
 from stages.fixation.places import FLAT, curvature_shares, eccentricity, gaussian_curvature
@@ -49,6 +49,20 @@ def test_convexity(agreement):
     ]
     apart = [abs(convexity(Mesh(s.vertices, s.faces)) - s.volume / s.convex_hull.volume) for s in solids]
     agreement("difference", max(apart))
+
+
+def test_nearest_convexity(agreement):
+    """End of T3.2.9.2: a new object takes the SVM of the object with the closest convexity."""
+    random = np.random.default_rng(0)
+    cases = [(random.random(), dict(zip("abcdef", random.random(6), strict=True))) for _ in range(20)]
+    literal = [min(others, key=lambda name: abs(others[name] - value)) for value, others in cases]
+    held = [nearest_convexity(*case) == name for case, name in zip(cases, literal, strict=True)]
+    agreement("settings", (sum(held), len(held)))
+
+
+def test_tasks_of_shape(agreement):
+    """T3.3.2.1: "three classification problems respectively based on each of these characteristics"."""
+    agreement("settings", (sum(name in SHAPE_MEASURES for name in ("convexity", "curvature", "eccentricity")), 3))
 
 
 def torus(count=96, tube=48):

@@ -87,14 +87,14 @@ def judged(ring):
     return people, model, seen, {row["metric"]: row["value"] for row in rows if row["view"] == 0}
 
 
-def test_correlation_has_both_between_zero_and_one_times_the_visibility(judged):
+def test_correlation_has_both_between_zero_and_one_times_the_visibility(judged, agreement):
     people, model, seen, scores = judged
     first, other = ((values - values.min()) / (values.max() - values.min()) * seen for values in (people, model))
-    assert scores["pcc_masked"] == pytest.approx(np.corrcoef(first, other)[0, 1])
+    agreement("difference", abs(scores["pcc_masked"] - np.corrcoef(first, other)[0, 1]))
     assert abs(scores["pcc_masked"] - scores["pcc"]) > 0.02  # it is another number
 
 
-def test_distance_is_the_least_of_the_pairs_of_the_pseudocode(ring, judged):
+def test_distance_is_the_least_of_the_pairs_of_the_pseudocode(ring, judged, agreement):
     mesh, (people, model, seen, scores) = ring[0], judged
     ours = [centre for centre in centres(mesh.vertices, model, seen)]
     distances = []
@@ -104,4 +104,4 @@ def test_distance_is_the_least_of_the_pairs_of_the_pseudocode(ring, judged):
             distances.append(np.linalg.norm(nearest - centre))
             ours = [peak for peak in ours if peak is not nearest]
     assert scores["distance"] == pytest.approx(min(distances)) and scores["distance"] > 0
-    assert scores["distance_mean"] == pytest.approx(np.mean(distances))
+    agreement("difference", abs(scores["distance_mean"] - np.mean(distances)))

@@ -15,6 +15,7 @@ from haptic_glance.look.weights.svm import SIDE, pixel_samples
 from stages.engine.rows import read_rows
 from stages.fixation.tasks import viewpoint_sphere
 from stages.sequences.classifiers import MAP_DIMENSIONS, NEIGHBOURS, svm
+from stages.sequences.networks import IMAGE_BATCH, NORMAL_BATCH
 from stages.weights.training import AREAS, PIXELS
 from stages.weights.training import FOLDS as SVM_FOLDS
 
@@ -170,6 +171,12 @@ def test_section_4_4(settings, agreement):
         "sequences.normal_epochs": 10,
     }
     agreement("settings", settings("princeton_eight", printed))
+
+
+def test_section_4_4_8(settings, agreement):
+    """T4.4.8: 50 epochs in batches of 10 for the imprints, 10 epochs in batches of 16 for the normals."""
+    held, count = settings("princeton_eight", {"sequences.image_epochs": 50, "sequences.normal_epochs": 10})
+    agreement("settings", (held + (IMAGE_BATCH == 10) + (NORMAL_BATCH == 16), count + 2))
 
 
 def test_series_classifiers(agreement):
