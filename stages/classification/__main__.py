@@ -2,7 +2,8 @@
 
 Reads data/SET/imprints/NAME.npz, writes data/SET/classification/GROUP.SAMPLING.npz (confusion matrices of the
 hold-outs) and reports/measurements/SET/classification.csv.gz: one row per group of objects (classification.sets,
-or classification.drawn random ones), sampling, variant, classifier, split and repetition.
+or classification.drawn random ones), sampling, variant, classifier, split and repetition. A row of drawn groups is the
+mean over the repetitions.
 
 The mean in the metrics comes with a bootstrap interval over the repetitions. It covers the luck of the split and of
 the training. It does not cover the choice of objects and of touches: all repetitions share the same imprints, and
@@ -17,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
@@ -107,7 +109,15 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
         for row in [*similar_share_rows(touched, sorted(settings.sets[name])), *feature_cost_rows(touched)]
     ]
     write_arrays(folder / f"{item}.npz", objects=objects, **confusions)
-    return rows
+    return over_repetitions(rows) if settings.drawn else rows
+
+
+def over_repetitions(rows: Rows) -> Rows:
+    """The mean of each cell over its repetitions, without seconds: the unit of drawn sets is the set."""
+    frame = pd.DataFrame(rows).drop(columns=["repetition", "seconds"], errors="ignore").astype({"value": float})
+    cells = frame.groupby([name for name in frame if name != "value"], dropna=False, sort=False)
+    means = cells["value"].mean().reset_index()
+    return means.astype(object).where(means.notna(), None).to_dict("records")
 
 
 def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str], settings: Params, seed: int) -> Rows:

@@ -6,7 +6,7 @@ import pytest
 from haptic_glance.base.files import read_arrays, read_json
 from haptic_glance.know import CLASSIFIERS, evaluate
 from stages.classification import Params
-from stages.classification.__main__ import plan, process, run, summary
+from stages.classification.__main__ import over_repetitions, plan, process, run, summary
 from stages.engine.rows import read_rows
 from stages.imprints.imprints import Imprints, write_imprints
 
@@ -93,6 +93,21 @@ def test_summary_holds_mean_and_interval_of_the_repetitions():
     assert alone["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.5}
 
 
+def test_a_row_of_drawn_sets_is_the_mean_over_its_repetitions():
+    common = {"group": "three", "set": 1, "item": None, "seconds": 3.0, "note": None}
+    rows = [
+        {**common, "classifier": name, "repetition": number, "value": value}
+        for name, values in (("knn", (0.5, 0.75)), ("svm", (0.25, 0.25)))
+        for number, value in enumerate(values)
+    ]
+    failed = {**common, "classifier": "deep_learning", "value": None, "note": "failed"}
+    assert over_repetitions([*rows, failed]) == [
+        {"group": "three", "set": 1, "item": None, "note": None, "classifier": "knn", "value": 0.625},
+        {"group": "three", "set": 1, "item": None, "note": None, "classifier": "svm", "value": 0.25},
+        {"group": "three", "set": 1, "item": None, "note": "failed", "classifier": "deep_learning", "value": None},
+    ]  # fmt: skip
+
+
 @pytest.mark.slow
 def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imprints, tmp_path):
     chosen = settings(sets={"three": list(NAMES), "two": ["hand", "cup"]}, closer=["random"])
@@ -110,9 +125,10 @@ def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imp
 @pytest.mark.slow
 @pytest.mark.parametrize("drawn", [0, 2])
 def test_the_stage_writes_rows_by_split_and_metrics_by_their_names_and_drawn_sets(imprints, make_workspace, drawn):
-    workspace = make_workspace({"classification": vars(settings(closer=["random"], drawn=drawn))})
+    workspace = make_workspace({"classification": vars(settings(closer=["random"], drawn=drawn, repetitions=2))})
     run(workspace)
     rows = read_rows(workspace.measurements / "classification.csv.gz")
+    assert set(rows["repetition"].dropna()) == (set() if drawn else {0, 1})
     assert set(rows["split"].dropna()) == {"random", "folds", "regions", "random_fewer"}
     assert set(rows["group"]) == {"three"} and set(rows["item"].dropna()) == set(NAMES)
     metrics = read_json(workspace.metrics / "classification.json")
