@@ -330,7 +330,7 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
 
 def dropped_from(path: Path, mesh: Mesh) -> str:
     """The sentence that names the parts of a mesh's file that a Mesh has no place for; empty without such parts."""
-    lost_parts = not_read(as_glb(path), mesh.colors is not None) + obj.not_read(path)
+    lost_parts = not_read(as_glb(path), mesh.colors is not None) + obj.not_read(path, mesh.colors is not None)
     return f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost_parts)}" if lost_parts else ""
 
 
@@ -363,9 +363,13 @@ def reduce(task: SimplificationTask, options: Namespace, target: str) -> Mesh | 
     report(
         "simplifying" + (f" to {100 * options.tolerance:g} % of the diagonal" if options.tolerance else f" to {target}")
     )
+    total = len(task.mesh.faces)
+    if options.levels and face_count(target, total) >= total:
+        report(f"no level {target}: the mesh has only {number(total, 'face')}")
+        return None
     try:
         if options.tolerance is None:
-            return task.simplified(face_count(target, len(task.mesh.faces), "--faces"))
+            return task.simplified(face_count(target, total, "--faces"))
         mesh = fewest_faces(task.mesh, task.simplified, task.lowest_target, options.tolerance, options.seed, report)
     except (InfeasibleTarget, SimplifyError) as error:
         if isinstance(error, InfeasibleTarget):

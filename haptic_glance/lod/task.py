@@ -13,7 +13,7 @@ import numpy as np
 from haptic_glance.look.points import METHODS
 from haptic_glance.look.points.methods import meant
 from haptic_glance.mesh import clean, normalise, rotate_to_z_up
-from haptic_glance.mesh.materials import bake_texture, merge_equal_rows
+from haptic_glance.mesh.materials import bake_texture, flat_texture, merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius
 
@@ -171,11 +171,31 @@ def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
     if (half_edges(cleaned.faces)[1] >= 0).all():
         return cleaned, notes
     first, ids = merge_equal_rows(mesh.vertices)
-    colors = None if mesh.colors is None else mesh.colors[first]
-    joint_mesh, remarks = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
+    joint_mesh = replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=None)
+    joint_mesh, blended = _coloured(joint_mesh, mesh, first, ids)
+    joint_mesh, remarks = clean(joint_mesh)
     if (half_edges(joint_mesh.faces)[1] < 0).sum() >= (half_edges(cleaned.faces)[1] < 0).sum():
         return cleaned, notes
-    return joint_mesh, [f"{len(ids) - len(first):,} coincident vertices merged", *remarks]
+    return joint_mesh, [f"{len(ids) - len(first):,} coincident vertices merged", *blended, *remarks]
+
+
+def _coloured(joint_mesh, mesh, first, ids):
+    """(the mesh of merged vertices with the colours of `mesh`, notes): faces of one colour each keep it in a texture.
+
+    Other colours that meet at one place are blended.
+    """
+    if mesh.colors is None:
+        return joint_mesh, []
+    colors = mesh.colors[first]
+    if (colors[ids] == mesh.colors).all():
+        return replace(joint_mesh, colors=colors), []
+    corners = mesh.colors[mesh.faces]
+    if (corners == corners[:, :1]).all():
+        return replace(joint_mesh, texture=flat_texture(corners[:, 0])), []
+    count = np.bincount(ids)[:, None]
+    sums = np.stack([np.bincount(ids, weights=column) for column in mesh.colors.T.astype(np.float64)], axis=1)
+    colors = np.rint(sums / count).astype(np.uint8)
+    return replace(joint_mesh, colors=colors), ["colours that meet at one place are blended"]
 
 
 PLAIN, QSLIM = "qem", "qslim"  # quadric edge collapse by the backend of the settings, and without its fit

@@ -261,6 +261,14 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
     return Cloud(np.stack([(u - cx) / fx * distance, distance, (cy - v) / fy * distance], axis=1), sensor=np.zeros(3))
 
 
+def names_in(content: bytes) -> list[str]:
+    """The name of the image of a .depth file; none of a file that is not valid."""
+    try:
+        return [str(json.loads(content)["image"])]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return []
+
+
 def read_depth(content: bytes, read: Callable[[str], bytes] | None) -> Cloud:
     """The Cloud of a .depth file, a JSON text as in EXAMPLE; read(name) gives the bytes of the image beside it."""
     try:
@@ -438,7 +446,8 @@ def _pcd(content):
     if points is None:
         raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
     normals = next((_columns(data, names) for names in NORMALS if names[0] in fields), None)
-    colors = pcd.decode_rgb(np.ascontiguousarray(data["rgb"])) if "rgb" in fields else None
+    packed = next((name for name in ("rgb", "rgba") if name in fields), None)  # rgba has a clearness, which is left out
+    colors = pcd.decode_rgb(np.ascontiguousarray(data[packed])) if packed else None
     return Cloud(points, _units(normals), colors, _sensor(points, np.array(pcd.metadata.viewpoint[:3])))
 
 

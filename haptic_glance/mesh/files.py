@@ -41,7 +41,7 @@ MeshLike: TypeAlias = (
 WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
-READY = {".glb": gltf.in_floats, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
+READY = {".glb": gltf.ready, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -75,7 +75,8 @@ def load_unnamed(path: Path) -> Mesh:
     if not path.is_file():
         folder = "is a folder, not a mesh: `haptic-glance gallery` shows all meshes of a folder"
         raise MeshError(folder if path.is_dir() else "no such file")
-    mesh = parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(str(path)), name=path.name)
+    resolver = trimesh.resolvers.FilePathResolver(str(path))
+    mesh = parse(path.read_bytes(), path.suffix.lower(), resolver, every_colour=True, name=path.name)
     if coarse := coarse_steps(path, mesh):
         warn_caller(f"{path.name}: {coarse}")
     return mesh
@@ -337,9 +338,18 @@ def mesh_files(place: Path) -> list[Path]:
     return files
 
 
+NAMES_IN = {  # of the formats that refer to other files
+    ".obj": obj.names_in,
+    ".gltf": gltf.names_in,
+    ".glb": gltf.names_in,
+    ".ply": ply.names_in,
+    clouds.DEPTH: clouds.names_in,
+}
+
+
 def files_of(path: Path) -> list[Path]:
-    """The other files that an OBJ or a glTF and its materials refer to, as far as they exist; none of other formats."""
-    names_in = {".obj": obj.names_in, ".gltf": gltf.names_in}.get(path.suffix.lower())
+    """The other files that a file and its materials refer to, as far as they exist."""
+    names_in = NAMES_IN.get(path.suffix.lower())
     found = _named_in(path, names_in) if names_in else []
     return found + [picture for file in found if names_in is obj.names_in for picture in _named_in(file, obj.names_in)]
 

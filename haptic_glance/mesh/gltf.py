@@ -20,15 +20,32 @@ DATA = "data:"
 KINDS = {b"\x89PNG": "image/png", b"\xff\xd8": "image/jpeg", b"RIFF": "image/webp"}  # of a picture, by its first bytes
 ALIGNED = 4  # bytes, of the parts of a GLB
 FLOAT, INTEGERS = 5126, {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2"}  # of the components of an accessor
-KINDS_OF_NUMBERS = INTEGERS | {FLOAT: "<f4"}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+IDS = 5125  # the kind of the vertices of faces
+KINDS_OF_NUMBERS = INTEGERS | {IDS: "<u4", FLOAT: "<f4"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+TRIANGLES, FAN = 4, 6  # modes of primitives
+PLACE = ("matrix", "translation", "rotation", "scale")  # of a node
 
 
 def as_glb(path: Path) -> bytes:
     """The bytes of a GLB or, as one, of a .gltf file; empty for other suffixes. Raises MeshError as `packed`."""
     suffix = path.suffix.lower()
     content = path.read_bytes() if suffix in SUFFIXES else b""
-    return in_floats(packed(content, trimesh.resolvers.FilePathResolver(str(path))) if suffix == ".gltf" else content)
+    content = _with_absent(content, path.parent) if suffix == ".glb" else content
+    return ready(packed(content, trimesh.resolvers.FilePathResolver(str(path))) if suffix == ".gltf" else content)
+
+
+def _with_absent(content, folder):
+    """The bytes of a GLB in which pictures have a mark that lie beside the file, but are not there."""
+    names = [name for name in names_in(content) if not (folder / name).is_file()]
+    if not names:
+        return content
+    start = 20 + int.from_bytes(content[12:16], "little")
+    tree = json.loads(content[20:start])
+    for image in tree.get("images", []):
+        if unquote(image.get("uri", "")) in names:
+            image[ABSENT] = _name(image["uri"])
+    return joined(tree, bytearray(content[start + 8 :]))
 
 
 def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
@@ -47,31 +64,107 @@ def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -
     return joined(tree, binary)
 
 
-def in_floats(content: bytes) -> bytes:
-    """The bytes of a GLB whose normalised integers and texture coordinates are floats (glTF 2.0, section 3.6.2.2).
+def ready(content: bytes) -> bytes:
+    """The bytes of a GLB in the form that the parser reads (glTF 2.0, sections 3.5, 3.6.2.2 and 3.7).
 
-    The parser takes normalised integers for plain ones. A malformed file stays as it is: the parser refuses it.
+    Normalised integers and texture coordinates become floats, and fans single triangles. A mesh with a skin stands
+    where its skin puts it in the pose of the file. A file without a scene shows all nodes. A malformed file stays as it
+    is: the parser refuses it.
     """
     try:
         start = 20 + int.from_bytes(content[12:16], "little")
-        tree = json.loads(content[20:start])
-        integers = [entry for entry in tree["accessors"] if entry["componentType"] in INTEGERS
-                    and "bufferView" in entry and (entry.get("normalized") or entry["type"] == "VEC2")]  # fmt: skip
-        if not integers:
+        tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+        before = json.dumps(tree)
+        _as_floats(tree, binary, content)
+        _as_triangles(tree, binary, content)
+        _place_skins(tree, content)
+        if "scenes" not in tree:
+            tree["scenes"] = [{"nodes": _roots(tree)}]
+        if json.dumps(tree) == before:
             return content
-        views, binary = tree["bufferViews"], bytearray(content[start + 8 :])
-        for entry in integers:
-            values = numbers_of(tree, entry, content)
-            if entry.pop("normalized", False):
-                values = np.maximum(values / np.iinfo(values.dtype).max, -1)
-            binary += b"\0" * (-len(binary) % ALIGNED)
-            entry |= {"bufferView": len(views), "byteOffset": 0, "componentType": FLOAT}
-            views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": 4 * values.size})
-            binary += values.astype("<f4").tobytes()
         tree["buffers"][0]["byteLength"] = len(binary)
         return joined(tree, binary)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
         return content
+
+
+def _as_floats(tree, binary, content):
+    """Makes floats of normalised integers and of texture coordinates: the parser takes them for plain integers."""
+    for entry in tree.get("accessors", []):
+        is_plain = entry["componentType"] not in INTEGERS or "bufferView" not in entry
+        if is_plain or not (entry.get("normalized") or entry["type"] == "VEC2"):
+            continue
+        values = numbers_of(tree, entry, content)
+        if entry.pop("normalized", False):
+            values = np.maximum(values / np.iinfo(values.dtype).max, -1)
+        entry |= {"bufferView": _added(tree, binary, values.astype("<f4")), "byteOffset": 0, "componentType": FLOAT}
+
+
+def _as_triangles(tree, binary, content):
+    """Makes triangles of fans, which the parser leaves out."""
+    for primitive in (primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]):
+        if primitive.get("mode") != FAN:
+            continue
+        count = tree["accessors"][primitive["attributes"]["POSITION"]]["count"]
+        number = primitive.get("indices")
+        ids = np.arange(count) if number is None else numbers_of(tree, tree["accessors"][number], content)[:, 0]
+        faces = np.stack([np.full(len(ids) - 2, ids[0]), ids[1:-1], ids[2:]], axis=1).astype(KINDS_OF_NUMBERS[IDS])
+        primitive |= {"mode": TRIANGLES, "indices": len(tree["accessors"])}
+        view = _added(tree, binary, faces)
+        tree["accessors"].append(
+            {"bufferView": view, "componentType": IDS, "type": "SCALAR", "count": faces.size, "byteOffset": 0}
+        )
+
+
+def _added(tree, binary, values):
+    """The number of a new view of the buffer that holds these values."""
+    binary += b"\0" * (-len(binary) % ALIGNED)
+    tree["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": values.nbytes})
+    binary += values.tobytes()
+    return len(tree["bufferViews"]) - 1
+
+
+def _place_skins(tree, content):
+    """Gives each node with a skin the place that the first joint of its skin has: its own place says nothing."""
+    nodes = tree.get("nodes", [])
+    skinned = [number for number, node in enumerate(nodes) if "skin" in node and "mesh" in node]
+    parents = {child: number for number, node in enumerate(nodes) for child in node.get("children", [])}
+    places = {}
+    for number in skinned:
+        skin = tree["skins"][nodes[number]["skin"]]
+        joint, place = skin["joints"][0], np.eye(4)
+        if "inverseBindMatrices" in skin:
+            place = numbers_of(tree, tree["accessors"][skin["inverseBindMatrices"]], content)[0].reshape(4, 4).T
+        while joint is not None:
+            place, joint = _matrix(nodes[joint]) @ place, parents.get(joint)
+        places[number] = place
+    for number, place in places.items():
+        if number in parents:
+            nodes[parents[number]]["children"].remove(number)
+            for scene in tree.get("scenes", []):
+                scene["nodes"].append(number)
+        for key in PLACE:
+            nodes[number].pop(key, None)
+        nodes[number]["matrix"] = [round(value, 9) for value in place.T.ravel().tolist()]
+
+
+def _matrix(node):
+    """(4, 4): the place of a node below its parent."""
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+    place = np.eye(4)
+    if "rotation" in node:
+        x, y, z, w = node["rotation"]
+        place = trimesh.transformations.quaternion_matrix([w, x, y, z])
+    place[:3, :3] *= np.array(node.get("scale", [1, 1, 1]))
+    place[:3, 3] = node.get("translation", [0, 0, 0])
+    return place
+
+
+def _roots(tree):
+    """The nodes that are below no other node."""
+    children = {child for node in tree["nodes"] for child in node.get("children", [])}
+    return [number for number in range(len(tree["nodes"])) if number not in children]
 
 
 def numbers_of(tree: dict[str, Any], accessor: dict[str, Any], content: bytes) -> np.ndarray:
@@ -139,9 +232,10 @@ def _read(uri: str, resolver: trimesh.resolvers.Resolver | None) -> bytes | None
 
 
 def names_in(content: bytes) -> list[str]:
-    """The names of the files that a .gltf file refers to; none of what is no glTF."""
+    """The names of the files that a .gltf file or a GLB refers to; none of what is no glTF."""
     try:
-        tree = json.loads(content)
+        glb = content[:4] == b"glTF"
+        tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")] if glb else content)
         uris = [entry["uri"] for key in ("buffers", "images") for entry in tree.get(key, []) if "uri" in entry]
         return [unquote(uri) for uri in uris if uri[: len(DATA)].lower() != DATA]
     except (ValueError, TypeError, AttributeError):

@@ -61,7 +61,9 @@ def check_extensions(tree: dict[str, Any]) -> None:
     """Raises MeshError for a glTF whose shape only an extension tells: the parser would read zeros, or nothing."""
     extensions = [name for name in map(str, tree.get("extensionsRequired") or ()) if not name.startswith(EXTENSIONS)]
     if extensions:
-        raise MeshError(f"needs {', '.join(extensions)}, which is not read: export it without compression")
+        pressed = any("compression" in name or "draco" in name for name in extensions)
+        remedy = "compression" if pressed else "it" if len(extensions) == 1 else "them"
+        raise MeshError(f"needs {', '.join(extensions)}, which is not read: export it without {remedy}")
 
 
 def _colour_pictures(tree):
@@ -114,7 +116,8 @@ def stated_faces(content: bytes) -> bytes:
 
 
 def _in_words(content):
-    return content.lstrip()[:5].lower() == b"solid" and b"facet" in content.lower()
+    is_binary = len(content) >= 84 and len(content) == 84 + 50 * struct.unpack("<I", content[80:84])[0]
+    return not is_binary and content.lstrip()[:5].lower() == b"solid" and b"facet" in content.lower()
 
 
 def _ply(content):

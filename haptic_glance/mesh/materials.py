@@ -149,9 +149,10 @@ def pixels_of(image: Image.Image) -> np.ndarray:
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
-OF_THE_SCENE = ("KHR_lights_", "KHR_xmp", "KHR_materials_variants", "EXT_mesh_gpu_instancing")
-NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines", 6: "fans of triangles"}  # modes that are not read
+OF_THE_SCENE = ("KHR_lights_", "KHR_xmp", "KHR_materials_variants", "EXT_mesh_gpu_instancing", "MSFT_lod")
+NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines"}  # modes that are not read
 KEPT_BESIDE_COLOURS = ("baseColorFactor", "pbrMetallicRoughness", "extensions", "extras")
+WITH_EXTRAS = ("nodes", "materials")  # trimesh writes them for each mesh
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others
 
 
@@ -162,6 +163,8 @@ def not_read(content: bytes, has_colors: bool = False) -> list[str]:
     """
     tree = _header(content)
     names = [name for name in ("animations", "skins", "cameras") if _stated_in(tree, name)]
+    names += ["further scenes"] * (len(_stated_in(tree, "scenes")) > 1)
+    names += ["extras"] * any("extras" in entry for kind in WITH_EXTRAS for entry in _stated_in(tree, kind))
     extensions = tree.get("extensionsUsed") if isinstance(tree, dict) else None
     whole = map(str, extensions) if isinstance(extensions, list) else ()  # extensions of the scene
     names += [name for name in whole if name.startswith(OF_THE_SCENE)]
@@ -356,6 +359,17 @@ def _as_picture(part):
     return trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
 
 
+def flat_texture(colors: np.ndarray) -> Texture:
+    """The Texture of faces that have one colour each, (m, 3) u1."""
+    palette, ids = np.unique(colors, axis=0, return_inverse=True)
+    side = int(np.ceil(len(palette) ** 0.5))
+    pixels = np.full((side * side, 4), 255, dtype=np.uint8)
+    pixels[: len(palette), :3] = palette
+    row, column = np.divmod(ids.ravel(), side)
+    uv = np.stack([(column + 0.5) / side, 1 - (row + 0.5) / side], axis=1)
+    return Texture(np.repeat(uv[:, None], 3, axis=1), np.zeros(len(ids), int), (pixels.reshape(side, side, 4),))
+
+
 def obj_vertices(content: bytes) -> np.ndarray:
     """(n, 3) f8: the vertices of an OBJ file's bytes, in the order of the `v` lines."""
     lines = (line.split() for line in content.splitlines())
@@ -372,12 +386,10 @@ def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
-    """The Texture of all parts, one behind the other, or None when no material states more than its name and sides."""
+    """The Texture of all parts, one behind the other, or None when no material states anything."""
     properties = [_beside(part) for part in parts]
-    if not any(
-        _stated(part) or set(material or ()) - {"name", "doubleSided"}
-        for part, material in zip(parts, properties, strict=True)
-    ):
+    stated = [{name for name, value in (material or {}).items() if value is not False} for material in properties]
+    if not any(_stated(part) or names for part, names in zip(parts, stated, strict=True)):
         return None
     image_cache = {}
     images = [_image(part, image_cache) for part in parts]

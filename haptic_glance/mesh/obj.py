@@ -11,6 +11,7 @@ import numpy as np
 
 from haptic_glance.base.lazy import trimesh
 
+from .headers import MeshError
 from .materials import obj_vertices
 from .polygons import refined
 
@@ -26,7 +27,7 @@ def plain(content: bytes) -> bytes:
     """An OBJ's bytes without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers.
 
     Numbers of corners count from the first line. A concave polygon begins at another corner, or becomes triangles,
-    where the parser's fan would fold it.
+    where the parser's fan would fold it. One line names all material libraries. Raises MeshError for a vertex 0.
     """
     content = content.removeprefix(codecs.BOM_UTF8)  # the parser would miss the first vertex
     content = content.replace(b"\t", b" ") if b"\t" in content else content
@@ -39,7 +40,25 @@ def plain(content: bytes) -> bytes:
         start = content.rfind(b"\n", 0, comment.start()) + 1
         return b"" if content[start : comment.start()].split(None, 1)[:1] in NUMBERED else comment[0]
 
-    return _unfolded(_counted(re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content))
+    content = _counted(re.sub(rb"#[^\n]*", cut, content) if b"#" in content else content)
+    zeros = ZERO.finditer(content, max(content.find(b"\nf "), 0))
+    if any(content.startswith(b"f ", content.rfind(b"\n", 0, zero.start()) + 1) for zero in zeros):
+        raise MeshError("faces name a vertex 0, which does not exist: an OBJ counts from 1")
+    return _unfolded(_in_one_library(content))
+
+
+ZERO = re.compile(rb" -?0+(?=[ /\r\n]|$)")
+LIBRARY = re.compile(rb"(?m)^mtllib +([^\r\n]*?) *\r?$")
+BETWEEN = "\x1f"  # of the names of several libraries
+
+
+def _in_one_library(content):
+    """The bytes with one `mtllib` line: the parser reads the first line alone."""
+    names = [name.decode(errors="replace") for name in dict.fromkeys(LIBRARY.findall(content))]
+    if len(names) < 2:
+        return content
+    line = b"mtllib " + BETWEEN.join(names).encode()
+    return line + b"\n" + LIBRARY.sub(b"", content)
 
 
 KINDS = b"v", b"vt", b"vn"  # in the order of the numbers of a corner
@@ -56,15 +75,18 @@ def _counted(content):
         if word in KINDS:
             counts[word] += 1
         elif word == b"f":
-            with suppress(ValueError):  # which the parser names
-                parts = [zip(corner.split(b"/"), counts.values(), strict=False) for corner in corners]
-                numbers = [[_forwards(number, count) for number, count in part] for part in parts]
-                lines[place] = b"f " + b" ".join(map(b"/".join, numbers))
+            parts = [zip(corner.split(b"/"), counts.values(), strict=False) for corner in corners]
+            numbers = [[_forwards(number, count) for number, count in part] for part in parts]
+            lines[place] = b"f " + b" ".join(map(b"/".join, numbers))
     return b"\n".join(lines)
 
 
 def _forwards(number, count):
-    return b"%d" % (int(number) + count + 1) if number.startswith(b"-") else number
+    if not re.fullmatch(rb"-\d+", number):  # the parser names what is no number
+        return number
+    if int(number) + count < 0:
+        raise MeshError(f"faces name the vertex {int(number)} of {count}, which does not exist")
+    return b"%d" % (int(number) + count + 1)
 
 
 POLYGON = re.compile(rb"(?m)^f((?: +-?\d[-/\d]*){4,})(?= *\r?$)")
@@ -102,6 +124,12 @@ class Beside:
         self.absent: list[str] = []
 
     def get(self, key: str) -> bytes:
+        if libraries := self._libraries(key):
+            texts = []
+            for name in libraries:
+                with suppress(FileNotFoundError):
+                    texts.append(self.get(name))
+            return b"\n".join(texts)
         plain_name = OPTION.sub("", key).replace("\\", "/")
         for name in (key, plain_name):  # as it stands first: a file may be named so
             with suppress(OSError, ValueError, KeyError):
@@ -110,6 +138,18 @@ class Beside:
         raise FileNotFoundError(plain_name)
 
     __getitem__ = get
+
+    def _libraries(self, key):
+        """The names of several material libraries in one text; none where the text names one file."""
+        if BETWEEN in key:
+            return key.split(BETWEEN)
+        words = key.split()
+        if len(words) < 2 or not all(word.lower().endswith(".mtl") for word in words):
+            return []
+        with suppress(OSError, ValueError, KeyError):  # blanks are part of the name
+            self.folder.get(key)
+            return []
+        return words
 
 
 NAMES = re.compile(rb"(?mi)^[ \t]*(mtllib|map_\w+|bump|disp|decal|norm|refl)[ \t]+(.+?)\s*$")
@@ -126,19 +166,39 @@ def names_in(content: bytes) -> list[str]:
 
 
 OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)\s")
+# Further statements that change how a material looks, and the values that change nothing.
+LOOKS = {"d": 1.0, "Tr": 0.0, "Ks": 0.0, "Ke": 0.0}
+PLACED = re.compile(r"(?mi)^\s*map_Kd\s+(?=\S)(?:.*?\s)??(-[ost])\s")
+OTHER_ELEMENTS = {"lines": rb"(?m)^[ \t]*l[ \t]", "points": rb"(?m)^[ \t]*p[ \t]"}
 
 
-def not_read(path: Path) -> list[str]:
-    """Names the properties of an OBJ file's materials that a Mesh cannot hold; returns no names for other files.
+def not_read(path: Path, has_colors: bool = False) -> list[str]:
+    """Names the parts of an OBJ file and its materials that a Mesh cannot hold; returns no names for other files.
 
-    Files that are not beside it, and the pictures of other properties than colour.
+    Files that are not beside it, the pictures of other properties than colour, names, and what shines or is clear.
+    has_colors: whether the Mesh has colours per vertex.
     """
-    library = re.search(rb"(?m)^[ \t]*mtllib\s([^\n]*)", path.read_bytes()) if path.suffix.lower() == ".obj" else None
+    if path.suffix.lower() != ".obj":
+        return []
+    content = path.read_bytes()
     beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
-    kind, text = "materials", b""
+    libraries = [name.decode(errors="replace") for kind, name in NAMES.findall(content) if kind.lower() == b"mtllib"]
+    text: str | bytes = b""
     with suppress(OSError):
-        text = beside.get(library[1].decode(errors="replace").strip()) if library else b""
-        kind = "picture"
+        text = beside.get(BETWEEN.join(libraries)) if libraries else b""
+    names = [f"materials {name}, not beside it" for name in dict.fromkeys(beside.absent)]
+    beside.absent.clear()
+    with suppress(OSError):
         trimesh.exchange.obj.parse_mtl(text, beside)
-    others = OTHER_MAPS.findall(text if isinstance(text, str) else text.decode(errors="replace"))
-    return [*(f"{kind} {name}, not beside it" for name in dict.fromkeys(beside.absent)), *dict.fromkeys(others)]
+    names += [f"picture {name}, not beside it" for name in dict.fromkeys(beside.absent)]
+    words = text if isinstance(text, str) else text.decode(errors="replace")
+    names += dict.fromkeys(OTHER_MAPS.findall(words))
+    for kind, usual in LOOKS.items():
+        values = re.findall(rf"(?mi)^\s*{kind}\s+([-+.\deE \t]+?)\s*$", words)
+        with suppress(ValueError):
+            names += [kind] * any(set(map(float, value.split())) - {usual} for value in values)
+    names += [f"map_Kd {option}" for option in dict.fromkeys(PLACED.findall(words))]
+    names += ["names of materials"] * (len(re.findall(r"(?mi)^\s*newmtl\s", words)) > 1)
+    names += [kind for kind, form in OTHER_ELEMENTS.items() if re.search(form, content)]
+    coloured = re.search(rb"(?m)^v(?:[ \t]+\S+){6,7}[ \t]*\r?$", content)
+    return [*names, *(["colours of vertices"] * bool(coloured and not has_colors))]

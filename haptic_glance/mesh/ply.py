@@ -23,6 +23,12 @@ def plain(content: bytes) -> bytes:
     return triangulated(content)
 
 
+def names_in(content: bytes) -> list[str]:
+    """The name of the picture that a PLY file names in its header."""
+    header = content.partition(b"end_header")[0]
+    return [name.decode(errors="replace") for name in re.findall(rb"(?m)^comment TextureFile (.*?)\s*$", header)]
+
+
 def triangulated(content: bytes) -> bytes:
     """A PLY's bytes; each polygon of a binary one becomes a fan of triangles about its first vertex, in their order.
 

@@ -117,7 +117,8 @@ def over_repetitions(rows: Rows) -> Rows:
     frame = pd.DataFrame(rows).drop(columns=["repetition", "seconds"], errors="ignore").astype({"value": float})
     cells = frame.groupby([name for name in frame if name != "value"], dropna=False, sort=False)
     means = cells["value"].mean().reset_index()
-    return means.astype(object).where(means.notna(), None).to_dict("records")
+    return [{str(name): value for name, value in row.items()}
+            for row in means.astype(object).where(means.notna(), None).to_dict("records")]  # fmt: skip
 
 
 def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str], settings: Params, seed: int) -> Rows:

@@ -211,7 +211,8 @@ def _numbers(judgement: Judgement) -> dict[str, object]:
     effect, word, claim = effect_of(judgement.chosen), judgement.word, judgement.claim
     mean, low, high = effect.interval
     pooled = isinstance(effect, PooledEffect)
-    columns = {"verdict": word, "effect": mean, "low": low, "high": high, "p": effect.p_value, "over": claim.pairs}
+    columns: dict[str, object] = {"verdict": word, "effect": mean, "low": low, "high": high}
+    columns |= {"p": effect.p_value, "over": claim.pairs}
     columns |= {"units": len(effect.units), "shared": np.nan if pooled else effect.share}
     columns |= {"pairs": sum(len(single.differences) for single in judgement.used)}
     return columns | ({"i2": effect.pooled.i2} if pooled else {})

@@ -61,6 +61,12 @@ def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
     assert printed.splitlines()[1].split() == ["faces", "1,280", "640", "200", "128"] and "QEM" not in printed
 
 
+def test_a_level_with_more_faces_than_the_mesh_is_named_and_left_out(file, tmp_path, capsys):
+    assert run([str(file), "--levels", "5000,100", "--out", str(tmp_path / "out")]) == 1
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_100.ply"]
+    assert "simplify: no level 5000: the mesh has only 1,280 faces" in capsys.readouterr().err
+
+
 def test_a_level_that_is_infeasible_does_not_cost_the_others(file, tmp_path, capsys):
     assert run([str(file), "--levels", "100,2", "--out", str(tmp_path / "out")]) == 1
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_100.ply"]

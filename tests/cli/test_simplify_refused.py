@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.cli import simplify as command
-from haptic_glance.cli.simplify import parser, run, share
+from haptic_glance.cli.simplify import check_outputs, parser, run, share
 from haptic_glance.lod.export import write_any
 from haptic_glance.mesh.mesh import Mesh
 
@@ -67,6 +67,20 @@ def test_files_that_the_mesh_refers_to_are_never_written_over(file, tmp_path, mo
     with pytest.raises(ValueError, match=f"{name} belongs to wrapped.{kind}, and would be overwritten"):
         run([f"wrapped.{kind}", *faces, *out])
     assert (tmp_path / name).read_bytes() == content
+
+
+@pytest.mark.parametrize("name", ["scan.depth", "external.glb", "painted.ply"])
+def test_the_picture_that_a_mesh_is_made_of_is_never_written_over(tmp_path, name):
+    tree = json.dumps({"image": "a.png", "images": [{"uri": "a.png"}]}).encode()
+    content = {
+        "scan.depth": tree,
+        "external.glb": b"glTF" + b"\0" * 8 + len(tree).to_bytes(4, "little") + b"JSON" + tree,
+        "painted.ply": b"ply\nformat ascii 1.0\ncomment TextureFile a.png\nend_header\n",
+    }
+    (tmp_path / name).write_bytes(content[name])
+    (tmp_path / "a.png").write_bytes(b"a picture")
+    with pytest.raises(ValueError, match=f"a.png belongs to {name}, and would be overwritten"):
+        check_outputs(tmp_path / name, tmp_path / "a.png")
 
 
 def test_results_in_a_folder_spare_the_materials_of_others(file, tmp_path):

@@ -16,6 +16,7 @@ from haptic_glance import as_mesh, to_trimesh
 from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import dropped_from, run
 from haptic_glance.lod.export import write_any
+from haptic_glance.lod.task import repaired
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
 from haptic_glance.mesh.gltf import as_glb
@@ -240,6 +241,30 @@ def test_a_part_without_a_colour_is_white_as_gltf_says(tmp_path):
     assert ["baseColorFactor" in material["pbrMetallicRoughness"] for material in materials].count(True) == 1
 
 
+@pytest.mark.parametrize("material", [{"name": "leaf"}, {"doubleSided": True}])
+def test_a_material_without_a_colour_is_kept(tmp_path, material):
+    (tmp_path / "leaf.glb").write_bytes(trimesh.Scene(ball(0, **material)).export(file_type="glb"))
+    write_any(tmp_path / "again.glb", load(tmp_path / "leaf.glb"))
+    (kept,) = tree_of(tmp_path / "again.glb")[0]["materials"]
+    assert material.items() <= kept.items()
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_colours_of_faces_stay_apart_and_others_that_meet_are_blended(flat):
+    box = trimesh.creation.box()
+    colors = np.repeat(COLOURS[:12, :3], 3, axis=0) if flat else np.tile(COLOURS[:3, :3], (12, 1))
+    soup = Mesh(box.vertices[box.faces].reshape(-1, 3), np.arange(36).reshape(12, 3), colors)
+    mesh, notes = repaired(soup)
+    assert mesh.watertight and "28 coincident vertices merged" in notes[0]
+    assert any("blended" in note for note in notes) != flat
+    if flat:
+        shown = mesh.texture.sample(np.arange(12), mesh.texture.uv[:, 0])
+        assert np.array_equal(shown, COLOURS[:12, :3])
+    else:
+        at_first = (soup.vertices == soup.vertices[0]).all(axis=1)
+        assert np.array_equal(mesh.colors[0], np.rint(colors[at_first].mean(axis=0)))
+
+
 def test_an_obj_gets_the_colour_of_a_material_in_its_picture(tmp_path):
     mesh = as_mesh(ball(0, baseColorTexture=picture((200, 40, 40)), baseColorFactor=[128, 255, 255, 255]))
     write_any(tmp_path / "ball.obj", mesh)
@@ -296,7 +321,7 @@ def test_a_material_file_does_not_darken_the_picture_and_names_the_maps_that_are
     assert [line.split()[1:] for line in lines if line.startswith("Kd ")] == [["1.00000000"] * 3]
     with (tmp_path / "ball.mtl").open("a") as file:
         file.write("\nmap_Bump -bm 1 bumps.png\nNs 20\n")
-    assert dropped_from(tmp_path / "ball.obj", load(tmp_path / "ball.obj")).endswith(": map_Bump")
+    assert dropped_from(tmp_path / "ball.obj", load(tmp_path / "ball.obj")).endswith(": map_Bump, Ks")
 
 
 def test_a_glb_of_weights_keeps_the_nodes_and_says_what_it_drops(tmp_path, capsys):

@@ -9,7 +9,8 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh import MeshError, clean, load
-from haptic_glance.mesh.files import load_as_stated
+from haptic_glance.mesh.files import load_as_stated, parse
+from haptic_glance.mesh.obj import not_read as obj_not_read
 
 CUBE = trimesh.creation.box()
 
@@ -198,6 +199,29 @@ def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new
     mesh = load_as_stated(path)
     assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+@pytest.mark.parametrize("corners", ["0 1 2", "1 2 0", "-1 -2 -4", "1/1 0/1 2/1"])
+def test_an_obj_that_counts_from_zero_or_beyond_its_vertices_is_refused(corners):
+    with pytest.raises(MeshError, match="faces name (a|the) vertex .* which does not exist"):
+        parse(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1 2 3\nf {corners}\n".encode(), ".obj")
+
+
+@pytest.mark.parametrize("lines", ["mtllib a.mtl\nmtllib b c.mtl\n", "mtllib a.mtl d.mtl\n"])
+def test_all_material_libraries_of_an_obj_are_read(tmp_path, lines):
+    (tmp_path / "a.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    for name in ("b c.mtl", "d.mtl"):
+        (tmp_path / name).write_text("newmtl blue\nKd 0 0 1\n")
+    faces = "usemtl red\nf 1 2 3\nusemtl blue\nf 2 1 4\n"
+    (tmp_path / "two.obj").write_text(f"{lines}v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\n{faces}")
+    mesh = load(tmp_path / "two.obj")
+    assert sorted(tuple(image[0, 0, :3]) for image in mesh.texture.images) == [(0, 0, 255), (255, 0, 0)]
+    assert obj_not_read(tmp_path / "two.obj") == ["names of materials"]
+
+
+def test_a_binary_stl_whose_header_speaks_of_a_facet_is_binary():
+    content = trimesh.creation.box().export(file_type="stl")
+    assert len(parse(b"solid facet part".ljust(80) + content[80:], ".stl").faces) == 12
 
 
 def test_a_binary_stl_that_states_no_faces_has_those_that_follow(tmp_path):

@@ -210,9 +210,11 @@ def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, 
     path = tmp_path / "a.obj"
     path.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
     assert [image[0, 0].tolist() for image in load(path, up="z").texture.images] == [[255, 0, 0, 255]]
-    assert dropped_from(path, load(path)) == ""
+    assert (
+        dropped_from(path, load(path)).endswith(": map_Kd -s") if "-s" in named else not dropped_from(path, load(path))
+    )
     (tmp_path / "maps" / "wood 1.png").unlink()
-    assert dropped_from(path, load(path)).endswith(": picture maps/wood 1.png, not beside it")
+    assert ": picture maps/wood 1.png, not beside it" in dropped_from(path, load(path))
     (tmp_path / "a.mtl").unlink()
     assert dropped_from(path, load(path)).endswith(": materials a.mtl, not beside it")
 

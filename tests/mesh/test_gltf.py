@@ -17,7 +17,7 @@ from haptic_glance.cli.simplify import run
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import MeshError, load
 from haptic_glance.mesh.files import parse
-from haptic_glance.mesh.gltf import as_glb
+from haptic_glance.mesh.gltf import as_glb, joined
 from haptic_glance.mesh.materials import not_read
 from stages.meshes.furniture import files_beside
 
@@ -240,6 +240,54 @@ DRACO = '{"extensionsRequired": ["KHR_draco_mesh_compression"], "buffers": [{"ur
 def test_a_buffer_that_is_cut_or_packed_is_refused(text, reason):
     with pytest.raises(MeshError, match=reason):
         parse(text.encode(), ".gltf")
+
+
+def changed(content, change):
+    """The bytes of a GLB whose tree a function has changed, which may return bytes for the end of the buffer."""
+    start = 20 + int.from_bytes(content[12:16], "little")
+    tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+    binary += change(tree, len(binary)) or b""
+    tree["buffers"][0]["byteLength"] = len(binary)
+    return joined(tree, binary)
+
+
+def test_a_fan_is_read_as_its_triangles():
+    corners = np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 2, 0], [0, 2, 0]], np.float32)
+    plain = trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 4]], process=False)
+
+    def fan(tree, _):
+        (primitive,) = tree["meshes"][0]["primitives"]
+        del primitive["indices"]
+        primitive["mode"] = 6
+
+    content = changed(trimesh.Scene(plain).export(file_type="glb"), fan)
+    mesh = parse(content, ".glb")
+    assert len(mesh.faces) == 3 and mesh.face_areas.sum() == pytest.approx(plain.area) and not_read(content) == []
+
+
+def test_a_mesh_with_a_skin_stands_where_its_joints_put_it():
+    """As programs write it that convert centimetres: the armature has a hundredth, the inverse matrices a hundred."""
+    inverse = np.diag([100, 100, 100, 1]).astype("<f4")
+
+    def rig(tree, begin):
+        node = next(number for number, node in enumerate(tree["nodes"]) if "mesh" in node)
+        tree["nodes"][node] |= {"skin": 0, "translation": [5, 0, 0]}
+        tree["nodes"] += [{"scale": [0.01] * 3, "children": [node, len(tree["nodes"]) + 1]}, {"name": "joint"}]
+        tree["scenes"] = [{"nodes": [len(tree["nodes"]) - 2]}]
+        tree["bufferViews"].append({"buffer": 0, "byteOffset": begin, "byteLength": 64})
+        tree["accessors"].append({"bufferView": len(tree["bufferViews"]) - 1, "componentType": 5126, "type": "MAT4",
+                                  "count": 1})  # fmt: skip
+        tree["skins"] = [{"joints": [len(tree["nodes"]) - 1], "inverseBindMatrices": len(tree["accessors"]) - 1}]
+        return inverse.T.tobytes()
+
+    box = trimesh.creation.box([1, 2, 4])
+    mesh = parse(changed(trimesh.Scene(box).export(file_type="glb"), rig), ".glb")
+    assert np.ptp(mesh.vertices, axis=0) == pytest.approx([1, 2, 4]) and np.abs(mesh.vertices.mean(axis=0)).max() < 1e-6
+
+
+def test_a_file_without_a_scene_shows_all_nodes(glb):
+    content = changed(glb, lambda tree, _: tree.pop("scenes") and tree.pop("scene") and None)
+    assert len(parse(content, ".glb").faces) == len(parse(glb, ".glb").faces)
 
 
 def test_points_and_lines_beside_the_surface_are_named(write):
