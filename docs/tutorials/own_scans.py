@@ -74,8 +74,8 @@ for faces in (4000, 2000, 1000):
 # Touch the salient places
 # ------------------------
 #
-# An array of 16 x 16 cells is pressed at each. Lengths are in units of the mesh: ``normalise`` makes its diameter
-# one, so that a pitch of 0.01 is a hundredth of the object.
+# An array of 16 x 16 cells is pressed at each. Lengths are shares of the object's diameter: a pitch of 0.01
+# is a hundredth of the object.
 
 unit = normalise(mesh)
 images = press_many(unit, detection.points[:8], cells=(16, 16), pitch=0.01)

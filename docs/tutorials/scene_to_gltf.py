@@ -63,8 +63,9 @@ plt.show()
 # ------------------------
 #
 # ``MSFT_lod`` is a vendor extension in Khronos's registry. The first node is the finest level and names the others;
-# ``MSFT_screencoverage`` says from which share of the screen's height on each is enough. A viewer without the
-# extension shows the finest level. Every file is read back and compared before this function returns.
+# ``MSFT_screencoverage`` lists, for each level, the smallest share of the screen's height at which the level is enough.
+# A viewer without the extension shows the finest level. ``write_lod`` reads the file back and compares the names of
+# its levels.
 
 metres = metres_per_unit(mesh, SIZE)
 rows = [describe("dromedary", level, metres, scene) for level in levels]

@@ -2,12 +2,13 @@
 Reproduce a table of the thesis
 ===============================
 
-Table 4.1 of the thesis recognises six objects by one touch, with five classifiers and touches at places that
-different methods chose. The rows of our measurement are part of the repository, so that you can rebuild the table in a
-second and test the claim behind it without a run. The last section says how to measure the rows anew.
+Table 4.1 of the thesis has the accuracies of five classifiers that recognise six objects by one touch. Several methods
+choose the places of the touches. The rows of our measurement are part of the repository, so you can rebuild the table
+in a second and test the claim behind it without a run. The last section says how to measure the rows anew.
 
 Needs a clone and ``pip install '.[pipeline]'``; runs without a network. For the command of the last section, fetch the
-meshes beforehand: ``python -m stages.meshes household``.
+meshes beforehand: ``python -m stages.meshes household``. The command changes
+the rows of its set below ``reports/``; ``git checkout reports`` restores them.
 """
 
 import matplotlib.pyplot as plt

@@ -3,8 +3,8 @@ Simulated touch in a Gymnasium loop
 ===================================
 
 An agent moves a pressure array over an object and feels forces in newtons. Its observation is the force image of 16 x
-16 cells under foam; its action moves the array along its right, up and normal. The reward is higher the nearer the
-load is to 1 N: to follow the surface with a steady touch earns most.
+16 cells under foam; its action moves the array along its right, up and normal. The reward is highest at a load
+of 1 N, so the best agent follows the surface with a steady touch.
 
 The class below is an environment of `Gymnasium <https://gymnasium.farama.org>`_ where that is installed. Without it
 the class has no spaces, and the loop is the same. A second environment, which comes with the package, is the task of
@@ -80,8 +80,8 @@ class TouchEnvironment(gymnasium.Env if gymnasium else object):
 # A loop
 # ------
 #
-# The agent slides to the right over an egg, 0.2 mm at a time. Where it feels more than the target it retreats, where
-# less it approaches.
+# The agent slides to the right over an egg, 0.2 mm at a time. If the load is above the target, the agent moves away
+# from the egg; if the load is below the target, the agent moves closer.
 
 if __name__ == "__main__":
     egg = trimesh.creation.icosphere(5, radius=0.03).apply_scale([1, 1, 1.4])

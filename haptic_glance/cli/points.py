@@ -1,7 +1,7 @@
 """Prints the places of one mesh that people look at first, or that are worth touching.
 
-They are those of `haptic-glance saliency`, most salient first: vertex, position in the file's coordinates, score
-from 0 to 1. Positions can be handed to `haptic-glance touch --at`.
+The places are the same as those of `haptic-glance saliency`, most salient first: vertex, position in the file's
+coordinates, score from 0 to 1. `haptic-glance touch --at` accepts these positions.
 
 examples:
   haptic-glance points scan.stl

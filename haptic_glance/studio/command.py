@@ -1,9 +1,10 @@
 """Opens a page on which a mesh can be looked at, simplified, touched and marked.
 
-The page is on this machine alone. Reads every STL, OBJ, PLY, OFF, GLB, glTF, point cloud and scan that is named, those
-of a folder, meshes that the pipeline has stored (.npz), and what is uploaded in the page; nothing else. With --mark, a
-click marks what matters to a person: annotator, time (UTC), vertex, x, y, z on the mesh with z up, bounding-box centre
-0, bounding sphere of radius 0.5. Several people may mark one mesh; saving replaces the rows of one of them.
+The page is on this machine alone. The studio reads only the files and folders on the command line (STL, OBJ, PLY, OFF,
+GLB, glTF, point clouds, scans, and .npz meshes of the pipeline) and the files that you upload in the page. With --mark,
+a click marks what matters to a person: annotator, time (UTC), vertex, x, y, z on the mesh with z up, bounding-box
+centre 0, bounding sphere of radius 0.5. Several people may mark one mesh; saving replaces only the rows of the
+annotator who saves.
 
 examples:
   haptic-glance studio bunny.stl

@@ -342,7 +342,7 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
         epilog=rest,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    help_text = "a data set that params.yaml names; what is written to reports/ stands below its `out` in other runs"
+    help_text = "a data set of params.yaml; runs that are not published write to their folder `out`, not to reports/"
     parser.add_argument("dataset", nargs="?", default="", help=help_text)
     parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
     errors_in_one_line(stage)

@@ -39,7 +39,9 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
         prog="python -m stages.front", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--trials", type=int, default=TRIALS, help="choices to propose (default: %(default)s)")
-    parser.add_argument("--minutes", type=float, default=MINUTES, help="stop after these; a later call goes on (60)")
+    parser.add_argument(
+        "--minutes", type=float, default=MINUTES, help="stop after these; a later call goes on (default: %(default)s)"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of all random numbers (default: %(default)s)")
     parser.add_argument("--classes", default="furniture", help="data set of the classes (default: %(default)s)")
     options = parser.parse_args(argv)

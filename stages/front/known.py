@@ -103,7 +103,6 @@ def read_objects(data: Path, shapes: str, classes: str) -> tuple[list[str], dict
 
 
 ATTEMPTS = 5  # draws of a region until touches apart from it are left to learn from
-PARTS = ("simplifying", "looking", "pressing", "asking")  # of the seconds to know one object
 
 
 @dataclass(frozen=True)

@@ -115,19 +115,14 @@ def box(classes: str, title: str, body: str) -> str:
     return f'<div class="{classes}" tabindex="0" role="region" aria-label="{escape(title)}">{body}</div>'
 
 
-def frame_html(frame: pd.DataFrame, title: str, words: str = "", bold: Iterable[bool] = ()) -> str:
-    """A table in its own box.
-
-    words: the column of WORDS, which are coloured and written, never coloured alone. bold: of each row whether it is
-    the best.
-    """
+def frame_html(frame: pd.DataFrame, title: str, bold: Iterable[bool] = ()) -> str:
+    """A table in its own box. bold: of each row whether it is the best."""
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
     right |= {c: ' class="long"' for c in frame.columns if frame[c].map(str).map(len).max() > LONG_TEXT}
     head = "".join(f'<th scope="col"{right.get(c, "")}>{escape(str(c))}</th>' for c in frame.columns)
 
     def cell(column: Any, text: Any) -> str:
-        kind = f' class="word {WORDS[text]}"' if column == words else right.get(column, "")
-        return f"<td{kind}>{prose(str(text))}</td>"
+        return f"<td{right.get(column, '')}>{prose(str(text))}</td>"
 
     rows = ("".join(cell(*item) for item in row.items()) for row in frame.to_dict("records"))
     kinds = [' class="best"' if row else "" for row in bold] or [""] * len(frame)

@@ -358,9 +358,9 @@ class Results:
         """dict method -> (k,) vertex ids, most salient first."""
         return ByMethod("salient_points", read_points(self._path("salient_points", name, dataset)))
 
-    def strong_points(self, name: str, dataset: str | None = None) -> ByMethod:
+    def strong_points(self, name: str) -> ByMethod:
         """dict method -> (k',) vertex ids, the leading points that the simplification keeps."""
-        return ByMethod("salient_points", read_strong_points(self._path("salient_points", name, dataset)))
+        return ByMethod("salient_points", read_strong_points(self._path("salient_points", name, None)))
 
     def saliency(self, name: str, dataset: str | None = None) -> ByMethod:
         """dict method -> (n,) saliency in 0..1 per vertex."""
@@ -406,9 +406,9 @@ class Results:
         names = [name for name in self.choose(preferred, len(self.objects)) if name in truths]
         return some(names, "no object with ground truth has salient points", "salient_points")[:count]
 
-    def lods(self, name: str, method: str, dataset: str | None = None) -> list[tuple[str, Mesh]]:
+    def lods(self, name: str, method: str) -> list[tuple[str, Mesh]]:
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
-        paths = [path for path in files_below(self.folder("lod", dataset) / name) if path.match(f"{method}_*.npz")]
+        paths = [path for path in files_below(self.folder("lod") / name) if path.match(f"{method}_*.npz")]
         message = f"lod/{name} has no mesh by {method}: lod.methods lacks the method, or it reached no face count"
         some(paths, message, "lod", runnable=False)
         levels = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]

@@ -11,7 +11,7 @@ from haptic_glance.touch import Surface
 from stages.contours.contours import sample_contours, write_sequences
 from stages.engine.settings import Workspace
 from stages.report import Params, sequences
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.sequences.contours import followed
 from stages.report.topics import build_one
 
@@ -53,12 +53,6 @@ def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
     assert "first contour of b" in felt.caption
     write(tmp_path, ["a", "b"], ["random"])
     assert "contours each, blind touch." in figure("figure_4_14", results(tmp_path)).alt
-
-
-def test_without_contours_the_figure_is_not_run(tmp_path):
-    for name in ("figure_4_14", "figure_4_15"):
-        with pytest.raises(NotRun, match="dvc repro contours"):
-            figure(name, results(tmp_path))
 
 
 def test_the_contour_drawn_is_the_one_followed():

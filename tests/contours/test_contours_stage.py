@@ -1,22 +1,16 @@
 """The stage on small objects, in a folder of its own: its pairs, its files, its rows, and a kill in the middle."""
 
-import os
-import shutil
-import signal
-from multiprocessing import get_context
-
 import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.base.files import sha256, write_arrays, write_mesh
+from haptic_glance.base.files import write_arrays, write_mesh
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, follow
 from stages.contours import Params
 from stages.contours import __main__ as stage
 from stages.contours.contours import draw_pairs, read_sequences, sample_contours
-from stages.engine.rows import read_rows
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)
@@ -94,42 +88,6 @@ def test_an_object_without_a_contour_gives_none():
     assert facts == {"sequences": 0, "refused": 0, "loops": None, "share": None, "shrunk": None}
     with pytest.raises(ValueError, match="count must be"):
         sample_contours(Surface(BOX), np.arange(8), 0, rng(0, "c"), **SMALL)
-
-
-SIZES = {"a": (0.4, 0.6, 0.2), "b": (0.3, 0.3, 0.5), "c": (0.2, 0.2, 0.7)}
-
-
-@pytest.mark.slow
-def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(make_workspace, monkeypatch):
-    settings = {"strategies": ["random", "thesis_ssim"], "count": 3, "frames": 4, "cells": [5, 5], "pitch": 0.02}
-    workspace = make_workspace({"contours": settings})
-    for name, size in SIZES.items():
-        box = trimesh.creation.box(size).subdivide().subdivide()
-        write_object(workspace.data, name, Mesh(box.vertices, box.faces), {"thesis_ssim": np.arange(0, 90, 7)})
-    read = stage.read_mesh
-
-    def hashes():
-        return {path.name: sha256(path) for path in (workspace.data / "contours").glob("*")}
-
-    def dying(path):
-        if path.stem == "b":
-            os.kill(os.getpid(), signal.SIGKILL)
-        return read(path)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(stage, "read_mesh", dying)
-        child = get_context("fork").Process(target=stage.run, args=(workspace,))
-        child.start()
-        child.join()
-    assert child.exitcode == -signal.SIGKILL and hashes() == {}
-    stage.run(workspace)
-    continued = hashes()
-    assert set(continued) == {"a.npz", "b.npz", "c.npz"}
-    rows = read_rows(workspace.measurements / "contours.csv.gz")
-    assert len(rows) == 3 * 2 * 5 and set(rows["item"]) == set("abc") and set(rows["dataset"]) == {"toys"}
-    shutil.rmtree(workspace.build)
-    stage.run(workspace)
-    assert hashes() == continued
 
 
 def as_sets(pairs):

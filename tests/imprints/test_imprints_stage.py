@@ -7,7 +7,6 @@ import pytest
 from haptic_glance.base.files import write_arrays, write_mesh
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import press, touchable
-from haptic_glance.touch import warm_up as warm
 from haptic_glance.touch.kernels import faces
 from stages.engine.rows import read_rows
 from stages.imprints import __main__ as stage
@@ -46,24 +45,6 @@ def test_stage_presses_every_method_and_counts_what_it_refuses(make_workspace):
     assert np.array_equal(written["itti"].images[0], press(mesh, vertex, (15, 15), 0.01))
     assert np.allclose(written["itti"].positions, mesh.vertices[[vertex]])
     assert not touchable(mesh, [lone])[0]
-
-
-def test_it_works_once_a_process(monkeypatch):
-    touched = []
-    monkeypatch.setitem(warm.__wrapped__.__globals__, "press", lambda *touch: touched.append(touch))
-    warm.cache_clear()
-    warm()
-    warm()
-    assert len(touched) == 1
-
-
-def test_the_stage_warms_up_before_it_reads_the_object(monkeypatch, tmp_path):
-    order = []
-    monkeypatch.setattr(stage, "warm_up", lambda: order.append("warm"))
-    monkeypatch.setattr(stage, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
-    with pytest.raises(OSError):
-        stage.process("ball", tmp_path, tmp_path, None)
-    assert order == ["warm", "read"]
 
 
 def test_a_kernel_leaves_the_folder_of_other_kernels_as_it_was(monkeypatch):

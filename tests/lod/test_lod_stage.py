@@ -257,16 +257,3 @@ def test_bad_targets_are_named(target):
 def test_bad_names_of_methods_are_named(name, message):
     with pytest.raises(ValueError, match=message):
         variant(name)
-
-
-def test_the_stage_warms_its_backend_up_before_it_reads_the_object(monkeypatch, tmp_path):
-    order = []
-    monkeypatch.setattr(data_set, "warm_up", order.append)
-    monkeypatch.setattr(data_set, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
-
-    class Settings:
-        backend = "fast"
-
-    with pytest.raises(OSError):
-        data_set.process("ball", tmp_path, tmp_path, Settings, 0, False)
-    assert order == ["fast", "read"]

@@ -15,7 +15,7 @@ from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import as_mesh
 
-FRONT, BEHIND = Viewpoint(0, 0), Viewpoint(180, 0)
+FRONT = Viewpoint(0, 0)
 SOME = CANDIDATES[::8]
 
 

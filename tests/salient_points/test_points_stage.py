@@ -8,7 +8,6 @@ import pytest
 from haptic_glance.base.files import read_arrays, sha256, write_arrays, write_mesh, write_table
 from haptic_glance.look.points.options import Detection
 from haptic_glance.look.views import TWELVE
-from stages.engine.rows import read_rows
 from stages.salient_points import Params
 from stages.salient_points import __main__ as stage
 from stages.salient_points.measure import (
@@ -36,20 +35,6 @@ def workspace(ball, spot, make_maps, make_workspace):
     write_arrays(workspace.data / "conspicuity/ball.npz", maps=stacked, mask=stacked[:, 0] > 0, **names)
     write_table(workspace.data / "weights/weights.csv", weight_table({}, "gaze"))
     return workspace
-
-
-@pytest.mark.slow
-def test_one_object_more_costs_one_object(workspace, monkeypatch):
-    made = []
-    find_all = stage.find_all
-    monkeypatch.setattr(stage, "find_all", lambda *rest: made.append(rest[3].name) or find_all(*rest))
-    stage.run(workspace)
-    for kind in ("meshes", "conspicuity"):
-        (workspace.data / kind / "other.npz").write_bytes((workspace.data / kind / "ball.npz").read_bytes())
-    stage.run(workspace)
-    assert made == ["ball", "other"]
-    rows = read_rows(workspace.measurements / "salient_points.csv.gz")
-    assert set(rows["item"]) == set(made) and set(rows["dataset"]) == {"toys"}
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from stages.engine.rows import write_rows
 from stages.engine.settings import Workspace
 from stages.report import Params, stability
 from stages.report.drawing import label
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.stability import simplification
 from stages.report.topics import build_one
 from stages.stability import COLUMNS
@@ -43,13 +43,3 @@ def test_the_least_count_is_the_one_above_which_all_is_valid():
     rows = [("4", 4, "valid"), ("64", 64, "ruined"), ("50%", 500, "valid"), ("90%", 900, "valid")]
     cases = pd.DataFrame(rows, columns=["budget", "severity", "outcome"]).assign(kept="none", soft=None)
     assert simplification.least_valid(cases) == 500
-
-
-@pytest.mark.parametrize(
-    ("kind", "name"),
-    [("tables", "stability"), ("tables", "stability_simplification"), ("figures", "stability"),
-     ("figures", "stability_failures"), ("figures", "stability_simplification")],
-)  # fmt: skip
-def test_report_says_which_stage_to_run(tmp_path, kind, name):
-    with pytest.raises(NotRun, match="dvc repro stability"):
-        build_one(stability, kind, name, results(tmp_path, []))

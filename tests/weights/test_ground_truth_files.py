@@ -108,9 +108,6 @@ def test_made_up_rows_are_left_out_and_rounded_ones_are_taken_in_by_tolerance():
     assert gaze_on_vertices(MESH, MESH.vertices.round(6), np.ones(162), tolerance=1e-5).sum() == 162
 
 
-ONE_AWAY = MESH.vertices * np.where(np.arange(162) == 100, 2, 1)[:, None]
-
-
 @pytest.mark.parametrize(
     ("call", "words"),
     [

@@ -2,7 +2,7 @@
 Meshes for other programs
 =========================
 
-:func:`haptic_glance.write_any` writes GLB, OBJ, PLY, STL and OFF, with colours and textures where the format has them.
+:func:`haptic_glance.write_any` writes GLB, OBJ, PLY, STL and OFF, with colours and textures in GLB, OBJ and PLY.
 :func:`haptic_glance.to_trimesh` converts a mesh for programs that use trimesh. Functions accept all of these forms as a
 mesh.
 """

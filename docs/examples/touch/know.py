@@ -16,7 +16,7 @@ from haptic_glance.know import Exploration, known_objects, learn, primitives
 meshes, left_out = known_objects(sample().parent)  # or a folder of yours: Path("scans")
 meshes |= primitives()
 library = learn(meshes, placed=False, turned=True)  # nothing is known of the pose
-exploration = Exploration(library, Surface(meshes["cylinder"]), np.random.default_rng(0))
+exploration = Exploration(library, Surface(meshes["dromedary"]), np.random.default_rng(0))
 print(f"known as {exploration.finish()!r} after {len(exploration.images)} touches")
 
 plt.plot([[belief.probabilities[name] for name in library.names] for belief in exploration.beliefs])

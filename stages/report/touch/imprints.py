@@ -13,7 +13,7 @@ from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
 from stages.report.tables import Ranking, records, with_interval
 
-OURS, REFERENCE = "ours", "tacto_160x120"
+OURS = "ours"
 NAMES = {
     "ours": "ours", "trimesh_embree": "trimesh on embree", "depth_picture": "depth picture (pyrender)",
     "tacto_32x32": "TACTO, 32 x 32 pixels", "tacto_160x120": "TACTO, its 160 x 120 pixels",
