@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -214,8 +215,8 @@ class Looked:
 
 
 def _check(count):
-    if count is not None and not (float(count).is_integer() and count >= 1):
-        raise ValueError(f"count must be a whole number of at least 1, got {count}")
+    if count is not None and not (isinstance(count, Real) and float(count).is_integer() and count >= 1):
+        raise ValueError(f"count must be a whole number of at least 1, got {count!r}")
     return None if count is None else int(count)
 
 
