@@ -269,6 +269,7 @@ def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_ro
     (["open", "supported"], "open"), (["mixed", "supported"], "mixed"),
     (["not testable", "supported", "contradicted"], "depends on the reading"),
     (["supported", "mixed"], "depends on the reading"), (["open", "mixed"], "open"),
+    (["open", "supported", "contradicted"], "depends on the reading"),
     (["not testable", "supported"], "supported"), (["not testable", "not testable"], "not testable"),
 ])  # fmt: skip
 def test_a_verdict_holds_in_each_reading_or_depends_on_the_reading(words, word):
