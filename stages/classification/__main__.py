@@ -34,7 +34,7 @@ from stages.imprints.imprints import read_imprints
 from . import COLUMNS, Params
 from .multi_touch import MultiTouchTrials, evaluate_variants
 from .recorded import alike, feature_cost_rows, gather, similar_share_rows
-from .trials import TouchSet, drawn_sets, set_of
+from .trials import OF_NAMED_SETS, TouchSet, drawn_sets, set_of
 
 METRICS = {  # (metric, split): the name of their mean in reports/metrics
     ("accuracy", Split.RANDOM): "accuracy_holdout",
@@ -104,19 +104,17 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
             rows += [{**plain, **row} for row in scores]
         able = [key.removesuffix(".confusion") for key in confusions]
         rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
-    rows += [
-        {**common, **row}
-        for row in [*similar_share_rows(touched, sorted(settings.sets[name])), *feature_cost_rows(touched)]
-    ]
+    costs = [] if settings.drawn else feature_cost_rows(touched)
+    rows += [{**common, **row} for row in [*similar_share_rows(touched, sorted(settings.sets[name])), *costs]]
     write_arrays(folder / f"{item}.npz", objects=objects, **confusions)
     return over_repetitions(rows) if settings.drawn else rows
 
 
 def over_repetitions(rows: Rows) -> Rows:
-    """The mean of each cell over its repetitions, without seconds: the unit of drawn sets is the set."""
+    """The mean of each cell over its repetitions, to four digits and without seconds: drawn sets are the unit."""
     frame = pd.DataFrame(rows).drop(columns=["repetition", "seconds"], errors="ignore").astype({"value": float})
     cells = frame.groupby([name for name in frame if name != "value"], dropna=False, sort=False)
-    means = cells["value"].mean().reset_index()
+    means = cells["value"].mean().round(4).reset_index()
     return [{str(name): value for name, value in row.items()}
             for row in means.astype(object).where(means.notna(), None).to_dict("records")]  # fmt: skip
 
@@ -128,7 +126,8 @@ def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str],
         all_variants = sampling == settings.closer[0]
         multi_touch = MultiTouchTrials(tuple(settings.touches), settings.combinations, all_variants)
     closer = sampling in settings.closer
-    return evaluate_variants(touched, classifiers, settings.repetitions, seed, multi_touch, closer)
+    left_out = OF_NAMED_SETS if settings.drawn else ()
+    return evaluate_variants(touched, classifiers, settings.repetitions, seed, multi_touch, closer, left_out)
 
 
 def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Recognition by several touches as one sample (T table 4.6), and variants that may explain it (T4.2.3.5)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -115,17 +115,20 @@ def evaluate_variants(
     seed: int = 0,
     multi_touch: MultiTouchTrials | None = None,
     with_selection: bool = False,
+    left_out: Sequence[str] = (),
 ) -> list[dict]:
     """Rows (variant, scaling, classifier, repetition, split, metric, value, seconds, imprints, note) of all trials.
 
     Those of trials.py. classifiers: names in CLASSIFIERS; multi_touch: for trials of several touches; with_selection:
-    also trials of selection, and more readings of the scaling. Splits are those of `evaluate_prepared` in the same
-    repetition. A trial that cannot be run gives one row with the reason.
+    also trials of selection, and more readings of the scaling; left_out: variants that are not run. Splits are those of
+    `evaluate_prepared` in the same repetition. A trial that cannot be run gives one row with the reason.
     """
     rows, reported = [], set()
     for repetition in range(repetitions):
         random_state = repetition_seed(seed, repetition)
         for trial in _trials(touched, random_state, multi_touch, with_selection):
+            if trial.variant in left_out:
+                continue
             note = _reason_to_skip(trial)
             if note:
                 if (trial.variant, trial.split, note) not in reported:

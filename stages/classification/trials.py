@@ -40,6 +40,7 @@ THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
 OTHERS = (BEFOREHAND, MIN_MAX)  # scalings beside that of the training part; `components` for a closer look alone
 NARROW = ("knn", "svm")  # whose answers depend on the scale most
+OF_NAMED_SETS = ("pixels", "wavelet_features", "image_features", "first_15_locations")  # variants of no drawn set
 MIN_TO_SPLIT = 4  # imprints per object of which a quarter can be held out
 
 

@@ -129,6 +129,7 @@ def test_the_stage_writes_rows_by_split_and_metrics_by_their_names_and_drawn_set
     run(workspace)
     rows = read_rows(workspace.measurements / "classification.csv.gz")
     assert set(rows["repetition"].dropna()) == (set() if drawn else {0, 1})
+    assert ("pixels" in set(rows["variant"]), "features" in set(rows["metric"])) == (not drawn, not drawn)
     assert set(rows["split"].dropna()) == {"random", "folds", "regions", "random_fewer"}
     assert set(rows["group"]) == {"three"} and set(rows["item"].dropna()) == set(NAMES)
     metrics = read_json(workspace.metrics / "classification.json")
