@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -215,7 +214,7 @@ class Looked:
 
 
 def _check(count):
-    if count is not None and not (isinstance(count, Real) and float(count).is_integer() and count >= 1):
+    if count is not None and not (isinstance(count, int | float | np.number) and float(count).is_integer() and count >= 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count!r}")
     return None if count is None else int(count)
 
