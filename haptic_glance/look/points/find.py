@@ -214,7 +214,9 @@ class Looked:
 
 
 def _check(count):
-    if count is not None and not (isinstance(count, int | float | np.number) and float(count).is_integer() and count >= 1):
+    if count is not None and not (
+        isinstance(count, int | float | np.number) and float(count).is_integer() and count >= 1
+    ):
         raise ValueError(f"count must be a whole number of at least 1, got {count!r}")
     return None if count is None else int(count)
 
