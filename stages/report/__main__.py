@@ -48,7 +48,8 @@ interval. The words:
 - *mixed*: the data sets disagree. Each side of zero has a set whose own interval excludes it, or sets of both signs
   differ by Cochran's Q (p below 0.05).
 - *depends on the reading*: another reasonable reading of the protocol decides the claim differently, or its data sets
-  disagree. The column *readings* has the word and the effect in each reading.
+  disagree; or one reading supports an open claim, and another contradicts it. The column *readings* has the word and
+  the effect in each reading.
 - *not testable*: more than a fifth of the pairs is invalid. The column *invalid* counts the causes. Otherwise invalid
   pairs are left out. A pair is invalid where a method found no point, kept less than one ring of a neighbourhood, gave
   one answer for nearly all samples, was less accurate than guessing or, by the least distance to fixations, farther
