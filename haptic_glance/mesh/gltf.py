@@ -135,8 +135,9 @@ def _place_skins(tree, content):
         joint, place = skin["joints"][0], np.eye(4)
         if "inverseBindMatrices" in skin:
             place = numbers_of(tree, tree["accessors"][skin["inverseBindMatrices"]], content)[0].reshape(4, 4).T
-        while joint is not None:
-            place, joint = _matrix(nodes[joint]) @ place, parents.get(joint)
+        for _ in nodes:  # nodes of a damaged file may form a ring
+            if joint is not None:
+                place, joint = _matrix(nodes[joint]) @ place, parents.get(joint)
         places[number] = place
     for number, place in places.items():
         if number in parents:

@@ -17,7 +17,7 @@ from haptic_glance.cli.simplify import run
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import MeshError, load
 from haptic_glance.mesh.files import parse
-from haptic_glance.mesh.gltf import as_glb, joined
+from haptic_glance.mesh.gltf import as_glb, joined, ready
 from haptic_glance.mesh.materials import not_read
 from stages.meshes.furniture import files_beside
 
@@ -283,6 +283,16 @@ def test_a_mesh_with_a_skin_stands_where_its_joints_put_it():
     box = trimesh.creation.box([1, 2, 4])
     mesh = parse(changed(trimesh.Scene(box).export(file_type="glb"), rig), ".glb")
     assert np.ptp(mesh.vertices, axis=0) == pytest.approx([1, 2, 4]) and np.abs(mesh.vertices.mean(axis=0)).max() < 1e-6
+
+
+def test_joints_in_a_ring_end(glb):
+    def ring(tree, _):
+        node = next(number for number, node in enumerate(tree["nodes"]) if "mesh" in node)
+        tree["nodes"][node] |= {"skin": 0}
+        tree["nodes"] += [{"children": [len(tree["nodes"])], "scale": [0.5] * 3}]
+        tree["skins"] = [{"joints": [len(tree["nodes"]) - 1]}]
+
+    assert ready(changed(glb, ring))[:4] == b"glTF"
 
 
 def test_a_file_without_a_scene_shows_all_nodes(glb):

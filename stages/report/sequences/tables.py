@@ -219,7 +219,7 @@ CLAIMS = [
               shared=0.0, checked=False, note=note, phrases=PHRASES | {("over", "classifier"): "classifiers"},
               readings=(reading("unseen objects", where={"split": Split.OBJECTS}),))
         for key, sentence, second, note in (
-            ("alike_confused", "Classes that feel alike are confused most: bird and plane, head and vase.", None,
+            ("alike_confused", "Bird and plane, head and vase are confused more than the mean other pair.", None,
              "share that is taken for each other, minus that of the mean other pair"),
             ("guided_confuses_less", "Guided contours confuse classes that feel alike less.", {"method": GUIDED},
              "share of birds and planes, heads and vases that are taken for each other"),
