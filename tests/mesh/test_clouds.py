@@ -326,3 +326,10 @@ def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):
     assert np.abs(np.linalg.norm(mesh.vertices - [0, 2, 0], axis=1) - 0.3).mean() < 0.002
     assert not mesh.watertight and mesh.vertices[:, 1].max() < 2.05
     assert (mesh.face_normals[:, 1] < 0.1).mean() > 0.99
+
+
+def test_the_colours_of_a_pcd_may_be_called_rgba():
+    plain, renamed = (
+        read_cloud(pcd(Encoding.BINARY).replace(b" rgb", name, 1), ".pcd") for name in (b" rgb", b" rgba")
+    )
+    assert plain.colors is not None and np.array_equal(plain.colors, renamed.colors)
