@@ -16,6 +16,7 @@ from haptic_glance.cli.simplify import dropped_from
 from haptic_glance.lod import colour_error
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.obj import not_read
 from haptic_glance.mesh.polygons import refined
 from haptic_glance.studio.mystery import gather
 from haptic_glance.touch.press import as_shown
@@ -217,6 +218,51 @@ def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, 
     assert ": picture maps/wood 1.png, not beside it" in dropped_from(path, load(path))
     (tmp_path / "a.mtl").unlink()
     assert dropped_from(path, load(path)).endswith(": materials a.mtl, not beside it")
+
+
+@pytest.mark.parametrize(
+    ("statement", "named"),
+    [
+        ("d 0.5", ["d"]), ("d 1.0", []), ("Tr 0.5", ["Tr"]), ("Ks 0 0.2 0", ["Ks"]), ("Ks 0 0 0", []),
+        ("Ke 1 1 0", ["Ke"]), ("map_Ks a.png", ["map_Ks"]), ("newmtl n", ["names of materials"]),
+    ],
+)  # fmt: skip
+def test_statements_of_an_obj_material_that_a_mesh_cannot_hold_are_named(tmp_path, statement, named):
+    (tmp_path / "a.mtl").write_text(f"newmtl m\nKd 1 0 0\n{statement}\n")
+    (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")
+    assert not_read(tmp_path / "a.obj") == named
+
+
+@pytest.mark.parametrize(
+    ("lines", "named"), [("l 1 2", ["lines"]), ("p 1", ["points"]), ("v 0 0 1 1 0 0", ["colours of vertices"])]
+)
+def test_elements_of_an_obj_that_a_mesh_cannot_hold_are_named(tmp_path, lines, named):
+    (tmp_path / "a.obj").write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\n{lines}\nf 1 2 3\n")
+    assert not_read(tmp_path / "a.obj") == named
+
+
+@pytest.mark.parametrize("kind", ["faces", "picture"])
+def test_a_ply_keeps_the_colours_of_its_faces_and_its_picture_through_a_command(ball, tmp_path, kind):
+    red = ball.vertices[ball.faces].mean(axis=1)[:, 0] > 0
+    shown = trimesh.Trimesh(ball.vertices, ball.faces, process=False)
+    colors = np.where(red[:, None], [200, 0, 0, 255], [0, 0, 200, 255]).astype(np.uint8)
+    shown.visual = trimesh.visual.ColorVisuals(shown, face_colors=colors)
+    content = shown.export(file_type="ply", encoding="ascii")
+    if kind == "picture":
+        u = np.where(ball.vertices[:, 0] > 0, 0.75, 0.25)
+        Image.fromarray(np.array([[[0, 0, 200], [200, 0, 0]]], np.uint8)).save(tmp_path / "paint.png")
+        head = ["ply", "format ascii 1.0", "comment TextureFile paint.png", f"element vertex {len(u)}"]
+        head += [f"property float {name}" for name in ("x", "y", "z", "s", "t")]
+        head += [f"element face {len(ball.faces)}", "property list uchar int vertex_indices", "end_header"]
+        rows = [*np.column_stack([ball.vertices, u, u * 0]).tolist(), *([3, *face] for face in ball.faces)]
+        content = "\n".join([*head, *(" ".join(map(str, row)) for row in rows), ""]).encode()
+    (tmp_path / "ball.ply").write_bytes(content)
+    run("simplify", [str(tmp_path / "ball.ply"), "--faces", "200", "--out", str(tmp_path / "less.glb")])
+    less = bake_texture(load(tmp_path / "less.glb"))
+    x = less.vertices[:, 0]
+    clear = np.abs(x) > 0.3
+    assert (np.ptp(less.colors[clear], axis=0) == [200, 0, 200]).all()
+    assert ((less.colors[:, 0] > 100) == (x > 0))[clear].all()
 
 
 def test_a_picture_that_many_nodes_share_is_decoded_once(ball, monkeypatch):

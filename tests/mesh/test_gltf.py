@@ -309,6 +309,14 @@ def test_points_and_lines_beside_the_surface_are_named(write):
     assert not_read(as_glb(path)) == ["points", "lines"]
 
 
+def test_further_scenes_and_extras_are_named(glb):
+    def add(tree, _):
+        tree["scenes"].append({"nodes": [0]})
+        tree["nodes"][0]["extras"] = {"price": 3}
+
+    assert not_read(changed(glb, add)) == ["further scenes", "extras"] and not_read(glb) == []
+
+
 def test_morph_targets_and_lights_are_named_and_sparse_accessors_refused(write):
     path = write(embedded)
     tree = json.loads(path.read_text())
