@@ -75,11 +75,11 @@ def reading(name: str, **changes: Any) -> Reading:
     return Reading(name, changes)
 
 
-SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings of T4.2.4:
-SCALED = (  # "The entire data is standardized beforehand using z-transform", and gamma 1 at its own scale
-    reading("z-transform of all data beforehand", where={"scaling": "beforehand"}),
-    reading("all data from 0 to 1", where={"scaling": "min_max"}),
-)
+SCALE = {"scaling": "beforehand"}  # "The entire data is standardized beforehand using z-transform" (T4.2.4)
+TRAINED = {"scaling": "training"}  # fitted to the training part alone, so that nothing of the test part leaks
+OF_TRAINING = reading("z-transform of the training part", where=TRAINED)
+RANGE = reading("all data from 0 to 1", where={"scaling": "min_max"})  # gamma 1 at its own scale
+SCALED = (OF_TRAINING, RANGE)
 ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
 NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
 

@@ -74,9 +74,13 @@ TOUCHES = [
         for group in ("six_drawn", "six_alike", "all")
     ),
     *(
-        on_set(group, key=key, sentence="kNN is the best classifier with real touches.", where={"method": "all"},
-               first={"classifier": "knn"}, second={"classifier": highest_of()}, readings=SCALED)
-        for key, group in (("real_knn_best_six", "six_drawn"), ("real_knn_best_all", "all"))
+        on_set(group, key=f"real_knn_best_{key}", sentence="kNN is the best classifier with real touches.",
+               where={"method": method}, first={"classifier": "knn"}, second={"classifier": highest_of()},
+               readings=SCALED)
+        for key, group, method in (
+            ("six", "six_drawn", "all"), ("all", "all", "all"), ("four", "four_drawn", "all"),
+            ("six_selected", "six_drawn", "selected"), ("four_selected", "four_drawn", "selected"),
+        )
     ),
     *(
         touches(key=f"real_alike_harder{end}", of="alike_harder",

@@ -11,7 +11,20 @@ import pandas as pd
 
 from haptic_glance.know.classifiers import TRAINING
 from haptic_glance.know.split import Split, shared_by
-from stages.report.claims import ALIVE, NO_SVM, SCALE, SCALED, Claim, Side, highest_of, lowest_of, reading
+from stages.report.claims import (
+    ALIVE,
+    NO_SVM,
+    RANGE,
+    SCALE,
+    SCALED,
+    TRAINED,
+    Claim,
+    Reading,
+    Side,
+    highest_of,
+    lowest_of,
+    reading,
+)  # fmt: skip
 from stages.report.drawing import label
 from stages.report.items import Figure
 from stages.report.pareto import attention_seconds, pareto_chart
@@ -20,14 +33,14 @@ from stages.report.tables import means
 
 from .rows import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
 
-RIGHT: dict[str, Any] = {"metric": "accuracy", "split": Split.RANDOM} | SCALE
+RIGHT: dict[str, Any] = {"metric": "accuracy", "split": Split.RANDOM}
 EVERY, KNN = {"group": "six"} | RIGHT, {"classifier": "knn"} | RIGHT  # EVERY: the mean of all classifiers
 SIX: dict[str, Any] = {"classifier": "knn"} | EVERY
 FOUR, APART, NETWORK = SIX | {"group": "four"}, SIX | {"split": Split.REGIONS}, SIX | {"classifier": "deep_learning"}
 SETS: dict[str, Any] = {  # as printed, on random sets of objects
     "dataset": SETS_4_2, "over": ("set",), "printed": 2, "shared": shared_objects,
 }  # fmt: skip
-PLAIN, FEW = dict[str, Any](variant="plain"), dict[str, Any](variant="first_15")
+PLAIN, FEW = dict[str, Any](variant="plain"), dict[str, Any](variant="first_15")  # FEW: as many as the thesis had
 ALL = "mean of all classifiers"
 RIVAL = highest_of("itti", "mesh_saliency", "salient_points", "heat_kernel", EQUAL)
 # In the keys of claims: two points, and behind them the rows.
@@ -39,24 +52,22 @@ POINTS: dict[str, Any] = {
     "best_touch": RIVAL,
     "touch": "touch",  # places worth touching
 }
-ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart": APART | PLAIN}
-ROWS |= {"_15": SIX | FEW}  # as many imprints of each object as the thesis had
+ROWS = {"": SIX, "_four": FOUR, "_all": EVERY, "_apart": APART}
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
 MIXED = (  # five touches; of one touch there is nothing to combine: mixed, its test part would be in training, too
     ("combined before the split", "touches_5_mixed"),
     ("combined before the split, the five from 15 imprints", "first_15_touches_5_mixed"),
 )
-BEFORE_SPLIT = tuple(reading(name, first={"variant": five}) for name, five in MIXED)
-FIVE_IN_EACH = (*SCALED, *(reading(name, where={"variant": five}) for name, five in MIXED))
+BEFORE_SPLIT = tuple(reading(name, first={"variant": five}, where=TRAINED) for name, five in MIXED)
 MANY = reading("five times as many combinations", first={"variant": "touches_5_many"},
-               second={"variant": "touches_1_many"})  # fmt: skip
+               second={"variant": "touches_1_many"}, where=TRAINED)  # fmt: skip
 JOINED = tuple(  # of all classifiers
-    reading(f"without the SVM, {base.name}", where={"classifier": ALIVE}, **base.changes)
+    reading(f"without the SVM, {base.name}", **base.changes | {"where": TRAINED | {"classifier": ALIVE}})
     for base in (*BEFORE_SPLIT, MANY)
 )
 MORE_THAN_KNN = reading("more than kNN does", contrast=({"classifier": "deep_learning"}, {"classifier": "knn"}))
 ONE_MAPPED = reading("beside one touch with the map, in copies", second={"variant": "touches_1"})
-COPIES = reading("one joined touch in twenty copies", where={"variant": "touches_1_many"})
+COPIES = reading("one joined touch in twenty copies", where={"variant": "touches_1_many"} | TRAINED)
 AS_MANY = reading("beside as many imprints removed at random", second={"variant": "selected_control"})
 AS_MANY_ALL = reading("without the SVM, beside as many imprints removed at random", where={"classifier": ALIVE},
                       second={"variant": "selected_control"})  # fmt: skip
@@ -65,8 +76,16 @@ RATES = reading(  # which is the accuracy where all objects have equally many im
     second={"metric": "accuracy"},
 )  # fmt: skip
 FIFTEEN = reading("15 imprints of each object", where=FEW)
-FIFTEEN_SELECTED = reading("without the SVM, 15 imprints of each object", where={"classifier": ALIVE},
+SIXTY = tuple(
+    reading(", ".join(["60 imprints of each object", *([scaled.name] if scaled else [])]),
+            where=PLAIN | (scaled.changes["where"] if scaled else {}))
+    for scaled in (None, *SCALED)
+)  # fmt: skip
+FIFTEEN_SELECTED = reading("without the SVM, 15 imprints of each object", where={"classifier": ALIVE} | TRAINED,
                            first={"variant": "first_15_selected"}, second=FEW)  # fmt: skip
+PRINTED: tuple[Side, Side, tuple[Reading, ...], tuple[Reading, ...]] = SCALE, FEW, SCALED, SIXTY
+# Of our models and of what the thesis does not claim: nothing leaks from the test part.
+OURS = TRAINED, PLAIN, (reading("z-transform of all data beforehand", where=SCALE), RANGE), (FIFTEEN,)
 PHRASES = {
     ("method", MODEL): "our glance", ("method", "touch"): "places whose imprint recurs",
     ("method", EQUAL): "the thesis's attention (equal weights)",
@@ -97,87 +116,102 @@ OF_FOUR = {("group", "four"): "the four least alike of six", ("group", "four_dra
 def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     """A claim that touch at the first points of its key is better than at the second; end: of the key, for the ROWS."""
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
-    readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end in ("_apart", "_15") else (FIFTEEN,)))
     section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
+    scale, size, scalings, sizes = OURS if section == "ours" else PRINTED
+    if "_apart" in end:
+        size, sizes = PLAIN, ()
     sets: dict[str, Any] = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
+    readings = (*scalings, *((NO_SVM,) if end == "_all" else sizes))
     return Claim(
-        key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end], stage=STAGE, phrases=PHRASES,
-        note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (), **sets,
+        key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end] | scale | size, stage=STAGE,
+        phrases=PHRASES, note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (),
+        **sets,
     )  # fmt: skip
 
 
 def at(best: str, end: str = "", **common: Any) -> list[Claim]:
     """The claims on classifiers, selection, positions and several touches at the points of one model.
 
-    end: of their keys.
+    end: of their keys. The protocol is the printed one, or ours where the section is "ours"; some variants were run
+    with the z-transform of the training part alone.
     """
     model: Side = {"method": best}
+    scale, size, scalings, sizes = OURS if common["section"] == "ours" else PRINTED
 
     def claim(key: str, sentence: str, where: Side, first: Side, second: Side | float, **further: Any) -> Claim:
-        sides = {"where": {**where, **model}, "first": first, "second": second}
+        sides = {"where": {**scale, **where, **model}, "first": first, "second": second}
         return Claim(key=key + end, sentence=sentence, stage=STAGE, phrases=PHRASES, **sides, **common | further)
 
     def variant(key: str, sentence: str, kind: str, rival: str = "plain", where: Side = SIX, **further: Any) -> Claim:
         return claim(key, sentence, where, {"variant": kind}, {"variant": rival}, **further)
 
-    four_to_six = partial(claim, where=KNN | PLAIN, first={"group": "four"}, second={"group": "six"}, readings=SCALED)
+    four_to_six = partial(
+        claim, where=KNN | size, first={"group": "four"}, second={"group": "six"}, readings=(*scalings, *sizes)
+    )
+    one_or_many = (*BEFORE_SPLIT, MANY)
+    five_in_each = (*scalings, *(reading(name, where={"variant": five} | TRAINED) for name, five in MIXED))
     return [
-        claim("knn_best", "kNN is the best classifier.", EVERY | PLAIN, {"classifier": "knn"},
-              {"classifier": highest_of()}, readings=(*SCALED, FIFTEEN, COPIES)),
+        claim("knn_best", "kNN is the best classifier.", EVERY | size, {"classifier": "knn"},
+              {"classifier": highest_of()}, readings=(*scalings, *sizes, COPIES)),
+        claim("knn_best_four", "kNN is the best classifier with four objects, too.", RIGHT | {"group": "four"} | size,
+              {"classifier": "knn"}, {"classifier": highest_of()}, readings=(*scalings, *sizes)),
+        claim("knn_best_selected", "kNN is the best classifier of the selected imprints, too.",
+              EVERY | {"variant": "selected"}, {"classifier": "knn"}, {"classifier": highest_of()}, readings=scalings),
         claim("svm_competes", "The SVM competes with kNN: it is at most 14 points worse.",
               EVERY | {"variant": "selected"}, {"classifier": "svm"}, {"classifier": "knn"}, margin=14.0,
-              readings=SCALED),
+              readings=scalings),
         claim("network_poor", "The small network does worse than kNN, having few imprints to learn from.",
-              EVERY | PLAIN, {"classifier": "knn"}, {"classifier": "deep_learning"}, readings=(*SCALED, COPIES)),
+              EVERY | size, {"classifier": "knn"}, {"classifier": "deep_learning"},
+              readings=(*scalings, *sizes, COPIES)),
         four_to_six("four_easier", "Four objects are easier than six."),
         four_to_six("four_easier_beyond_chance", statistic="beyond_chance",
                     sentence="Four objects are easier than six, even beyond chance.", of=f"four_easier{end}",
                     note="guessing scaled to 0 and certainty to 100"),
         variant("selection_helps", "Removing imprints that other objects have enhances recognition.", "selected",
-                readings=(*SCALED, AS_MANY)),
+                readings=(*scalings, AS_MANY)),
         variant("selection_over_control", "Removing imprints that other objects have is better than as many at random.",
-                "selected", "selected_control", section="ours", readings=SCALED),
+                "selected", "selected_control", SIX | TRAINED, section="ours", readings=OURS[2]),
         claim("selection_helps_all", "Selection enhances recognition by all classifiers.",
               EVERY, {"variant": "selected"}, PLAIN, note=ALL,
-              readings=(NO_SVM, *SCALED, RATES, FIFTEEN_SELECTED, AS_MANY_ALL)),
+              readings=(NO_SVM, *scalings, RATES, FIFTEEN_SELECTED, AS_MANY_ALL)),
         variant("selection_helps_four", "Selection enhances recognition with four objects, too.", "selected",
-                where=FOUR, readings=SCALED),
+                where=FOUR, readings=scalings),
         variant("selection_helps_train", "Selection enhances recognition where the test part is whole.",
-                "selected_train", of=f"selection_helps{end}"),
+                "selected_train", where=SIX | TRAINED, of=f"selection_helps{end}"),
         variant("selection_train_over_control", "Where the test part is whole, selection is better than as many "
-                "imprints removed at random.", "selected_train", "selected_train_control", section="ours"),
+                "imprints removed at random.", "selected_train", "selected_train_control", SIX | TRAINED,
+                section="ours"),
         variant("locations_help", "Adding the position of the touch enhances recognition.", "locations",
-                readings=SCALED),
+                readings=scalings),
         variant("locations_help_side", "Adding the position enhances recognition on a side not touched before.",
-                "locations", "plain_side", APART, of=f"locations_help{end}"),
+                "locations", "plain_side", APART | TRAINED, of=f"locations_help{end}"),
         variant("locations_help_turned", "Adding the position still helps when the objects have been turned.",
-                "locations_turned", section="ours"),
+                "locations_turned", where=SIX | TRAINED, section="ours"),
         variant("more_touches", "Five touches joined into one sample are better than one.", "touches_5", "locations",
-                readings=(ONE_MAPPED, *SCALED, *BEFORE_SPLIT, MANY)),
+                readings=(ONE_MAPPED, *scalings, *one_or_many)),
         variant("more_touches_svm", "Five joined touches are better than one for the SVM.", "touches_5", "locations",
-                SIX | {"classifier": "svm"}, readings=(ONE_MAPPED, *SCALED, *BEFORE_SPLIT, MANY)),
+                SIX | {"classifier": "svm"}, readings=(ONE_MAPPED, *scalings, *one_or_many)),
         variant("more_touches_all", "Five joined touches are better than one over all classifiers.",
                 "touches_5", "locations", EVERY, note=ALL,
-                readings=(NO_SVM, ONE_MAPPED, *SCALED, *BEFORE_SPLIT, MANY, *JOINED)),
+                readings=(NO_SVM, ONE_MAPPED, *scalings, *one_or_many, *JOINED)),
         variant("more_touches_bayes", "Five joined touches are better than one for naive Bayes.",
-                "touches_5", "locations", SIX | {"classifier": "naive_bayes"},
-                readings=(ONE_MAPPED, *BEFORE_SPLIT, MANY)),
+                "touches_5", "locations", SIX | {"classifier": "naive_bayes"}, readings=(ONE_MAPPED, *one_or_many)),
         variant("more_touches_many", "Five joined touches are better than one with many combinations to train on.",
-                "touches_5_many", "touches_1_many"),
+                "touches_5_many", "touches_1_many", SIX | TRAINED),
         claim("certain_at_five", "Recognition by kNN is near certain with five touches.",
               SIX | {"variant": "touches_5"}, {}, 0.95,  # "up to 100 % accuracy"
-              readings=FIVE_IN_EACH),
+              readings=five_in_each),
         claim("certain_at_five_svm", "Recognition by the SVM is near certain with five touches.",
               SIX | {"classifier": "svm", "variant": "touches_5"}, {}, 0.95,
-              readings=(*FIVE_IN_EACH, *(reading(f"all data from 0 to 1, {name}",
+              readings=(*five_in_each, *(reading(f"all data from 0 to 1, {name}",
                                                  where={"variant": five, "scaling": "min_max"})
                                          for name, five in MIXED))),
         variant("mixed_flatters", "Combinations drawn before the split flatter.", "touches_5_mixed", "touches_5",
-                section="ours"),
+                SIX | TRAINED, section="ours"),
         variant("network_dips", "The network does worse with five touches than with three.", "touches_3", "touches_5",
-                NETWORK, readings=SCALED),
+                NETWORK, readings=scalings),
         variant("network_dips_disjoint", "The network does worse with five touches where samples get fewer.",
-                "touches_3_disjoint", "touches_5_disjoint", NETWORK, readings=(MORE_THAN_KNN,)),
+                "touches_3_disjoint", "touches_5_disjoint", NETWORK | TRAINED, readings=(MORE_THAN_KNN,)),
     ]  # fmt: skip
 
 
@@ -185,9 +219,12 @@ CLAIMS = [
     by_points("equal_over_itti", "Touch guided by the thesis's attention is better than by the classical one."),
     by_points("itti_over_blind", "Touch guided by the classical model is better than blind touch."),
     by_points("equal_over_blind", "Touch guided by the thesis's attention is better than blind touch."),
-    by_points("equal_over_blind", "The thesis's attention beats blind touch where each object has 15 imprints.", "_15",
-              of="equal_over_blind"),
     by_points("equal_over_blind", "The thesis's attention beats blind touch with four objects too.", "_four"),
+    *(
+        by_points(f"equal_over_{rival}", f"The thesis's attention beats {words} with four objects too.", "_four")
+        for rival, words in (("itti", "the classical one"), ("heat_kernel", "heat kernel signatures"),
+                             ("salient_points", "salient points"), ("mesh_saliency", "mesh saliency"))
+    ),
     by_points("equal_over_blind", "The thesis's attention beats blind touch over all classifiers.", "_all"),
     by_points("equal_over_blind", "The thesis's attention beats blind touch where no training touch overlaps.",
               "_apart", of="equal_over_blind"),
@@ -216,30 +253,29 @@ CLAIMS = [
     by_points("glance_over_ssim", "Touch guided by our glance is better than by the thesis's SSIM weights.", "_ours"),
     by_points("ssim_over_blind", "Touch guided by the thesis's SSIM weights is better than blind touch.", "_ours"),
     *(
-        Claim(key=f"dissimilar_{rival}{end}", section="T4.2.4", stage=STAGE, phrases=PHRASES, within=("item",), **SETS,
-              sentence=f"The thesis's attention gives fewer imprints that others have than {words}.",
-              first={"method": BLIND if rival == "random" else rival}, second={"method": EQUAL},
-              where={"group": "six", "metric": "similar_share"} | variant, unit="points of the share")
-        for variant, end in ((PLAIN, ""), (FEW, "_first_15"))
-        for rival, words in (("itti", "the classical model"), ("random", "blind touch"))
+        Claim(key=f"dissimilar_{rival}", section="T4.2.4", stage=STAGE, phrases=PHRASES, within=("item",), **SETS,
+              sentence=f"The thesis's attention gives {words}.", first={"method": others}, second={"method": EQUAL},
+              where={"group": "six", "metric": "similar_share"} | FEW, unit="points of the share",
+              readings=(reading(SIXTY[0].name, where=PLAIN),))
+        for rival, others, words in (
+            ("itti", "itti", "fewer imprints that others have than the classical model"),
+            ("random", BLIND, "fewer imprints that others have than blind touch"),
+            ("best", lowest_of("itti", "heat_kernel", "mesh_saliency", "salient_points"),
+             "the most dissimilar imprints of all methods"),
+        )
     ),
-    Claim(key="dissimilar_best", section="T4.2.4", stage=STAGE, phrases=PHRASES, within=("item",), **SETS,
-          sentence="The thesis's attention gives the most dissimilar imprints of all methods.",
-          first={"method": lowest_of("itti", "heat_kernel", "mesh_saliency", "salient_points")},
-          second={"method": EQUAL}, where={"group": "six", "metric": "similar_share"} | PLAIN,
-          unit="points of the share", readings=(reading("15 imprints of each object", where=FEW),)),
     Claim(key="locations_best", section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS, first={"method": EQUAL},
           sentence="With the position of the touch, the thesis's attention is the most accurate.",
           second={"method": highest_of("random", "itti", "heat_kernel", "mesh_saliency", "salient_points")},
-          where=SIX | {"variant": "locations"}),  # other scalings have no rows of the rivals
+          where=SIX | TRAINED | {"variant": "locations"}),  # other scalings have no rows of the rivals
     Claim(key="locations_knn_best", section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS,
           sentence="With the position of the touch, kNN is the most accurate.", first={"classifier": "knn"},
-          second={"classifier": highest_of()}, where=EVERY | {"variant": "locations", "method": EQUAL},
+          second={"classifier": highest_of()}, where=EVERY | SCALE | {"variant": "locations", "method": EQUAL},
           readings=SCALED),
     Claim(key="alike_harder", section="T4.2.4", stage=STAGE, phrases=PHRASES | OF_FOUR, **SETS,
           sentence="The similarity between objects degrades the performance.", first={"group": "four"},
-          second={"group": "four_drawn"}, where=KNN | {"method": EQUAL} | PLAIN,
-          readings=(*SCALED, reading("mean of all classifiers but the SVM", where={"classifier": ALIVE}))),
+          second={"group": "four_drawn"}, where=KNN | SCALE | {"method": EQUAL} | FEW,
+          readings=(*SCALED, *SIXTY, reading("mean of all classifiers but the SVM", where={"classifier": ALIVE}))),
     *at(EQUAL, section="T4.2.4", **SETS),
     *at(MODEL, "_ours", section="ours"),
 ]  # fmt: skip
