@@ -52,7 +52,7 @@ POINTS: dict[str, Any] = {
     "best_touch": RIVAL,
     "touch": "touch",  # places worth touching
 }
-ROWS = {"": SIX, "_four": FOUR, "_all": EVERY, "_apart": APART}
+ROWS = {"": SIX, "_four": FOUR, "_all": EVERY, "_apart": APART, "_60": SIX}
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
 MIXED = (  # five touches; of one touch there is nothing to combine: mixed, its test part would be in training, too
     ("combined before the split", "touches_5_mixed"),
@@ -118,7 +118,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
     section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
     scale, size, scalings, sizes = OURS if section == "ours" else PRINTED
-    if "_apart" in end:
+    if "_apart" in end or end == "_60":
         size, sizes = PLAIN, ()
     sets: dict[str, Any] = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
     readings = (*scalings, *((NO_SVM,) if end == "_all" else sizes))
@@ -219,6 +219,8 @@ CLAIMS = [
     by_points("equal_over_itti", "Touch guided by the thesis's attention is better than by the classical one."),
     by_points("itti_over_blind", "Touch guided by the classical model is better than blind touch."),
     by_points("equal_over_blind", "Touch guided by the thesis's attention is better than blind touch."),
+    by_points("equal_over_blind", "The thesis's attention beats blind touch where each object has 60 imprints.", "_60",
+              of="equal_over_blind"),
     by_points("equal_over_blind", "The thesis's attention beats blind touch with four objects too.", "_four"),
     *(
         by_points(f"equal_over_{rival}", f"The thesis's attention beats {words} with four objects too.", "_four")
