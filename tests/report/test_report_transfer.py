@@ -115,8 +115,9 @@ def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure)
     judged = words(results)
     changed = judged.index == "earlier_change_more"  # equal differences show no spread
     changed |= judged.index.str.contains("resnet")  # of other networks
-    assert set(judged.filter(like="early_and_late_gain", axis=0)["verdict"]) == {"contradicted"}  # 30 points, not 33.81
-    changed |= judged.index.str.startswith("early_and_late_gain")
+    gains = judged.index.str.contains("_gain_")  # fewer points than the printed 33.81 and 35.60
+    assert gains.sum() == 4 and set(judged.loc[gains, "verdict"]) == {"contradicted"}
+    changed |= gains
     assert set(judged.loc[~changed, "verdict"]) == {"supported"}
     assert judged.loc["earlier_change_more", "effect"] == 1 and (judged.loc[~changed, "by_set"] == "").all()
     gain = judged.loc["tuned_over_frozen_objects"]
