@@ -29,7 +29,7 @@ from stages.report.results import (
     Results,
     some,
 )
-from stages.report.tables import Ranking, number, records, signed, with_interval
+from stages.report.tables import Ranking, interval_columns, number, records, signed, with_interval
 from stages.report.words import shared_notes
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
@@ -76,7 +76,7 @@ def gain(table: pd.DataFrame, first: str, second: str) -> dict[str, float]:
     """GAIN of one method over another, paired over the objects of `scores`; {} where either is absent."""
     if first == second or first not in table or second not in table:
         return {}
-    return dict(zip(GAIN, interval(table[first] - table[second]), strict=True))
+    return interval_columns("gain", interval(table[first] - table[second]))
 
 
 def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
@@ -90,7 +90,8 @@ def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
         for metric, table in tables.items():
             if method in table:
                 line = {"method": method, "has_seen": has_seen(method), "metric": metric}
-                line |= {"objects": table[method].count(), **dict(zip(MEAN, interval(table[method]), strict=True))}
+                line["objects"] = table[method].count()
+                line |= interval_columns("mean", interval(table[method]), prefix="")
                 lines.append(line | (gain(table, OURS, method) if metric in ALONE and method != HUMAN else {}))
     return pd.DataFrame(lines)
 

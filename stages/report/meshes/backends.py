@@ -13,7 +13,7 @@ from stages.report.drawing import GREY, INK, Spot, colours, label, place_names, 
 from stages.report.items import Figure, Table
 from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
-from stages.report.tables import percent, with_interval
+from stages.report.tables import interval_columns, percent, with_interval
 from stages.report.words import shared_notes
 
 from .levels import FITTED, Growth, growth
@@ -78,7 +78,7 @@ def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
         for name in RATIOS:
             ratios = cells[f"{name}_ratio"]
             logs = ratios.where(ratios > 0).apply(np.log).groupby(cells["mesh"]).mean()
-            line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
+            line |= interval_columns(f"{name}_ratio", np.exp(interval(logs)), prefix=f"{name}_")
         line |= {"slowest": cells["time_ratio"].max(), "seconds": cells["seconds"].median()}
         reached_rows = group[group["outcome"] == "reached"]
         line |= {name: reached_rows[name].dropna().astype(bool).mean() for name in ("kept", "valid")}

@@ -18,7 +18,7 @@ from stages.report.drawing import label
 from stages.report.items import Figure, Table
 from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import NotRun, Results, some
-from stages.report.tables import number, percent, records, with_interval
+from stages.report.tables import interval_columns, interval_text, number, percent, records, with_interval
 from stages.stability.simplification import breaking_points
 from stages.stability.subject import UNPERTURBED
 
@@ -163,7 +163,7 @@ def _with_ends(name, at, drawn, count):
     """{name and its ends}: at (1, m) and drawn (r, m), of `count` objects."""
     levels = expanded_levels(count) if count > 1 else (np.nan, np.nan)
     ends = np.quantile(drawn, levels, axis=0) if count > 1 else np.full((2, drawn.shape[1]), np.nan)
-    return {name: at[0], f"{name}_low": ends[0], f"{name}_high": ends[1]}
+    return interval_columns(name, (at[0], *ends))
 
 
 GAZE = "gaze"  # the set that tells accuracy and seconds
@@ -183,9 +183,9 @@ def table(results: Results) -> Table:
     text_table = pd.DataFrame([
         {
             "method": label(row.method),
-            "mCE, %": with_interval(row.mce, row.mce_low, row.mce_high, 100, 0),
+            "mCE, %": interval_text(row, "mce", 100, 0),
             **{f"{kind}, %": percent(getattr(row, kind)) for kind in KINDS},
-            "found again, %": with_interval(row.found, row.found_low, row.found_high, 100, 0),
+            "found again, %": interval_text(row, "found", 100, 0),
             "NSS on gaze": number(row.nss, 2) if np.isfinite(row.nss) else "–",
             "seconds": number(row.seconds, 2) if np.isfinite(row.seconds) else "–",
         }
@@ -246,11 +246,8 @@ def _accuracy(results: Results) -> pd.DataFrame:
         return pd.DataFrame(columns=["method", "nss", "seconds"]).astype({"nss": float, "seconds": float})
     rows = results.measured("salient_points", GAZE, metric="nss")
     seconds = attention_seconds(results, GAZE)
-    lines = [
-        dict(zip(("nss", "nss_low", "nss_high"), interval(group["value"]), strict=True)) | {"method": method}
-        for method, group in rows.groupby("method")
-    ]
-    frame = pd.DataFrame(lines)
+    groups = rows.groupby("method")["value"]
+    frame = pd.DataFrame([interval_columns("nss", interval(values)) | {"method": name} for name, values in groups])
     return frame.assign(seconds=frame["method"].map(seconds))
 
 
