@@ -1,6 +1,7 @@
 """Backends of simplification, as table and chart: time and error as ratios to pymeshlab's QEM, of one `make bench`."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,7 @@ def backends_table(results: Results) -> Table:
     lines = [_sentence(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
         "measured": shared_notes(__package__, f"timed_{'cold' if MAXIMUM in rows else 'warm'}"),
-        "findings": "\n".join(lines + against_meshoptimizer(rows, results)),
+        "findings": "\n".join([*lines, *against_meshoptimizer(rows, results)]),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -76,9 +77,8 @@ def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
         line |= {"tried": len(group) - outcomes.get("infeasible", 0)}
         line |= {name: outcomes.get(name, 0) for name in ("refused", "missed")}
         for name in RATIOS:
-            ratios = cells[f"{name}_ratio"]
-            logs = ratios.where(ratios > 0).apply(np.log).groupby(cells["mesh"]).mean()
-            line |= interval_columns(f"{name}_ratio", np.exp(interval(logs)), prefix=f"{name}_")
+            ratios = over_meshes(cells.set_index("mesh")[f"{name}_ratio"])
+            line |= interval_columns(f"{name}_ratio", ratios, prefix=f"{name}_")
         line |= {"slowest": cells["time_ratio"].max(), "seconds": cells["seconds"].median()}
         reached_rows = group[group["outcome"] == "reached"]
         line |= {name: reached_rows[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
@@ -206,44 +206,34 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
 
 
 OTHER = "meshoptimizer"
-Interval = tuple[float, float, float]
 
 
-def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> list[str]:
+def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> Iterator[str]:
     """A sentence a task, of the rows of bench/simplification.csv.gz, and one on gaze; none where not measured."""
-    tasks = [group for _, group in rows.groupby("with_points") if OTHER in set(group["backend"])]
-    return [_plain(group) for group in tasks] + [*_salient(results)]
+    for with_points, group in rows[rows["outcome"] == "reached"].groupby("with_points"):
+        if OTHER in set(group["backend"]):
+            pairs = group.pivot(index=CELL, columns="backend", values=["metro_mean", "seconds"])
+            error, time = (over_meshes(pairs[value][OURS] / pairs[value][OTHER]) for value in ("metro_mean", "seconds"))
+            yield (
+                f"{label(OURS)}, {'points' if with_points else 'nothing'} kept: {with_interval(*error)} times "
+                f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
+            )
+    with suppress(NotRun):
+        yield from _salient(results.bench("salient_simplification"))
 
 
-def _plain(rows: pd.DataFrame) -> str:
-    error, time = _ratio(rows, "metro_mean"), _ratio(rows, "seconds")
-    return (
-        f"{label(OURS)}, {'points' if rows['with_points'].all() else 'nothing'} kept: {with_interval(*error)} times "
-        f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
-    )
-
-
-def _ratio(rows: pd.DataFrame, value: str) -> Interval:
-    """(mean, low, high) of ours over the other's: geometric, over the meshes, in the cells that both reached."""
-    reached_rows = rows[rows["outcome"] == "reached"]
-    pairs = reached_rows.pivot(index=["mesh", "full", "target"], columns="backend", values=value)
-    return _over_meshes(pairs[OURS] / pairs[OTHER])
-
-
-def _over_meshes(ratios: pd.Series) -> Interval:
-    mean, low, high = np.exp(interval(ratios.dropna().apply(np.log).groupby("mesh").mean()))
+def over_meshes(ratios: pd.Series) -> tuple[float, float, float]:
+    """(mean, low, high) of ratios with a level `mesh`: geometric, over the meshes; of positive ratios alone."""
+    mean, low, high = np.exp(interval(np.log(ratios[ratios > 0]).groupby("mesh").mean()))
     return float(mean), float(low), float(high)
 
 
-def _salient(results: Results) -> Iterator[str]:
-    try:
-        rows = results.bench("salient_simplification")
-    except NotRun:
-        return
+def _salient(rows: pd.DataFrame) -> Iterator[str]:
+    """A sentence on the error weighted by gaze; none where no rival was measured."""
     if "bar" not in rows or rows["bar"].isna().all():
         return
     ours = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
-    ratio, meshes = _over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
+    ratio, meshes = over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
     means = ours["salient_ratio"].apply(np.log).groupby(ours["share"]).mean().apply(np.exp)
     shares = ", ".join(f"{mean:.2f} at {share:.0%}" for share, mean in means.items())
     yield (
