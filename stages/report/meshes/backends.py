@@ -25,7 +25,6 @@ RATIOS = {  # first part of a column's name -> title
     "time": "time ratio", "whole": "all of simplify", "colours": "with colours",
     "error": "Metro ratio", "largest": "largest-error ratio", "seen": "1 − SSIM ratio",
 }  # fmt: skip
-MAXIMUM = "metro_max"  # a column that rows of the benchmark have since each call gets a new mesh
 GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 ANSWER = ["backend", "points kept", *(RATIOS[name] for name in ("time", "error", "largest", "seen")), "valid"]
 
@@ -38,7 +37,7 @@ def backends_table(results: Results) -> Table:
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
     lines = [_sentence(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
-        "measured": shared_notes(__package__, f"timed_{'cold' if MAXIMUM in rows else 'warm'}"),
+        "measured": shared_notes(__package__, "timed"),
         "findings": "\n".join([*lines, *against_meshoptimizer(rows, results)]),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
@@ -55,7 +54,6 @@ def tried(results: Results) -> pd.DataFrame:
     if "outcome" not in rows:
         raise NotRun("bench/simplification.csv.gz has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
-    rows["largest_ratio"] = rows.get("largest_ratio", np.nan)  # rows of before have none
     rows["base"] = rows["ssim_error"].where((rows["backend"] == REFERENCE) & (rows["ssim_error"] > 0))
     return rows.assign(seen_ratio=rows["ssim_error"] / rows.groupby(CELL)["base"].transform("first"))
 
@@ -230,7 +228,7 @@ def over_meshes(ratios: pd.Series) -> tuple[float, float, float]:
 
 def _salient(rows: pd.DataFrame) -> Iterator[str]:
     """A sentence on the error weighted by gaze; none where no rival was measured."""
-    if "bar" not in rows or rows["bar"].isna().all():
+    if rows["bar"].isna().all():
         return
     ours = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
     ratio, meshes = over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
