@@ -174,7 +174,7 @@ def with_interval(mean: float, low: float, high: float, scale: float = 1, places
     return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
-def interval_columns(name: str, ends: Iterable[float], prefix: str | None = None) -> dict[str, float]:
+def interval_columns(name: str, ends: Iterable[Any], prefix: str | None = None) -> dict[str, Any]:
     """{name: mean, `name_low`: low, `name_high`: high} of (mean, low, high); prefix: in place of `name_`."""
     prefix = f"{name}_" if prefix is None else prefix
     return dict(zip((name, f"{prefix}low", f"{prefix}high"), ends, strict=True))
@@ -182,8 +182,8 @@ def interval_columns(name: str, ends: Iterable[float], prefix: str | None = None
 
 def interval_text(row: Any, name: str, scale: float = 1, places: int | None = None) -> str:
     """`with_interval` of a row of `records` with `interval_columns` of this name."""
-    ends = (getattr(row, column) for column in (name, f"{name}_low", f"{name}_high"))
-    return with_interval(*ends, scale, places)
+    mean, low, high = (getattr(row, column) for column in (name, f"{name}_low", f"{name}_high"))
+    return with_interval(mean, low, high, scale, places)
 
 
 def signed(mean: float, low: float, high: float, places: int = 2) -> str:

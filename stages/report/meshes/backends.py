@@ -1,7 +1,11 @@
-"""Backends of simplification, as table and chart: time and error as ratios to pymeshlab's QEM, of one `make bench`."""
+"""Backends of simplification, as table and chart: time and error as ratios to pymeshlab's QEM, of one `make bench`.
 
-from collections.abc import Iterator
+`growth` fits a backend's time by a power of n, or of n log n, with its interval.
+"""
+
+from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,8 +21,6 @@ from stages.report.results import NotRun, Results
 from stages.report.tables import interval_columns, percent, with_interval
 from stages.report.words import shared_notes
 
-from .levels import FITTED, Growth, growth
-
 REFERENCE, OURS = "pymeshlab", "fast"
 CELL, TASK = ["mesh", "full", "target", "with_points"], ["backend", "with_points"]
 RATIOS = {  # first part of a column's name -> title
@@ -27,6 +29,62 @@ RATIOS = {  # first part of a column's name -> title
 }  # fmt: skip
 GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 ANSWER = ["backend", "points kept", *(RATIOS[name] for name in ("time", "error", "largest", "seen")), "valid"]
+
+
+FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
+POWERS: dict[str, Callable] = {"linear": lambda n: n, "loglinear": lambda n: n * np.log(n)}
+
+
+@dataclass(frozen=True)
+class Growth:
+    """seconds = level * (shape(n) / shape(middle))^power, with the 95 % interval of the power; shape: of POWERS."""
+
+    shape: str
+    level: float
+    middle: float
+    power: float
+    low: float
+    high: float
+    span: tuple[float, float]
+
+    def __call__(self, n: np.ndarray, power: float | None = None) -> np.ndarray:
+        """Seconds at n faces; power: another than the fitted, through the same middle."""
+        shape = POWERS[self.shape]
+        return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)
+
+    @property
+    def text(self) -> str:
+        """`1.04 [0.90, 1.11]`: the power with its interval."""
+        return with_interval(self.power, self.low, self.high, places=2)
+
+
+def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
+    """The Growth of the column `seconds` over `full`, or None for fewer than three sizes of FITTED faces or more.
+
+    rows: of one backend. A least-squares line through the logarithms, with a level of its own for each share of the
+    faces and for kept points. The interval is a bootstrap over the meshes: a subdivided one goes with what it was.
+    """
+    rows = rows[(rows["full"] >= FITTED) & (rows["seconds"] > 0)]
+    if rows["full"].nunique() < 3:
+        return None
+    n = rows["full"].to_numpy(dtype=float)
+    x, y = np.log(POWERS[shape](n)), np.log(rows["seconds"].to_numpy(dtype=float))
+    level = pd.factorize(pd.MultiIndex.from_arrays([(rows["target"] / n).round(2), rows["with_points"]]))[0]
+    mesh, names = pd.factorize(rows["mesh"])
+    random = np.random.default_rng(0)
+    picks = (random.multinomial(len(names), np.full(len(names), 1 / len(names))) for _ in range(1000))
+    low, high = np.nanquantile([_slope(x, y, level, times[mesh]) for times in picks], [0.025, 0.975])
+    power, middle = _slope(x, y, level, np.ones(len(x))), np.exp(np.log(n).mean())
+    offset = (y - power * (x - np.log(POWERS[shape](middle)))).mean()
+    return Growth(shape, np.exp(offset), middle, power, low, high, (n.min(), n.max()))
+
+
+def _slope(x: np.ndarray, y: np.ndarray, level: np.ndarray, weight: np.ndarray) -> float:
+    """Weighted least-squares slope with an intercept for each level; NaN where no level has two places."""
+    total = np.maximum(np.bincount(level, weight), 1e-9)
+    x, y = (values - (np.bincount(level, weight * values) / total)[level] for values in (x, y))
+    spread = (weight * x * x).sum()
+    return (weight * x * y).sum() / spread if spread > 1e-12 else np.nan
 
 
 def backends_table(results: Results) -> Table:
@@ -222,7 +280,7 @@ def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> Iterator[str]
 
 def over_meshes(ratios: pd.Series) -> tuple[float, float, float]:
     """(mean, low, high) of ratios with a level `mesh`: geometric, over the meshes; of positive ratios alone."""
-    mean, low, high = np.exp(interval(np.log(ratios[ratios > 0]).groupby("mesh").mean()))
+    mean, low, high = np.exp(interval(ratios[ratios > 0].apply(np.log).groupby("mesh").mean()))
     return float(mean), float(low), float(high)
 
 

@@ -171,8 +171,8 @@ def random_table(results: Results) -> Table:
     (wide, first), times = plans(results), _times(results)
     lines, frame = [], []
     for method, matched in (plan for plan in PLANS if plan in wide["faces"]):
-        scenes = wide.xs((method, matched), axis=1, level=["method", "matched"]).dropna(subset=["faces"])
-        scenes = scenes.reindex(columns=["faces", *SHOWN, "step_worst", "planning_ms"])
+        scenes = pd.DataFrame(wide.xs((method, matched), axis=1, level=["method", "matched"]))
+        scenes = scenes.reindex(columns=["faces", *SHOWN, "step_worst", "planning_ms"]).dropna(subset=["faces"])
         comparable = matched == "displacement" or method == OURS
         ends = {
             "saved": over_scenes(saving(wide, OURS_PLAN, (method, matched))),
@@ -184,7 +184,7 @@ def random_table(results: Results) -> Table:
         entry = {"method": method, "matched": matched, "scenes": len(scenes), "faces": scenes["faces"].mean()}
         entry |= interval_columns("saved", ends["saved"]) | interval_columns("less", ends["less"]) | means | medians
         frame.append(entry | interval_columns("drawing", ends["drawing"]))
-        saved, less = (with_interval(*ends[name], 100, 0) for name in ("saved", "less"))
+        saved, less = (with_interval(*ends[name], scale=100, places=0) for name in ("saved", "less"))
         lines.append({
             "levels chosen by": NAMES[method], "equal to ours in": EQUAL[matched],
             "faces a frame": entry["faces"].round(),
@@ -255,7 +255,7 @@ def planning(results: Results) -> str:
     except NotRun:
         return ""
     less = with_interval(*over_scenes(times["uniform"] - times[OURS]), places=1)
-    costs = wide["planning_ms"].median().map(number)
+    costs = pd.DataFrame(wide["planning_ms"]).median().map(number)
     text = (
         f"Planning our levels costs {costs[OURS_PLAN]} ms a frame, and drawing them is {less} ms faster than drawing "
         "uniform ones."
