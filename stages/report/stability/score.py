@@ -64,6 +64,17 @@ class Errors:
         """The Errors less those on the undisturbed objects."""
         return replace(self, values=self.values - self.clean[:, :, None], clean=np.zeros_like(self.clean))
 
+    def counting(self, reference: str) -> np.ndarray:
+        """(p,) boolean: whether a perturbation costs the reference LEAST a case, or more: 0 / 0 says nothing.
+
+        NotRun without the reference.
+        """
+        if reference not in self.methods:
+            message = f"{reference}, the reference of the score, is not among stability.methods"
+            raise NotRun(message, STAGE, runnable=False)
+        sums = self.by_perturbation(self.means(np.ones((1, len(self.objects)))))[0, self.methods.index(reference)]
+        return sums > LEAST * self.severities
+
     def means(self, counts: np.ndarray) -> np.ndarray:
         """(r, m, k): the means over the objects that counts (r, n) name."""
         n, m, k = self.values.shape
@@ -124,16 +135,11 @@ def _filled(frame: pd.DataFrame, columns: Sequence[str], names: Sequence[Sequenc
 def corruption_errors(errors: Errors, reference: str, counts: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """((r, m, p) errors under each perturbation over those of the reference, the p perturbations that count).
 
-    Errors are means over the objects that counts (r, n) name, summed over the severities. A perturbation that costs the
-    reference nothing (LEAST, a case) is left out: 0 / 0 says nothing. NotRun without the reference.
+    Errors are means over the objects that counts (r, n) name, summed over the severities.
     """
-    if reference not in errors.methods:
-        raise NotRun(f"{reference}, the reference of the score, is not among stability.methods", STAGE, runnable=False)
-    column = errors.methods.index(reference)
-    whole = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0, column]
-    perturbation_ids = np.flatnonzero(whole > LEAST * errors.severities)
-    summed = errors.by_perturbation(errors.means(counts))[..., perturbation_ids]
-    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in perturbation_ids]
+    ids = np.flatnonzero(errors.counting(reference))
+    summed, column = errors.by_perturbation(errors.means(counts))[..., ids], errors.methods.index(reference)
+    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in ids]
 
 
 def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.DataFrame:
@@ -251,19 +257,13 @@ def _accuracy(results: Results) -> pd.DataFrame:
     return frame.assign(seconds=frame["method"].map(seconds))
 
 
-def _words(results, rows, errors):
-    dropped = [
-        label(name) for name, sums in zip(errors.perturbations, _of_reference(errors), strict=True) if sums <= LEAST
-    ]
+def _words(results: Results, rows: pd.DataFrame, errors: Errors) -> dict[str, object]:
+    names, counting = np.array([label(name) for name in errors.perturbations]), errors.counting(REFERENCE)
+    dropped = ", ".join(names[~counting])
     return {
         "objects": len(errors.objects), "methods": len(errors.methods), "reference": label(REFERENCE),
-        "perturbations": ", ".join(label(name) for name in errors.perturbations if label(name) not in dropped),
+        "perturbations": ", ".join(names[counting]),
         "protocol": PROTOCOL if rows["dataset"].iloc[0] == BENCHMARK else "",
-        "left_out": f"Without {', '.join(dropped)}, which cost the reference nothing." if dropped else "",
+        "left_out": f"Without {dropped}, which cost the reference nothing." if dropped else "",
         "not_run": results.left_out(STAGE, rows["dataset"].iloc[0]),
     }  # fmt: skip
-
-
-def _of_reference(errors):
-    means = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0]
-    return means[errors.methods.index(REFERENCE)] / errors.severities
