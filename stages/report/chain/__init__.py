@@ -171,7 +171,7 @@ def _option(value):
 
 STAGE = "front"
 SEARCH, CONFIRMED, CHANGED = "last", "confirmation", "one_choice"  # of the column `rung`
-CHOICES = ("method", "viewpoints", "image_rows", "points", "cells", "level", "touches", "classifier")
+CHOICES = list(STAGES)
 WHOLE = "100%"  # of the column `level`
 SPLITS = {Split.REGIONS: "regions", Split.OBJECTS: "objects"}  # split -> its columns
 PARTS = ("simplifying", "looking", "pressing", "asking")

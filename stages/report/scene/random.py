@@ -33,13 +33,13 @@ def needs(results: Results) -> Table:
     for (task, condition), group in _tasks(rows):
         faces = group.set_index("item")["value"]
         share = 100 * faces / full[faces.index]
-        median, low, high = interval(faces, statistic=np.median)
-        ends = np.quantile(faces, [0.05, 0.95])
-        frame.append({"task": task, "condition": condition, "objects": len(faces), "median": median, "low": low,
-                      "high": high, "q05": ends[0], "q95": ends[1], "share": share.median()})  # fmt: skip
+        median, (least, most) = interval(faces, statistic=np.median), np.quantile(faces, [0.05, 0.95])
+        frame.append({"task": task, "condition": condition, "objects": len(faces),
+                      **interval_columns("median", median, prefix=""), "q05": least, "q95": most,
+                      "share": share.median()})  # fmt: skip
         lines.append({
-            "task": words_of(task, condition), "faces, median": with_interval(median, low, high, places=0),
-            "nine in ten objects": f"{ends[0]:,.0f} to {ends[1]:,.0f}",
+            "task": words_of(task, condition), "faces, median": with_interval(*median, places=0),
+            "nine in ten objects": f"{least:,.0f} to {most:,.0f}",
             "of the full mesh, %": with_interval(*interval(share, statistic=np.median), places=1),
         })  # fmt: skip
     accuracy = 100 * _rows(results, "accuracy")["value"]

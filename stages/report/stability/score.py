@@ -207,8 +207,8 @@ def breaking(results: Results) -> Table:
     points = pd.DataFrame([
         {"method": method, "perturbation": name, "unit": PERTURBATIONS[name].unit,
          "harshest": [severity for perturbation, severity in errors.cases if perturbation == name][-1],
-         "breaking_point": point, "low": low, "high": high}
-        for (name, method), (point, low, high) in breaking_points(rows[rows["method"] != CHANCE]).items()
+         **interval_columns("breaking_point", ends, prefix="")}
+        for (name, method), ends in breaking_points(rows[rows["method"] != CHANCE]).items()
     ])  # fmt: skip
     points["text"] = [cell(row, PERTURBATIONS[row.perturbation].unharmed) for row in records(points)]
     order = [name for name in frame.sort_values("mce")["method"] if name != CHANCE]
