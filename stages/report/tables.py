@@ -174,6 +174,18 @@ def with_interval(mean: float, low: float, high: float, scale: float = 1, places
     return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
+def interval_columns(name: str, ends: Iterable[Any], prefix: str | None = None) -> dict[str, Any]:
+    """{name: mean, `name_low`: low, `name_high`: high} of (mean, low, high); prefix: in place of `name_`."""
+    prefix = f"{name}_" if prefix is None else prefix
+    return dict(zip((name, f"{prefix}low", f"{prefix}high"), ends, strict=True))
+
+
+def interval_text(row: Any, name: str, scale: float = 1, places: int | None = None) -> str:
+    """`with_interval` of a row of `records` with `interval_columns` of this name."""
+    mean, low, high = (getattr(row, column) for column in (name, f"{name}_low", f"{name}_high"))
+    return with_interval(mean, low, high, scale, places)
+
+
 def signed(mean: float, low: float, high: float, places: int = 2) -> str:
     """`+0.83 [0.61, 1.05]`."""
     span = f" [{low:z.{places}f}, {high:z.{places}f}]" if low == low else ""

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from haptic_glance.mesh import load, normalise
-from stages.report.fidelity import matches
+from tests.fidelity.agreements import matches
 
 ROOT = Path(__file__).parents[2]
 TABLE = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")
@@ -16,7 +16,7 @@ TABLE = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")
 
 @pytest.fixture
 def agreement(request):
-    """A function of a kind of agreement.FORMS and what the test measures: compares it with the rows that name the test.
+    """A function of a kind, of FORMS, and what the test measures: compares it with the rows that name the test.
 
     Kinds: r, a correlation; difference, the largest absolute one; settings, (that hold, of how many); pixels; share, in
     percent.

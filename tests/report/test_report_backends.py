@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from stages.report import meshes
-from stages.report.meshes.levels import growth
+from stages.report.meshes.backends import growth
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 

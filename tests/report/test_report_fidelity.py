@@ -8,8 +8,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.report.fidelity import PRINTED, RUNS, is_printed, matches
+from stages.report.fidelity import PRINTED, RUNS
 from stages.report.topics import KINDS, TOPICS
+from tests.fidelity.agreements import is_printed, matches
 
 ROOT = Path(__file__).parents[2]
 FRAME = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")

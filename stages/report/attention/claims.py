@@ -14,7 +14,7 @@ import pandas as pd
 
 from stages.bench import PER_OBJECT, has_seen
 from stages.engine.statistics import BROKEN, interval
-from stages.report.claims import POINTS, Claim, Pick, highest_of, in_sums, lowest_of, reading
+from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
 from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.pareto import attention_seconds
@@ -29,7 +29,7 @@ from stages.report.results import (
     Results,
     some,
 )
-from stages.report.tables import Ranking, number, records, signed, with_interval
+from stages.report.tables import Ranking, interval_columns, number, records, signed, with_interval
 from stages.report.words import shared_notes
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
@@ -76,7 +76,7 @@ def gain(table: pd.DataFrame, first: str, second: str) -> dict[str, float]:
     """GAIN of one method over another, paired over the objects of `scores`; {} where either is absent."""
     if first == second or first not in table or second not in table:
         return {}
-    return dict(zip(GAIN, interval(table[first] - table[second]), strict=True))
+    return interval_columns("gain", interval(table[first] - table[second]))
 
 
 def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
@@ -90,7 +90,8 @@ def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
         for metric, table in tables.items():
             if method in table:
                 line = {"method": method, "has_seen": has_seen(method), "metric": metric}
-                line |= {"objects": table[method].count(), **dict(zip(MEAN, interval(table[method]), strict=True))}
+                line["objects"] = table[method].count()
+                line |= interval_columns("mean", interval(table[method]), prefix="")
                 lines.append(line | (gain(table, OURS, method) if metric in ALONE and method != HUMAN else {}))
     return pd.DataFrame(lines)
 
@@ -115,120 +116,96 @@ PHRASES = {
     ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
     ("validation", "objects"): "on whole objects left out",
 }  # fmt: skip
-on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
-
-
-def closer_to_gaze(
-    key: str, section: str, sentence: str, first: str, second: str | Pick,
-    dataset: str | tuple[str, ...] = GAZED, **more: Any,
-) -> Claim:  # fmt: skip
-    """A claim that the NSS of one method is higher than that of another."""
-    return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
-                   first={"method": first}, second={"method": second}, dataset=dataset, scale=1,
-                   unit="NSS", **more)  # fmt: skip
-
-
 OF_3_2 = (SECTION_3_2, "gaze_clouds")  # the printed protocol first; elsewhere a method has not seen the object
 UNSEEN = {"guided_ed_seen": "guided_ed", "guided_ssim_seen": "guided_ssim", "svm_object": "svm"}
+MENDED = reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1]))
+BLACK_FILTERED = "our formulas, black background filtered"
+CHANNELS = (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))  # key, name, method
+about = partial(Claim, section="ours", over=("item",), phrases=PHRASES)
+closer = partial(about, stage="salient_points", where={"metric": "nss"}, dataset=GAZED, scale=1, unit="NSS")
+checked = partial(closer, stage="attention_checks")
+colour = partial(about, dataset=COLOURED)
+learned = partial(about, stage="weights", dataset=OF_3_2)
 
 
-def learned_to_gaze(key: str, section: str, sentence: str, first: str) -> Claim:
+def learned_to_gaze(key: str, section: str, first: str, sentence: str) -> Claim:
     """A claim that a method of T3.2 that has learned from the truth has a higher NSS than equal weights.
 
     As printed, it has learned from the gaze that judges it, too; readings ask for one that has not.
     """
-    mended = reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1]))
     unseen: dict[str, Any] = {"first": {"method": UNSEEN[first]}, "note": ""}
-    ours = unseen | {"dataset": GAZED}
-    others = (reading("learned from other objects", **unseen),
-              reading("nine channels with equal weights", second={"method": "equal"}),
-              reading("our formulas, learned from other objects", **ours),
-              reading("our formulas, black background filtered",
-                      **ours | {"dataset": (ON_BLACK, OF_3_2[1])}))  # fmt: skip
-    if first == "svm_object":  # gaze_on_black has no SVM
-        others = others[:-1]
-    return closer_to_gaze(key, section, sentence, first, "VisAttAll", dataset=OF_3_2, elsewhere=UNSEEN,
-                          readings=(mended, *others),
-                          note="learned from the gaze that judges it, too, as in the thesis")  # fmt: skip
-
-
-def svm_per_object(key: str, sentence: str, area: str, alone: str, joint: str, of: str = "") -> Claim:
-    """A claim that an object's own SVM is more accurate than the one for all; alone, joint: how each was validated."""
-    return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
-                   where={"metric": "accuracy", "area": area}, dataset=OF_3_2,
-                   first={"training": "one_per_object", "validation": alone},
-                   second={"training": "one_for_all", "validation": joint}, of=of,
-                   note="each learns from 1,000 pixels, the one for all from few of each object")  # fmt: skip
-
-
-def in_colour(key: str, sentence: str, method: str) -> Claim:
-    """A claim that a method finds half of its points or more again on the same object in grey clay."""
-    return Claim(key=key, section="ours", sentence=sentence, stage="stability", dataset=COLOURED, over=("item",),
-                 where={"metric": "repeatability", "perturbation": "clay"}, first={"method": method}, second=BROKEN,
-                 unit="points of the share found again", phrases=PHRASES,
-                 readings=(reading("the hues alone taken away", where={"perturbation": "grey"}),))  # fmt: skip
+    readings = [
+        MENDED, reading("learned from other objects", **unseen),
+        reading("nine channels with equal weights", second={"method": "equal"}),
+        reading("our formulas, learned from other objects", **unseen, dataset=GAZED),
+    ]  # fmt: skip
+    if first != "svm_object":  # gaze_on_black has no SVM
+        readings.append(reading(BLACK_FILTERED, **unseen, dataset=(ON_BLACK, OF_3_2[1])))
+    return closer(key=key, section=section, sentence=sentence, first={"method": first}, second={"method": "VisAttAll"},
+                  dataset=OF_3_2, elsewhere=UNSEEN, readings=tuple(readings),
+                  note="learned from the gaze that judges it, too, as in the thesis")  # fmt: skip
 
 
 CLAIMS = [
-    closer_to_gaze("equal_over_itti_gaze", "ours", "All channels with equal weights (VisAttAll) predict where people "
-                   "look better than the classical model.", "VisAttAll", CLASSICAL, dataset=OF_3_2, printed=1,
-                   readings=(
-                       *in_sums("VisAttAll", CLASSICAL),
-                       reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1])),
-                       reading("our formulas", dataset=GAZED),
-                       reading("our formulas, black background filtered", dataset=(ON_BLACK, OF_3_2[1])))),
-    closer_to_gaze("grey_colour", "T3.1.1", "Although the objects are grey, the colour channels improve the detection "
-                   "of regions of interest.", "VisAttAll", "VisAttAllNoColour", dataset=GREY_3_1,
-                   readings=(reading("our formulas", dataset=ON_BLACK),
-                             *in_sums("VisAttAll", "VisAttAllNoColour"))),
-    learned_to_gaze("guided_ed_gaze", "T3.2.2", "Weights learned by Euclidean distance predict attention better than "
-                    "equal ones.", "guided_ed_seen"),
-    learned_to_gaze("guided_ssim_gaze", "T3.2.2", "Weights learned by similarity predict attention better than equal "
-                    "ones.", "guided_ssim_seen"),
-    learned_to_gaze("svm_gaze", "T3.2.3", "An SVM on the channels predicts attention better than equal weights.",
-                    "svm_object"),
-    *(on_gaze(key=f"background_{key}", section="ours", stage="salient_points", scale=1, unit="NSS",
-              sentence=f"Where the background is kept out of the filters, maps are closer to gaze ({name}).",
-              where={"metric": "nss", "method": method}, first={"dataset": "gaze"}, second={"dataset": ON_BLACK})
-      for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"),
-                                ("ssim", "weights of table 3.1", "thesis_ssim"))),
-    Claim(key="colour_parts_dkl", section="ours", stage="conspicuity",
-          sentence="Even where objects have several hues, DKL is as close to intensity as in one hue.",
-          dataset=COLOURED, over=("item",), where={"metric": "intensity_likeness"},
-          first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity", phrases=PHRASES),
-    *(in_colour(f"colour_{key}", f"Half of the points or more are found again without the colours ({name}).", method)
-      for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))),
-    on_gaze(key="colour_least_ssim", section="T3.2.9", stage="weights", scale=1, unit="SSIM", dataset=SECTION_3_2,
-            sentence="Colour gets the least weight by similarity where each object has one colour.",
-            where={"metric": "weight", "method": "guided_ssim"}, first={"channel": "color"}, statistic="least_weight",
-            phrases=PHRASES | {("method", "guided_ssim"): ""},
-            note="the lowest weight of the other channels minus that of colour",
-            readings=(reading("formulas mended", dataset=MENDED_3_2),)),
-    on_gaze(key="entropy_most_ssim", section="T3.2.1.4", stage="weights", scale=1, unit="SSIM", dataset=SECTION_3_2,
-            sentence="The entropy map is the most similar to the ground truth.",
-            where={"metric": "weight", "method": "guided_ssim"}, first={"channel": "entropy"},
-            statistic="largest_weight", phrases=PHRASES | {("method", "guided_ssim"): ""},
-            note="the weight of entropy minus the largest of the other channels",
-            readings=(reading("formulas mended", dataset=MENDED_3_2),)),
-    svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
-                   "image", "pixels", "pixels"),
-    svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",
-                   "object", "views", "objects", of="svm_per_object"),
-    *(
-        on_gaze(key=f"best_over_{fixed}", section="ours", stage="attention_checks", scale=1, unit="NSS",
-                dataset=GAZED,
-                sentence=f"The most salient of 62 viewpoints show where people look better than {views} do.",
-                where={"method": "equal", "metric": "nss"},
-                first={"views": "best"}, second={"views": fixed}, of="best_over_four" if fixed != "four" else "")
-        for fixed, views in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
-    ),
-    on_gaze(key="gaze_choices_flatter_glance", section="ours", stage="attention_checks", scale=1, unit="NSS",
-            sentence="Features and ridge that were chosen on the judged objects flatter the glance.",
-            where={"metric": "nss"}, first={"method": "glance_once"}, second={"method": "glance_nested"}),
-    closer_to_gaze("glance_over_best_gaze", "ours", "Our glance predicts where people look better than its best rival.",
-                   OURS, BEST_RIVAL, readings=OTHER_METRICS),
-    closer_to_gaze("any_pose_over_best_gaze", "ours", "Our glance without an up axis predicts where people look better "
-                   "than the best rival of the glance.", ANY_POSE, BEST_RIVAL, readings=OTHER_METRICS),
+    closer(key="equal_over_itti_gaze", first={"method": "VisAttAll"}, second={"method": CLASSICAL}, dataset=OF_3_2,
+           sentence="All channels with equal weights (VisAttAll) predict where people look better than the classical "
+                    "model.",
+           printed=1, readings=(*in_sums("VisAttAll", CLASSICAL), MENDED, reading("our formulas", dataset=GAZED),
+                                reading(BLACK_FILTERED, dataset=(ON_BLACK, OF_3_2[1])))),
+    closer(key="grey_colour", section="T3.1.1", first={"method": "VisAttAll"}, second={"method": "VisAttAllNoColour"},
+           sentence="Although the objects are grey, the colour channels improve the detection of regions of interest.",
+           dataset=GREY_3_1, readings=(reading("our formulas", dataset=ON_BLACK),
+                                       *in_sums("VisAttAll", "VisAttAllNoColour"))),
+    learned_to_gaze("guided_ed_gaze", "T3.2.2", "guided_ed_seen",
+                    "Weights learned by Euclidean distance predict attention better than equal ones."),
+    learned_to_gaze("guided_ssim_gaze", "T3.2.2", "guided_ssim_seen",
+                    "Weights learned by similarity predict attention better than equal ones."),
+    learned_to_gaze("svm_gaze", "T3.2.3", "svm_object",
+                    "An SVM on the channels predicts attention better than equal weights."),
+    *(closer(key=f"background_{key}", dataset="gaze", where={"metric": "nss", "method": method},
+             first={"dataset": "gaze"}, second={"dataset": ON_BLACK},
+             sentence=f"Where the background is kept out of the filters, maps are closer to gaze ({name}).")
+      for key, name, method in (*CHANNELS, ("ssim", "weights of table 3.1", "thesis_ssim"))),
+    colour(key="colour_parts_dkl", stage="conspicuity", where={"metric": "intensity_likeness"},
+           first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity",
+           sentence="Even where objects have several hues, DKL is as close to intensity as in one hue."),
+    *(colour(key=f"colour_{key}", stage="stability", where={"metric": "repeatability", "perturbation": "clay"},
+             first={"method": method}, second=BROKEN, unit="points of the share found again",
+             sentence=f"Half of the points or more are found again without the colours ({name}).",
+             readings=(reading("the hues alone taken away", where={"perturbation": "grey"}),))
+      for key, name, method in CHANNELS),
+    *(learned(key=f"{key}_ssim", section=section, sentence=sentence, dataset=SECTION_3_2, scale=1, unit="SSIM",
+              where={"metric": "weight", "method": "guided_ssim"}, first={"channel": channel}, statistic=statistic,
+              phrases=PHRASES | {("method", "guided_ssim"): ""}, note=note,
+              readings=(reading("formulas mended", dataset=MENDED_3_2),))
+      for key, section, channel, statistic, sentence, note in (
+          ("colour_least", "T3.2.9", "color", "least_weight",
+           "Colour gets the least weight by similarity where each object has one colour.",
+           "the lowest weight of the other channels minus that of colour"),
+          ("entropy_most", "T3.2.1.4", "entropy", "largest_weight",
+           "The entropy map is the most similar to the ground truth.",
+           "the weight of entropy minus the largest of the other channels"))),
+    *(learned(key=key, section="T3.2.3", unit=POINTS, mean_of="second", where={"metric": "accuracy", "area": area},
+              first={"training": "one_per_object", "validation": alone},
+              second={"training": "one_for_all", "validation": joint},
+              sentence=f"One SVM for each object is more accurate {words}.", of=of,
+              note="each learns from 1,000 pixels, the one for all from few of each object")
+      for key, area, alone, joint, words, of in (
+          ("svm_per_object", "image", "pixels", "pixels", "than one for all", ""),
+          ("svm_per_object_unseen", "object", "views", "objects", "on what it has not seen, too", "svm_per_object"))),
+    *(checked(key=f"best_over_{fixed}", where={"method": "equal", "metric": "nss"}, first={"views": "best"},
+              second={"views": fixed}, of="best_over_four" if fixed != "four" else "",
+              sentence=f"The most salient of 62 viewpoints show where people look better than {views} do.")
+      for fixed, views in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))),
+    checked(key="gaze_choices_flatter_glance", dataset="gaze", first={"method": "glance_once"},
+            second={"method": "glance_nested"},
+            sentence="Features and ridge that were chosen on the judged objects flatter the glance."),
+    closer(key="glance_over_best_gaze", first={"method": OURS}, second={"method": BEST_RIVAL}, readings=OTHER_METRICS,
+           sentence="Our glance predicts where people look better than its best rival."),
+    closer(key="any_pose_over_best_gaze", first={"method": ANY_POSE}, second={"method": BEST_RIVAL},
+           readings=OTHER_METRICS,
+           sentence="Our glance without an up axis predicts where people look better than the best rival of the "
+                    "glance."),
 ]  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from stages.report.tables import (
     Ranking,
     everywhere,
     grouped,
+    interval_columns,
     number,
     over_items,
     percent,
@@ -100,12 +101,8 @@ def _over_objects(group: pd.DataFrame) -> dict[str, float]:
     """One learned weight from all objects, with its interval over the objects' own values."""
     parts = own_values(group)
     _, low, high = interval(parts)
-    return {
-        "mean": group.loc[group["item"].isna(), "value"].iloc[0],
-        "low": low,
-        "high": high,
-        "objects": max(len(parts), 1),
-    }
+    mean = group.loc[group["item"].isna(), "value"].iloc[0]
+    return {"mean": mean, "low": low, "high": high, "objects": max(len(parts), 1)}
 
 
 def own_values(group: pd.DataFrame) -> pd.Series:
@@ -201,7 +198,7 @@ def nested(results: Results) -> Table:
         numbers = {"once": interval(once), "nested": interval(nested), "once_over_nested": interval(once - nested)}
         entries += [
             {"model": OURS, "metric": metric, "what": kind, "objects": len(once)}
-            | dict(zip(("mean", "low", "high"), ends, strict=True))
+            | interval_columns("mean", ends, prefix="")
             for kind, ends in numbers.items()
         ]
         line[f"chosen once, {words}"] = with_interval(*numbers["once"], places=3)
@@ -234,7 +231,7 @@ def annotations(results: Results) -> Table:
         table = group.pivot(index="item", columns="method", values="value")
         control = "random" if metric == "found" else "height"
         cells = {
-            name: dict(zip(MEAN, interval(table[name]), strict=True)) | gain(table, name, control)
+            name: interval_columns("mean", interval(table[name]), prefix="") | gain(table, name, control)
             for name in map(str, table)
         }
         keys = {"dataset": dataset, "metric": metric}

@@ -12,7 +12,7 @@ from stages.report.drawing import CYCLE, GREY, PALE, label, plain_logarithm, plt
 from stages.report.items import Figure, Table
 from stages.report.pareto import NOISE, ON, placed
 from stages.report.results import Results, some
-from stages.report.tables import everywhere, number, records, signed, with_interval, within
+from stages.report.tables import everywhere, interval_columns, interval_text, number, percent, records, signed, within
 
 PANELS = {"regions": "one of six shapes, by unseen regions", "objects": "the class of an unseen object"}
 SIX = 6  # shapes of one question
@@ -37,10 +37,10 @@ def front_table(results: Results) -> Table:
         {
             "choice": frame["words"],
             "seconds to know": frame["seconds"],
-            "unseen regions, %": [_cell(row, "regions") for row in records(frame)],
-            "in the search": [_searched(value) for value in frame["regions_searched"]],
-            "unseen objects, %": [_cell(row, "objects") for row in records(frame)],
-            "in the search ": [_searched(value) for value in frame["objects_searched"]],
+            "unseen regions, %": [interval_text(row, "regions", 100, 0) for row in records(frame)],
+            "in the search": frame["regions_searched"].map(percent),
+            "unseen objects, %": [interval_text(row, "objects", 100, 0) for row in records(frame)],
+            "in the search ": frame["objects_searched"].map(percent),
             "looking, s": frame["looking"],
             "faces": frame["faces"].round(),
             "learning one object, s": frame["training"],
@@ -60,14 +60,6 @@ def smallest_kept(frame: pd.DataFrame) -> pd.Series:
     best = frame.iloc[int(frame[accuracies].mean(axis=1).argmax())]
     as_good = (frame[accuracies] >= [best[f"{name}_low"] for name in accuracies]).all(axis=1)
     return frame[as_good].sort_values(["seconds", "faces", "touches"]).iloc[0]
-
-
-def _cell(row, name):
-    return with_interval(getattr(row, name), getattr(row, f"{name}_low"), getattr(row, f"{name}_high"), 100, 0)
-
-
-def _searched(value):
-    return "–" if value != value else f"{100 * value:.0f}"
 
 
 def _words(rows, frame):
@@ -152,7 +144,7 @@ def changed(results: Results) -> Table:
         stage = next(name for name in CHOICES if not _same(part.iloc[0][name], first[name]))
         line: dict[str, Any] = {"stage": stage, "option": part.iloc[0][stage], "from": first[stage]}
         for split, name in SPLITS.items():
-            line |= zip((name, f"{name}_low", f"{name}_high"), effect(base, part, split), strict=True)
+            line |= interval_columns(name, effect(base, part, split))
         line["times"] = part["seconds"].mean() / base["seconds"].mean()
         lines.append(line | {"seconds": part["seconds"].mean(), "faces": part["faces"].mean()})
     frame = pd.DataFrame(lines).sort_values("stage", key=lambda part: part.map(CHOICES.index), kind="stable")
@@ -179,7 +171,7 @@ def _option(value):
 
 STAGE = "front"
 SEARCH, CONFIRMED, CHANGED = "last", "confirmation", "one_choice"  # of the column `rung`
-CHOICES = ("method", "viewpoints", "image_rows", "points", "cells", "level", "touches", "classifier")
+CHOICES = list(STAGES)
 WHOLE = "100%"  # of the column `level`
 SPLITS = {Split.REGIONS: "regions", Split.OBJECTS: "objects"}  # split -> its columns
 PARTS = ("simplifying", "looking", "pressing", "asking")
@@ -197,8 +189,7 @@ def of_rung(rows: pd.DataFrame, rung: str) -> pd.DataFrame:
         first = group.iloc[0]
         line: dict[str, Any] = {"number": choice, "words": words(first)} | {name: first[name] for name in CHOICES}
         for split, name in SPLITS.items():
-            ends = within(group.loc[group["split"] == split, "value"])
-            line |= zip((name, f"{name}_low", f"{name}_high"), ends, strict=True)
+            line |= interval_columns(name, within(group.loc[group["split"] == split, "value"]))
         lines.append(line | group[["seconds", *PARTS, "training", "faces"]].mean().to_dict())
     return pd.DataFrame(lines)
 

@@ -13,7 +13,7 @@ from stages.report.drawing import CYCLE, GREY, label, plt
 from stages.report.effects import side, statistic
 from stages.report.items import Figure, Table
 from stages.report.results import Results
-from stages.report.tables import grouped, number, percent, records, with_interval, within
+from stages.report.tables import grouped, interval_columns, interval_text, number, percent, records, within
 
 STAGE, GROUP = "exploration", "six"
 WAYS = {"gain": "where the belief gains most", "saliency": "most salient first", "random": "in random order"}
@@ -39,8 +39,7 @@ def build(results: Results) -> Table:
         stopped = group[is_headline & (group["metric"] == "accuracy")]
         for name, column in COLUMNS.items():
             ends = (1.0, most) if name == "touches" else (0.0, 1.0)
-            values = within(stopped[column], shared_by(line["split"]), *ends)
-            line |= zip((name, f"{name}_low", f"{name}_high"), values, strict=True)
+            line |= interval_columns(name, within(stopped[column], shared_by(line["split"]), *ends))
         lines.append(line | {"fixed": needed(group, line["accuracy"]), "most": most, "repetitions": len(stopped)})
     frame = pd.DataFrame(lines)
     most = ", ".join(map(str, sorted(set(frame["most"]))))
@@ -59,8 +58,8 @@ def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
         {
             "objects": results.group_text(row.group), "held out": HELD_OUT[row.split],
             "belief": LIKELIHOODS[row.likelihood], "touched": label(row.method), "next place": WAYS[row.way],
-            "touches": with_interval(row.touches, row.touches_low, row.touches_high, places=1),
-            "right, %": with_interval(row.accuracy, row.accuracy_low, row.accuracy_high, 100, 0),
+            "touches": interval_text(row, "touches", places=1),
+            "right, %": interval_text(row, "accuracy", 100, 0),
             "fixed number": "never" if np.isnan(row.fixed) else number(row.fixed, 2),
             "stated, %": percent(row.stated), "decided, %": percent(row.decided),
         }

@@ -5,7 +5,7 @@ from functools import partial
 from stages.report.results import SECTION_3_1, SECTION_3_2
 from stages.report.words import as_printed
 
-from . import backends, errors, levels, tables
+from . import backends, errors, tables
 from .claims import CLAIMS as CLAIMS
 from .errors import figure_3_4, figure_3_5, figure_3_23
 from .pictures import figure_3_6, figure_3_7, figure_3_8, figure_3_21, figure_3_22
@@ -30,7 +30,7 @@ FIGURES = {
     "figure_3_23": figure_3_23,
 }
 CHARTS = {
-    "simplification": levels.simplification,
+    "simplification": errors.simplification,
     "backends": backends.backends_chart,
     "error_samples": errors.samples,
     "error_views": errors.views,

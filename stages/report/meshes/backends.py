@@ -1,6 +1,11 @@
-"""Backends of simplification, as table and chart: time and error as ratios to pymeshlab's QEM, of one `make bench`."""
+"""Backends of simplification, as table and chart: time and error as ratios to pymeshlab's QEM, of one `make bench`.
 
-from collections.abc import Iterator
+`growth` fits a backend's time by a power of n, or of n log n, with its interval.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,10 +18,8 @@ from stages.report.drawing import GREY, INK, Spot, colours, label, place_names, 
 from stages.report.items import Figure, Table
 from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
-from stages.report.tables import percent, with_interval
+from stages.report.tables import interval_columns, percent, with_interval
 from stages.report.words import shared_notes
-
-from .levels import FITTED, Growth, growth
 
 REFERENCE, OURS = "pymeshlab", "fast"
 CELL, TASK = ["mesh", "full", "target", "with_points"], ["backend", "with_points"]
@@ -24,9 +27,64 @@ RATIOS = {  # first part of a column's name -> title
     "time": "time ratio", "whole": "all of simplify", "colours": "with colours",
     "error": "Metro ratio", "largest": "largest-error ratio", "seen": "1 − SSIM ratio",
 }  # fmt: skip
-MAXIMUM = "metro_max"  # a column that rows of the benchmark have since each call gets a new mesh
 GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 ANSWER = ["backend", "points kept", *(RATIOS[name] for name in ("time", "error", "largest", "seen")), "valid"]
+
+
+FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
+POWERS: dict[str, Callable] = {"linear": lambda n: n, "loglinear": lambda n: n * np.log(n)}
+
+
+@dataclass(frozen=True)
+class Growth:
+    """seconds = level * (shape(n) / shape(middle))^power, with the 95 % interval of the power; shape: of POWERS."""
+
+    shape: str
+    level: float
+    middle: float
+    power: float
+    low: float
+    high: float
+    span: tuple[float, float]
+
+    def __call__(self, n: np.ndarray, power: float | None = None) -> np.ndarray:
+        """Seconds at n faces; power: another than the fitted, through the same middle."""
+        shape = POWERS[self.shape]
+        return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)
+
+    @property
+    def text(self) -> str:
+        """`1.04 [0.90, 1.11]`: the power with its interval."""
+        return with_interval(self.power, self.low, self.high, places=2)
+
+
+def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
+    """The Growth of the column `seconds` over `full`, or None for fewer than three sizes of FITTED faces or more.
+
+    rows: of one backend. A least-squares line through the logarithms, with a level of its own for each share of the
+    faces and for kept points. The interval is a bootstrap over the meshes: a subdivided one goes with what it was.
+    """
+    rows = rows[(rows["full"] >= FITTED) & (rows["seconds"] > 0)]
+    if rows["full"].nunique() < 3:
+        return None
+    n = rows["full"].to_numpy(dtype=float)
+    x, y = np.log(POWERS[shape](n)), np.log(rows["seconds"].to_numpy(dtype=float))
+    level = pd.factorize(pd.MultiIndex.from_arrays([(rows["target"] / n).round(2), rows["with_points"]]))[0]
+    mesh, names = pd.factorize(rows["mesh"])
+    random = np.random.default_rng(0)
+    picks = (random.multinomial(len(names), np.full(len(names), 1 / len(names))) for _ in range(1000))
+    low, high = np.nanquantile([_slope(x, y, level, times[mesh]) for times in picks], [0.025, 0.975])
+    power, middle = _slope(x, y, level, np.ones(len(x))), np.exp(np.log(n).mean())
+    offset = (y - power * (x - np.log(POWERS[shape](middle)))).mean()
+    return Growth(shape, np.exp(offset), middle, power, low, high, (n.min(), n.max()))
+
+
+def _slope(x: np.ndarray, y: np.ndarray, level: np.ndarray, weight: np.ndarray) -> float:
+    """Weighted least-squares slope with an intercept for each level; NaN where no level has two places."""
+    total = np.maximum(np.bincount(level, weight), 1e-9)
+    x, y = (values - (np.bincount(level, weight * values) / total)[level] for values in (x, y))
+    spread = (weight * x * x).sum()
+    return (weight * x * y).sum() / spread if spread > 1e-12 else np.nan
 
 
 def backends_table(results: Results) -> Table:
@@ -37,8 +95,8 @@ def backends_table(results: Results) -> Table:
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
     lines = [_sentence(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
-        "measured": shared_notes(__package__, f"timed_{'cold' if MAXIMUM in rows else 'warm'}"),
-        "findings": "\n".join(lines + against_meshoptimizer(rows, results)),
+        "measured": shared_notes(__package__, "timed"),
+        "findings": "\n".join([*lines, *against_meshoptimizer(rows, results)]),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -54,7 +112,6 @@ def tried(results: Results) -> pd.DataFrame:
     if "outcome" not in rows:
         raise NotRun("bench/simplification.csv.gz has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
-    rows["largest_ratio"] = rows.get("largest_ratio", np.nan)  # rows of before have none
     rows["base"] = rows["ssim_error"].where((rows["backend"] == REFERENCE) & (rows["ssim_error"] > 0))
     return rows.assign(seen_ratio=rows["ssim_error"] / rows.groupby(CELL)["base"].transform("first"))
 
@@ -76,9 +133,8 @@ def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
         line |= {"tried": len(group) - outcomes.get("infeasible", 0)}
         line |= {name: outcomes.get(name, 0) for name in ("refused", "missed")}
         for name in RATIOS:
-            ratios = cells[f"{name}_ratio"]
-            logs = ratios.where(ratios > 0).apply(np.log).groupby(cells["mesh"]).mean()
-            line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
+            ratios = over_meshes(cells.set_index("mesh")[f"{name}_ratio"])
+            line |= interval_columns(f"{name}_ratio", ratios, prefix=f"{name}_")
         line |= {"slowest": cells["time_ratio"].max(), "seconds": cells["seconds"].median()}
         reached_rows = group[group["outcome"] == "reached"]
         line |= {name: reached_rows[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
@@ -206,44 +262,34 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
 
 
 OTHER = "meshoptimizer"
-Interval = tuple[float, float, float]
 
 
-def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> list[str]:
+def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> Iterator[str]:
     """A sentence a task, of the rows of bench/simplification.csv.gz, and one on gaze; none where not measured."""
-    tasks = [group for _, group in rows.groupby("with_points") if OTHER in set(group["backend"])]
-    return [_plain(group) for group in tasks] + [*_salient(results)]
+    for with_points, group in rows[rows["outcome"] == "reached"].groupby("with_points"):
+        if OTHER in set(group["backend"]):
+            pairs = group.pivot(index=CELL, columns="backend", values=["metro_mean", "seconds"])
+            error, time = (over_meshes(pairs[value][OURS] / pairs[value][OTHER]) for value in ("metro_mean", "seconds"))
+            yield (
+                f"{label(OURS)}, {'points' if with_points else 'nothing'} kept: {with_interval(*error)} times "
+                f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
+            )
+    with suppress(NotRun):
+        yield from _salient(results.bench("salient_simplification"))
 
 
-def _plain(rows: pd.DataFrame) -> str:
-    error, time = _ratio(rows, "metro_mean"), _ratio(rows, "seconds")
-    return (
-        f"{label(OURS)}, {'points' if rows['with_points'].all() else 'nothing'} kept: {with_interval(*error)} times "
-        f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
-    )
-
-
-def _ratio(rows: pd.DataFrame, value: str) -> Interval:
-    """(mean, low, high) of ours over the other's: geometric, over the meshes, in the cells that both reached."""
-    reached_rows = rows[rows["outcome"] == "reached"]
-    pairs = reached_rows.pivot(index=["mesh", "full", "target"], columns="backend", values=value)
-    return _over_meshes(pairs[OURS] / pairs[OTHER])
-
-
-def _over_meshes(ratios: pd.Series) -> Interval:
-    mean, low, high = np.exp(interval(ratios.dropna().apply(np.log).groupby("mesh").mean()))
+def over_meshes(ratios: pd.Series) -> tuple[float, float, float]:
+    """(mean, low, high) of ratios with a level `mesh`: geometric, over the meshes; of positive ratios alone."""
+    mean, low, high = np.exp(interval(ratios[ratios > 0].apply(np.log).groupby("mesh").mean()))
     return float(mean), float(low), float(high)
 
 
-def _salient(results: Results) -> Iterator[str]:
-    try:
-        rows = results.bench("salient_simplification")
-    except NotRun:
-        return
-    if "bar" not in rows or rows["bar"].isna().all():
+def _salient(rows: pd.DataFrame) -> Iterator[str]:
+    """A sentence on the error weighted by gaze; none where no rival was measured."""
+    if rows["bar"].isna().all():
         return
     ours = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
-    ratio, meshes = _over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
+    ratio, meshes = over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
     means = ours["salient_ratio"].apply(np.log).groupby(ours["share"]).mean().apply(np.exp)
     shares = ", ".join(f"{mean:.2f} at {share:.0%}" for share, mean in means.items())
     yield (

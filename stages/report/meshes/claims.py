@@ -10,9 +10,10 @@ from typing import Any
 
 import pandas as pd
 
+from stages.engine.statistics import interval
 from stages.report.claims import Claim, Methods, highest_of, in_sums, lowest_of, reading
 from stages.report.drawing import label
-from stages.report.effects import side, statistic
+from stages.report.effects import invalid_pairs, reasons_of, side, statistic
 from stages.report.results import (
     COLOURED,
     GAZED,
@@ -23,11 +24,15 @@ from stages.report.results import (
     SECTION_3_2,
     SETS_3_1,
     SETS_3_1_FOUR,
+    NotRun,
     Results,
+    listed,
+    some,
 )
 
 from .tables import (
     BY_AREA,
+    CELL,
     CLASSICAL,
     COMBINATIONS,
     HKS,
@@ -40,6 +45,7 @@ from .tables import (
     SYMMETRIES,
     UNSEEN,
     WEIGHTED,
+    is_drawn,
 )
 
 REST = tuple(name for name in COMBINATIONS if name not in ("VisAttCurvSymCon", "VisAttCon"))
@@ -86,6 +92,7 @@ OF_BEST = (
 )
 EACH_COUNT = tuple(reading(f"{words} alone", where={"target": count})
                    for count, words in ((LOW, "1,500 faces"), (HIGH, "3,000 faces")))  # fmt: skip
+MANY = 5  # methods that a rank correlation needs
 EACH_OF_OURS = (*EACH_COUNT, reading("a quarter of the faces alone", where={"target": "25%"}))
 
 
@@ -95,6 +102,80 @@ def nearer_to_plain(results: Results, claim: Claim) -> pd.Series:
     plain = side(results, claim, {"method": PLAIN}, None)
     far, near = ((side(results, claim, method, None) / plain - 1).abs() for method in (claim.first, claim.other))
     return (far - near).dropna().groupby(level="item").mean()
+
+
+@statistic("spread")
+def spread(results: Results, claim: Claim) -> pd.Series:
+    """Standard deviation over the methods of the first side, under the first selection minus under the second."""
+    tables = (_errors(results, claim, claim.first["method"], **where) for where in claim.contrast or ())
+    first, second = (table.std(axis=1).droplevel("target") for table in tables)
+    return first - second
+
+
+@statistic("falls_with_faces")
+def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
+    """Error at the fewest faces minus error at the largest number, of objects with several counts."""
+    rows = results.measured(claim.stage, claim.sets[0], **claim.where, **claim.first).sort_values("faces")
+    rows = _valid(results, claim, rows)
+    rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1]
+    some(rows, "no object that is taken to two face counts", claim.stage, runnable=False)
+    errors = rows.groupby("item")["value"]
+    return errors.first() - errors.last()
+
+
+@statistic("room")
+def room(results: Results, claim: Claim) -> pd.Series:
+    """Minus the relative difference from the second side of the method and metric whose interval leaves least room.
+
+    With the claim's margin, an equivalence test by the interval: above zero where the whole interval of the difference
+    lies within the margin (Schuirmann 1987, with the 95 % interval instead of 90 %: stricter).
+    """
+    base, gaps = claim.other["method"], []
+    for metric in listed(claim.where["metric"]):
+        table = _errors(results, claim, (base, *claim.first["method"]), metric=metric)
+        if base not in table or table.shape[1] < 2:
+            raise NotRun(f"lod did not run {base} beside another", claim.stage, runnable=False)
+        middle = (table.add(table[base], axis=0) / 2).where(lambda mean: mean > 0, 1.0)
+        shares = table.sub(table[base], axis=0) / middle
+        gaps += [shares[name].groupby("item").mean() for name in table if name != base]
+    return min((side * gap for gap in gaps for side in (-1, 1)), key=lambda series: interval(series)[1])
+
+
+@statistic("ranks_agree")
+def ranks_agree(results: Results, claim: Claim) -> pd.Series:
+    """Rank correlation over the methods, per object, of the metrics of both sides; of the points without a second.
+
+    Methods with a way behind their name keep the same points in another way and are left out.
+    """
+    metric = str(claim.first["metric"])
+    errors = _by_method(results, claim, metric, "value")
+    if errors.empty or errors.shape[1] < MANY:
+        raise NotRun(f"fewer than {MANY} methods to rank", claim.stage, runnable=False)
+    second = (str(claim.other["metric"]), "value") if claim.second else (metric, "points")
+    return errors.corrwith(_by_method(results, claim, *second), axis=1, method="spearman")
+
+
+def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: object) -> pd.DataFrame:
+    """Frame (object, target) x methods, where all of the methods that were run reach the target."""
+    rows = results.measured(claim.stage, claim.sets[0], **{**claim.where, **where}, method=methods)
+    table = _valid(results, claim, rows).pivot(index=CELL, columns="method", values="value").dropna()
+    return some(table, f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
+
+
+def _valid(results: Results, claim: Claim, rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows without those of an object and target at which a method's row is invalid."""
+    bad = invalid_pairs(rows, reasons_of(results, claim, rows), CELL).index
+    return rows[~pd.MultiIndex.from_frame(rows[CELL]).isin(bad)] if len(bad) else rows
+
+
+def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
+    """Frame objects x methods of a column, mean over the targets that all methods reach; no objects without ranks."""
+    rows = results.measured(claim.stage, claim.sets[0], **claim.where, metric=metric)
+    rows = rows[[is_drawn(name) and name not in (PLAIN, QSLIM) for name in rows["method"]]]
+    method_counts = rows.groupby(CELL)["method"].transform("nunique")
+    rows = rows[method_counts == rows["method"].nunique()]
+    table = rows.pivot_table(index="item", columns="method", values=column)
+    return table[table.nunique(axis=1) > 1]
 
 
 def lower(

@@ -12,7 +12,7 @@ from stages.report.drawing import CYCLE, INK, plain_logarithm, plt
 from stages.report.effects import side, statistic
 from stages.report.items import Figure, Table
 from stages.report.results import NotRun, Results, some
-from stages.report.tables import number, records, with_interval
+from stages.report.tables import interval_columns, number, records, with_interval
 
 STAGE = "face_needs"
 TASKS = {  # words, what the condition is multiplied by in them, colour
@@ -33,13 +33,13 @@ def needs(results: Results) -> Table:
     for (task, condition), group in _tasks(rows):
         faces = group.set_index("item")["value"]
         share = 100 * faces / full[faces.index]
-        median, low, high = interval(faces, statistic=np.median)
-        ends = np.quantile(faces, [0.05, 0.95])
-        frame.append({"task": task, "condition": condition, "objects": len(faces), "median": median, "low": low,
-                      "high": high, "q05": ends[0], "q95": ends[1], "share": share.median()})  # fmt: skip
+        median, (least, most) = interval(faces, statistic=np.median), np.quantile(faces, [0.05, 0.95])
+        frame.append({"task": task, "condition": condition, "objects": len(faces),
+                      **interval_columns("median", median, prefix=""), "q05": least, "q95": most,
+                      "share": share.median()})  # fmt: skip
         lines.append({
-            "task": words_of(task, condition), "faces, median": with_interval(median, low, high, places=0),
-            "nine in ten objects": f"{ends[0]:,.0f} to {ends[1]:,.0f}",
+            "task": words_of(task, condition), "faces, median": with_interval(*median, places=0),
+            "nine in ten objects": f"{least:,.0f} to {most:,.0f}",
             "of the full mesh, %": with_interval(*interval(share, statistic=np.median), places=1),
         })  # fmt: skip
     accuracy = 100 * _rows(results, "accuracy")["value"]
@@ -154,12 +154,13 @@ def _range(shares: list[float]) -> str:
     return " to ".join(dict.fromkeys(f"{round(100 * share):d}" for share in (min(shares), max(shares)))) + " %"
 
 
+Plan = tuple[str, str]  # a way to choose levels, and in what it was made equal to ours
 PLANS = [
     ("full", ""), ("uniform", "displacement"), ("uniform_size", "displacement"), ("network", "displacement"),
     ("beforehand", "displacement"), ("every_level", "displacement"), (OURS, ""), ("online", ""),
     ("online_unrendered", ""), ("uniform", "error"), ("uniform_size", "error"),
 ]  # fmt: skip
-UNIFORM_LEVELS = "uniform", "displacement"
+OURS_PLAN, UNIFORM_LEVELS = (OURS, ""), ("uniform", "displacement")
 EQUAL = {"": "", "displacement": "mean displacement", "error": "worst object's error"}
 SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error, mean", 1, 2),
          "held": ("frames within, %", 100, 0), "switches_per_object": ("switches an object", 1, 1)}  # fmt: skip
@@ -167,93 +168,75 @@ SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error
 
 def random_table(results: Results) -> Table:
     """A line for each plan: means over the scenes, with intervals over the scenes."""
-    wide, first = plans(results)
-    times = _times(results)
+    (wide, first), times = plans(results), _times(results)
     lines, frame = [], []
-    for plan in [plan for plan in PLANS if plan in _keys(wide)]:
-        scenes = wide.xs(plan, level=["method", "matched"])
-        saved = 100 * saving(wide, plan)
-        entry = {"method": plan[0], "matched": plan[1], "scenes": len(scenes), "faces": scenes["faces"].mean()}
-        entry |= dict(zip(("saved", "saved_low", "saved_high"), over_scenes(saved / 100), strict=True))
-        less = 100 * fewer(wide, plan) if plan[1] == "displacement" or plan[0] == OURS else []
-        entry |= dict(zip(("less", "less_low", "less_high"), 0.01 * np.array(over_scenes(less)), strict=True))
-        entry |= {name: scenes[name].mean() for name in SHOWN} | {"step_worst": scenes["step_worst"].median()}
-        entry |= {"planning_ms": scenes["planning_ms"].median()}
-        entry |= dict(zip(("drawing", "drawing_low", "drawing_high"), times.get(plan, (None,) * 3), strict=True))
-        frame.append(entry)
-        line = {"levels chosen by": NAMES[plan[0]], "equal to ours in": EQUAL[plan[1]], "faces a frame": entry["faces"]}
-        line["faces that ours saves, %"] = "–" if plan[0] == OURS else with_interval(*over_scenes(saved), places=0)
-        line["fewer than uniform levels by distance, %"] = (
-            with_interval(*over_scenes(less), places=0) if len(less) else "–"
-        )
-        line |= {head: f"{scale * entry[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()}
-        line |= {"worst jump": entry["step_worst"], "planning, ms a frame": entry["planning_ms"]}
-        line["drawing time / full"] = with_interval(*times[plan], places=2) if plan in times else "–"
-        lines.append(line)
-    text_table = pd.DataFrame(lines)
-    text_table["faces a frame"] = text_table["faces a frame"].round()
+    for method, matched in (plan for plan in PLANS if plan in wide["faces"]):
+        scenes = pd.DataFrame(wide.xs((method, matched), axis=1, level=["method", "matched"]))
+        scenes = scenes.reindex(columns=["faces", *SHOWN, "step_worst", "planning_ms"]).dropna(subset=["faces"])
+        comparable = matched == "displacement" or method == OURS
+        ends = {
+            "saved": over_scenes(saving(wide, OURS_PLAN, (method, matched))),
+            "less": over_scenes(saving(wide, (method, matched), UNIFORM_LEVELS) if comparable else []),
+            "drawing": times.get((method, matched), (np.nan,) * 3),
+        }
+        means = {name: scenes[name].mean() for name in SHOWN}
+        medians = {name: scenes[name].median() for name in ("step_worst", "planning_ms")}
+        entry = {"method": method, "matched": matched, "scenes": len(scenes), "faces": scenes["faces"].mean()}
+        entry |= interval_columns("saved", ends["saved"]) | interval_columns("less", ends["less"]) | means | medians
+        frame.append(entry | interval_columns("drawing", ends["drawing"]))
+        saved, less = (with_interval(*ends[name], scale=100, places=0) for name in ("saved", "less"))
+        lines.append({
+            "levels chosen by": NAMES[method], "equal to ours in": EQUAL[matched],
+            "faces a frame": entry["faces"].round(),
+            "faces that ours saves, %": "–" if method == OURS else saved,
+            "fewer than uniform levels by distance, %": less.replace("not run", "–"),
+            **{head: f"{scale * entry[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()},
+            "worst jump": entry["step_worst"], "planning, ms a frame": entry["planning_ms"],
+            "drawing time / full": with_interval(*ends["drawing"], places=2).replace("not run", "–"),
+        })  # fmt: skip
     words = {
-        "scenes": wide.index.get_level_values("group").nunique(),
+        "scenes": len(wide),
         "tolerance": amount(first["tolerance"], UNITS[first["kind"]]), "foresight": _foresight(wide),
         "drawing": drawing(results), "planning": planning(results),
     }  # fmt: skip
-    return Table(pd.DataFrame(frame), text_table, words)
+    return Table(pd.DataFrame(frame), pd.DataFrame(lines), words)
 
 
 ALLOWED = 5.0  # per cent more faces that an online planner may need
 
 
 def plans(results: Results) -> tuple[pd.DataFrame, pd.Series]:
-    """(frame (group, method, matched) x metric over all frames, the first row) of the random scenes."""
+    """(frame scenes x (metric, method, matched) over all frames, the first row) of the random scenes."""
     rows = results.measured("scene", RANDOM, frame="all", factor=1, item=None).fillna({"matched": ""})
     rows = some(rows[rows["kind"].notna()], "no random scenes", "scene")
-    wide = rows.pivot_table(index=["group", "method", "matched"], columns="metric", values="value", sort=False)
-    return wide[wide["faces"].notna()], rows.iloc[0]
+    columns = ["metric", "method", "matched"]
+    return rows.pivot_table(index="group", columns=columns, values="value", sort=False), rows.iloc[0]
 
 
-def saving(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
-    """The share of a plan's faces that ours saves, a value a scene: 0 where it has as many."""
-    ours, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in ((OURS, ""), plan))
-    return (1 - ours / rival).dropna()
-
-
-def fewer(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
-    """The share of the faces of uniform levels by distance that a plan saves at our displacement, a value a scene."""
-    if not {plan, UNIFORM_LEVELS} <= _keys(wide):
+def saving(wide: pd.DataFrame, plan: Plan, rival: Plan) -> pd.Series:
+    """The share of the faces of a rival that a plan saves, a value a scene; empty where either was not run."""
+    if not {plan, rival} <= {*wide["faces"]}:
         return pd.Series(dtype=float)
-    faces, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in (plan, UNIFORM_LEVELS))
-    return (1 - faces / rival).dropna()
-
-
-def _extra(wide: pd.DataFrame) -> pd.Series:
-    """Per cent more faces of the planner without foresight than ours has, a value a scene."""
-    ours, online = (wide.xs((name, ""), level=["method", "matched"])["faces"] for name in (OURS, "online"))
-    return 100 * (online / ours - 1).dropna()
+    return (1 - wide["faces"][plan] / wide["faces"][rival]).dropna()
 
 
 def _foresight(wide: pd.DataFrame) -> str:
-    if ("online", "") not in _keys(wide):
+    """The price of seeing no frame ahead, in faces, switches and jumps; empty where that was not planned."""
+    if ("online", "") not in wide["faces"]:
         return ""
-    ours, online = (wide.xs((name, ""), level=["method", "matched"]) for name in (OURS, "online"))
-    switches, (jump, most) = online["switches_per_object"].mean(), _jumps(wide, "online")
-    own_switches, (own_jump, own_most) = ours["switches_per_object"].mean(), _jumps(wide, OURS)
+    ours, online = (wide.xs((name, ""), axis=1, level=["method", "matched"]) for name in (OURS, "online"))
+    more = 100 * (online["faces"] / ours["faces"] - 1).dropna()
+    switches, own_switches = (plan["switches_per_object"].mean() for plan in (online, ours))
+    jumps, own_jumps = online["step_worst"], ours["step_worst"]
     return (
-        f"Without a frame ahead: {with_interval(*over_scenes(_extra(wide)), places=1)} % more faces, "
-        f"{number(switches)} switches an object instead of {number(own_switches)}, and a worst jump of {number(jump)} "
-        f"instead of {number(own_jump)} (medians over the scenes; at most {number(most)} and {number(own_most)})."
+        f"Without a frame ahead: {with_interval(*over_scenes(more), places=1)} % more faces, {number(switches)} "
+        f"switches an object instead of {number(own_switches)}, and a worst jump of {number(jumps.median())} instead "
+        f"of {number(own_jumps.median())} (medians over the scenes; at most {number(jumps.max())} and "
+        f"{number(own_jumps.max())})."
     )
 
 
-def _jumps(wide: pd.DataFrame, method: str) -> tuple[float, float]:
-    jumps = wide.xs((method, ""), level=["method", "matched"])["step_worst"]
-    return jumps.median(), jumps.max()
-
-
-def _keys(wide: pd.DataFrame) -> set[tuple[str, str]]:
-    return {(str(method), str(matched)) for _, method, matched in wide.index}
-
-
-def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]]:
+def _times(results: Results) -> dict[Plan, tuple[float, float, float]]:
     """{plan: (mean, low, high) of the time of drawing over that of the full meshes}, over the scenes."""
     try:
         rows = results.bench("frame_times")
@@ -261,8 +244,7 @@ def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]
         return {}
     rows = rows[rows["method"] != "full"]
     ratios = {str(name): over_scenes(group["ratio"]) for name, group in rows.groupby("method", sort=False)}
-    group = (OURS, "online", "full")
-    return {(name, "" if name in group else "displacement"): ratio for name, ratio in ratios.items()}
+    return {(name, "" if name in (OURS, "online") else "displacement"): ratio for name, ratio in ratios.items()}
 
 
 def planning(results: Results) -> str:
@@ -273,23 +255,25 @@ def planning(results: Results) -> str:
     except NotRun:
         return ""
     less = with_interval(*over_scenes(times["uniform"] - times[OURS]), places=1)
-    costs = wide.groupby(["method", "matched"])["planning_ms"].median()
-    text = f"Planning our levels costs {number(costs[OURS, ''])} ms a frame, and drawing them is {less} ms faster than "
-    text += "drawing uniform ones."
-    looked_up = ("beforehand", "displacement")
+    costs = pd.DataFrame(wide["planning_ms"]).median().map(number)
+    text = (
+        f"Planning our levels costs {costs[OURS_PLAN]} ms a frame, and drawing them is {less} ms faster than drawing "
+        "uniform ones."
+    )
+    looked_up, blind = ("beforehand", "displacement"), ("online_unrendered", "")
     if looked_up in costs and looked_up[0] in times:
         less = with_interval(*over_scenes(times["uniform"] - times[looked_up[0]]), places=1)
         text += (
-            f" Looking up errors that were rendered beforehand costs {number(costs[looked_up])} ms, and drawing these"
+            f" Looking up errors that were rendered beforehand costs {costs[looked_up]} ms, and drawing these levels "
+            f"is {less} ms faster."
         )
-        text += f" levels is {less} ms faster."
-    blind = ("online_unrendered", "")
-    if blind not in costs:
-        return text
-    uniform = wide.xs(UNIFORM_LEVELS, level=["method", "matched"])["faces"]
-    saved = 100 * (1 - wide.xs(blind, level=["method", "matched"])["faces"] / uniform).dropna()
-    text += f" The plan that renders nothing costs {number(costs[blind])} ms and saves "
-    return text + f"{with_interval(*over_scenes(saved), places=0)} % of the faces of uniform levels by distance."
+    if blind in costs:
+        saved = with_interval(*over_scenes(saving(wide, blind, UNIFORM_LEVELS)), 100, 0)
+        text += (
+            f" The plan that renders nothing costs {costs[blind]} ms and saves {saved} % of the faces of uniform "
+            "levels by distance."
+        )
+    return text
 
 
 def drawing(results: Results) -> str:
@@ -328,14 +312,8 @@ def faces_saved(results: Results, claim: Claim) -> pd.Series:
 
 
 claim = partial(Claim, section="ours", statistic="faces_saved", unit=FACES, phrases=PHRASES)
-planned = partial(
-    claim,
-    stage="scene",
-    dataset=RANDOM,
-    over=("group",),
-    shared=SHARED_OBJECTS,
-    where={"metric": "faces", "frame": "all"},
-)
+planned = partial(claim, stage="scene", dataset=RANDOM, over=("group",), shared=SHARED_OBJECTS,
+                  where={"metric": "faces", "frame": "all"})  # fmt: skip
 needed = partial(claim, stage=STAGE, over=("item",), where={"metric": "faces"}, statistic="difference", relative=True,
                  unit="% of the mean of both")  # fmt: skip
 SEEN = {"task": "seen", "condition": 1.0}
@@ -343,8 +321,7 @@ FELT = {"task": "felt", "condition": 0.05}
 KNOWN = {"task": "recognised", "condition": 0.02}
 CLAIMS = [
     *(
-        planned(key=f"saves_{rival}_{matched}", first={"method": OURS},
-                second={"method": rival, "matched": matched},
+        planned(key=f"saves_{rival}_{matched}", first={"method": OURS}, second={"method": rival, "matched": matched},
                 sentence=f"Ours needs fewer faces than {NAMES[rival]} {words}.")
         for matched, words in MATCHED.items()
         for rival in ("uniform", "uniform_size")

@@ -11,7 +11,7 @@ from stages.report.drawing import GREY
 from stages.report.items import Figure, Table
 from stages.report.pareto import pareto_chart
 from stages.report.results import Results
-from stages.report.tables import grouped, number, percent, records
+from stages.report.tables import grouped, interval_columns, number, percent, records
 
 from .random import (
     COLOURS,
@@ -83,7 +83,7 @@ def chart(results: Results) -> Figure:
         way = NAMES[method]
         name = way if method == REFERENCE else ", ".join(filter(None, (way, amount(tolerance, unit), EQUAL[matched])))
         wide = group.pivot(index="group", columns="metric", values="value")
-        errors[name], ends = wide["error"], dict(zip(("error", "low", "high"), interval(wide["error"]), strict=True))
+        errors[name], ends = wide["error"], interval_columns("error", interval(wide["error"]), prefix="")
         lines.append({"method": method, "way": way, "name": name, "tolerance": tolerance, "matched": EQUAL[matched],
                       "faces": wide["faces"].mean(), **ends})  # fmt: skip
     frame = pd.DataFrame(lines).sort_values("tolerance", kind="stable").drop_duplicates("name")

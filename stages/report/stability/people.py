@@ -8,7 +8,16 @@ from stages.engine.statistics import interval
 from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.results import GAZED, Results, some
-from stages.report.tables import grouped, percent, records, signed, with_interval, within
+from stages.report.tables import (
+    grouped,
+    interval_columns,
+    interval_text,
+    percent,
+    records,
+    signed,
+    with_interval,
+    within,
+)
 from stages.stability.disturbance import AND
 from stages.stability.simplification import middle_severity
 from stages.stability.subject import UNPERTURBED
@@ -47,8 +56,8 @@ def _score(rows: pd.DataFrame) -> str:
         return ""
     table = scores(of_gaze(rows), REFERENCE)
     text = "; ".join(
-        f"{label(row.method)} {with_interval(row.mce, row.mce_low, row.mce_high, 100, 0)} %, relative "
-        f"{with_interval(row.relative, row.relative_low, row.relative_high, 100, 0)} %"
+        f"{label(row.method)} {interval_text(row, 'mce', 100, 0)} %, "
+        f"relative {interval_text(row, 'relative', 100, 0)} %"
         for row in records(table[table["method"] != REFERENCE])
     )
     return (
@@ -62,10 +71,10 @@ def _cell(case, plain):
     wide = case.pivot(index="item", columns="metric", values="value")
     method = case["method"].iloc[0]
     shares = np.clip(interval(wide["repeatability"], statistic=np.median), 0, 1)
-    numbers = dict(zip(("again", "again_low", "again_high"), shares, strict=True)) | {"chance": wide["chance"].mean()}
+    numbers = interval_columns("again", shares) | {"chance": wide["chance"].mean()}
     for metric in ("nss", "auc"):
         losses = wide[metric] - plain.xs((method, metric), level=("method", "metric")).reindex(wide.index)
-        numbers |= dict(zip((metric, f"{metric}_low", f"{metric}_high"), interval(losses), strict=True))
+        numbers |= interval_columns(metric, interval(losses))
     return numbers | {"objects": len(wide)}
 
 
@@ -119,7 +128,7 @@ def _number(rows, group, method, metric):
     else:
         plain = rows[(rows["perturbation"] == PLAIN) & (rows["method"] == method) & (rows["metric"] == metric)]
         ends = interval(values / plain.set_index("item")["value"].reindex(values.index))
-    return dict(zip(("mean", "low", "high"), ends, strict=True)) | {"objects": len(values)}
+    return interval_columns("mean", ends, prefix="") | {"objects": len(values)}
 
 
 def _text(cells, *key):
@@ -181,7 +190,7 @@ def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[st
     beyond = interval(lost_shares["both"] - np.minimum(lost_shares["first"] + lost_shares["second"], 1))
     independent = lost_shares["both"] - 1 + (1 - lost_shares["first"]) * (1 - lost_shares["second"])
     numbers = {name: float(lost_shares[name].mean()) for name in ("first", "second", "both")}
-    numbers |= dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
+    numbers |= interval_columns("beyond", beyond)
     return numbers | {"independent": float(independent.mean()), "objects": len(lost_shares)}
 
 

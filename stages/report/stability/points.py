@@ -12,7 +12,7 @@ from stages.engine.statistics import BROKEN
 from stages.report.drawing import GREY, INK, MARKERS, colours, label, name_panels, show, square_grid
 from stages.report.items import Figure, Table
 from stages.report.results import Results, some
-from stages.report.tables import percent, within
+from stages.report.tables import interval_columns, percent, within
 from stages.stability.simplification import breaking_points, mean_repeatability, middle_severity
 
 from .panels import broken, finish, panels
@@ -26,18 +26,18 @@ def table(results: Results) -> Table:
     rows = results.measured(STAGE, metric=["repeatability", "chance", "drift"])
     points = rows.loc[(rows["metric"] == "repeatability") & (rows["method"] != CHANCE)]
     lines = []
-    for (perturbation, method), (breaking, *ends) in breaking_points(points).items():
+    for (perturbation, method), ends in breaking_points(points).items():
         group = rows.loc[rows["perturbation"] == perturbation]
         severities = list(group["severity"].unique())
         middle = middle_severity(severities)
         trials = group.loc[(group["method"] == method) & (group["severity"] == middle)]
-        mean, low, high = within(trials.loc[trials["metric"] == "repeatability", "value"])
         lines.append({
             "perturbation": perturbation, "unit": PERTURBATIONS[perturbation].unit, "method": method,
-            "severity": middle, "repeatability": mean, "repeatability_low": low, "repeatability_high": high,
+            "severity": middle,
+            **interval_columns("repeatability", within(trials.loc[trials["metric"] == "repeatability", "value"])),
             "drift": trials.loc[trials["metric"] == "drift", "value"].mean(),
             "chance": group.loc[group["metric"] == "chance", "value"].mean(), "harshest": severities[-1],
-            "breaking_point": breaking, "low": ends[0], "high": ends[1],
+            **interval_columns("breaking_point", ends, prefix=""),
         })  # fmt: skip
     frame = pd.DataFrame(lines)
     unharmed = {name: entry.unharmed for name, entry in PERTURBATIONS.items()}

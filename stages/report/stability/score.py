@@ -18,7 +18,7 @@ from stages.report.drawing import label
 from stages.report.items import Figure, Table
 from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import NotRun, Results, some
-from stages.report.tables import number, percent, records, with_interval
+from stages.report.tables import interval_columns, interval_text, number, percent, records, with_interval
 from stages.stability.simplification import breaking_points
 from stages.stability.subject import UNPERTURBED
 
@@ -63,6 +63,17 @@ class Errors:
     def beyond_clean(self) -> "Errors":
         """The Errors less those on the undisturbed objects."""
         return replace(self, values=self.values - self.clean[:, :, None], clean=np.zeros_like(self.clean))
+
+    def counting(self, reference: str) -> np.ndarray:
+        """(p,) boolean: whether a perturbation costs the reference LEAST a case, or more: 0 / 0 says nothing.
+
+        NotRun without the reference.
+        """
+        if reference not in self.methods:
+            message = f"{reference}, the reference of the score, is not among stability.methods"
+            raise NotRun(message, STAGE, runnable=False)
+        sums = self.by_perturbation(self.means(np.ones((1, len(self.objects)))))[0, self.methods.index(reference)]
+        return sums > LEAST * self.severities
 
     def means(self, counts: np.ndarray) -> np.ndarray:
         """(r, m, k): the means over the objects that counts (r, n) name."""
@@ -124,16 +135,11 @@ def _filled(frame: pd.DataFrame, columns: Sequence[str], names: Sequence[Sequenc
 def corruption_errors(errors: Errors, reference: str, counts: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """((r, m, p) errors under each perturbation over those of the reference, the p perturbations that count).
 
-    Errors are means over the objects that counts (r, n) name, summed over the severities. A perturbation that costs the
-    reference nothing (LEAST, a case) is left out: 0 / 0 says nothing. NotRun without the reference.
+    Errors are means over the objects that counts (r, n) name, summed over the severities.
     """
-    if reference not in errors.methods:
-        raise NotRun(f"{reference}, the reference of the score, is not among stability.methods", STAGE, runnable=False)
-    column = errors.methods.index(reference)
-    whole = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0, column]
-    perturbation_ids = np.flatnonzero(whole > LEAST * errors.severities)
-    summed = errors.by_perturbation(errors.means(counts))[..., perturbation_ids]
-    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in perturbation_ids]
+    ids = np.flatnonzero(errors.counting(reference))
+    summed, column = errors.by_perturbation(errors.means(counts))[..., ids], errors.methods.index(reference)
+    return summed / summed[:, column : column + 1], [errors.perturbations[place] for place in ids]
 
 
 def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.DataFrame:
@@ -163,7 +169,7 @@ def _with_ends(name, at, drawn, count):
     """{name and its ends}: at (1, m) and drawn (r, m), of `count` objects."""
     levels = expanded_levels(count) if count > 1 else (np.nan, np.nan)
     ends = np.quantile(drawn, levels, axis=0) if count > 1 else np.full((2, drawn.shape[1]), np.nan)
-    return {name: at[0], f"{name}_low": ends[0], f"{name}_high": ends[1]}
+    return interval_columns(name, (at[0], *ends))
 
 
 GAZE = "gaze"  # the set that tells accuracy and seconds
@@ -183,9 +189,9 @@ def table(results: Results) -> Table:
     text_table = pd.DataFrame([
         {
             "method": label(row.method),
-            "mCE, %": with_interval(row.mce, row.mce_low, row.mce_high, 100, 0),
+            "mCE, %": interval_text(row, "mce", 100, 0),
             **{f"{kind}, %": percent(getattr(row, kind)) for kind in KINDS},
-            "found again, %": with_interval(row.found, row.found_low, row.found_high, 100, 0),
+            "found again, %": interval_text(row, "found", 100, 0),
             "NSS on gaze": number(row.nss, 2) if np.isfinite(row.nss) else "–",
             "seconds": number(row.seconds, 2) if np.isfinite(row.seconds) else "–",
         }
@@ -201,8 +207,8 @@ def breaking(results: Results) -> Table:
     points = pd.DataFrame([
         {"method": method, "perturbation": name, "unit": PERTURBATIONS[name].unit,
          "harshest": [severity for perturbation, severity in errors.cases if perturbation == name][-1],
-         "breaking_point": point, "low": low, "high": high}
-        for (name, method), (point, low, high) in breaking_points(rows[rows["method"] != CHANCE]).items()
+         **interval_columns("breaking_point", ends, prefix="")}
+        for (name, method), ends in breaking_points(rows[rows["method"] != CHANCE]).items()
     ])  # fmt: skip
     points["text"] = [cell(row, PERTURBATIONS[row.perturbation].unharmed) for row in records(points)]
     order = [name for name in frame.sort_values("mce")["method"] if name != CHANCE]
@@ -246,27 +252,18 @@ def _accuracy(results: Results) -> pd.DataFrame:
         return pd.DataFrame(columns=["method", "nss", "seconds"]).astype({"nss": float, "seconds": float})
     rows = results.measured("salient_points", GAZE, metric="nss")
     seconds = attention_seconds(results, GAZE)
-    lines = [
-        dict(zip(("nss", "nss_low", "nss_high"), interval(group["value"]), strict=True)) | {"method": method}
-        for method, group in rows.groupby("method")
-    ]
-    frame = pd.DataFrame(lines)
+    groups = rows.groupby("method")["value"]
+    frame = pd.DataFrame([interval_columns("nss", interval(values)) | {"method": name} for name, values in groups])
     return frame.assign(seconds=frame["method"].map(seconds))
 
 
-def _words(results, rows, errors):
-    dropped = [
-        label(name) for name, sums in zip(errors.perturbations, _of_reference(errors), strict=True) if sums <= LEAST
-    ]
+def _words(results: Results, rows: pd.DataFrame, errors: Errors) -> dict[str, object]:
+    names, counting = np.array([label(name) for name in errors.perturbations]), errors.counting(REFERENCE)
+    dropped = ", ".join(names[~counting])
     return {
         "objects": len(errors.objects), "methods": len(errors.methods), "reference": label(REFERENCE),
-        "perturbations": ", ".join(label(name) for name in errors.perturbations if label(name) not in dropped),
+        "perturbations": ", ".join(names[counting]),
         "protocol": PROTOCOL if rows["dataset"].iloc[0] == BENCHMARK else "",
-        "left_out": f"Without {', '.join(dropped)}, which cost the reference nothing." if dropped else "",
+        "left_out": f"Without {dropped}, which cost the reference nothing." if dropped else "",
         "not_run": results.left_out(STAGE, rows["dataset"].iloc[0]),
     }  # fmt: skip
-
-
-def _of_reference(errors):
-    means = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0]
-    return means[errors.methods.index(REFERENCE)] / errors.severities

@@ -16,7 +16,7 @@ from stages.engine.statistics import breaking_point, interval, lead_left
 from stages.report.drawing import GREY, MARKERS, PALE, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import Results
-from stages.report.tables import grouped, records, signed
+from stages.report.tables import grouped, interval_columns, records, signed
 from stages.touch_stability.trial import CLEAN
 
 from .panels import ACCURACY, Curves, broken, degradation
@@ -86,7 +86,7 @@ def denoised(results: Results) -> Table:
     """Points of accuracy that a denoiser gains, by disturbance and classifier, on the same touches."""
     frame = pd.DataFrame([
         {"perturbation": name, "denoiser": behind.removeprefix("_"), "classifier": words}
-        | dict(zip(("gain", "low", "high"), gain(rows, name, line), strict=True))
+        | interval_columns("gain", gain(rows, name, line), prefix="")
         for behind in list(DENOISERS)[1:]
         for rows, curves in [_curves(results, DENOISED, behind)]
         for name, lines in curves.items()
