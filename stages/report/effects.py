@@ -90,7 +90,7 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
     """(the cause of each invalid pair, number of all pairs) of a claim on one set, before a unit's pairs are averaged.
 
     The number is 0 where no pair is invalid. A statistic of its own pairs by object and target, as
-    stages.report.meshes.levels does.
+    stages.report.meshes.claims does.
     """
     if not claim.checked or claim.stage not in CHECKS:
         return pd.Series(dtype=object), 0
