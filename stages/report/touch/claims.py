@@ -62,7 +62,7 @@ BEFORE_SPLIT = tuple(reading(name, first={"variant": five}, where=TRAINED) for n
 MANY = reading("five times as many combinations", first={"variant": "touches_5_many"},
                second={"variant": "touches_1_many"}, where=TRAINED)  # fmt: skip
 JOINED = tuple(  # of all classifiers
-    reading(f"without the SVM, {base.name}", **base.changes | {"where": TRAINED | {"classifier": ALIVE}})
+    reading(f"without the SVM, {base.name}", **{**base.changes, "where": TRAINED | {"classifier": ALIVE}})
     for base in (*BEFORE_SPLIT, MANY)
 )
 MORE_THAN_KNN = reading("more than kNN does", contrast=({"classifier": "deep_learning"}, {"classifier": "knn"}))
@@ -83,9 +83,11 @@ SIXTY = tuple(
 )  # fmt: skip
 FIFTEEN_SELECTED = reading("without the SVM, 15 imprints of each object", where={"classifier": ALIVE} | TRAINED,
                            first={"variant": "first_15_selected"}, second=FEW)  # fmt: skip
-PRINTED: tuple[Side, Side, tuple[Reading, ...], tuple[Reading, ...]] = SCALE, FEW, SCALED, SIXTY
+# Scaling, imprints of each object, and the readings of both.
+Protocol = tuple[dict[str, Any], dict[str, Any], tuple[Reading, ...], tuple[Reading, ...]]
+PRINTED: Protocol = SCALE, FEW, SCALED, SIXTY
 # Of our models and of what the thesis does not claim: nothing leaks from the test part.
-OURS = TRAINED, PLAIN, (reading("z-transform of all data beforehand", where=SCALE), RANGE), (FIFTEEN,)
+OURS: Protocol = TRAINED, PLAIN, (reading("z-transform of all data beforehand", where=SCALE), RANGE), (FIFTEEN,)
 PHRASES = {
     ("method", MODEL): "our glance", ("method", "touch"): "places whose imprint recurs",
     ("method", EQUAL): "the thesis's attention (equal weights)",
