@@ -144,16 +144,6 @@ SIGNS = {
 
 
 @pytest.mark.parametrize("signs", SIGNS)
-@pytest.mark.slow
-def test_normals_with_wrong_sides_are_estimated_anew_with_a_warning(signs, tmp_path):
-    (tmp_path / "scan.xyz").write_bytes(text(np.hstack([BALL, BALL * SIGNS[signs][:, None]])))
-    with pytest.warns(UserWarning, match=r"^scan.xyz: \d+ % of its normals look to the wrong side, so normals are est"):
-        mesh = load(tmp_path / "scan.xyz", up="z")
-    assert mesh.watertight and np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max() < 0.02
-    assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) > 0.9).all()
-
-
-@pytest.mark.parametrize("signs", SIGNS)
 def test_a_ply_and_a_pcd_without_right_normals_warn_too(signs, tmp_path, monkeypatch):
     monkeypatch.setattr(clouds, "surface_of", lambda cloud: SHEET if cloud.normals is None else None)
     normals = BALL * SIGNS[signs][:, None]

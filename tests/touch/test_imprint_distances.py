@@ -185,13 +185,6 @@ def test_no_column_slips_between_faces():
     assert np.allclose(distances_at(Surface(mesh), lifted, axes, (1, 1), 0.1), 0.05, atol=1e-12)
 
 
-def test_an_array_is_measured_alike_alone_and_among_others():
-    mesh, vertices = shaped("ring"), np.arange(0, 2000, 400)
-    many = distances(mesh, vertices, (32, 32), 0.008)
-    for vertex, imprint in zip(vertices, many, strict=True):
-        assert np.array_equal(distances(Surface(mesh), [vertex], (32, 32), 0.008)[0], imprint)
-
-
 def test_the_order_of_the_faces_changes_no_bit():
     mesh = shaped("ring")
     shuffled = Mesh(mesh.vertices, np.random.default_rng(2).permutation(mesh.faces))
