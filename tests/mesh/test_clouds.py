@@ -144,7 +144,7 @@ SIGNS = {
 
 
 @pytest.mark.parametrize("signs", SIGNS)
-def test_a_ply_and_a_pcd_without_right_normals_warn_too(signs, tmp_path, monkeypatch):
+def test_wrong_normals_of_every_format_are_estimated_anew_with_a_warning(signs, tmp_path, monkeypatch):
     monkeypatch.setattr(clouds, "surface_of", lambda cloud: SHEET if cloud.normals is None else None)
     normals = BALL * SIGNS[signs][:, None]
     made = PointCloud.from_points(np.hstack([BALL, normals]), ("x", "y", "z", "nx", "ny", "nz"), (np.float32,) * 6)
@@ -153,8 +153,11 @@ def test_a_ply_and_a_pcd_without_right_normals_warn_too(signs, tmp_path, monkeyp
         f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")
     )
     (tmp_path / "scan.ply").write_bytes(header.encode() + b"end_header\n" + text(np.hstack([BALL, normals])))
-    for name in ("scan.pcd", "scan.ply"):
-        with pytest.warns(UserWarning, match=f"^{name}: .* % of its normals look to the wrong side"):
+    (tmp_path / "scan.xyz").write_bytes(text(np.hstack([BALL, normals])))
+    for name in ("scan.pcd", "scan.ply", "scan.xyz"):
+        with pytest.warns(
+            UserWarning, match=rf"^{name}: \d+ % of its normals look to the wrong side, so normals are est"
+        ):
             assert load(tmp_path / name, up="z").faces.tolist() == SHEET.faces.tolist()
 
 
