@@ -120,34 +120,6 @@ def test_the_meshes_are_not_written_over(folder, file):
         run([str(folder.parent), "--faces", "300", "--out", str(folder.parent / "out")])
 
 
-def scene(path, painted):
-    """A GLB of a ball over a box, its nodes named; painted: with a plain material each, else with none."""
-    ball, box = trimesh.creation.icosphere(3), trimesh.creation.box().subdivide().subdivide()
-    if painted:
-        for part, colour in ((ball, [200, 30, 30, 255]), (box, [30, 30, 200, 255])):
-            material = trimesh.visual.material.PBRMaterial(baseColorFactor=colour)
-            part.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(part.vertices), 2)), material=material)
-    graph = trimesh.Scene()
-    graph.add_geometry(box, node_name="stand", geom_name="g1")
-    graph.add_geometry(ball, node_name="vase", transform=trimesh.transformations.translation_matrix([0, 2, 0]))
-    graph.export(path)
-
-
-def named_heights(path):
-    """{name of a node: mean height of its faces}."""
-    return {part.metadata["node"]: part.triangles_center[:, 1].mean() for part in trimesh.load(path).dump()}
-
-
-@pytest.mark.parametrize("painted", [True, False])
-@pytest.mark.slow
-def test_the_nodes_of_a_scene_keep_their_names_and_places(tmp_path, painted):
-    scene(tmp_path / "two.glb", painted)
-    run([str(tmp_path / "two.glb"), "--faces", "400", "--out", str(tmp_path / "small.glb")])
-    before, after = named_heights(tmp_path / "two.glb"), named_heights(tmp_path / "small.glb")
-    assert set(after) == {"stand", "vase"} and after == pytest.approx(before, abs=0.1)
-    assert len(load(tmp_path / "small.glb").faces) == 400
-
-
 def test_faces_go_with_the_closest_face(file):
     low, high = egg(2), egg(2, at=(0, 0, 5.0))
     joined = Mesh(np.r_[low.vertices, high.vertices], np.r_[low.faces, high.faces + len(low.vertices)])

@@ -18,13 +18,13 @@ from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.polygons import refined
 from haptic_glance.touch.press import as_shown
+from tests.shapes import ball_mesh
 
 
 @pytest.fixture
 def ball():
     """A ball of 320 faces."""
-    sphere = trimesh.creation.icosphere(2)
-    return Mesh(sphere.vertices, sphere.faces)
+    return ball_mesh(2)
 
 
 def doubled(mesh):
