@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.lod import InfeasibleTarget, colour_error, fast, simplify
+from haptic_glance.lod import InfeasibleTarget, colour_error, fast, metro, simplify
 from haptic_glance.lod.attribute_quadrics import attribute_quadrics
 from haptic_glance.lod.attributes import closest
 from haptic_glance.lod.kernels.collapse import decimate
 from haptic_glance.mesh.mesh import Mesh, Texture
 
-from .conftest import GREY, centres, sheet, tube
+from .conftest import GREY, ball, centres, grey, sheet, tube
 
 COLORS, UV = {"colors": 1.0}, {"uv": 1.0}
 RAMP = np.dstack([*np.meshgrid(np.arange(256), 255 - np.arange(256)), *2 * [np.full((256, 256), 255)]]).astype(np.uint8)
@@ -40,6 +40,15 @@ def test_faces_gather_at_a_painted_step_of_a_flat_square():
         return np.mean(np.ptp(around, axis=0) > 0)
 
     assert share_beside(seeing) > 3 * share_beside(blind)
+
+
+def test_smooth_colours_come_out_closer_and_the_shape_stays():
+    plain = ball(5, radius=1.0)
+    x, y, _ = plain.vertices.T
+    mesh = Mesh(plain.vertices, plain.faces, grey(127 * (1 + np.sin(6 * x) * np.cos(5 * y))))
+    blind, seeing = simplify(mesh, 2000), simplify(mesh, 2000, attributes={"colors": 0.1})
+    assert colour_error(mesh, seeing) < colour_error(mesh, blind) / 2 < 2.5
+    assert metro(mesh, seeing)["mean"] < 1.5 * metro(mesh, blind)["mean"]
 
 
 def test_what_is_linear_costs_nothing():
