@@ -16,6 +16,7 @@ from haptic_glance.__main__ import run
 from haptic_glance.lod.export import write_any
 from haptic_glance.studio.specimen import open_content, open_file
 from haptic_glance.touch.layout import Layout
+from tests.shapes import flat_grid
 
 COUNT = 5
 
@@ -360,11 +361,8 @@ def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch)
 
 def _sheet():
     """A flat sheet of 20 x 2 squares, nearly all of it border."""
-    x, y = np.meshgrid(np.arange(21.0), np.arange(3.0))
-    vertices = np.stack([x.ravel(), y.ravel(), 0.1 * np.sin(x.ravel())], axis=1)
-    corner = (np.arange(20) + 21 * np.arange(2)[:, None]).ravel()
-    halves = (corner, corner + 1, corner + 22), (corner, corner + 22, corner + 21)
-    return Mesh(vertices, np.concatenate([np.stack(half, axis=1) for half in halves]))
+    flat = flat_grid(21, 3)
+    return Mesh(flat.vertices + [[0, 0, 0.1]] * np.sin(flat.vertices[:, :1]), flat.faces)
 
 
 def test_one_vertex_may_be_kept_and_borders_that_are_no_truth_value_are_named(body):

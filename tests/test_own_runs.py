@@ -11,22 +11,14 @@ import trimesh
 
 from haptic_glance.base.extras import MODULES
 from haptic_glance.base.files import write_text
+from tests.test_package import without
 
 ROOT = Path(__file__).parents[1]
 OTHERS = sorted(
     {module for extra in MODULES.keys() - {"pipeline", "pictures"} for module in MODULES[extra]} - {"cloudpickle"}
 )
 # An interpreter without what [pipeline] does not bring, but for what joblib has a copy of; its children inherit that.
-BLOCKED = f"""
-import sys
-
-class Missing:
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {OTHERS}:
-            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
-
-sys.meta_path.insert(0, Missing())
-"""
+BLOCKED = without(OTHERS)
 # `dvc repro` runs the commands of its stages in its own process here, so that each package is imported once. Digests of
 # code, pixels and resamples take long; other tests check them.
 REPRO = """

@@ -278,28 +278,3 @@ def test_large_units_keep_texture_coordinates(tmp_path):
     write_any(tmp_path / "large.obj", replace(mesh, vertices=1e8 * mesh.vertices))
     again = load(tmp_path / "large.obj")
     assert again.texture is not None and np.abs(again.texture.uv - mesh.texture.uv).max() < 1e-6
-
-
-@pytest.mark.slow
-def test_a_free_boundary_is_simplified_and_what_forbids_it_is_named(tmp_path, capsys):
-    side = np.linspace(0, 10, 21)
-    x, y = (axis.ravel() for axis in np.meshgrid(side, side))
-    ids = np.arange(441).reshape(21, 21)
-    a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
-    sheet = Mesh(np.c_[x, y, np.sin(x)], np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]))
-    write_any(tmp_path / "sheet.obj", sheet)
-    command_line = [
-        str(tmp_path / "sheet.obj"),
-        "--method",
-        "qem",
-        "--out",
-        str(tmp_path / "out.obj"),
-        "--faces",
-        "100",
-    ]
-    with pytest.raises(ValueError, match="80 boundary edges are frozen: .*--free-borders"):
-        run(command_line)
-    with pytest.raises(ValueError, match="--free-borders has no effect with --backend pymeshlab"):
-        run([*command_line, "--free-borders", "--backend", "pymeshlab"])
-    assert run([*command_line, "--free-borders"]) == 0
-    assert len(load(tmp_path / "out.obj").faces) <= 100 and "border edges kept" not in capsys.readouterr().out

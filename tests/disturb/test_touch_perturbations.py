@@ -8,7 +8,6 @@ import trimesh
 
 from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS, Touches, rotations_about, snap_with_blended_normals
 from haptic_glance.mesh.mesh import Mesh
-from stages.engine.statistics import breaking_point, lead_left
 
 DISTURBING = [name for name, known in TOUCH_PERTURBATIONS.items() if known.apply]
 HARSH = {
@@ -111,11 +110,3 @@ def test_an_object_with_another_axis_up_is_refused(mesh):
 
 def test_rotations_turn_by_the_right_hand():
     assert np.allclose(rotations_about(np.array([0, 0, 1.0]), np.float64(90.0)) @ [1, 0, 0], [0, 1, 0])
-
-
-def test_half_of_the_lead_is_where_it_breaks():
-    left = lead_left([0.9, 0.7, 0.5], clean=0.9, chance=0.5)
-    assert np.allclose(left, [1, 0.5, 0])
-    assert breaking_point([1, 2, 3], [1.0, 0.75, 0.25], 0) == pytest.approx(2.5)
-    assert breaking_point([0.8, 0.4], [0.8, 0.2], 1.0) == pytest.approx(0.6)
-    assert np.isnan(breaking_point([1, 2], [0.9, 0.6], 0))

@@ -3,31 +3,23 @@
 import numpy as np
 import pandas as pd
 import pytest
-import trimesh
 
 from haptic_glance.base.files import write_arrays, write_mesh, write_table
 from haptic_glance.lod.scene import build_lod_chain
 from haptic_glance.lod.scene.chain import finest
-from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.face_needs import Params
 from stages.face_needs.__main__ import run, summary
 from stages.face_needs.need import accuracies, coarsest, differences, felt, seen
 from stages.scene.compare import write_chain
+from tests.scene.conftest import bumpy
 
 SETTINGS = Params([0.5, 2.0], 3, [60, 80], 40.0, 1.0, "glance", 12, [16, 16], 0.01, [0.02, 0.1], 0.02, 3, 2)
 
 
-def ball(bumps=0.05, seed=0):
-    """A closed ball of radius 0.5 with bumps."""
-    sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
-    waves = np.sin(sphere.vertices @ np.random.default_rng(seed).normal(size=(3, 3)) * 5).sum(axis=1)
-    return Mesh(sphere.vertices * (1 + bumps * waves)[:, None], sphere.faces)
-
-
 @pytest.fixture(scope="module")
 def mesh():
-    return ball()
+    return bumpy(0)
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +76,7 @@ def test_an_object_is_known_until_its_model_is_that_of_another_and_every_place_i
 @pytest.mark.slow
 def test_the_stage_has_a_row_an_object_task_and_condition(make_workspace, chain, mesh):
     workspace = make_workspace({"face_needs": vars(SETTINGS)})
-    meshes = {"one": mesh, "two": ball(seed=1)}
+    meshes = {"one": mesh, "two": bumpy(1)}
     for name, shape in meshes.items():
         write_mesh(workspace.data / f"meshes/{name}.npz", shape)
         write_chain(workspace.data / "scene/levels" / name, "ours", chain if name == "one" else build_lod_chain(shape))

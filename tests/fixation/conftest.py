@@ -5,10 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
-
-
-def as_mesh(shape):
-    return Mesh(shape.vertices, shape.faces)
+from tests.shapes import mesh_of
 
 
 @pytest.fixture(scope="session")
@@ -24,9 +21,9 @@ def shapes():
     faces = np.concatenate([np.stack([corner, around, diagonal], 1), np.stack([corner, diagonal, along], 1)])
     inside = faces[(faces // 30).max(axis=1) - (faces // 30).min(axis=1) <= 1]
     return {
-        "ball": as_mesh(ball),
+        "ball": mesh_of(ball),
         "egg": Mesh(ball.vertices * [1, 0.3, 0.3], ball.faces),
-        "torus": as_mesh(trimesh.creation.torus(0.35, 0.12, major_sections=64, minor_sections=32)),
+        "torus": mesh_of(trimesh.creation.torus(0.35, 0.12, major_sections=64, minor_sections=32)),
         "tube": Mesh(tube, faces),
         "flat": Mesh(flat, inside),
     }

@@ -9,8 +9,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from haptic_glance import metro, normalise, press, saliency, simplify
-from haptic_glance.lod.topology import faults
+from haptic_glance import metro, normalise, press, saliency
 from haptic_glance.mesh import clean
 from haptic_glance.mesh.mesh import Mesh
 
@@ -93,21 +92,6 @@ def test_cleaning_keeps_vertices_and_leaves_no_degenerate_or_duplicate_face(mesh
     again, notes = clean(cleaned)
     np.testing.assert_array_equal(again.faces, cleaned.faces)
     assert not notes
-
-
-@pytest.mark.slow
-@examples(8)
-@given(mesh=meshes())
-def test_simplifying_gives_fewer_faces_and_no_new_fault(mesh):
-    mesh = usable(mesh)
-    target = max(len(mesh.faces) // 2, 1)
-    try:
-        simple = simplify(mesh, target)
-    except ValueError as error:
-        assert str(error)
-        return
-    assert 0 < len(simple.faces) <= target and np.isfinite(simple.vertices).all()
-    assert not faults(simple).added(faults(mesh))
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ from haptic_glance.gallery.exhibit import exhibit
 from haptic_glance.gallery.page import turnable
 from haptic_glance.lod import vertex_errors
 from haptic_glance.mesh import load, rotate_to_z_up
+from tests.shapes import flat_grid
 
 pytestmark = pytest.mark.slow
 
@@ -155,10 +156,9 @@ def test_json_lists_what_was_made_and_a_level_that_is_infeasible_is_named(scans)
 
 
 def test_a_boundary_that_leaves_too_many_faces_is_simplified_too(scans):
-    u, v = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 3, 41), np.linspace(0, 0.4, 5)))
-    corner = np.arange(40)[:, None] + 41 * np.arange(4)
-    faces = np.stack([corner, corner + 1, corner + 41, corner + 1, corner + 42, corner + 41], axis=-1).reshape(-1, 3)
-    trimesh.Trimesh(np.stack([np.cos(u), np.sin(u), v], axis=1), faces).export(scans / "strip.ply")
+    strip = flat_grid(41, 5)
+    u, v = strip.vertices[:, 0] * 3 / 40, strip.vertices[:, 1] / 10
+    trimesh.Trimesh(np.stack([np.cos(u), np.sin(u), v], axis=1), strip.faces).export(scans / "strip.ply")
     _, page, _, _ = gallery(scans / "strip.ply", scans.parent / "out", "--levels", "25%")
     (item,) = page_data(page)["objects"]
     assert item["faces"] == 320 and [level["faces"] for level in item["ladders"]["glance"]["levels"]] == [80]

@@ -164,19 +164,6 @@ def test_side_is_held_out_of_all_objects_alike():
         assert np.linalg.norm(known[:, None] - side, axis=2).min() > 0.1
 
 
-@pytest.mark.slow
-def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
-    random = np.random.default_rng(0)
-    places = random.random((400, 3))
-    labels = np.repeat([0, 1], 200)
-    felt = np.hstack([places, places**2, np.sin(9 * places), np.cos(9 * places)])  # tells the place, not the object
-    shaken = felt + 1e-3 * random.normal(size=felt.shape)
-    differing = places + np.where(labels, 0.5, 0)[:, None] * (places[:, :1] > 0.5)  # objects differ on one side alone
-    prepared = protocol.prepare(np.hstack([shaken, differing]), labels, 6, 0, places, 0.3)
-    rows, _ = protocol.evaluate_prepared(prepared, 2, "knn", 0)
-    assert mean(rows, "random_fewer") > mean(rows, "regions") + 0.05
-
-
 def test_located_samples_keep_the_place_behind_the_components():
     samples, labels = noise(120, 41)
     places = np.random.default_rng(1).normal(size=(120, 3)) * 1e-3

@@ -4,11 +4,7 @@ import numpy as np
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh, Texture
-
-
-def mesh_of(shape):
-    """The Mesh of a shape of trimesh."""
-    return Mesh(shape.vertices, shape.faces)
+from tests.shapes import mesh_of
 
 
 def ball(subdivisions=4, radius=0.5):
@@ -58,13 +54,6 @@ def centres(mesh):
 def nothing(mesh):
     """(m,) no face is frozen."""
     return np.zeros(len(mesh.faces), dtype=bool)
-
-
-def together(*meshes):
-    """Several meshes as one, each of its own vertices."""
-    offsets = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
-    faces = [mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)]
-    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
 
 
 GREY = np.full((1, 1, 4), 128, np.uint8)  # a picture of one pixel

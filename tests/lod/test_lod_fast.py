@@ -19,6 +19,7 @@ from haptic_glance.lod.kernels.collapse import decimate
 from haptic_glance.lod.kernels.mesh import before
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
+from tests.shapes import together
 
 from .conftest import ball, bumpy, nothing, sheet, subdivided_box
 
@@ -160,7 +161,7 @@ def test_frozen_faces_and_the_boundary_stay(small):
 
 def test_copies_at_one_place_stay_apart(small):
     layer = sheet(40)
-    two = Mesh(np.r_[layer.vertices, layer.vertices], np.r_[layer.faces, layer.faces + len(layer.vertices)])
+    two = together(layer, layer)
     thin, _, _ = blocks.thinned(two, 0.1, nothing(two), None)
     assert topology(thin.faces) == topology(two.faces) and topology(thin.faces).components == 2
 

@@ -6,8 +6,9 @@ import pytest
 from haptic_glance.lod import frozen_faces, neighbourhoods
 from haptic_glance.lod.neighbourhood import edge_lengths
 from haptic_glance.mesh.mesh import Mesh
+from tests.shapes import together
 
-from .conftest import sheet, together
+from .conftest import sheet
 
 
 def scaled(mesh, size, place=0):

@@ -13,8 +13,9 @@ from haptic_glance.lod import (
 )
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
+from tests.shapes import together
 
-from .conftest import ball, sheet, together, torus
+from .conftest import ball, sheet, torus
 
 
 def as_triangles(mesh, faces=slice(None)):

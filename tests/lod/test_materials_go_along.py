@@ -19,7 +19,7 @@ from haptic_glance.lod.export import write_any
 from haptic_glance.lod.task import repaired
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
-from haptic_glance.mesh.gltf import as_glb
+from haptic_glance.mesh.gltf import as_glb, joined
 from haptic_glance.mesh.materials import bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh, Texture
 
@@ -75,10 +75,7 @@ def rewritten(path, change):
     """Changes the JSON part of a GLB."""
     tree, binary = tree_of(path)
     change(tree)
-    head = json.dumps(tree).encode()
-    head += b" " * (-len(head) % 4)
-    parts = len(head).to_bytes(4, "little") + b"JSON" + head + len(binary).to_bytes(4, "little") + b"BIN\0" + binary
-    path.write_bytes(b"glTF" + (2).to_bytes(4, "little") + (12 + len(parts)).to_bytes(4, "little") + parts)
+    path.write_bytes(joined(tree, bytearray(binary)))
 
 
 @pytest.fixture

@@ -10,10 +10,7 @@ from haptic_glance.lod.export import write_any
 from haptic_glance.lod.topology import shading
 from haptic_glance.mesh import load
 from haptic_glance.mesh.mesh import Mesh
-
-
-def mesh_of(shape):
-    return Mesh(shape.vertices, shape.faces)
+from tests.shapes import mesh_of
 
 
 def test_a_ball_is_smooth_and_keeps_its_vertices():

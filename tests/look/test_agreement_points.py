@@ -7,12 +7,11 @@ import trimesh
 from haptic_glance.look.agreement import gaze_peaks, interest_point_errors
 from haptic_glance.look.agreement.geodesic import Geodesics
 from haptic_glance.mesh.mesh import Mesh
+from tests.shapes import flat_grid, mesh_of
 
-from .conftest import as_mesh, flat_grid
-
-BALL = as_mesh(trimesh.creation.icosphere(3, radius=0.5))
+BALL = mesh_of(trimesh.creation.icosphere(3, radius=0.5))
 ONE_FACE = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-TWO_BOXES = as_mesh(
+TWO_BOXES = mesh_of(
     trimesh.util.concatenate([trimesh.creation.box(), trimesh.creation.box().apply_translation([3, 0, 0])])
 )
 
@@ -127,7 +126,7 @@ def test_truth_points_ignore_vertex_order_scale_and_unit_even_with_ties():
 
 
 def test_peaks_of_few_faces_and_of_vertices_in_no_face():
-    points, weights = gaze_peaks(as_mesh(trimesh.creation.box()), np.arange(8) == 5, radius=0.01)
+    points, weights = gaze_peaks(mesh_of(trimesh.creation.box()), np.arange(8) == 5, radius=0.01)
     assert points.tolist() == [5] and weights == pytest.approx([1])  # no edge is as short as the radius
     assert gaze_peaks(ONE_FACE, [0.9, 1.0, 0.2], radius=0.01)[0].tolist() == [1]  # vertex 0 is below its neighbour
     lone = Mesh(np.r_[BALL.vertices, [[2, 2, 2]]], BALL.faces)

@@ -13,13 +13,12 @@ from haptic_glance.look.channels.surface import nearest_corners
 from haptic_glance.look.channels.symmetry import shape_symmetries, symmetric_points
 from haptic_glance.look.views import Viewpoint, render
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh, lopsided
+from tests.shapes import lopsided, mesh_of
 
 SIZE = (300, 400)
-BOX = as_mesh(trimesh.creation.box((0.6, 0.42, 0.24)))
-CONE = as_mesh(trimesh.creation.revolve([[0, -0.4], [0.3, -0.4], [0.15, 0], [0, 0.4]], sections=48))
-SPHERE = as_mesh(trimesh.creation.icosphere(subdivisions=3))
+BOX = mesh_of(trimesh.creation.box((0.6, 0.42, 0.24)))
+CONE = mesh_of(trimesh.creation.revolve([[0, -0.4], [0.3, -0.4], [0.15, 0], [0, 0.4]], sections=48))
+SPHERE = mesh_of(trimesh.creation.icosphere(subdivisions=3))
 
 
 @functools.cache
@@ -31,7 +30,7 @@ def mirrored():
 
 
 def test_curvature_of_a_sphere_is_one_over_r_and_of_a_flat_mesh_nothing():
-    curvature = mean_curvature(as_mesh(trimesh.creation.icosphere(subdivisions=4, radius=0.4)))
+    curvature = mean_curvature(mesh_of(trimesh.creation.icosphere(subdivisions=4, radius=0.4)))
     assert np.median(curvature) == pytest.approx(2.5, rel=0.01)
     np.testing.assert_allclose(curvature, 2.5, rtol=0.09)
     grid = trimesh.creation.box((1, 1, 0)).subdivide().subdivide()
@@ -39,7 +38,7 @@ def test_curvature_of_a_sphere_is_one_over_r_and_of_a_flat_mesh_nothing():
 
 
 def test_curvature_stands_slivers_and_noise():
-    smooth = as_mesh(trimesh.creation.uv_sphere(radius=0.4, count=[200, 24]))
+    smooth = mesh_of(trimesh.creation.uv_sphere(radius=0.4, count=[200, 24]))
     assert np.quantile(np.abs(mean_curvature(smooth) / 2.5 - 1), 0.95) < 0.15
     ball = trimesh.creation.icosphere(subdivisions=5, radius=0.4)
     noise = np.random.default_rng(0).normal(0, 0.0005, (len(ball.vertices), 1))
@@ -101,7 +100,7 @@ def test_a_lopsided_shape_has_no_symmetry_but_its_strongest_plane_and_axis_count
 
 @pytest.mark.slow
 def test_a_box_has_three_planes_and_a_cone_and_a_cylinder_one_axis_in_either_setting_and_a_sphere_nothing():
-    tin = as_mesh(trimesh.creation.cylinder(0.2, 1.0, sections=64))
+    tin = mesh_of(trimesh.creation.cylinder(0.2, 1.0, sections=64))
     for strongest in (False, True):
         normals = np.abs([normal for normal, _, _ in shape_symmetries(BOX, strongest).planes])
         np.testing.assert_allclose(normals[normals.argmax(axis=1).argsort()], np.eye(3), atol=0.02)

@@ -10,12 +10,11 @@ from haptic_glance.look.channels import CHANNELS, conspicuity
 from haptic_glance.look.channels.channels import OTHERS
 from haptic_glance.look.views import Viewpoint, render
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh, lopsided
+from tests.shapes import lopsided, mesh_of
 
 SIZE = (300, 400)
-BALL = as_mesh(trimesh.creation.icosphere(subdivisions=3, radius=0.4))
-BOX = as_mesh(trimesh.creation.box((0.6, 0.4, 0.3)))
+BALL = mesh_of(trimesh.creation.icosphere(subdivisions=3, radius=0.4))
+BOX = mesh_of(trimesh.creation.box((0.6, 0.4, 0.3)))
 FLAT = trimesh.creation.annulus(0.1, 0.4, height=0.1)
 TRIANGLE = Mesh([[0, -0.4, -0.3], [0, 0.4, -0.3], [0, 0, 0.4]], [[0, 1, 2]])
 ODD = {

@@ -15,8 +15,7 @@ from haptic_glance.look.glance.features import features, fullness, relief, symme
 from haptic_glance.look.glance.samples import averaging, nearest, object_axes
 from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh.mesh import unit
-
-from .conftest import as_mesh
+from tests.shapes import mesh_of
 
 TYPICAL = {  # deviation of each feature, from 33 objects: the published weights were learned with it
     "rank": 0.29, "middle": 0.31, "upward": 0.53, "upward_high": 0.098, "seen": 0.11, "above": 0.16,
@@ -48,7 +47,7 @@ def spacing_of(samples):
 
 @pytest.fixture(scope="module")
 def few() -> Samples:
-    return samples_of_mesh(as_mesh(bean()), 400)
+    return samples_of_mesh(mesh_of(bean()), 400)
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +108,7 @@ def test_relief_is_how_far_a_point_stands_out_of_one_and_of_six_averages(few, de
 
 @pytest.mark.slow
 def test_fullness_is_the_surface_in_a_gaussian_over_a_disc():
-    samples = samples_of_mesh(as_mesh(bean()), 2000)
+    samples = samples_of_mesh(mesh_of(bean()), 2000)
     local = sized(samples)
     squared = ((local[:, None] - local[None]) ** 2).sum(axis=2)
     for radius in (0.12, 0.24):
@@ -211,7 +210,7 @@ def test_rounding_moves_no_place_into_another_bin_and_a_symmetric_surface_stays_
 
 
 def test_each_feature_is_its_formula():
-    samples = samples_of_mesh(as_mesh(bean()), 3000)
+    samples = samples_of_mesh(mesh_of(bean()), 3000)
     columns, (seen, side, above, below) = features(samples), visibility(samples)
     local = sized(samples)
     height, distance, normals = local[:, 2], np.linalg.norm(local, axis=1), samples.normals @ samples.axes.T
@@ -236,8 +235,8 @@ def test_each_feature_is_its_formula():
 
 @pytest.mark.slow
 def test_a_feature_is_scaled_to_deviation_one_but_never_up_to_more_than_twice_a_typical_objects():
-    for samples in (samples_of_mesh(as_mesh(trimesh.creation.icosphere(4, radius=0.5)), 2000),
-                    samples_of_mesh(as_mesh(bean()), 2000)):  # fmt: skip
+    for samples in (samples_of_mesh(mesh_of(trimesh.creation.icosphere(4, radius=0.5)), 2000),
+                    samples_of_mesh(mesh_of(bean()), 2000)):  # fmt: skip
         scaled = standardised(samples)
         for name, values in features(samples).items():
             mean = samples.shares @ values

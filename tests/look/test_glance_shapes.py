@@ -13,8 +13,7 @@ from haptic_glance.look.points.reasons import contributions, reasons
 from haptic_glance.look.weights.weights import GLANCES
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh, ball_mesh, raised_ball
+from tests.shapes import ball_mesh, mesh_of, raised_ball
 
 TURN = trimesh.transformations.rotation_matrix(np.radians(37), [0, 0, 1])[:3, :3]
 
@@ -42,7 +41,7 @@ CHANGES = {
 
 @functools.cache
 def shape(name):
-    return normalise(as_mesh(SHAPES[name]))
+    return normalise(mesh_of(SHAPES[name]))
 
 
 @functools.cache
@@ -73,14 +72,14 @@ def rack() -> Mesh:
     sheets = [trimesh.creation.box((6.0, 4.0, 0.004)).apply_translation([2.5, 1.5, z]) for z in (-0.3, 0.3)]
     flag = Mesh([(0, 0, 0.4), (1, 0, 0.4), (1, 0, 1.1), (0, 0, 1.1)], [(0, 1, 2), (0, 2, 3), (2, 1, 0), (3, 2, 0)])
     solids = [solid.subdivide_to_size(0.4) for solid in rods + sheets]
-    return normalise(as_mesh(trimesh.util.concatenate([*solids, trimesh.Trimesh(flag.vertices, flag.faces)])))
+    return normalise(mesh_of(trimesh.util.concatenate([*solids, trimesh.Trimesh(flag.vertices, flag.faces)])))
 
 
 @pytest.mark.parametrize(
     "mesh",
     [
-        as_mesh(trimesh.creation.cylinder(0.3, 1)),
-        as_mesh(trimesh.creation.box((1, 0.6, 0.3)).subdivide_to_size(0.2)),
+        mesh_of(trimesh.creation.cylinder(0.3, 1)),
+        mesh_of(trimesh.creation.box((1, 0.6, 0.3)).subdivide_to_size(0.2)),
         rack(),
     ],
     ids=["cylinder", "box", "rack"],
@@ -122,12 +121,12 @@ def test_samples_do_not_depend_on_the_order_of_a_cloud_nor_on_the_triangles():
 
 @pytest.mark.slow
 def test_equal_places_are_named_equivalent():
-    corners = detect(as_mesh(trimesh.creation.box((0.8, 0.5, 0.3))), count=6)
+    corners = detect(mesh_of(trimesh.creation.box((0.8, 0.5, 0.3))), count=6)
     assert corners.ties[:4].tolist() == [0, 0, 0, 0] and corners.ties[4] > 0
-    ball = detect(as_mesh(trimesh.creation.uv_sphere(count=[33, 64])), count=4)
+    ball = detect(mesh_of(trimesh.creation.uv_sphere(count=[33, 64])), count=4)
     assert ball.ties.tolist() == [0, 0, 0, 0]
     halves = [trimesh.creation.icosphere(3).apply_translation([x, 0, 0]) for x in (-1.5, 1.5)]
-    assert detect(as_mesh(trimesh.util.concatenate(halves)), count=2).ties.tolist() == [0, 0]
+    assert detect(mesh_of(trimesh.util.concatenate(halves)), count=2).ties.tolist() == [0, 0]
     animals = unchanged("animal", "glance")
     assert animals.ties[0] == 0 and animals.ties[2] > 0
     assert detect(shape("animal"), "random", 3).ties is None
@@ -137,7 +136,7 @@ def test_equal_places_are_named_equivalent():
 @pytest.mark.slow
 def test_little_to_look_at_has_an_answer_without_a_warning():
     face = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
-    for mesh in (face, as_mesh(trimesh.creation.box((1, 1, 0)))):
+    for mesh in (face, mesh_of(trimesh.creation.box((1, 1, 0)))):
         for method in GLANCES:
             detection = detect(mesh, method, 2)
             assert (

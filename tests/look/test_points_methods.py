@@ -18,8 +18,7 @@ from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.touch import Surface, press_at
 from haptic_glance.touch.surface import sensor_axes
-
-from .conftest import as_mesh, ball_mesh, flat_grid, raised_ball
+from tests.shapes import ball_mesh, flat_grid, mesh_of, raised_ball
 
 
 @pytest.mark.parametrize(
@@ -126,7 +125,7 @@ def test_small_arrays_feel_what_the_sensor_feels(bumpy):
 
 
 def test_places_are_spread_by_area_over_both_sides_of_a_sheet():
-    samples = samples_of_mesh(as_mesh(trimesh.creation.box((0.8, 0.6, 0.001))))
+    samples = samples_of_mesh(mesh_of(trimesh.creation.box((0.8, 0.6, 0.001))))
     normals = samples.normals[spread(samples, 400)]
     assert abs((normals[:, 2] > 0.9).mean() - 0.5) < 0.03 and (np.abs(normals[:, 2]) > 0.9).mean() > 0.95
 

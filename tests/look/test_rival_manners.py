@@ -19,8 +19,7 @@ from haptic_glance.look.rivals import (
     tasse,
 )
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import ball_mesh, flat_grid, raised_ball
+from tests.shapes import ball_mesh, flat_grid, raised_ball
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from haptic_glance.look.rivals.leifman import spin_images
 from haptic_glance.look.rivals.samples import samples, unit_mesh
 from haptic_glance.look.rivals.tasse import fpfh
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import ball_mesh, raised_ball
+from tests.shapes import ball_mesh, raised_ball
 
 TURN = Rotation.from_euler("xyz", [20, 30, 50], degrees=True).as_matrix()
 

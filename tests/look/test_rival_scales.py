@@ -12,13 +12,12 @@ from haptic_glance.look.rivals.maxima import local_maxima
 from haptic_glance.look.rivals.samples import gaussian_average, gaussian_sums, subdivide, surface_elements
 from haptic_glance.look.rivals.sift import scale_peaks, splat
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh, ball_mesh, flat_grid, raised_ball
+from tests.shapes import ball_mesh, flat_grid, mesh_of, raised_ball
 
 X = np.array([1.0, 0, 0])
 TOPS = [[0, 0, 1], [0, 1, 0]]
 MESH = ball_mesh(3)
-CUBE = as_mesh(trimesh.creation.box().subdivide().subdivide().subdivide().subdivide().subdivide())
+CUBE = mesh_of(trimesh.creation.box().subdivide().subdivide().subdivide().subdivide().subdivide())
 
 
 @pytest.mark.parametrize(("rival", "swollen"), [(mesh_saliency, 0.1), (salient_points, 0.3), (sift, 0)])
@@ -95,7 +94,7 @@ def test_an_average_does_not_follow_the_tessellation_and_is_none_where_no_surfac
     rng = np.random.default_rng(2)
     box = trimesh.creation.box()
     fine = trimesh.Trimesh(*trimesh.remesh.subdivide(box.vertices, box.faces, rng.choice(12, 5, replace=False)))
-    coarse, other = Mesh(np.r_[box.vertices, [[9, 9, 9]]], box.faces), as_mesh(fine)
+    coarse, other = Mesh(np.r_[box.vertices, [[9, 9, 9]]], box.faces), mesh_of(fine)
     first, second = (gaussian_average(mesh, surface_elements(mesh, mesh.vertices), 0.1) for mesh in (coarse, other))
     np.testing.assert_allclose(first[:-1], second[: len(first) - 1], atol=0.003)
     assert np.isnan(first[-1]).all()

@@ -11,8 +11,7 @@ from haptic_glance.look.views import CANDIDATES, FOUR, PERPENDICULAR_SETS, TWELV
 from haptic_glance.look.views.best import BETWEEN, on_circle
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene, barycentric
-
-from .conftest import as_mesh
+from tests.shapes import mesh_of
 
 SIZE = (900, 1200)
 CAPTION = {  # T figure 3.2: turns of the object in degrees, around z, then around x
@@ -44,7 +43,7 @@ def test_up_is_up_and_left_turn_shows_the_right_side():
 
 
 def test_rays_meet_a_sphere_where_geometry_says_and_an_empty_mesh_nowhere():
-    mesh = as_mesh(trimesh.creation.icosphere(5, radius=0.5))
+    mesh = mesh_of(trimesh.creation.icosphere(5, radius=0.5))
     rays = pixel_rays(np.array([449.5, 0.0]), np.array([599.5, 0.0]), Viewpoint(40, 20), SIZE)
     hits = RayScene(mesh).cast(*rays)
     assert hits.hit.tolist() == [True, False]

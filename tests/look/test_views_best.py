@@ -10,8 +10,7 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import CANDIDATES, PERPENDICULAR_SETS, best_viewpoints, hidden_surface
 from haptic_glance.look.views.best import BETWEEN
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh, ball_mesh
+from tests.shapes import ball_mesh, mesh_of
 
 BALL = ball_mesh(3, 0.5)
 ALONG, ACROSS = [Viewpoint(90, 0), Viewpoint(270, 0)], [Viewpoint(0, 0), Viewpoint(180, 0), Viewpoint(0, 90)]
@@ -21,7 +20,7 @@ ALONG, ACROSS = [Viewpoint(90, 0), Viewpoint(270, 0)], [Viewpoint(0, 0), Viewpoi
 def row():
     """Three balls in a row along y: seen along y they hide each other, seen across it they do not."""
     balls = [trimesh.creation.icosphere(2, radius=0.1).apply_translation([0, y, 0]) for y in (-0.4, 0, 0.4)]
-    return as_mesh(trimesh.util.concatenate(balls))
+    return mesh_of(trimesh.util.concatenate(balls))
 
 
 def flat_level(_):
@@ -69,7 +68,7 @@ def test_equal_sets_go_by_order_whatever_the_rounding():
 
 
 def test_the_rays_of_a_view_depend_on_the_seed_and_the_view_alone():
-    torus = as_mesh(trimesh.creation.torus(0.4, 0.05, major_sections=32, minor_sections=12))
+    torus = mesh_of(trimesh.creation.torus(0.4, 0.05, major_sections=32, minor_sections=12))
     views = [Viewpoint(azimuth, 8) for azimuth in range(0, 360, 10)]
     hidden = hidden_surface(torus, views, seed=3)
     assert 0 < hidden.sum() < len(views)

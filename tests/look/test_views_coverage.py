@@ -12,8 +12,7 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import CANDIDATES, cumulative_coverage, fewest_views, greedy_views, point_visibility
 from haptic_glance.look.views.coverage import POINTS, _fewest, _greedy, surface_points
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh
+from tests.shapes import mesh_of
 
 FRONT = Viewpoint(0, 0)
 SOME = CANDIDATES[::8]
@@ -24,11 +23,11 @@ def shapes():
     shells = [trimesh.creation.icosphere(subdivisions=3, radius=radius) for radius in (0.5, 0.4)]
     outline = [(0, -0.3), (0.2, -0.3), (0.2, 0.3), (0.18, 0.3), (0.18, -0.28), (0, -0.28)]  # (radius, height)
     return {
-        "sphere": as_mesh(trimesh.creation.icosphere(subdivisions=4, radius=0.5)),
-        "cube": as_mesh(trimesh.creation.box(extents=[0.5, 0.5, 0.5])),
-        "torus": as_mesh(trimesh.creation.torus(0.3, 0.15, major_sections=64, minor_sections=32)),
-        "shells": as_mesh(trimesh.util.concatenate(shells)),
-        "cup": as_mesh(trimesh.creation.revolve(np.array(outline), sections=64)),  # open, with a thick wall
+        "sphere": mesh_of(trimesh.creation.icosphere(subdivisions=4, radius=0.5)),
+        "cube": mesh_of(trimesh.creation.box(extents=[0.5, 0.5, 0.5])),
+        "torus": mesh_of(trimesh.creation.torus(0.3, 0.15, major_sections=64, minor_sections=32)),
+        "shells": mesh_of(trimesh.util.concatenate(shells)),
+        "cup": mesh_of(trimesh.creation.revolve(np.array(outline), sections=64)),  # open, with a thick wall
     }
 
 

@@ -11,8 +11,7 @@ from haptic_glance.look.views import Material, gl, render
 from haptic_glance.look.views import renderer as renderers
 from haptic_glance.look.views.shading import GREY, corner_groups
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh
+from tests.shapes import mesh_of
 
 SIZE = (225, 300)
 FRONT, ASIDE = Viewpoint(0, 0), Viewpoint(120, 45)
@@ -198,7 +197,7 @@ def test_normals_split_beyond_the_crease_and_where_windings_disagree(angle, grou
 
 
 def test_corners_of_a_cube_have_the_normals_of_its_sides_and_a_smooth_sphere_one_a_vertex():
-    cube, ball = as_mesh(trimesh.creation.box()), as_mesh(trimesh.creation.icosphere(subdivisions=3))
+    cube, ball = mesh_of(trimesh.creation.box()), mesh_of(trimesh.creation.icosphere(subdivisions=3))
     groups, normals = corner_groups(cube)
     assert len(normals) == 24 and np.allclose(normals[groups], cube.face_normals[:, None])
     groups, normals = corner_groups(ball)

@@ -6,12 +6,11 @@ import trimesh
 
 from haptic_glance.look.weights.convexity import convexity, nearest_convexity
 from haptic_glance.mesh.mesh import Mesh
-
-from .conftest import as_mesh
+from tests.shapes import mesh_of
 
 CUBE = trimesh.creation.box((1, 1, 1))
 TUBE = trimesh.creation.cylinder(0.5, 2.0, sections=64)
-TORUS = as_mesh(trimesh.creation.torus(1.0, 0.4, major_sections=96, minor_sections=64))
+TORUS = mesh_of(trimesh.creation.torus(1.0, 0.4, major_sections=96, minor_sections=64))
 TURN = trimesh.transformations.rotation_matrix(0.7, [1, 2, 3])
 L_CORNERS = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)], dtype=float)
 L_FACES = np.array([(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)])
@@ -19,13 +18,13 @@ FLAT = np.column_stack([L_CORNERS, np.zeros(6)]) @ TURN[:3, :3].T
 
 
 def prism(thickness):
-    return as_mesh(trimesh.creation.extrude_triangulation(L_CORNERS, L_FACES, thickness))
+    return mesh_of(trimesh.creation.extrude_triangulation(L_CORNERS, L_FACES, thickness))
 
 
 def bowl(wall=0.0):
     """The lower half of a sphere: one open sheet, or closed with a wall of that thickness."""
     inner = [*arc(1 - wall)[::-1], (0, wall - 1)] if wall else []
-    return as_mesh(trimesh.creation.revolve([(0, -1), *arc(1.0), *inner], sections=64))
+    return mesh_of(trimesh.creation.revolve([(0, -1), *arc(1.0), *inner], sections=64))
 
 
 def arc(radius):
@@ -36,8 +35,8 @@ def arc(radius):
 @pytest.mark.parametrize(
     ("mesh", "value"),
     [
-        (as_mesh(trimesh.creation.icosphere(3)), 1),
-        (as_mesh(CUBE), 1),
+        (mesh_of(trimesh.creation.icosphere(3)), 1),
+        (mesh_of(CUBE), 1),
         (Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), 1),
         (prism(1.0), 3 / 3.5),
         (prism(1e-6), 3 / 3.5),  # a thin shape still compares volumes
@@ -45,8 +44,8 @@ def arc(radius):
         (Mesh(FLAT, np.concatenate([L_FACES, L_FACES[:, ::-1]])), 3 / 3.5),
         (bowl(), 1),  # an open sheet counts as full
         (Mesh(TUBE.vertices, TUBE.faces[np.abs(TUBE.face_normals[:, 2]) < 0.5]), 1),  # two holes get a lid each
-        (as_mesh(CUBE + CUBE), 1),
-        (as_mesh(CUBE + CUBE.copy().apply_translation([9, 0, 0])), 2 / 10),
+        (mesh_of(CUBE + CUBE), 1),
+        (mesh_of(CUBE + CUBE.copy().apply_translation([9, 0, 0])), 2 / 10),
     ],
 )
 def test_convexity_of_shapes_by_hand(mesh, value):

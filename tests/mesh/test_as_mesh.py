@@ -48,23 +48,6 @@ def test_what_is_no_mesh_is_told_what_would_be(value):
         as_mesh((np.zeros((4, 2)), [[0, 1, 2]]))
 
 
-@pytest.mark.filterwarnings("ignore:assuming")
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda mesh: haptic_glance.saliency(mesh=mesh, method="height"),
-        lambda mesh: haptic_glance.find_points(mesh, "height", 3),
-        lambda mesh: haptic_glance.detect(mesh, "height", 3).points,
-        lambda mesh: haptic_glance.simplify(mesh, 200).vertices,
-        lambda mesh: haptic_glance.press(mesh, 7, pitch=0.02),
-        lambda mesh: haptic_glance.press_many(mesh, [7], pitch=0.02),
-    ],
-)
-def test_every_door_takes_every_form(tmp_path, call):
-    first, *others = (call(form) for form in forms(tmp_path)[1:])
-    assert all(np.allclose(first, other, atol=1e-3) for other in others)
-
-
 def test_a_surface_is_pressed_as_it_is(tmp_path):
     mesh = normalise(load(forms(tmp_path)[0], up="z"))
     assert (haptic_glance.press(Surface(mesh), 7) == haptic_glance.press(mesh, 7)).all()

@@ -1,6 +1,5 @@
 """Every file that a person may hand in gets a right result or the right reason; tests/fuzz has a thousand a format."""
 
-import json
 import struct
 import zlib
 
@@ -10,6 +9,7 @@ import trimesh
 
 from haptic_glance.mesh import MeshError, clean, load
 from haptic_glance.mesh.files import load_as_stated, parse
+from haptic_glance.mesh.gltf import joined
 from haptic_glance.mesh.obj import not_read as obj_not_read
 
 CUBE = trimesh.creation.box()
@@ -59,17 +59,10 @@ REFUSED = {
 }
 
 
-def glb_of(tree, binary=b""):
-    """A GLB of a JSON tree and binary data."""
-    text = json.dumps(tree).encode()
-    text += b" " * (-len(text) % 4)
-    binary += b"\0" * (-len(binary) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text
-    chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary if binary else b""
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
-
-
-REFUSED["draco.glb"] = glb_of({"extensionsRequired": ["KHR_draco_mesh_compression"]}), "needs KHR_draco_mesh_compress"
+REFUSED["draco.glb"] = (
+    joined({"extensionsRequired": ["KHR_draco_mesh_compression"]}, bytearray()),
+    "needs KHR_draco_mesh_compress",
+)
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -101,7 +94,7 @@ def test_no_warning_of_numpy_comes_with_a_foreign_file(tmp_path):
 def test_a_glb_of_too_many_primitives_is_refused_at_once(tmp_path):
     tree = {"asset": {"version": "2.0"}, "meshes": [{"primitives": [{"attributes": {}}] * 100}]}
     path = tmp_path / "many.glb"
-    path.write_bytes(glb_of(tree | {"nodes": [{"mesh": 0}] * 201}))
+    path.write_bytes(joined(tree | {"nodes": [{"mesh": 0}] * 201}, bytearray()))
     with pytest.raises(MeshError, match="20,100 primitives are more than 20,000: join its parts"):
         load(path)
 
@@ -128,7 +121,7 @@ def test_a_glb_with_a_texture_that_would_fill_the_memory_is_refused_before_it_is
         "images": [{"mimeType": "image/png", "bufferView": 0}],
         "bufferViews": [{"buffer": 0, "byteLength": len(png)}],
     }
-    path.write_bytes(glb_of(tree, png))
+    path.write_bytes(joined(tree, bytearray(png)))
     monkeypatch.setattr(trimesh, "load", None)
     with pytest.raises(MeshError, match=f"a texture {message} than 8,192 x 8,192"):
         load(path)

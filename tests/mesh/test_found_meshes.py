@@ -9,7 +9,7 @@ from PIL import Image
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from haptic_glance import Mesh, MeshError, as_mesh, clean, find_points, load, press, simplify
+from haptic_glance import Mesh, MeshError, as_mesh, clean, find_points, load, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
@@ -18,15 +18,14 @@ from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.obj import not_read
 from haptic_glance.mesh.polygons import refined
-from haptic_glance.studio.mystery import gather
 from haptic_glance.touch.press import as_shown
+from tests.shapes import ball_mesh
 
 
 @pytest.fixture
 def ball():
     """A ball of 320 faces."""
-    sphere = trimesh.creation.icosphere(2)
-    return Mesh(sphere.vertices, sphere.faces)
+    return ball_mesh(2)
 
 
 def doubled(mesh):
@@ -284,14 +283,3 @@ def test_a_baked_picture_is_multiplied_by_the_factor_beside_it(ball):
     mesh = as_mesh(trimesh.Scene(trimesh.Trimesh(ball.vertices, ball.faces, visual=visual, process=False)))
     assert (bake_texture(mesh).colors == [40, 100, 0]).all()
     assert colour_error(mesh, bake_texture(mesh)) < 1e-9
-
-
-def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
-    (tmp_path / "broken.stl").write_bytes(b"solid nothing")
-    back = Mesh(np.r_[ball.vertices, [[9, 9, 9]]], ball.faces)
-    for name, mesh in (("good", ball), ("far", back)):
-        trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(tmp_path / f"{name}.ply")
-    files = [tmp_path / name for name in ("broken.stl", "good.ply", "far.ply", "missing.ply")]
-    meshes, notes = gather(files, None, None, False, None)
-    assert "good" in meshes and [note.partition(":")[0] for note in notes] == ["broken.stl", "missing.ply"]
-    assert press(meshes["good"], 0).shape == (16, 16)

@@ -8,14 +8,11 @@ from PIL import Image
 from haptic_glance.mesh.materials import texture_of
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.sampling import points_in_faces, sample_surface
-
-
-def as_mesh(shape):
-    return Mesh(shape.vertices, shape.faces)
+from tests.shapes import mesh_of
 
 
 def test_normals_areas_and_holes_of_known_shapes():
-    ball, box = as_mesh(trimesh.creation.icosphere(3)), as_mesh(trimesh.creation.box((1, 2, 3)))
+    ball, box = mesh_of(trimesh.creation.icosphere(3)), mesh_of(trimesh.creation.box((1, 2, 3)))
     assert (np.einsum("ij,ij->i", ball.vertex_normals, ball.vertices) > 0.999).all()
     assert box.face_areas.sum() == pytest.approx(22)
     assert box.watertight and not Mesh(box.vertices, box.faces[1:]).watertight

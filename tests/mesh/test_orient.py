@@ -7,8 +7,10 @@ import trimesh
 from haptic_glance.mesh import MeshError, clean
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import orient
+from tests.shapes import mesh_of, together
 
 BALL = trimesh.creation.icosphere(2)
+SOUND = mesh_of(BALL)
 
 
 def volume(mesh):
@@ -16,14 +18,8 @@ def volume(mesh):
     return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
 
 
-def joined(*shapes):
-    offsets = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
-    faces = [faces + offset for (_, faces), offset in zip(shapes, offsets, strict=False)]
-    return Mesh(np.vstack([vertices for vertices, _ in shapes]), np.vstack(faces))
-
-
 def test_a_sound_mesh_stays_as_it_is():
-    mesh, notes = orient(Mesh(BALL.vertices, BALL.faces))
+    mesh, notes = orient(SOUND)
     np.testing.assert_array_equal(mesh.faces, BALL.faces)
     assert notes == []
 
@@ -34,7 +30,7 @@ def test_mixed_winding_is_made_one(share):
     turned = np.random.default_rng(0).random(len(faces)) < share
     faces[turned] = faces[turned][:, ::-1]
     mesh, notes = orient(Mesh(BALL.vertices, faces))
-    assert volume(mesh) == pytest.approx(volume(Mesh(BALL.vertices, BALL.faces)))
+    assert volume(mesh) == pytest.approx(volume(SOUND))
     assert notes == ["320 faces turned outwards"] if share > 1 else notes
 
 
@@ -73,7 +69,7 @@ def test_an_open_part_with_a_majority_stays_on_its_side():
 
 
 def test_a_cavity_keeps_facing_inwards():
-    hollow = joined((BALL.vertices, BALL.faces), (BALL.vertices / 2, BALL.faces[:, ::-1]))
+    hollow = together(SOUND, Mesh(BALL.vertices / 2, BALL.faces[:, ::-1]))
     mesh, notes = orient(hollow)
     assert notes == [] and volume(mesh) == pytest.approx(volume(hollow))
     inverted, _ = orient(Mesh(hollow.vertices, hollow.faces[:, ::-1]))
@@ -81,18 +77,18 @@ def test_a_cavity_keeps_facing_inwards():
 
 
 def test_an_inverted_part_beside_a_sound_one_is_turned_alone():
-    pair = joined((BALL.vertices, BALL.faces), (BALL.vertices + 5, BALL.faces[:, ::-1]))
+    pair = together(SOUND, Mesh(BALL.vertices + 5, BALL.faces[:, ::-1]))
     mesh, notes = orient(pair)
     assert notes == ["320 faces turned outwards"]
-    assert volume(mesh) == pytest.approx(2 * volume(Mesh(BALL.vertices, BALL.faces)))
+    assert volume(mesh) == pytest.approx(2 * volume(SOUND))
 
 
 def test_neither_a_vertex_far_away_nor_a_large_part_decides_the_side_of_a_small_one():
     stray = np.vstack([BALL.vertices, [[1e12] * 3]])
     assert orient(Mesh(stray, BALL.faces))[1] == []
     grain = BALL.vertices * 1e-7 + [0.9, 1.5, 0.9]
-    assert orient(joined((BALL.vertices, BALL.faces), (grain, BALL.faces)))[1] == []
-    notes = orient(joined((BALL.vertices, BALL.faces), (grain, BALL.faces[:, ::-1])))[1]
+    assert orient(together(SOUND, Mesh(grain, BALL.faces)))[1] == []
+    notes = orient(together(SOUND, Mesh(grain, BALL.faces[:, ::-1])))[1]
     assert notes == ["320 faces turned outwards"]
 
 
@@ -114,4 +110,4 @@ def test_a_moebius_strip_stays_and_is_no_crash():
 
 def test_parts_too_far_apart_to_be_seen_are_refused():
     with pytest.raises(MeshError, match="too small for its extent"):
-        clean(joined((BALL.vertices, BALL.faces), (BALL.vertices + 1000, BALL.faces)))
+        clean(together(SOUND, Mesh(BALL.vertices + 1000, BALL.faces)))

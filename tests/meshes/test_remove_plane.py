@@ -7,7 +7,6 @@ from scipy.spatial.transform import Rotation
 
 from haptic_glance.mesh import remove_plane
 from haptic_glance.mesh.mesh import Mesh, Texture
-from haptic_glance.mesh.nearest import closest
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import MeshFile
 
@@ -175,27 +174,3 @@ def test_the_stage_takes_the_table_out_on_request_and_says_so():
     assert prepare_mesh(item)[1]["faces"] == len(mesh.faces)
     _, row = prepare_mesh(item, remove_table=True)
     assert row["faces"] == mask.sum() and f"plane removed with {(~mask).sum()} faces" in row["repairs"]
-
-
-SOLIDS = {
-    "ellipsoid": trimesh.creation.icosphere(subdivisions=3).apply_scale([1, 0.7, 0.5]),
-    "torus": trimesh.creation.torus(1.0, 0.3),
-    "box": trimesh.creation.box((1, 2, 3)).subdivide(),
-}
-
-
-@pytest.mark.parametrize("name", SOLIDS)
-@pytest.mark.slow
-def test_nearest_points_of_a_surface_are_those_of_point_cloud_utils(name):
-    other = pytest.importorskip("point_cloud_utils")
-    mesh = Mesh(SOLIDS[name].vertices, SOLIDS[name].faces)
-    generator = np.random.default_rng(0)
-    faces, weights = generator.integers(len(mesh.faces), size=500), generator.dirichlet([2, 2, 2], 500)
-    places = np.einsum("ij,ijk->ik", weights, mesh.vertices[mesh.faces[faces]])
-    points = places + 1e-3 * generator.random((500, 1)) * mesh.face_normals[faces]
-    distances, hits, corners = closest(mesh, points)
-    ours = np.einsum("ij,ijk->ik", corners, mesh.vertices[mesh.faces[hits]])
-    far, face, weights = other.closest_points_on_mesh(points, mesh.vertices, mesh.faces)
-    theirs = np.einsum("ij,ijk->ik", weights, mesh.vertices[mesh.faces[face]])
-    assert np.abs(ours - theirs).max() < 1e-12 and np.abs(distances - far).max() < 1e-12
-    assert np.abs(distances - np.linalg.norm(points - ours, axis=1)).max() < 1e-12

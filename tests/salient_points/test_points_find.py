@@ -18,6 +18,7 @@ from haptic_glance.look.weights import LearnedWeights, weights
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.measure import parse_viewpoint
+from tests.shapes import flat_grid, mesh_of, together
 
 RUNS, _ = split_runnable(METHODS, LearnedWeights())  # the others need a run of the stage `weights`
 NOTHING = Mesh(np.zeros((3, 3)), [[0, 1, 2]])
@@ -37,9 +38,7 @@ def shuffled(mesh):
 @pytest.fixture(scope="module")
 def nose(ball):
     """The ball with a small ball on it."""
-    small = trimesh.creation.icosphere(subdivisions=2, radius=0.12)
-    faces = np.r_[ball.faces, small.faces + len(ball.vertices)]
-    return Mesh(np.r_[ball.vertices, small.vertices + [0.45, 0, 0.2]], faces)
+    return together(ball, mesh_of(trimesh.creation.icosphere(2, 0.12).apply_translation([0.45, 0, 0.2])))
 
 
 @pytest.fixture(scope="module")
@@ -177,13 +176,9 @@ def test_the_axis_that_points_up_may_be_named(method):
 
 def test_random_points_are_uniform_over_the_area():
     # A square whose left half is one large square, its right half 50 x 50 small ones; 3 in 4 of the area on the left.
-    line = np.linspace(0.75, 1, 51)
-    y, x = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 1, 51), line, indexing="ij"))
-    ids = np.arange(51 * 51).reshape(51, 51)
-    a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
-    big = np.array([[0, 0, 0], [0.75, 0, 0], [0.75, 1, 0], [0, 1, 0]])
-    faces = np.r_[[[0, 1, 2], [0, 2, 3]], 4 + np.c_[a, b, c], 4 + np.c_[a, c, d]]
-    mesh = Mesh(np.r_[big, np.c_[x, y, 0 * x]], faces)
+    big = Mesh([[0, 0, 0], [0.75, 0, 0], [0.75, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    fine = Mesh(flat_grid(51, 51).vertices / [200, 50, 1] + [0.75, 0, 0], flat_grid(51, 51).faces)
+    mesh = together(big, fine)
     first = np.array([random_vertices(mesh, 1, rng(0, f"draw {k}"))[0] for k in range(800)])
     assert abs((first < 4).mean() - 0.75) < 0.05  # standard error 0.015
     assert np.abs(np.bincount(first[first < 4], minlength=4) / 800 - [0.25, 0.125, 0.25, 0.125]).max() < 0.08

@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from haptic_glance.mesh.mesh import Mesh
 from stages.scene.counts import cases, evaluate
 from stages.scene.counts.cases import power_law
 from stages.scene.counts.evaluate import evaluate_counts
 from stages.scene.counts.models import FOCAL, Curve, fit_counts, read_curves
+from tests.shapes import ball_mesh
 
 pytestmark = pytest.mark.slow
 
@@ -31,14 +31,6 @@ def curves(objects=10):
 def right(error, initial):
     """The count that the law asks for."""
     return initial * np.sqrt(1e-4 / error)
-
-
-def ball():
-    """A closed mesh of 1,280 faces."""
-    import trimesh
-
-    shape = trimesh.creation.icosphere(3, 0.5)
-    return Mesh(shape.vertices, shape.faces)
 
 
 def test_lookup_is_exact_on_and_between_points_of_a_power_law():
@@ -104,7 +96,7 @@ def test_objects_that_share_a_power_give_it():
 
 def ball_curves():
     """A ball under six names, measured by a law, with the meshes and points to build from."""
-    mesh = ball()
+    mesh = ball_mesh(3, 0.5)
     names = [f"o{k}" for k in range(6)]
     made = [law(name, len(mesh.faces), 2 + k % 3, scale=2e-3, exponent=1) for k, name in enumerate(names)]
     return made, dict.fromkeys(names, mesh), {name: {"itti": np.array([0, 500])} for name in names}

@@ -86,14 +86,6 @@ def test_every_classifier_tells_plain_classes_of_unseen_objects(plain, name):
     assert len(rows) == 9 and np.mean([row["value"] for row in rows]) > 0.95
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CLASSIFIERS)
-def test_noise_alone_is_told_by_chance(name):
-    noise = {label: [np.random.default_rng([i, j]).normal(size=(40, 8, 8)) for j in range(3)]
-             for i, label in enumerate("abc")}  # fmt: skip
-    assert abs(np.mean([row["value"] for row in unseen(noise, name)]) - 1 / 3) < 0.12
-
-
 def test_the_tested_object_is_trained_on_in_the_random_split_alone():
     """Each object has its own level: who learned it would name it, who did not takes the nearest other class."""
     levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}

@@ -13,6 +13,7 @@ from stages.stability import Params
 from stages.stability.__main__ import process
 from stages.stability.simplification import simplification_rows
 from stages.weights.training import weight_table
+from tests.shapes import raised_ball
 
 SEVERITIES = {"vertex_order": [1.0], "noise": [0.001, 0.02], "light": [60.0], "missing_faces": [0.9, 1.0]}
 
@@ -28,10 +29,8 @@ def settings():
 @pytest.fixture(scope="session")
 def pear():
     """A bumpy ball."""
-    ball = trimesh.creation.icosphere(subdivisions=3)
     tops = trimesh.util.unitize(np.array([[1.0, 0.2, 0.1], [-0.3, 1, 0.4], [0.1, -0.6, -1]]))
-    height = np.exp(-(2 - 2 * ball.vertices @ tops.T) / (2 * np.array([0.2, 0.25, 0.3]) ** 2)) @ [0.5, 0.4, 0.6]
-    return normalise(Mesh(ball.vertices * (1 + height[:, None]), ball.faces))
+    return normalise(raised_ball(tops, [0.2, 0.25, 0.3], [0.5, 0.4, 0.6], subdivisions=3))
 
 
 @pytest.fixture(scope="session")

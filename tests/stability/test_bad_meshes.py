@@ -72,20 +72,6 @@ def test_an_odd_mesh_has_a_defined_answer(name, method):
         assert detection.saliency.min() >= 0 and detection.saliency.max() <= 1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ODD)
-def test_an_odd_mesh_has_finite_maps(name):
-    for channel, values in seen(name)[1].maps.items():
-        assert np.isfinite(values).all() and values.min() >= 0, channel
-
-
-@pytest.mark.slow
-def test_an_image_of_one_grey_value_has_maps_of_zeros():
-    _, sight = seen("an image of one grey value")
-    for channel in ("color", "contrast", "dkl", "edge", "entropy", "intensity", "orientation"):
-        assert not sight.maps[channel].any(), channel
-
-
 @pytest.mark.parametrize("mesh", [twice(BALL, 5000), Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])])
 def test_what_no_pixel_sees_is_refused(mesh):
     with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):

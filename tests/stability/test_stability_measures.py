@@ -3,7 +3,6 @@
 import numpy as np
 import pandas as pd
 import pytest
-import trimesh
 
 from haptic_glance.disturb.perturbed import Perturbed
 from haptic_glance.look.weights.svm import select_far_points
@@ -13,12 +12,6 @@ from stages.stability.measures import at_original_vertices, chance_repeatability
 from stages.stability.simplification import breaking_points, middle_severity, summarise
 
 GRID = np.stack([*np.mgrid[:4, :5].reshape(2, -1), np.zeros(20)], axis=1).astype(float)
-
-
-@pytest.fixture(scope="module")
-def ball():
-    shape = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
-    return Mesh(shape.vertices, shape.faces)
 
 
 def test_repeatability_is_symmetric_and_counts_points_within_reach():

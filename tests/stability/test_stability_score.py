@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.engine.statistics import breaking_interval, expanded_levels
+from stages.engine.statistics import breaking_interval
 from stages.report import stability
 from stages.report.results import NotRun
 from stages.report.stability.panels import cell
@@ -150,16 +150,6 @@ def test_the_text_of_a_censored_breaking_point():
     assert text(np.nan, np.nan, np.nan) == "> 0.3" and text(np.nan, np.nan, np.nan, 1.0) == "< 0.3"
     assert text(0.2, 0.1, np.nan) == "0.20 [0.10, > 0.3]" and text(np.nan, 0.1, np.nan) == "> 0.3 [0.10, > 0.3]"
     assert text(0.2, 0.2, 0.2) == "0.20"
-
-
-def test_units_are_the_objects_and_few_of_them_widen_the_interval():
-    curves = np.array([[0.9, 0.1], [0.9, 0.3], [0.8, 0.2], [0.7, 0.1]])
-    few, many = breaking_interval([1, 2], curves, 0), breaking_interval([1, 2], np.tile(curves, (10, 1)), 0)
-    assert few[0] == pytest.approx(many[0]) and few[2] - few[1] > 2 * (many[2] - many[1])
-    assert expanded_levels(4)[0] < expanded_levels(40)[0] < 0.025 == pytest.approx(expanded_levels(10**6)[0], abs=1e-5)
-    assert expanded_levels(4)[0] == pytest.approx(0.000119, rel=0.02)  # Phi(-3.1824 * sqrt(4 / 3))
-    assert breaking_interval([1, 2], curves[:1], 0) == pytest.approx((1.5, 1.5, 1.5))
-    assert breaking_interval([1, 2], curves[::-1], 0)[0] == few[0]
 
 
 def pairs(both, first=0.2, second=0.3, objects=10):

@@ -15,6 +15,7 @@ from haptic_glance.look.views import render
 from haptic_glance.look.weights.svm import fit_svm, information_gains
 from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.measure import silhouette_share
+from tests.shapes import raised_ball
 
 SIZE, MAP = (450, 600), (112, 150)
 VIEWPOINTS = (Viewpoint(-32, 17), Viewpoint(60, 20))
@@ -30,10 +31,8 @@ def stretched(*radii):
 def bumpy():
     """A smooth ball with three unlike bumps."""
     tops = trimesh.util.unitize(np.array([[1.0, 0.2, 0.1], [-0.3, 1, 0.4], [0.1, -0.6, -1]]))
-    squared = 2 - 2 * BALL.vertices @ tops.T
-    height = np.exp(-squared / (2 * np.array([0.25, 0.3, 0.35]) ** 2)) @ [0.3, 0.25, 0.35]
-    vertices = BALL.vertices * (1 + height[:, None])
-    return Mesh(0.45 * vertices / np.linalg.norm(vertices, axis=1).max(), BALL.faces)
+    mesh = raised_ball(tops, [0.25, 0.3, 0.35], [0.3, 0.25, 0.35], subdivisions=5)
+    return Mesh(0.45 * mesh.vertices / np.linalg.norm(mesh.vertices, axis=1).max(), mesh.faces)
 
 
 SMOOTH = {"ball": stretched(0.45, 0.45, 0.45), "ellipsoid": stretched(0.45, 0.3, 0.2), "bumpy": bumpy()}

@@ -7,12 +7,9 @@ from scipy.spatial.transform import Rotation
 
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, contour, follow, follow_many, press_at
+from tests.shapes import mesh_of
 
 CELLS, ORIGIN = (8, 8), np.zeros(3)
-
-
-def mesh_of(shape):
-    return Mesh(shape.vertices, shape.faces)
 
 
 BALL = mesh_of(trimesh.creation.icosphere(subdivisions=4, radius=0.5))

@@ -10,6 +10,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from haptic_glance.touch import Surface, distances, distances_at, sensor_axes, sensor_normals, touchable
 from haptic_glance.touch.surface import LIFT
+from tests.shapes import flat_grid
 
 SURFACES = {
     "sphere": lambda x, y: np.sqrt(0.3**2 - x**2 - y**2),
@@ -185,13 +186,6 @@ def test_no_column_slips_between_faces():
     assert np.allclose(distances_at(Surface(mesh), lifted, axes, (1, 1), 0.1), 0.05, atol=1e-12)
 
 
-def test_an_array_is_measured_alike_alone_and_among_others():
-    mesh, vertices = shaped("ring"), np.arange(0, 2000, 400)
-    many = distances(mesh, vertices, (32, 32), 0.008)
-    for vertex, imprint in zip(vertices, many, strict=True):
-        assert np.array_equal(distances(Surface(mesh), [vertex], (32, 32), 0.008)[0], imprint)
-
-
 def test_the_order_of_the_faces_changes_no_bit():
     mesh = shaped("ring")
     shuffled = Mesh(mesh.vertices, np.random.default_rng(2).permutation(mesh.faces))
@@ -236,12 +230,9 @@ def test_a_closed_mesh_that_is_inside_out_is_warned_of_and_its_repair_is_not(rec
 
 def bowl():
     """(Mesh of a bowl z = x² + y² that is seen from inside and open everywhere else, its lowest vertex)."""
-    side = np.linspace(-0.5, 0.5, 61)
-    x, y = (values.ravel() for values in np.meshgrid(side, side))
-    ids = np.arange(61 * 61).reshape(61, 61)
-    low, right, up, far = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, :-1], ids[1:, 1:]))
-    faces = np.concatenate([np.column_stack([low, right, far]), np.column_stack([low, far, up])])
-    return Mesh(np.column_stack([x, y, x**2 + y**2]), faces), int(ids[30, 30])
+    grid = flat_grid(61, 61)
+    x, y = (grid.vertices[:, :2].T - 30) / 60
+    return Mesh(np.column_stack([x, y, x**2 + y**2]), grid.faces), 30 * 61 + 30
 
 
 def test_the_walls_of_a_bowl_that_a_camera_saw_are_felt_although_nothing_is_below_them():

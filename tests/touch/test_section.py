@@ -6,12 +6,9 @@ import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch.section import MeshCutter
+from tests.shapes import mesh_of
 
 ORIGIN, X, Z = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-
-
-def mesh_of(shape):
-    return Mesh(shape.vertices, shape.faces)
 
 
 BALL = mesh_of(trimesh.creation.icosphere(subdivisions=4, radius=0.5))

@@ -181,8 +181,3 @@ def test_indent_feels_a_sphere_where_it_is_higher_than_the_depth(shapes):
     felt = 1 - indent(distances(mesh, [vertex], (15, 15), 0.01), depth)[0]
     assert np.allclose(felt, np.maximum(0, 1 - (0.3 - shapes.sphere(x, y)) / depth), atol=1e-5)
     assert 0 < (felt > 0).sum() < 225
-
-
-def test_indent_tells_shallow_from_deep_where_normalise_does_not():
-    raw = np.array([[[0.0, 0.01]], [[0.0, 0.02]]])
-    assert np.array_equal(*normalise(raw, 0.01)) and np.allclose(indent(raw, 0.02)[:, 0, 1], [0.5, 1])

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import (
@@ -15,21 +14,17 @@ from haptic_glance.touch import (
     sensor_normals,
     snap_to_surface,
 )
-
-
-def ball():
-    made = trimesh.creation.icosphere(subdivisions=2, radius=0.5)
-    return Mesh(made.vertices, made.faces)
+from tests.shapes import ball_mesh
 
 
 def dome():
     """The part of a ball above z = 0, an open mesh."""
-    mesh = ball()
+    mesh = ball_mesh(2, 0.5)
     return Mesh(mesh.vertices, mesh.faces[mesh.vertices[mesh.faces][..., 2].min(axis=1) > 0])
 
 
 def test_a_place_in_a_face_has_its_normal():
-    mesh = ball()
+    mesh = ball_mesh(2, 0.5)
     middles = mesh.vertices[mesh.faces].mean(axis=1)
     positions, normals = snap_to_surface(Surface(mesh), middles + 0.002 * mesh.face_normals)
     assert np.allclose(positions, middles, atol=1e-12) and np.allclose(normals, mesh.face_normals, atol=1e-12)
@@ -43,7 +38,7 @@ def test_a_place_on_an_edge_has_the_average_of_both_faces():
 
 
 def test_a_place_at_a_vertex_is_touched_as_the_vertex_is():
-    mesh = ball()
+    mesh = ball_mesh(2, 0.5)
     positions, normals = snap_to_surface(mesh, mesh.vertices[:7] * 1.001)
     assert np.allclose(positions, mesh.vertices[:7], atol=1e-14)
     assert np.allclose(normals, sensor_normals(mesh, np.arange(7)), atol=1e-14)
@@ -51,16 +46,16 @@ def test_a_place_at_a_vertex_is_touched_as_the_vertex_is():
 
 
 def snapped(*points, **options):
-    return snap_to_surface(ball(), points, **options)
+    return snap_to_surface(ball_mesh(2, 0.5), points, **options)
 
 
 def measured(**changes):
-    return distances_at(ball(), **{"centres": [[0, 0, 0.5]], "axes": np.eye(3)[None], **changes})
+    return distances_at(ball_mesh(2, 0.5), **{"centres": [[0, 0, 0.5]], "axes": np.eye(3)[None], **changes})
 
 
 def test_a_place_off_the_surface_is_taken_within_the_tolerance():
     assert np.allclose(snapped([0, 0, 0.6], tolerance=0.2)[0], [[0, 0, 0.5]])
-    assert snap_to_surface(ball(), np.zeros((0, 3)))[0].shape == (0, 3)
+    assert snap_to_surface(ball_mesh(2, 0.5), np.zeros((0, 3)))[0].shape == (0, 3)
 
 
 TWICE = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]])
@@ -89,7 +84,7 @@ def test_what_is_no_place_or_array_is_named(work, words):
 
 
 def test_an_array_has_its_own_pitch_and_max_distance():
-    mesh = ball()
+    mesh = ball_mesh(2, 0.5)
     centres, axes = mesh.vertices[:3], sensor_axes(sensor_normals(mesh, [0, 1, 2]))
     pitches, max_distances = np.array([0.01, 0.02, 0.05]), np.array([0.1, 0.2, 0.03])
     together = distances_at(Surface(mesh), centres, axes, (9, 7), pitches, max_distances)
@@ -102,15 +97,15 @@ def test_an_array_has_its_own_pitch_and_max_distance():
 
 
 def test_an_array_larger_than_the_object_feels_what_is_there():
-    lengths = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (8, 8), 3.0)
+    lengths = distances_at(ball_mesh(2, 0.5), [[0, 0, 0.5]], np.eye(3)[None], (8, 8), 3.0)
     assert (lengths == 24).all()
-    lengths = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (7, 7), 3.0)[0]
+    lengths = distances_at(ball_mesh(2, 0.5), [[0, 0, 0.5]], np.eye(3)[None], (7, 7), 3.0)[0]
     assert lengths[3, 3] == pytest.approx(0) and (np.delete(lengths.ravel(), 24) == 21).all()
 
 
 def test_a_closed_object_touched_from_its_inside_is_inside_in_every_cell():
     inwards = np.diag([1.0, -1, -1])[None]  # looks up at the inner side of the top, 0.2 away; the way out is 0.8 down
-    lengths = distances_at(ball(), [[0, 0, 0.3]], inwards, (8, 8), 0.02, max_distance=0.4)
+    lengths = distances_at(ball_mesh(2, 0.5), [[0, 0, 0.3]], inwards, (8, 8), 0.02, max_distance=0.4)
     assert (lengths == -0.4).all()
 
 
@@ -132,7 +127,7 @@ def test_a_mesh_without_faces_or_area_is_nowhere_felt():
 
 
 def test_the_caller_s_arrays_are_left_alone():
-    mesh = ball()
+    mesh = ball_mesh(2, 0.5)
     centres, axes = mesh.vertices[:2].copy(), sensor_axes(sensor_normals(mesh, [0, 1]))
     before = centres.copy(), axes.copy()
     centres.flags.writeable = axes.flags.writeable = False

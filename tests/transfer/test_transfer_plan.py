@@ -6,10 +6,10 @@ import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
-from haptic_glance.mesh.mesh import Mesh
 from stages.transfer import plan as planning
 from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate, stratified_split
 from stages.transfer.touches import choose_vertices
+from tests.shapes import flat_grid
 
 CLASSES = {"animal": ["dog", "horse", "cow"], "chair": ["stool", "bench"], "vase": ["urn"]}
 ENOUGH = dict.fromkeys([name for objects in CLASSES.values() for name in objects], 100)
@@ -199,10 +199,7 @@ def test_of_two_objects_the_check_is_a_share_of_the_touches_that_train_and_one_c
 
 
 def test_salient_points_come_first_and_blind_ones_fill_up():
-    x, y = np.divmod(np.arange(36), 6)  # a flat grid
-    corner = np.flatnonzero((x < 5) & (y < 5))
-    faces = np.r_[np.c_[corner, corner + 6, corner + 7], np.c_[corner, corner + 7, corner + 1]]
-    grid = Mesh(np.c_[x, y, 0 * x] / 6, faces)
+    grid = flat_grid(6, 6)
     chosen = choose_vertices(grid, np.array([7, 3]), 20, rng())
     assert chosen[:2].tolist() == [7, 3] and len(set(chosen.tolist())) == 20
     with pytest.raises(ValueError, match="only 36 vertices"):

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 from scipy.io import savemat
 
-from stages.classification.recorded import Grasps, read_grasps, read_pressure_images
+from stages.classification.recorded import Grasps, read_grasps
 from stages.transfer.recorded import (
     COLUMNS,
     GRID,
@@ -290,9 +290,3 @@ def test_the_published_grasps_fill_the_grey_values():
     assert recorded.images.shape == (5831, 12, 11, 3) and len(recorded.classes) == 51
     assert np.isin(recorded.images, (1, 255)).mean() < 0.01  # clipped
     assert recorded.images.std() > 15
-
-
-@pytest.mark.skipif(not (DATA / "pressure_images.zip").exists(), reason="../shared/data/pressure_images.zip is absent")
-def test_the_published_pressure_images_have_22_classes():
-    recorded = pressure_images(read_pressure_images(DATA / "pressure_images.zip"))
-    assert recorded.images.shape == (1100, 28, 50) and np.bincount(recorded.labels).tolist() == [50] * 22

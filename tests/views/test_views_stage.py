@@ -58,11 +58,6 @@ def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers_an
     assert set(read_rows(workspace.measurements / "views.csv.gz").item) == {"bowl", "cube", "torus"}
 
 
-def test_unknown_set_of_viewpoints_is_named_with_the_known_ones(make_workspace):
-    with pytest.raises(ValueError, match="twelve, four"):
-        stage.run(make_workspace({"views": SECTION | {"viewpoints": "six"}}))
-
-
 def test_mesh_that_leaves_the_frame_is_named(workspace, shapes):
     cube = shapes["cube"]
     write_mesh(workspace.data / "meshes" / "huge.npz", Mesh(cube.vertices * 9, cube.faces))

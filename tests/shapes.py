@@ -1,4 +1,4 @@
-"""Shapes whose salient places are known, for the glance and the detectors that it is measured against."""
+"""Meshes that several folders test with."""
 
 import functools
 
@@ -8,13 +8,23 @@ import trimesh
 from haptic_glance.mesh.mesh import Mesh
 
 
-def as_mesh(shape: trimesh.Trimesh) -> Mesh:
+def mesh_of(shape: trimesh.Trimesh) -> Mesh:
+    """The Mesh of a shape of trimesh."""
     return Mesh(shape.vertices, shape.faces)
 
 
 @functools.cache
 def ball_mesh(subdivisions=4, radius=1.0):
-    return as_mesh(trimesh.creation.icosphere(subdivisions=subdivisions, radius=radius))
+    """A closed ball of 20 * 4 ** subdivisions faces."""
+    return mesh_of(trimesh.creation.icosphere(subdivisions=subdivisions, radius=radius))
+
+
+def raised_ball(tops, widths, heights, subdivisions=4):
+    """The ball_mesh raised round each top (a unit vector) by height * exp(-distance^2 / (2 width^2))."""
+    ball = ball_mesh(subdivisions)
+    squared = 2 - 2 * ball.vertices @ np.array(tops, dtype=float).T
+    height = np.exp(-squared / (2 * np.array(widths) ** 2)) @ np.array(heights)
+    return Mesh(ball.vertices * (1 + height[:, None]), ball.faces)
 
 
 @functools.cache
@@ -38,9 +48,8 @@ def lopsided():
     return Mesh(v / (2 * np.linalg.norm(v, axis=1).max()), source.faces)
 
 
-def raised_ball(tops, widths, heights, subdivisions=4):
-    """The ball_mesh raised round each top (a unit vector) by height * exp(-distance^2 / (2 width^2))."""
-    ball = ball_mesh(subdivisions)
-    squared = 2 - 2 * ball.vertices @ np.array(tops, dtype=float).T
-    height = np.exp(-squared / (2 * np.array(widths) ** 2)) @ np.array(heights)
-    return Mesh(ball.vertices * (1 + height[:, None]), ball.faces)
+def together(*meshes):
+    """Several meshes as one, each of its own vertices."""
+    offsets = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
+    faces = [mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
