@@ -92,15 +92,9 @@ def in_sums(*sides: Methods, **more: Any) -> tuple[Reading, ...]:
 
     more: further fields that the reading changes.
     """
-    summed = tuple(map(_summed, sides))
+    summed = tuple(_renamed(side, _with_sums) for side in sides)
     changes = {side: {"method": methods} for side, methods in zip(("first", "second"), summed, strict=False)}
     return () if summed == sides else (reading(SUMS, **changes, **more),)
-
-
-def _summed(methods: Methods) -> Methods:
-    if isinstance(methods, Pick):
-        return replace(methods, names=tuple(map(_with_sums, methods.names)))
-    return _with_sums(methods) if isinstance(methods, str) else tuple(map(_with_sums, methods))
 
 
 def _with_sums(method: str) -> str:
@@ -196,7 +190,9 @@ class Claim:
         shared = self.shared(dataset or "") if callable(self.shared) else self.shared
         sides = {"first": self.first, "second": self.second}
         if self.elsewhere and dataset != self.sets[0]:
-            sides = {name: _renamed(side, self.elsewhere) for name, side in sides.items()}
+            sides = {
+                name: _renamed(side, lambda value: self.elsewhere.get(value, value)) for name, side in sides.items()
+            }
         return replace(self, dataset=dataset, shared=shared, **sides)  # pyright: ignore[reportArgumentType]
 
     @property
@@ -213,13 +209,13 @@ class Claim:
         return self.phrases.get(("over", column), OVER.get(column, column))
 
 
-def _renamed(value: Any, names: Mapping[str, str]) -> Any:
+def _renamed(value: Any, rename: Callable[[Any], Any]) -> Any:
     """A side of a claim, or a part of it, with other names of methods."""
     if isinstance(value, Mapping):
-        return {column: _renamed(part, names) for column, part in value.items()}
+        return {column: _renamed(part, rename) for column, part in value.items()}
     if isinstance(value, Pick):
-        return replace(value, names=_renamed(value.names, names))
-    return tuple(_renamed(entry, names) for entry in value) if isinstance(value, tuple) else names.get(value, value)
+        return replace(value, names=_renamed(value.names, rename))
+    return tuple(_renamed(entry, rename) for entry in value) if isinstance(value, tuple) else rename(value)
 
 
 METRICS = {  # "" where the claim's unit says it

@@ -246,8 +246,7 @@ ALIKE = 0.05  # p-value of Cochran's Q below which sets differ
 class Effect:
     """The differences of a claim on one set, indexed by its `over`, in its unit; share: as `Claim.share`.
 
-    refused: the causes of invalid pairs; pairs: the number of all pairs, 0 where none of
-    them is invalid.
+    refused: the causes of invalid pairs; pairs: the number of all pairs, 0 where none of them is invalid.
     """
 
     dataset: str
@@ -395,15 +394,14 @@ def _effect(claim: Claim, results: Results, name: str) -> Effect:
     return Effect(name, values, claim.share, tuple(causes), pairs)
 
 
-def deciding(claim: Claim, measured: Sequence[Effect], results: Results, strict: bool = False) -> list[Effect]:
+def deciding(claim: Claim, measured: Sequence[Effect], results: Results, strict: bool) -> list[Effect]:
     """The effects that give the verdict: those on sets as printed, else the first that was measured.
 
     strict: only those on sets as printed, of which there may be none.
     """
     printed = sets_of(claim, results)[: claim.judging]
-    return [effect for effect in measured if (effect.dataset or None) in printed] or (
-        [] if strict else list(measured[:1])
-    )
+    printed_effects = [effect for effect in measured if (effect.dataset or None) in printed]
+    return printed_effects if printed_effects or strict else list(measured[:1])
 
 
 def effect_of(measured: Sequence[Effect]) -> Effect | PooledEffect:
@@ -411,9 +409,7 @@ def effect_of(measured: Sequence[Effect]) -> Effect | PooledEffect:
 
     A set of two units is left out beside others: the spread of two is often tiny by luck, and would rule the mean.
     """
-    testable = [
-        effect for effect in measured if effect.testable
-    ] or measured  # else the numbers of all that were measured
+    testable = [effect for effect in measured if effect.testable] or measured  # else the numbers of all
     usable = [effect for effect in testable if np.isfinite(effect.interval[1])]
     usable = [effect for effect in usable if len(usable) == 1 or effect.most > PAIR] or usable
     return PooledEffect(usable) if len(usable) > 1 else (usable or testable)[0]

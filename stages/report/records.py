@@ -60,9 +60,13 @@ def _values(frames: Iterable[pd.DataFrame], column: str) -> list[str]:
 
 
 def earlier(results: Results, kind: str) -> dict[str, Any]:
-    """{item: record} of the last run; empty where there was none."""
-    path = results.reports / kind / FILE
-    return read_json(path)["items"] if path.is_file() else {}
+    """{item: record} of the last run."""
+    return _read_json(results.reports / kind / FILE).get("items", {})
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    """The content of a file of the last report; empty where there was none."""
+    return read_json(path) if path.is_file() else {}
 
 
 def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
@@ -118,7 +122,8 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
     dataset, _, stage = name.partition("/")
     path = results.workspace.build / "code" / stage
     today = sha256(path)[:DIGITS] if dataset != BENCH and path.is_file() else ""
-    entry = results.once("provenance", lambda: _provenance(results)).get(name, {})
+    provenance = results.once("provenance", lambda: _read_json(results.reports / PROVENANCE_FILE))
+    entry = provenance.get("files", {}).get(name, {})
     in_run = dataset in results.workspace.params.get("graph", {}).get(stage, ()) and today
     is_unchanged = not in_run and entry.get("sha256") == sha256(path_of(results, name))[:DIGITS]
     return entry.get("code", "") if is_unchanged else today, today
@@ -143,14 +148,8 @@ def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
 def rechecked(results: Results, name: str) -> dict[str, Any]:
     """The outcome of the last `stages.recheck` of a file of rows; empty where the rows have changed since."""
     path = results.workspace.published / "measurements" / RECHECKED
-    outcome = results.once("rechecked", lambda: read_json(path) if path.is_file() else {}).get(name, {})
+    outcome = results.once("rechecked", lambda: _read_json(path)).get(name, {})
     return outcome if outcome.get("sha256") == sha256(path_of(results, name))[:DIGITS] else {}
-
-
-def _provenance(results: Results) -> dict[str, dict[str, str]]:
-    """{file of rows: its entry} of the last report; empty where there was none."""
-    path = results.reports / PROVENANCE_FILE
-    return read_json(path)["files"] if path.is_file() else {}
 
 
 def _file(results: Results, name: str, known: Mapping[Path, str]) -> dict[str, str]:

@@ -119,7 +119,6 @@ class Results:
         self.sets = workspace.sets  # the names of the data sets that are switched on, in order
         self.read: set[str] = set()  # the data sets that were read since `forget`
         self.sources: dict[str, list[pd.DataFrame]] = {}  # SET/STAGE or bench/NAME -> rows that were read since then
-        self._tables: dict[Path, pd.DataFrame] = {}
         self._known: dict[Hashable, Any] = {}
         self._recent: dict[Hashable, Any] = {}  # the answers to the last queries, oldest first
 
@@ -254,12 +253,7 @@ class Results:
             raise NotRun(f"{dataset} is not switched on", f"{stage}@{dataset}", runnable=False)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
         there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
-        return self._table(path, read_rows)
-
-    def _table(self, path: Path, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
-        if path not in self._tables:
-            self._tables[path] = read(path)
-        return self._tables[path]
+        return self.once(path, lambda: read_rows(path))
 
     def once(self, name: Hashable, work: Callable[[], Any]) -> Any:
         """The result of some work on the rows, computed at the first call."""
@@ -280,7 +274,8 @@ class Results:
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
         message = f"no bench/{name}.csv: `make bench` writes it"
-        rows = self._table(there(self.bench_path(name), message, BENCH, runnable=False), read_table)
+        path = there(self.bench_path(name), message, BENCH, runnable=False)
+        rows = self.once(path, lambda: read_table(path))
         self.sources.setdefault(f"{BENCH}/{name}", []).append(rows)
         return rows
 
@@ -393,9 +388,7 @@ class Results:
         return read_arrays(there(path, message, "weights"))
 
     def learned(self, name: str, mesh: Mesh, dataset: str | None = None):
-        """The weights that may be applied to this object: a
-        haptic_glance.look.weights.LearnedWeights.
-        """
+        """The weights that may be applied to this object: a haptic_glance.look.weights.LearnedWeights."""
         path = self.folder("weights", dataset) / "weights.csv"
         return read_learned_weights(there(path, "no weights/weights.csv", "weights").parent, name, mesh)
 

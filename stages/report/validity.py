@@ -5,6 +5,7 @@ meshes whose errors say nothing about the kept points.
 """
 
 from collections.abc import Callable
+from functools import wraps
 from math import log
 
 import pandas as pd
@@ -41,6 +42,19 @@ def check(stage: str) -> Callable[[Check], Check]:
     return lambda function: CHECKS.setdefault(stage, function)
 
 
+def of_all_rows(work: Check) -> Check:
+    """Makes some work on all rows of a stage on a set, done at the first call, an answer for each selection of them."""
+
+    @wraps(work)
+    def selected(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+        answers = results.once(
+            (work.__name__, stage, dataset), lambda: work(results, stage, dataset, results.rows(stage, dataset))
+        )
+        return answers[rows.index]
+
+    return selected
+
+
 def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
     checker = CHECKS.get(stage)
@@ -48,43 +62,33 @@ def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd
 
 
 @check("lod")
+@of_all_rows
 def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of methods that should keep neighbourhoods but kept none: their mesh is that of plain simplification."""
     if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
         return pd.Series("", index=rows.index)
-
-    def of_all() -> pd.Series:
-        all_rows = results.rows(stage, dataset)
-        reasons = invalid_units(all_rows).reindex(pd.MultiIndex.from_frame(all_rows[UNIT])).fillna("")
-        return pd.Series(reasons.to_numpy(), index=all_rows.index, dtype=object)
-
-    return results.once(("invalid units", dataset), of_all)[rows.index]
+    reasons = invalid_units(rows).reindex(pd.MultiIndex.from_frame(rows[UNIT])).fillna("")
+    return pd.Series(reasons.to_numpy(), index=rows.index, dtype=object)
 
 
 @check("classification")
 @check("recorded")
+@of_all_rows
 def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
-
-    def of_all() -> pd.Series:
-        all_rows = results.rows(stage, dataset)
-        guess = pd.Series(float("nan"), index=all_rows.index)
-        if "group" in all_rows:
-            guess = 1 / all_rows["group"].map(
-                lambda group: NUMBERS.get(str(group).partition("_")[0])
-            )  # four of four_drawn
-        share = _beside(results, stage, dataset, all_rows, "commonest_share")
-        # A classifier that is right more often than it gives its commonest answer tells the others apart.
-        deaf = _beside(results, stage, dataset, all_rows, "accuracy").fillna(0) <= share.fillna(0)
-        reasons = (deaf & (share.fillna(0) > (ONE_ANSWER * guess).fillna(MOST))).map({True: ONE_CLASS, False: ""})
-        if share.notna().any() and "classifier" in all_rows:  # an older run counted the answers of some trials alone
-            narrow = all_rows["classifier"].eq(DEAF) & (all_rows["scaling"] != WIDE if "scaling" in all_rows else True)
-            reasons[share.isna() & narrow & all_rows["metric"].eq("accuracy")] = UNKNOWN
-        reasons[_below(all_rows, guess)] = GUESSING
-        reasons[_whole(all_rows)] = NOTHING_OUT
-        return reasons
-
-    return results.once(("several answers", stage, dataset), of_all)[rows.index]
+    guess = pd.Series(float("nan"), index=rows.index)
+    if "group" in rows:
+        guess = 1 / rows["group"].map(lambda group: NUMBERS.get(str(group).partition("_")[0]))  # four of four_drawn
+    share = _beside(results, stage, dataset, rows, "commonest_share")
+    # A classifier that is right more often than it gives its commonest answer tells the others apart.
+    deaf = _beside(results, stage, dataset, rows, "accuracy").fillna(0) <= share.fillna(0)
+    reasons = (deaf & (share.fillna(0) > (ONE_ANSWER * guess).fillna(MOST))).map({True: ONE_CLASS, False: ""})
+    if share.notna().any() and "classifier" in rows:  # an older run counted the answers of some trials alone
+        narrow = rows["classifier"].eq(DEAF) & (rows["scaling"] != WIDE if "scaling" in rows else True)
+        reasons[share.isna() & narrow & rows["metric"].eq("accuracy")] = UNKNOWN
+    reasons[_below(rows, guess)] = GUESSING
+    reasons[_whole(rows)] = NOTHING_OUT
+    return reasons
 
 
 @check("transfer")
@@ -102,27 +106,23 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     doubtful = tuned & ~converged & ~(is_accuracy & (rows["value"] >= SATURATED))
     reasons = pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
         doubtful & train_accuracy.isna(), UNMEASURED)  # fmt: skip
-    return reasons.mask(is_accuracy & _diverged(results, stage, dataset)[rows.index], DIVERGED)
+    return reasons.mask(is_accuracy & _diverged(results, stage, dataset, rows), DIVERGED)
 
 
-def _diverged(results: Results, stage: str, dataset: str) -> pd.Series:
+@of_all_rows
+def _diverged(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Whether no pass of each row's training had a loss below that of guessing, the logarithm of the number of classes.
 
     The pass that was kept is the one of the best validation; its loss is no less than the least.
     """
-
-    def of_all() -> pd.Series:
-        all_rows = results.rows(stage, dataset)
-        try:
-            losses = results.measured(stage, dataset, metric=LOSS)
-        except NotRun:
-            return pd.Series(False, index=all_rows.index)
-        keys = [column for column in TRAINING if column in all_rows]
-        least = losses.groupby(keys, dropna=False, as_index=False)["value"].min()
-        loss = all_rows[keys].merge(least, on=keys, how="left")["value"].set_axis(all_rows.index)
-        return loss > log(max(all_rows["group"].nunique() if "group" in all_rows else 0, 2))
-
-    return results.once(("diverged", stage, dataset), of_all)
+    try:
+        losses = results.measured(stage, dataset, metric=LOSS)
+    except NotRun:
+        return pd.Series(False, index=rows.index)
+    keys = [column for column in TRAINING if column in rows]
+    least = losses.groupby(keys, dropna=False, as_index=False)["value"].min()
+    loss = rows[keys].merge(least, on=keys, how="left")["value"].set_axis(rows.index)
+    return loss > log(max(rows["group"].nunique() if "group" in rows else 0, 2))
 
 
 @check("fixation")
@@ -156,26 +156,21 @@ def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFra
 
 
 @check("sequences")
+@of_all_rows
 def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of networks that did not know their training sequences while their loss still fell, or may not have.
 
     The sum of both networks needs both.
     """
-
-    def of_all() -> pd.Series:
-        all_rows = results.rows(stage, dataset)
-        trial = [column for column in SEQUENCES if column in all_rows]
-        evidence = all_rows[all_rows["metric"].isin(["train_accuracy", "settled"]) & (all_rows["classifier"] != SUM)]
-        evidence = evidence.assign(known=evidence["value"] >= SATURATED)
-        networks = evidence.groupby([*trial, "classifier"], as_index=False)["known"].max()
-        sums = networks.groupby(trial, as_index=False)["known"].min().assign(classifier=SUM)
-        learned = pd.Series(all_rows[[*trial, "classifier"]].merge(pd.concat([networks, sums]), how="left")["known"])
-        reasons = learned.map({True: "", False: UNTRAINED}).fillna(UNMEASURED)
-        return pd.Series(
-            reasons.where(all_rows["classifier"].astype(str).str.startswith(SUM), "").to_numpy(), index=all_rows.index
-        )
-
-    return results.once(("settled", dataset), of_all)[rows.index]
+    trial = [column for column in SEQUENCES if column in rows]
+    evidence = rows[rows["metric"].isin(["train_accuracy", "settled"]) & (rows["classifier"] != SUM)]
+    evidence = evidence.assign(known=evidence["value"] >= SATURATED)
+    networks = evidence.groupby([*trial, "classifier"], as_index=False)["known"].max()
+    sums = networks.groupby(trial, as_index=False)["known"].min().assign(classifier=SUM)
+    learned = pd.Series(rows[[*trial, "classifier"]].merge(pd.concat([networks, sums]), how="left")["known"])
+    reasons = learned.map({True: "", False: UNTRAINED}).fillna(UNMEASURED)
+    reasons = reasons.where(rows["classifier"].astype(str).str.startswith(SUM), "")
+    return pd.Series(reasons.to_numpy(), index=rows.index)
 
 
 def _whole(rows: pd.DataFrame) -> pd.Series:

@@ -10,7 +10,7 @@ import pytest
 from stages.report import recorded as topic
 from stages.report.recorded.claims import SERIES
 from stages.report.recorded.claims import TOUCHES as CLAIMS
-from stages.report.recorded.table_4_4 import CLASSES
+from stages.report.recorded.tables import CLASSES
 from stages.report.topics import build_one
 from tests.report.frames import verdicts
 

@@ -12,7 +12,7 @@ from stages.report import touch
 from stages.report.results import SETS_4_2, NotRun
 from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
-from stages.report.touch import claims, touches
+from stages.report.touch import claims, pictures, tables
 from stages.report.touch.rows import COMMON, PRINTED, accuracies, shared_objects
 from tests.report.frames import verdicts
 
@@ -111,8 +111,8 @@ def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(
     added = ours[ours["classifier"] == "knn"].assign(classifier="centroid")
     small.write(root, "classification", pd.concat([ours, added]))
     results, bars = small.results(root), []
-    monkeypatch.setattr(touches, "draw_bars", lambda axes, frame, classifiers, **_: bars.append(classifiers))
-    monkeypatch.setattr(touches.plt.Axes, "legend", lambda *_, **__: None)
+    monkeypatch.setattr(pictures, "draw_bars", lambda axes, frame, classifiers, **_: bars.append(classifiers))
+    monkeypatch.setattr(pictures.plt.Axes, "legend", lambda *_, **__: None)
     for name in ("table_4_1", "table_4_6"):
         frame = table(name, results).frame
         cells = frame[(frame["classifier"] == "centroid") & (frame["sampling"] == "glance")]
@@ -128,7 +128,7 @@ def test_a_folder_of_ones_own_has_recognition_of_its_groups_with_intervals_and_n
     small.write(root, "classification", pd.concat([frame, regions, frame.assign(variant="touches_2"), noted]))
     small.write_set(root, "mine", 3)
     with pytest.raises(NotRun, match="groups of the thesis"):
-        touches.recognition(small.results(root))
+        tables.recognition(small.results(root))
     built = table("recognition", small.own(root))
     cells = built.frame.set_index(["group", "split", "sampling", "classifier"]).loc["mine"]
     assert len(cells) == 10 and (cells["repetitions"] == 6).all()

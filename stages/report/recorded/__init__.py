@@ -2,14 +2,14 @@
 
 from functools import partial
 
-from . import claims, grasps, networks, table_4_4, touch_events
+from . import claims, networks, tables
 
 TABLES = {
-    "table_4_4": table_4_4.table_4_4,
-    "grasps": grasps.grasps_table,
-    "touch_events": touch_events.build,
-    "touch_events_conditions": touch_events.conditions,
-    "grasp_series": touch_events.grasp_series,
+    "table_4_4": tables.table_4_4,
+    "grasps": tables.grasps,
+    "touch_events": tables.touch_events,
+    "touch_events_conditions": tables.touch_events_conditions,
+    "grasp_series": tables.grasp_series,
     "simulated_to_real": networks.build_table,
     "real_networks": networks.build,
     "table_5_1": partial(networks.printed, "vt60", "table_5_1_vt60_bathtip"),

@@ -13,10 +13,9 @@ from stages.report.effects import difference, side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED
 from stages.report.results import NUMBERS, Results
 
+from .networks import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
 from .networks import SIMULATIONS as KINDS
-from .rows import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
-from .table_4_4 import CLASSES, SELECTIONS
-from .touch_events import GROUPS, OURS, SET, SPIKING
+from .tables import CLASSES, GROUPS, OURS, SELECTIONS, SET, SPIKING
 
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
 ALL = {"metric": "accuracy", "split": Split.RANDOM} | SCALE  # the mean of all classifiers

@@ -1,22 +1,26 @@
 """Pictures of touch: the whole pipeline, the imprints at each method's points, and those of one mesh."""
 
-from itertools import zip_longest
+from itertools import combinations, zip_longest
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from haptic_glance.base.files import read_arrays
+from haptic_glance.know.features import SIMILARITY_THRESHOLD, similarity
 from haptic_glance.touch import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
 from haptic_glance.touch.pictures import draw
-from stages.report.drawing import GREY, INK, PALE, label, plt, show, vivid
+from stages.report.drawing import GREY, INK, PALE, colours, label, plt, show, vivid
 from stages.report.items import Figure
-from stages.report.results import OWN_FOLDER, NotRun, Results
+from stages.report.results import OWN_FOLDER, NotRun, Results, dataset_text, some
+from stages.report.tables import CLASSIFIERS
 
-from .rows import MODEL, STAGE
-from .touches import draw_bars, table_4_1, table_4_2
+from .rows import EQUAL, MODEL, PRINTED, SSIM, STAGE
+from .tables import added, table_4_1, table_4_2
 
 STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]
 NEEDED = ["random", MODEL]  # bars
+DRAWN = ("random", "itti", EQUAL, SSIM, MODEL)  # samplings
 LEFT = [0.0, 0.2, 0.41, 0.63, 0.84]  # of the panels, as parts of the figure's width
 WIDTH, SIDE, SIZE = 0.17, 3, (16, 3.9)  # of a panel; imprints a side; of the figure in inches
 METHODS = ("random", MODEL)
@@ -109,3 +113,86 @@ def touch_one_mesh(results: Results) -> Figure:
     title = "Where to touch, and what is felt there" if own_meshes else "Touching one mesh"
     words = {"title": title, "name": ", ".join(names), "count": most_points, "rows": CELLS[0], "columns": CELLS[1]}
     return Figure(figure, words | {"pitch": PITCH}, dpi=110)
+
+
+def draw_bars(
+    axes: Axes, frame: pd.DataFrame, classifiers: list[str], chance: float, regions: bool = False
+) -> dict[str, float]:
+    """Draws the samplings of DRAWN that were run; returns dict method -> its place about the middle of a group.
+
+    frame: the tidy table 4.1 or 4.2. regions: whether accuracies on unseen regions are drawn too.
+    """
+    samplings = set(frame.dropna(subset=["accuracy"])["sampling"])
+    paint = colours([method for method in DRAWN if method in samplings])
+    width = 0.8 / max(len(paint), 1)
+    places = {method: (k - (len(paint) - 1) / 2) * width for k, method in enumerate(paint)}
+    for k, (method, place) in enumerate(places.items()):
+        rows, x = frame[frame["sampling"] == method].set_index("classifier"), np.arange(len(classifiers)) + place
+        cells = 100 * rows.loc[classifiers, ["accuracy", "low", "high", "accuracy_regions", "thesis"]]
+        diamonds, dashes = (None, None) if k else ("the thesis's figure", "regions not touched before")
+        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=label(method))
+        axes.vlines(x, cells["low"], cells["high"], color=INK, lw=1)
+        axes.plot(x, cells["thesis"], "D", color="white", mec=INK, ms=5, mew=1.1, label=diamonds)
+        if regions:
+            axes.plot(x, cells["accuracy_regions"], "_", color=INK, ms=13, mew=2, label=dashes)
+    axes.axhline(100 * chance, color=INK, lw=0.9, ls=":")
+    axes.text(1.01, 100 * chance, "chance", transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
+    axes.set_xticks(range(len(classifiers)), [label(name) for name in classifiers])
+    axes.set(ylim=(0, 100), ylabel="accuracy, %")
+    axes.grid(axis="y")
+    axes.tick_params(axis="x", length=0)
+    return places
+
+
+def figure_4_1(results: Results) -> Figure:
+    """Table 4.1 as a picture, a panel a protocol."""
+    table = table_4_1(results).frame
+    parts = list(table[~table["protocol"].str.contains(": ")].groupby("protocol", sort=False))
+    figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 4.1 * len(parts)), squeeze=False)
+    figure.subplots_adjust(hspace=0.52)
+    for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):
+        draw_bars(
+            axes, frame, [*CLASSIFIERS, *added(frame["classifier"])], chance=1 / results.classes("six"), regions=True
+        )
+        axes.set_title(f"Recognising {results.group_text('six')} by one touch, {protocol}", pad=42)
+        handles, names = axes.get_legend_handles_labels()
+        axes.legend(
+            handles[1:] + handles[:1], names[1:] + names[:1], loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=3,
+            fontsize=9, columnspacing=1.4, handlelength=1.2,
+        )  # fmt: skip
+    return Figure(figure)
+
+
+def figure_4_4(results: Results) -> Figure:
+    """Correlations of the imprints of each two objects, for blind touch and the thesis's attention."""
+    folder = results.folder("classification")
+    dataset = folder.parent.name
+    best = EQUAL if dataset == PRINTED else SSIM
+    groups = sorted(folder.glob("six.*.npz")) or sorted(folder.glob("four.*.npz"))
+    first = some(groups, "no groups in data/classification", "classification")[0]
+    pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
+    images = {name: results.imprints(name, dataset) for pair in pairs for name in pair}
+    samplings = {method: label(method) for method in ("random", best)}
+    likeness = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
+    order = np.argsort([np.median(values) for values in likeness[best]], kind="stable")
+    paint = colours(list(samplings))
+    figure, axes = plt.subplots(figsize=(7.6, 0.42 * len(pairs) + 1.2))
+    for offset, (method, words) in zip((0.18, -0.18), samplings.items(), strict=True):
+        tint, correlations = paint[method], [likeness[method][k] for k in order]
+        axes.boxplot(
+            [values.ravel() for values in correlations], positions=np.arange(len(pairs)) + offset, widths=0.3,
+            orientation="horizontal", whis=(5, 95), showfliers=False, patch_artist=True,
+            boxprops={"facecolor": tint, "edgecolor": tint, "alpha": 0.75}, medianprops={"color": INK},
+            whiskerprops={"color": tint}, capprops={"color": tint}, label=words,
+        )  # fmt: skip
+        for k, values in enumerate(correlations):
+            share = (values.max(axis=1) >= SIMILARITY_THRESHOLD).mean()
+            axes.text(1.03, k + offset, f"{100 * share:.0f} %", va="center", fontsize=8, color=INK)
+    axes.axvline(SIMILARITY_THRESHOLD, color=GREY, lw=1, ls="--")
+    axes.text(1.03, len(pairs) - 0.35, "share", fontsize=8, color=INK)
+    axes.set_yticks(range(len(pairs)), [" – ".join(pairs[k]) for k in order])
+    axes.set(xlim=(-1, 1), xlabel="normalised cross-correlation of two imprints")
+    axes.tick_params(axis="y", length=0)
+    axes.set_title("How alike the imprints of two objects are", pad=26)
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=2, fontsize=9)
+    return Figure(figure, {"threshold": SIMILARITY_THRESHOLD, "set": dataset_text(dataset)})

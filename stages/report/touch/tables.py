@@ -1,25 +1,24 @@
-"""T tables 4.1, 4.2, 4.5 and 4.6: recognition by one touch and by several, beside the thesis's; 4.1 is drawn too."""
+"""T tables 4.1 to 4.6 and section 4.2.4: recognition by one touch and by several, and imprints that objects share."""
 
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
 from haptic_glance.know.split import Split
-from stages.report.drawing import INK, colours, label, plt
-from stages.report.items import Figure, Table
+from stages.report.drawing import label
+from stages.report.items import Table
 from stages.report.results import OWN_FOLDER, SETS_4_2, NotRun, Results, some
 from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, grouped, scaled, with_means
 from stages.report.words import shared_notes
 
-from .rows import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .rows import STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
-DRAWN = ("random", "itti", EQUAL, SSIM, MODEL)  # samplings
 FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV
 JUDGED = ["svm", "knn", *MEANS]  # shown where the SVM is not dead
 WAYS = {
@@ -161,49 +160,73 @@ def _by_touches(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
     return frame.assign(protocol=protocol.name, best=best, thesis=printed)
 
 
-def draw_bars(
-    axes: Axes, frame: pd.DataFrame, classifiers: list[str], chance: float, regions: bool = False
-) -> dict[str, float]:
-    """Draws the samplings of DRAWN that were run; returns dict method -> its place about the middle of a group.
-
-    frame: the tidy table 4.1 or 4.2. regions: whether accuracies on unseen regions are drawn too.
-    """
-    samplings = set(frame.dropna(subset=["accuracy"])["sampling"])
-    paint = colours([method for method in DRAWN if method in samplings])
-    width = 0.8 / max(len(paint), 1)
-    places = {method: (k - (len(paint) - 1) / 2) * width for k, method in enumerate(paint)}
-    for k, (method, place) in enumerate(places.items()):
-        rows, x = frame[frame["sampling"] == method].set_index("classifier"), np.arange(len(classifiers)) + place
-        cells = 100 * rows.loc[classifiers, ["accuracy", "low", "high", "accuracy_regions", "thesis"]]
-        diamonds, dashes = (None, None) if k else ("the thesis's figure", "regions not touched before")
-        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=label(method))
-        axes.vlines(x, cells["low"], cells["high"], color=INK, lw=1)
-        axes.plot(x, cells["thesis"], "D", color="white", mec=INK, ms=5, mew=1.1, label=diamonds)
-        if regions:
-            axes.plot(x, cells["accuracy_regions"], "_", color=INK, ms=13, mew=2, label=dashes)
-    axes.axhline(100 * chance, color=INK, lw=0.9, ls=":")
-    axes.text(1.01, 100 * chance, "chance", transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
-    axes.set_xticks(range(len(classifiers)), [label(name) for name in classifiers])
-    axes.set(ylim=(0, 100), ylabel="accuracy, %")
-    axes.grid(axis="y")
-    axes.tick_params(axis="x", length=0)
-    return places
+SELECTIONS = {
+    "plain": "no selection", "selected": "selection", "selected_control": "as many left out at random",
+    "selected_train": "selection in training alone",
+}  # fmt: skip
+PRINTED_SELECTIONS = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
+# T4.2.4, enhanced visual attention; of the thesis's cow, dromedary, glasses, hand, plane and cup.
+BY_OBJECT = {
+    "elephant": 0.3333, "duck": 0.4, "eyeglasses": 0.0667, "hand": 0.2667, "airplane": 0.1333, "cup": 0.2,
+}  # fmt: skip
 
 
-def figure_4_1(results: Results) -> Figure:
-    """Table 4.1 as a picture, a panel a protocol."""
-    table = table_4_1(results).frame
-    parts = list(table[~table["protocol"].str.contains(": ")].groupby("protocol", sort=False))
-    figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 4.1 * len(parts)), squeeze=False)
-    figure.subplots_adjust(hspace=0.52)
-    for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):
-        draw_bars(
-            axes, frame, [*CLASSIFIERS, *added(frame["classifier"])], chance=1 / results.classes("six"), regions=True
+def table_4_3(results: Results) -> Table:
+    """The gain from leaving out imprints that another object has too, by protocol."""
+    fifteen_ways = [fifteen(way) for way in SELECTIONS]
+    thesis = results.thesis("table_4_3_imprint_selection_virtual").set_index("classifier")
+    selected = {version.dataset for version in protocols(results, variant="selected")}
+    versions = protocols(results, group=["six", "four"], variant=[*SELECTIONS, *fifteen_ways])
+    frame = pd.concat(
+        [_selections(version, thesis) for version in versions if version.dataset in selected], ignore_index=True
+    )
+    down, few_of = ["protocol", "classifier"], frame["classifier"].str.contains(", ")
+    cells = frame.assign(thesis=frame["thesis"].mask(few_of))
+    cells = cells.assign(head=cells["objects"] + ", " + cells["selection"].map(SELECTIONS))
+    cells, names = blocks(cells, down, "head", {"thesis": lambda protocol: PRINTED}), {"classifier": sampling_text}
+    text_table = grid(cells, down, "head", names, head=lambda name: f"{name}, %", printed=PRINTED)
+    words = {"not_run": results.left_out(STAGE, variant=[*SELECTIONS, *fifteen_ways])}
+    return Table(frame, text_table, words, Ranking("six, no selection, %", among=["protocol"], exempt=[PRINTED]))
+
+
+def _selections(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
+    """Accuracies of one protocol at its model's points by classifier, group and way to select, with the thesis's."""
+    rows, cells = protocol.rows[protocol.rows["method"] == protocol.best], []
+    for suffix, name, group, way in product(("", ", 15 imprints"), thesis.index, rows["group"].unique(), SELECTIONS):
+        variant = fifteen(way) if suffix else way
+        trials = rows[(rows["classifier"] == name) & (rows["group"] == group) & (rows["variant"] == variant)]
+        recall = trials[(trials["split"] == Split.RANDOM) & (trials["metric"] == "recall")]["value"].mean()
+        printed = thesis.loc[name].get(f"{group}_{PRINTED_SELECTIONS.get(way)}", np.nan)
+        cell = {"protocol": protocol.name, "classifier": f"{name}{suffix}", "objects": group, "selection": way}
+        cells.append(
+            cell | accuracies(trials) | {"imprints": trials["imprints"].max(), "recall": recall, "thesis": printed}
         )
-        axes.set_title(f"Recognising {results.group_text('six')} by one touch, {protocol}", pad=42)
-        handles, names = axes.get_legend_handles_labels()
-        axes.legend(
-            handles[1:] + handles[:1], names[1:] + names[:1], loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=3,
-            fontsize=9, columnspacing=1.4, handlelength=1.2,
-        )  # fmt: skip
-    return Figure(figure)
+    return pd.DataFrame(cells)
+
+
+def section_4_2_4(results: Results) -> Table:
+    """How many imprints correlate by 0.85 or more with one of another object, by protocol."""
+    thesis = results.thesis("section_4_2_similar_imprints").set_index("sampling")["share_with_ncc_over_0_85"]
+    frame = pd.concat([
+        _shares(protocol, thesis) for protocol in protocols(results, group="six", metric="similar_share")
+    ], ignore_index=True)  # fmt: skip
+    text_table = frame[["protocol", "of"]].assign(
+        name=frame["name"].where(frame["of"] == "object", frame["name"].map(sampling_text))
+    )
+    for column, head in (("all", "ours, all, %"), ("first_15", "ours, first 15, %"), ("thesis", "thesis, %")):
+        text_table[head] = 100 * frame[column]
+    return Table(frame, text_table)  # no ranking: a share of alike imprints is neither good nor bad
+
+
+def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:
+    """The shares of one protocol: of each sampling, then of each object at the points of its model."""
+    rows = protocol.rows[protocol.rows["item"].isna() | (protocol.rows["method"] == protocol.best)]
+    rows = rows.assign(of=np.where(rows["item"].isna(), "sampling", "object"), name=rows["item"].fillna(rows["method"]))
+    thesis = thesis.rename(index=protocol.samplings)
+    wide = rows.pivot_table(index=["of", "name"], columns="variant", values=["imprints", "value"], sort=False)
+    columns = {"imprints": ("imprints", "plain"), "all": ("value", "plain"), "first_15": ("value", "first_15")}
+    frame = wide.reindex(columns=list(columns.values())).set_axis(list(columns), axis=1).reset_index()
+    frame["thesis"] = frame["name"].map(thesis.to_dict() | BY_OBJECT)
+    order = {"sampling": 0, "object": 1} | {name: k for k, name in enumerate(thesis.index)}
+    frame = frame.sort_values(["of", "name"], key=lambda column: column.map(order))
+    return frame.assign(protocol=protocol.name)
