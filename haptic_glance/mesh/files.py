@@ -111,7 +111,8 @@ def as_mesh(source: MeshLike) -> Mesh:
     -------
     Mesh
         The same object for a Mesh. Vertices keep their ids, except those of a Scene. Colours and textures of trimesh
-        are taken over.
+        are taken over as sRGB. trimesh's own loader leaves the colours of a GLB linear, which shows them too dark: give
+        the path of a GLB instead.
 
     Raises
     ------
