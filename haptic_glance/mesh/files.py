@@ -193,6 +193,8 @@ def parse(
         raise MeshError("the file is empty")
     if suffix == ".gltf":
         content, suffix = gltf.packed(content, resolver), ".glb"
+    elif suffix == ".glb":
+        content = gltf.with_pictures(content, resolver)
     check_header(content, suffix)
     try:
         content = READY[suffix](content) if suffix in READY else content

@@ -33,21 +33,25 @@ def as_glb(path: Path) -> bytes:
     """The bytes of a GLB or, as one, of a .gltf file; empty for other suffixes. Raises MeshError as `packed`."""
     suffix = path.suffix.lower()
     content = path.read_bytes() if suffix in SUFFIXES else b""
-    content = _with_absent(content, path.parent) if suffix == ".glb" else content
-    return ready(packed(content, trimesh.resolvers.FilePathResolver(str(path))) if suffix == ".gltf" else content)
+    resolver = trimesh.resolvers.FilePathResolver(str(path))
+    return ready(packed(content, resolver) if suffix == ".gltf" else with_pictures(content, resolver))
 
 
-def _with_absent(content, folder):
-    """The bytes of a GLB in which pictures have a mark that lie beside the file, but are not there."""
-    names = [name for name in names_in(content) if not (folder / name).is_file()]
-    if not names:
-        return content
+def with_pictures(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
+    """The bytes of a GLB with the pictures that lie beside it; one that is not there gets a mark. Else as `packed`."""
     start = 20 + int.from_bytes(content[12:16], "little")
-    tree = json.loads(content[20:start])
-    for image in tree.get("images", []):
-        if unquote(image.get("uri", "")) in names:
-            image[ABSENT] = _name(image["uri"])
-    return joined(tree, bytearray(content[start + 8 :]))
+    try:
+        tree = json.loads(content[20:start])
+        if not any("uri" in image for image in tree.get("images", [])):
+            return content
+        if any("uri" in buffer for buffer in tree["buffers"]):
+            return content
+        binary = bytearray(content[start + 8 :])
+        _pack_pictures(tree, binary, resolver)
+        tree["buffers"][0]["byteLength"] = len(binary)
+        return joined(tree, binary)
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):  # the parser refuses it
+        return content
 
 
 def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
@@ -262,6 +266,13 @@ def _pack(tree: dict[str, Any], resolver: trimesh.resolvers.Resolver | None) -> 
         binary += _aligned(data)
     for view in tree.get("bufferViews", []):
         view |= {"byteOffset": starts[view["buffer"]] + view.get("byteOffset", 0), "buffer": 0}
+    _pack_pictures(tree, binary, resolver)
+    tree["buffers"] = [{"byteLength": len(binary)}]
+    return binary
+
+
+def _pack_pictures(tree, binary, resolver):
+    """Moves the pictures of URIs into the buffer; names those that are not there."""
     for image in tree.get("images", []):
         if "uri" not in image:
             continue
@@ -276,8 +287,6 @@ def _pack(tree: dict[str, Any], resolver: trimesh.resolvers.Resolver | None) -> 
         image |= {"bufferView": len(tree.setdefault("bufferViews", [])), "mimeType": kind}
         tree["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data)})
         binary += _aligned(data)
-    tree["buffers"] = [{"byteLength": len(binary)}]
-    return binary
 
 
 def _read(uri: str, resolver: trimesh.resolvers.Resolver | None) -> bytes | None:

@@ -252,6 +252,15 @@ def test_a_buffer_that_is_cut_or_packed_is_refused(text, reason):
         parse(text.encode(), ".gltf")
 
 
+@pytest.mark.parametrize(("uri", "name"), [("p%20q.png", "p q.png"), ("%C3%A9.png", "é.png"), ("p.png", "p.png")])
+def test_a_glb_shows_the_picture_beside_it_also_by_an_encoded_name(uri, name, glb, tmp_path):
+    Image.new("RGB", (4, 4), (200, 40, 40)).save(tmp_path / name)
+    (tmp_path / "out.glb").write_bytes(changed(glb, lambda tree, _: tree.update(images=[{"uri": uri}])))
+    assert any((image == [200, 40, 40, 255]).all() for image in load(tmp_path / "out.glb").texture.images)
+    (tmp_path / name).unlink()
+    assert not_read(as_glb(tmp_path / "out.glb")) == [f"picture {name}, not beside it"]
+
+
 def changed(content, change):
     """The bytes of a GLB whose tree a function has changed, which may return bytes for the end of the buffer."""
     start = 20 + int.from_bytes(content[12:16], "little")
