@@ -69,8 +69,10 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     Notes
     -----
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
-    glb with all that its materials say, and with the files of pictures that nobody changed; ply gets the texture's
-    colour at each vertex instead; off and stl have neither. A glb has normals, for which creases double vertices, too.
+    glb with the factors and pictures of its materials, without samplers, scales of pictures, extensions and further
+    texture coordinates. A glb gets the files of PNG and JPEG pictures that nobody changed; other pictures become PNG.
+    ply gets the texture's colour at each vertex instead; off and stl have neither. Colours in a glb are linear, as glTF
+    says, and sRGB in the other formats. A glb has normals, for which creases double vertices, too.
     obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects
     +y up and metres, but nothing is turned here (`haptic_glance.mesh.up.upright_for`); the other formats get a comment
     that names the axis.
