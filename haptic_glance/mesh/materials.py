@@ -192,7 +192,9 @@ def not_read(content: bytes, has_colors: bool = False) -> list[str]:
             names += [name for material in materials for name in _flat(material) if name not in KEPT_BESIDE_COLOURS]
         for primitive in primitives:
             attributes = primitive["attributes"]
-            has_place = has_colors or _is_white(tree, attributes.get("COLOR_0"), content)
+            # without a material they become those of the Mesh, or a picture
+            has_place = has_colors or "material" not in primitive
+            has_place = has_place or _is_white(tree, attributes.get("COLOR_0"), content)
             names += [name for name in attributes if name not in DERIVED and not (name == "COLOR_0" and has_place)]
         names += [NO_SURFACE[entry["mode"]] for entry in primitives if entry.get("mode") in NO_SURFACE]
         names += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
@@ -369,7 +371,10 @@ def _as_picture(part):
         return part
     uv = np.column_stack([(np.arange(len(colors)) + 0.5) / len(colors), np.full(len(colors), 0.5)])
     visual = trimesh.visual.TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
-    return trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
+    pictured = trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
+    if part.metadata.get(BESIDE):
+        pictured.metadata[BESIDE] = part.metadata[BESIDE] | {"baseColorTexture": True}
+    return pictured
 
 
 def flat_texture(colors: np.ndarray) -> Texture:

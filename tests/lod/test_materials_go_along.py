@@ -181,7 +181,7 @@ OTHERS = {  # a part beside one with colours: its colour, and what is dropped
     "no material": ({}, 255, []),
     "a plain material": ({"baseColorFactor": [102, 51, 0, 255], "roughnessFactor": 0.4}, [102, 51, 0],
                          ["roughnessFactor"]),
-    "a picture": ({"baseColorTexture": Image.new("RGB", (2, 2), (9, 9, 9))}, None, ["COLOR_0"]),
+    "a picture": ({"baseColorTexture": Image.new("RGB", (2, 2), (9, 9, 9))}, None, []),
 }  # fmt: skip
 
 
@@ -431,3 +431,14 @@ def test_a_picture_times_a_factor_is_multiplied_without_the_encoding(factor, exp
     texture = Texture(uv, [0], (pixels,), (material,))
     assert (texture.sample(np.zeros(1, int), uv[:, 0]) == expected).all()
     assert (_in_pictures(texture).images[0] == [expected] * 3 + [188]).all()
+
+
+def test_colours_that_become_a_picture_keep_their_side_and_their_shade(tmp_path):
+    coloured = trimesh.creation.icosphere(1)
+    coloured.visual.vertex_colors = np.tile(np.uint8([200, 40, 9, 255]), (42, 1))
+    scene = trimesh.Scene([coloured, ball(3, baseColorTexture=picture((9, 9, 9)))])
+    (tmp_path / "two.glb").write_bytes(with_linear_colours(scene.export(file_type="glb")))
+    texture = load(tmp_path / "two.glb").texture
+    (number,) = (number for number, image in enumerate(texture.images) if image[0, 0, 0] == 200)
+    assert (texture.images[number][..., :3] == [200, 40, 9]).all()
+    assert texture.materials[number] == {"doubleSided": False, "baseColorTexture": True}
