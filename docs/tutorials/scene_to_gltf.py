@@ -63,7 +63,8 @@ plt.show()
 # ------------------------
 #
 # ``MSFT_lod`` is a vendor extension in Khronos's registry. The first node is the finest level and names the others;
-# ``MSFT_screencoverage`` lists, for each level, the smallest share of the screen's height at which the level is enough.
+# ``MSFT_screencoverage`` lists, for each level, the share of the screen's height below which the next coarser level is
+# enough.
 # A viewer without the extension shows the finest level. ``write_lod`` reads the file back and compares the names of
 # its levels.
 

@@ -24,8 +24,10 @@ from haptic_glance.base.files import whole_file
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
 from haptic_glance.base.warner import warn_caller
+from haptic_glance.mesh.gltf import with_linear_colours
 from haptic_glance.mesh.materials import WHITE, bake_texture, pixels_of
 from haptic_glance.mesh.mesh import Mesh, colour_factor
+from haptic_glance.mesh.srgb import encoded, multiplied
 from haptic_glance.mesh.up import with_stated_up
 
 from .feasibility import InfeasibleTarget, SimplifyError
@@ -67,8 +69,10 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     Notes
     -----
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices, and to
-    glb with all that its materials say, and with the files of pictures that nobody changed; ply gets the texture's
-    colour at each vertex instead; off and stl have neither. A glb has normals, for which creases double vertices, too.
+    glb with the factors and pictures of its materials, without samplers, scales of pictures, extensions and further
+    texture coordinates. A glb gets the files of PNG and JPEG pictures that nobody changed; other pictures become PNG.
+    ply gets the texture's colour at each vertex instead; off and stl have neither. Colours in a glb are linear, as glTF
+    says, and sRGB in the other formats. A glb has normals, for which creases double vertices, too.
     obj and off have nine digits or more, the others single precision. Coordinates are those of the mesh: glTF expects
     +y up and metres, but nothing is turned here (`haptic_glance.mesh.up.upright_for`); the other formats get a comment
     that names the axis.
@@ -118,9 +122,8 @@ def files_beside(path: Path) -> list[Path]:
 
 def _in_pictures(texture):
     """The Texture without materials, whose colours go into its pictures."""
-    factors = [np.append(colour_factor(material), 1) for material in texture.materials]
-    images = [image if (factor == 1).all() else np.rint(image * factor).astype(np.uint8)
-              for image, factor in zip(texture.images, factors, strict=True)]  # fmt: skip
+    images = [np.dstack([multiplied(image[..., :3], colour_factor(material)), image[..., 3]])
+              for image, material in zip(texture.images, texture.materials, strict=True)]  # fmt: skip
     return replace(texture, images=tuple(images), materials=())
 
 
@@ -158,7 +161,8 @@ def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> tr
     Returns
     -------
     trimesh.Trimesh or trimesh.Scene
-        With a texture a Scene with one part per image, vertices doubled at seams.
+        With a texture a Scene with one part per image, vertices doubled at seams. Colours are sRGB, also factors of
+        materials; `write_any` makes them linear in a glb, as glTF says, and trimesh's own export does not.
 
     Examples
     --------
@@ -189,8 +193,9 @@ def for_glb(
 
 
 def write_glb(loaded: trimesh.Trimesh | trimesh.Scene) -> bytes:
-    """The bytes of what `for_glb` returns."""
-    return loaded.export(file_type="glb", include_normals=True)  # type: ignore[return-value]
+    """The bytes of what `for_glb` returns; its colours, which are sRGB, become linear."""
+    content: Any = loaded.export(file_type="glb", include_normals=True)
+    return with_linear_colours(content)
 
 
 def _converted(mesh, name, parts, carried=None) -> trimesh.Trimesh | trimesh.Scene:
@@ -236,6 +241,9 @@ def _part(mesh, material, ids, name, carried):
     rows = np.column_stack([faces.ravel(), mesh.texture.uv[ids].reshape(-1, 2)])
     vertices, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     pbr = trimesh.visual.material.PBRMaterial(**{"name": name} | material)
+    factor = np.asarray(material.get("baseColorFactor", ()))
+    if carried is not None and factor.dtype.kind == "f" and len(factor):  # an assignment would make bytes of it
+        pbr._data["baseColorFactor"] = np.append(encoded(factor[:3]), factor[3:])
     visual = trimesh.visual.TextureVisuals(uv=vertices[:, 1:], material=pbr)
     return _made(mesh, faces.ravel()[first], inverse.reshape(-1, 3), carried, visual=visual)
 

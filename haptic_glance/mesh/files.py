@@ -111,7 +111,8 @@ def as_mesh(source: MeshLike) -> Mesh:
     -------
     Mesh
         The same object for a Mesh. Vertices keep their ids, except those of a Scene. Colours and textures of trimesh
-        are taken over.
+        are taken over as sRGB. trimesh's own loader leaves the colours of a GLB linear, which shows them too dark: give
+        the path of a GLB instead.
 
     Raises
     ------
@@ -192,6 +193,8 @@ def parse(
         raise MeshError("the file is empty")
     if suffix == ".gltf":
         content, suffix = gltf.packed(content, resolver), ".glb"
+    elif suffix == ".glb":
+        content = gltf.with_pictures(content, resolver)
     check_header(content, suffix)
     try:
         content = READY[suffix](content) if suffix in READY else content

@@ -14,6 +14,7 @@ import numpy as np
 from haptic_glance.base.lazy import trimesh
 
 from .headers import ABSENT, MeshError, check_extensions
+from .srgb import decoded, encoded
 
 SUFFIXES = (".glb", ".gltf")
 DATA = "data:"
@@ -24,6 +25,7 @@ IDS = 5125  # the kind of the vertices of faces
 KINDS_OF_NUMBERS = INTEGERS | {IDS: "<u4", FLOAT: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 TRIANGLES, FAN = 4, 6  # modes of primitives
+GLOSS = "KHR_materials_pbrSpecularGlossiness"
 PLACE = ("matrix", "translation", "rotation", "scale")  # of a node
 
 
@@ -31,21 +33,25 @@ def as_glb(path: Path) -> bytes:
     """The bytes of a GLB or, as one, of a .gltf file; empty for other suffixes. Raises MeshError as `packed`."""
     suffix = path.suffix.lower()
     content = path.read_bytes() if suffix in SUFFIXES else b""
-    content = _with_absent(content, path.parent) if suffix == ".glb" else content
-    return ready(packed(content, trimesh.resolvers.FilePathResolver(str(path))) if suffix == ".gltf" else content)
+    resolver = trimesh.resolvers.FilePathResolver(str(path))
+    return ready(packed(content, resolver) if suffix == ".gltf" else with_pictures(content, resolver))
 
 
-def _with_absent(content, folder):
-    """The bytes of a GLB in which pictures have a mark that lie beside the file, but are not there."""
-    names = [name for name in names_in(content) if not (folder / name).is_file()]
-    if not names:
-        return content
+def with_pictures(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
+    """The bytes of a GLB with the pictures that lie beside it; one that is not there gets a mark. Else as `packed`."""
     start = 20 + int.from_bytes(content[12:16], "little")
-    tree = json.loads(content[20:start])
-    for image in tree.get("images", []):
-        if unquote(image.get("uri", "")) in names:
-            image[ABSENT] = _name(image["uri"])
-    return joined(tree, bytearray(content[start + 8 :]))
+    try:
+        tree = json.loads(content[20:start])
+        if not any("uri" in image for image in tree.get("images", [])):
+            return content
+        if any("uri" in buffer for buffer in tree["buffers"]):
+            return content
+        binary = bytearray(content[start + 8 :])
+        _pack_pictures(tree, binary, resolver)
+        tree["buffers"][0]["byteLength"] = len(binary)
+        return joined(tree, binary)
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):  # the parser refuses it
+        return content
 
 
 def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
@@ -67,14 +73,16 @@ def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -
 def ready(content: bytes) -> bytes:
     """The bytes of a GLB in the form that the parser reads (glTF 2.0, sections 3.5, 3.6.2.2 and 3.7).
 
-    Normalised integers and texture coordinates become floats, and fans single triangles. A mesh with a skin stands
-    where its skin puts it in the pose of the file. A file without a scene shows all nodes. A malformed file stays as it
-    is: the parser refuses it.
+    Colours, which a glTF states linear, become those of sRGB, as pictures hold them, before the parser makes bytes of
+    them. Normalised integers and texture coordinates become floats, and fans single triangles. A mesh with a skin
+    stands where its skin puts it in the pose of the file. A file without a scene shows all nodes. A malformed file
+    stays as it is: the parser refuses it.
     """
     try:
         start = 20 + int.from_bytes(content[12:16], "little")
         tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
         before = json.dumps(tree)
+        _as_srgb(tree, binary, content)
         _as_floats(tree, binary, content)
         _as_triangles(tree, binary, content)
         _place_skins(tree, content)
@@ -86,6 +94,61 @@ def ready(content: bytes) -> bytes:
         return joined(tree, binary)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
         return content
+
+
+def _as_srgb(tree, binary, content):
+    """Encodes the linear colours of vertices and materials (sections 3.7.2.1 and 5.22.1), but not their alpha."""
+    made = {}
+    for primitive in (primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]):
+        number = primitive["attributes"].get("COLOR_0")
+        if number is None or "bufferView" not in tree["accessors"][number]:  # none, or all are zero
+            continue
+        if number not in made:  # a new accessor: others may use the old one for something else
+            values = _colours(tree, tree["accessors"][number], content)
+            values[:, :3] = encoded(values[:, :3])
+            kind = {"type": f"VEC{values.shape[1]}", "componentType": FLOAT, "count": len(values)}
+            made[number] = len(tree["accessors"])
+            view = _added(tree, binary, values.astype("<f4"))
+            tree["accessors"].append(kind | {"bufferView": view, "byteOffset": 0})
+        primitive["attributes"]["COLOR_0"] = made[number]
+    for material in tree.get("materials", []):
+        _encode_factor(material.get("pbrMetallicRoughness", {}), "baseColorFactor")
+        gloss = material.get("extensions", {}).get(GLOSS, {})
+        if "diffuseTexture" not in gloss:  # the parser itself multiplies a picture
+            _encode_factor(gloss, "diffuseFactor")
+
+
+def _encode_factor(properties, name):
+    if name in properties:
+        properties[name] = encoded(np.array(properties[name][:3], float)).tolist() + properties[name][3:]
+
+
+def with_linear_colours(content: bytes) -> bytes:
+    """The bytes of a GLB of the parser, whose colours are sRGB, with linear ones: `ready` the other way round.
+
+    Colours of vertices become floats: eight bits would lose dark ones, and the parser takes 16 bits for plain integers.
+    """
+    start = 20 + int.from_bytes(content[12:16], "little")
+    tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+    primitives = [primitive for mesh in tree["meshes"] for primitive in mesh["primitives"]]
+    for number in {primitive["attributes"].get("COLOR_0") for primitive in primitives} - {None}:
+        entry = tree["accessors"][number]
+        values = _colours(tree, entry, content)
+        values[:, :3] = decoded(values[:, :3])
+        kind = {"type": entry["type"], "count": entry["count"], "componentType": FLOAT}
+        tree["accessors"][number] = kind | {"bufferView": _added(tree, binary, values.astype("<f4")), "byteOffset": 0}
+    for material in tree.get("materials", []):
+        factor = material.get("pbrMetallicRoughness", {}).get("baseColorFactor")
+        if factor is not None:
+            factor[:3] = decoded(np.array(factor[:3])).round(9).tolist()
+    tree["buffers"][0]["byteLength"] = len(binary)
+    return joined(tree, binary)
+
+
+def _colours(tree, entry, content):
+    """(n, 3) or (n, 4) floats of 0..1: the colours of an accessor."""
+    values = numbers_of(tree, entry, content)
+    return values / np.float64(1 if values.dtype.kind == "f" else np.iinfo(values.dtype).max)
 
 
 def _as_floats(tree, binary, content):
@@ -203,6 +266,13 @@ def _pack(tree: dict[str, Any], resolver: trimesh.resolvers.Resolver | None) -> 
         binary += _aligned(data)
     for view in tree.get("bufferViews", []):
         view |= {"byteOffset": starts[view["buffer"]] + view.get("byteOffset", 0), "buffer": 0}
+    _pack_pictures(tree, binary, resolver)
+    tree["buffers"] = [{"byteLength": len(binary)}]
+    return binary
+
+
+def _pack_pictures(tree, binary, resolver):
+    """Moves the pictures of URIs into the buffer; names those that are not there."""
     for image in tree.get("images", []):
         if "uri" not in image:
             continue
@@ -217,8 +287,6 @@ def _pack(tree: dict[str, Any], resolver: trimesh.resolvers.Resolver | None) -> 
         image |= {"bufferView": len(tree.setdefault("bufferViews", [])), "mimeType": kind}
         tree["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data)})
         binary += _aligned(data)
-    tree["buffers"] = [{"byteLength": len(binary)}]
-    return binary
 
 
 def _read(uri: str, resolver: trimesh.resolvers.Resolver | None) -> bytes | None:

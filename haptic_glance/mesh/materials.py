@@ -18,9 +18,10 @@ from PIL import Image
 
 from haptic_glance.base.lazy import trimesh
 
-from .gltf import joined, numbers_of
+from .gltf import GLOSS, joined, numbers_of
 from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import MOST_UV, Mesh, Texture, content_of
+from .srgb import decoded, multiplied
 
 FACTORS = (
     "name", "baseColorFactor", "metallicFactor", "roughnessFactor", "emissiveFactor", "alphaMode", "alphaCutoff",
@@ -68,15 +69,18 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
     tree = _header(content)
     unreadable = [name for name, picture in _pictures(tree, content) if not _is_readable(picture)]
     elsewhere, stated = _on_other_coordinates(tree), _stated_in(tree, "materials")
-    left_out = {}
-    if elsewhere:  # the names are those of `numbered`
+    left_out, exact = {}, {}
+    if stated:  # the names are those of `numbered`
         of_file: dict[int, Any] = {id(part): part for part in materials.values() if getattr(part, "name", None)}
         for material in of_file.values():  # a part without a material has none, or one without a name
-            left_out[id(material)] = elsewhere[int(material.name)]
-            material.name = stated[int(material.name)].get("name")
+            entry = stated[int(material.name)]
+            left_out[id(material)] = elsewhere[int(material.name)] if elsewhere else ()
+            exact[id(material)] = _exact_factor(entry)
+            material.name = entry.get("name")
     for part in parts:
         properties, unplaced = beside_colour(materials[id(part)]), left_out.get(id(materials[id(part)]), ())
         properties = properties and {k: v for k, v in properties.items() if k not in unplaced}
+        properties = properties and properties | exact.get(id(materials[id(part)]), {})
         part.metadata[BESIDE] = properties or (dict(OF_NO_MATERIAL) if tree else None)
     for material in {id(material): material for material in materials.values() if material is not None}.values():
         if isinstance(material, trimesh.visual.material.PBRMaterial):
@@ -96,16 +100,25 @@ def set_apart(loaded: trimesh.parent.Geometry, content: bytes = b"") -> list[str
 
 
 def numbered(content: bytes) -> bytes:
-    """The bytes of a GLB; materials have their numbers as names where one has pictures on other texture coordinates.
+    """The bytes of a GLB whose materials have their numbers as names.
 
     Names may be equal, or absent: `set_apart` tells the materials apart by the numbers, and gives the names back.
     """
     tree = _header(content)
-    if not _on_other_coordinates(tree):
+    if not _stated_in(tree, "materials"):
         return content
     for number, material in enumerate(_stated_in(tree, "materials")):
         material["name"] = str(number)
     return joined(tree, bytearray(content[28 + int.from_bytes(content[12:16], "little") :]))
+
+
+def _exact_factor(material):
+    """The linear factor of colour of a material of a GLB that `gltf.ready` has encoded; the parser made bytes of it."""
+    with suppress(*MALFORMED):
+        factor = np.array(material["pbrMetallicRoughness"]["baseColorFactor"], dtype=np.float64)
+        if factor.shape == (4,) and GLOSS not in material.get("extensions", {}):
+            return {"baseColorFactor": np.append(decoded(factor[:3]), factor[3]).round(9)}
+    return {}
 
 
 def _on_other_coordinates(tree):
@@ -148,7 +161,7 @@ def pixels_of(image: Image.Image) -> np.ndarray:
 
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
-READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
+READ = (GLOSS, "EXT_texture_webp")  # extensions that trimesh reads
 OF_THE_SCENE = ("KHR_lights_", "KHR_xmp", "KHR_materials_variants", "EXT_mesh_gpu_instancing", "MSFT_lod")
 NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines"}  # modes that are not read
 KEPT_BESIDE_COLOURS = ("baseColorFactor", "pbrMetallicRoughness", "extensions", "extras")
@@ -179,7 +192,9 @@ def not_read(content: bytes, has_colors: bool = False) -> list[str]:
             names += [name for material in materials for name in _flat(material) if name not in KEPT_BESIDE_COLOURS]
         for primitive in primitives:
             attributes = primitive["attributes"]
-            has_place = has_colors or _is_white(tree, attributes.get("COLOR_0"), content)
+            # without a material they become those of the Mesh, or a picture
+            has_place = has_colors or "material" not in primitive
+            has_place = has_place or _is_white(tree, attributes.get("COLOR_0"), content)
             names += [name for name in attributes if name not in DERIVED and not (name == "COLOR_0" and has_place)]
         names += [NO_SURFACE[entry["mode"]] for entry in primitives if entry.get("mode") in NO_SURFACE]
         names += ["morph targets"] * any(primitive.get("targets") for primitive in primitives)
@@ -320,7 +335,7 @@ def _plain_colours(part):
     """(n, 3) u1: the colours of a part's vertices, white by default, times the colour of its material."""
     colors, factor = _colours_per_vertex(part), getattr(getattr(part.visual, "material", None), "baseColorFactor", None)
     colors = np.full((len(part.vertices), 3), 255, dtype=np.uint8) if colors is None else colors
-    return colors if factor is None else np.rint(colors * (np.asarray(factor)[:3] / 255)).astype(np.uint8)
+    return colors if factor is None else multiplied(colors, decoded(np.asarray(factor)[:3] / 255))
 
 
 def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray | None:
@@ -356,7 +371,10 @@ def _as_picture(part):
         return part
     uv = np.column_stack([(np.arange(len(colors)) + 0.5) / len(colors), np.full(len(colors), 0.5)])
     visual = trimesh.visual.TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
-    return trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
+    pictured = trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
+    if part.metadata.get(BESIDE):
+        pictured.metadata[BESIDE] = part.metadata[BESIDE] | {"baseColorTexture": True}
+    return pictured
 
 
 def flat_texture(colors: np.ndarray) -> Texture:

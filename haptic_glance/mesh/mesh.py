@@ -12,6 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from .axes import axis_named
+from .srgb import decoded, multiplied
 
 CANCELLED = 1e-9  # length of the sum of normals over the sum of their lengths, below which rounding gives the direction
 MOST_UV = float(np.finfo(np.float32).max)  # of a texture coordinate, as files hold it
@@ -66,7 +67,7 @@ class Texture:
     def sample(self, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
         """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel.
 
-        A picture's colours are multiplied by the `baseColorFactor` beside it, as glTF defines.
+        A picture's colours are multiplied by the `baseColorFactor` beside it, as glTF defines: without the encoding.
         """
         rgb = np.empty((len(faces), 3), dtype=np.uint8)
         numbers = self.image[faces]
@@ -74,7 +75,7 @@ class Texture:
             mask, (h, w) = numbers == number, self.images[number].shape[:2]
             across, up = (np.floor(uv[mask] * (w, h)) % (w, h)).astype(np.int64).T  # of any size, before the cast
             pixels = self.images[number][h - 1 - up, across, :3]
-            rgb[mask] = np.rint(pixels * colour_factor(self.materials[number]))
+            rgb[mask] = multiplied(pixels, colour_factor(self.materials[number]))
         return rgb
 
 
@@ -255,11 +256,14 @@ def _copied(values: Any, kind: type) -> np.ndarray:
 
 
 def colour_factor(material):
-    """(3,) of a picture's colours; a plain colour, without a picture, is in the image already."""
+    """(3,) linear, of a picture's colours; a plain colour, without a picture, is in the image already.
+
+    Bytes of a factor are sRGB, as trimesh gets them from us, and floats linear, as a glTF has them.
+    """
     if not material or "baseColorTexture" not in material or material.get("baseColorFactor") is None:
         return np.ones(3)
     factor = np.asarray(material["baseColorFactor"])
-    return factor[:3] / (255 if factor.dtype.kind in "iu" else 1)
+    return decoded(factor[:3] / 255) if factor.dtype.kind in "iu" else factor[:3]
 
 
 def _frozen(values: Any) -> bool:

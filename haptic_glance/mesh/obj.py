@@ -172,6 +172,18 @@ PLACED = re.compile(r"(?mi)^\s*map_Kd\s+(?=\S)(?:.*?\s)??(-[ost])\s")
 OTHER_ELEMENTS = {"lines": rb"(?m)^[ \t]*l[ \t]", "points": rb"(?m)^[ \t]*p[ \t]"}
 
 
+USUAL_KD = {(0.0,) * 3, (0.8,) * 3, (1.0,) * 3}  # exporters write them beside a picture by habit
+
+
+def _tints(material):
+    """Whether the text of a material has a picture of colour and a Kd, by which others multiply the picture."""
+    stated = re.search(r"(?mi)^\s*Kd\s+([-+.\deE \t]+?)\s*$", material)
+    with suppress(ValueError):
+        is_stated = stated is not None and tuple(map(float, stated[1].split())) not in USUAL_KD
+        return is_stated and re.search(r"(?mi)^\s*map_Kd\s", material) is not None
+    return False
+
+
 def not_read(path: Path, has_colors: bool = False) -> list[str]:
     """Names the parts of an OBJ file and its materials that a Mesh cannot hold; returns no names for other files.
 
@@ -197,6 +209,7 @@ def not_read(path: Path, has_colors: bool = False) -> list[str]:
         values = re.findall(rf"(?mi)^\s*{kind}\s+([-+.\deE \t]+?)\s*$", words)
         with suppress(ValueError):
             names += [kind] * any(set(map(float, value.split())) - {usual} for value in values)
+    names += ["Kd beside map_Kd"] * any(map(_tints, re.split(r"(?mi)^\s*newmtl\s", words)))
     names += [f"map_Kd {option}" for option in dict.fromkeys(PLACED.findall(words))]
     names += ["names of materials"] * (len(re.findall(r"(?mi)^\s*newmtl\s", words)) > 1)
     names += [kind for kind, form in OTHER_ELEMENTS.items() if re.search(form, content)]

@@ -1,4 +1,4 @@
-"""A coloured mesh as a GLB for the page: matte, its colours without the display's gamma, as glTF has them."""
+"""A coloured mesh as a GLB for the page: matte, its colours without the encoding of sRGB, as glTF has them."""
 
 import json
 import struct
@@ -6,17 +6,17 @@ import struct
 import numpy as np
 
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.srgb import decoded
 
 FLOAT, UNSIGNED, SHORT = 5126, 5125, 5123  # component types of glTF 2.0, section 3.6.2
 VERTICES, INDICES = 34962, 34963  # what a part of the buffer is for
-GAMMA = 2.2
 MATERIAL = {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.8}, "doubleSided": True}
 
 
 def glb(mesh: Mesh, colors: np.ndarray, flat: bool = False) -> bytes:
     """The GLB of a Mesh with colours (n, 3) u1; flat: without normals, so that every face is lit by its own."""
     rgb = np.full((len(colors), 4), 2**16 - 1, dtype=np.uint16)  # 16 bits: eight would lose the dark ones
-    rgb[:, :3] = np.rint((colors / 255) ** GAMMA * (2**16 - 1))
+    rgb[:, :3] = np.rint(decoded(colors / 255) * (2**16 - 1))
     parts = {"POSITION": mesh.vertices.astype("<f4"), "COLOR_0": rgb.astype("<u2")}
     if not flat:
         parts["NORMAL"] = mesh.vertex_normals.astype("<f4")

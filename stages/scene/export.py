@@ -6,6 +6,7 @@ here of its height, at which to show each. manifest.json has the same, and the e
 is loaded again after it is written, and checked.
 """
 
+import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -19,6 +20,7 @@ from trimesh.exchange.gltf import export_glb
 from haptic_glance.base.files import read_mesh, read_table, whole_file, write_json
 from haptic_glance.lod.scene.camera import Scene, world_mesh
 from haptic_glance.lod.scene.chain import Level, finest
+from haptic_glance.mesh.gltf import ready, with_linear_colours
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import Y_UP
 
@@ -94,7 +96,7 @@ def write_glb(
     for mesh, name in zip(meshes, names, strict=True):
         shape = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
         scene.add_geometry(shape, node_name=name, geom_name=name)
-    content = export_glb(scene, include_normals=True, tree_postprocessor=edit)
+    content = with_linear_colours(export_glb(scene, include_normals=True, tree_postprocessor=edit))
     with whole_file(path) as part:
         part.write_bytes(content)
     check_glb(path, meshes, names)
@@ -148,7 +150,8 @@ SINGLE = 1e-6  # of the largest coordinate: glTF stores 4 bytes a number
 def check_glb(path: Path, meshes: Sequence[Mesh], names: Sequence[str]) -> None:
     """Raises ValueError that names the file unless it holds these Meshes under these names, in their order."""
     try:
-        loaded = trimesh.load_scene(path, file_type="glb", process=False).geometry
+        stream = io.BytesIO(ready(path.read_bytes()))
+        loaded = trimesh.load_scene(stream, file_type="glb", process=False).geometry
     except Exception as error:  # whatever the reader raises: the file is at fault
         raise ValueError(f"{path} cannot be loaded back: {error}") from error
     if list(loaded) != list(names):

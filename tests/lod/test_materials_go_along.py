@@ -15,13 +15,14 @@ from trimesh.visual.material import PBRMaterial
 from haptic_glance import as_mesh, to_trimesh
 from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import dropped_from, run
-from haptic_glance.lod.export import write_any
+from haptic_glance.lod.export import _in_pictures, write_any
 from haptic_glance.lod.task import repaired
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
-from haptic_glance.mesh.gltf import as_glb, joined
+from haptic_glance.mesh.gltf import as_glb, joined, with_linear_colours
 from haptic_glance.mesh.materials import bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.srgb import decoded, encoded
 
 
 def picture(colour, kind="PNG"):
@@ -142,7 +143,7 @@ def test_a_picture_on_other_coordinates_is_left_out_of_its_own_material_alone(tm
 
     parts = {f"{place}": ball(place, name=f"{place}", normalTexture=picture((place, 128, 255)),
                               baseColorFactor=[place, 0, 0, 255]) for place in (0, 3)}  # fmt: skip
-    (tmp_path / "art.glb").write_bytes(trimesh.Scene(parts).export(file_type="glb"))
+    (tmp_path / "art.glb").write_bytes(with_linear_colours(trimesh.Scene(parts).export(file_type="glb")))
     rewritten(tmp_path / "art.glb", change)
     mesh = load(tmp_path / "art.glb")
     reds = [image[0, 0, 0] for image in mesh.texture.images]
@@ -177,7 +178,7 @@ OTHERS = {  # a part beside one with colours: its colour, and what is dropped
     "no material": ({}, 255, []),
     "a plain material": ({"baseColorFactor": [102, 51, 0, 255], "roughnessFactor": 0.4}, [102, 51, 0],
                          ["roughnessFactor"]),
-    "a picture": ({"baseColorTexture": Image.new("RGB", (2, 2), (9, 9, 9))}, None, ["COLOR_0"]),
+    "a picture": ({"baseColorTexture": Image.new("RGB", (2, 2), (9, 9, 9))}, None, []),
 }  # fmt: skip
 
 
@@ -187,7 +188,7 @@ def test_colours_per_vertex_are_kept_where_no_part_has_a_picture(tmp_path, name)
     coloured, other = trimesh.creation.icosphere(1), ball(0, **material) if material else trimesh.creation.box()
     other.apply_translation([3, 0, 0])
     coloured.visual.vertex_colors = COLOURS
-    (tmp_path / "two.glb").write_bytes(trimesh.Scene([coloured, other]).export(file_type="glb"))
+    (tmp_path / "two.glb").write_bytes(with_linear_colours(trimesh.Scene([coloured, other]).export(file_type="glb")))
     mesh = load(tmp_path / "two.glb")
     content, has_colors = (tmp_path / "two.glb").read_bytes(), mesh.colors is not None
     assert set(not_read(content, has_colors)) - {"metallicFactor", "name", "doubleSided"} == set(dropped)
@@ -265,13 +266,14 @@ def test_colours_of_faces_stay_apart_and_others_that_meet_are_blended(flat):
 def test_an_obj_gets_the_colour_of_a_material_in_its_picture(tmp_path):
     mesh = as_mesh(ball(0, baseColorTexture=picture((200, 40, 40)), baseColorFactor=[128, 255, 255, 255]))
     write_any(tmp_path / "ball.obj", mesh)
-    assert np.abs(bake_texture(load(tmp_path / "ball.obj")).colors - [100, 40, 40]).max() <= 1
+    red = np.rint(255 * encoded(decoded(np.array(200 / 255)) * decoded(np.array(128 / 255))))
+    assert np.abs(bake_texture(load(tmp_path / "ball.obj")).colors - [red, 40, 40]).max() <= 1
 
 
 def test_a_picture_without_coordinates_does_not_hide_the_colours(tmp_path):
     part = ball(0, baseColorTexture=picture((9, 9, 9)))
     part.visual.vertex_attributes["color"] = np.full((len(part.vertices), 4), 100, np.uint8)
-    (tmp_path / "bare.glb").write_bytes(trimesh.Scene(part).export(file_type="glb"))
+    (tmp_path / "bare.glb").write_bytes(with_linear_colours(trimesh.Scene(part).export(file_type="glb")))
     rewritten(tmp_path / "bare.glb", lambda tree: tree["meshes"][0]["primitives"][0]["attributes"].pop("TEXCOORD_0"))
     assert (load(tmp_path / "bare.glb").colors == 100).all()
 
@@ -280,7 +282,8 @@ def test_a_material_without_a_picture_multiplies_the_colours_beside_it(tmp_path)
     part = ball(0, name="paint", baseColorFactor=[255, 51, 0, 255])
     part.visual.vertex_attributes["color"] = np.full((len(part.vertices), 4), 100, np.uint8)
     (tmp_path / "paint.glb").write_bytes(trimesh.Scene(part).export(file_type="glb"))
-    assert (load(tmp_path / "paint.glb").colors == [100, 20, 0]).all()
+    expected = np.rint(255 * encoded(np.array([100 / 255, 100 / 255 * 0.2, 0])))  # both are linear
+    assert (load(tmp_path / "paint.glb").colors == expected).all()
 
 
 def test_the_copyright_of_a_file_is_said_to_be_dropped(tmp_path):
@@ -391,3 +394,48 @@ def test_meshes_with_other_materials_differ():
     first, other = art(), art()
     other.geometry["metal"].visual.material.roughnessFactor = 0.3
     assert as_mesh(first) == as_mesh(art()) and as_mesh(first) != as_mesh(other)
+
+
+LINEAR = [0.2, 0.02, 0.001, 0.3217]
+
+
+def test_a_linear_factor_is_shown_as_viewers_show_it_and_goes_to_the_next_glb_unchanged(tmp_path):
+    (tmp_path / "ball.glb").write_bytes(trimesh.Scene(ball(0, baseColorFactor=[9, 9, 9, 9])).export(file_type="glb"))
+    rewritten(
+        tmp_path / "ball.glb", lambda tree: tree["materials"][0]["pbrMetallicRoughness"].update(baseColorFactor=LINEAR)
+    )
+    mesh = load(tmp_path / "ball.glb")
+    assert mesh.texture.images[0][0, 0].tolist() == [124, 39, 3, 82]
+    write_any(tmp_path / "again.glb", mesh)
+    (material,) = tree_of(tmp_path / "again.glb")[0]["materials"]
+    np.testing.assert_allclose(material["pbrMetallicRoughness"]["baseColorFactor"], LINEAR, rtol=1e-6)
+
+
+def test_colours_of_vertices_are_linear_in_a_glb_and_come_back(tmp_path):
+    shape = trimesh.creation.icosphere(subdivisions=1)
+    colors = np.random.default_rng(0).integers(256, size=(42, 3), dtype=np.uint8)
+    write_any(tmp_path / "ball.glb", Mesh(shape.vertices, shape.faces, colors))
+    (stored,) = trimesh.load(tmp_path / "ball.glb", process=False).geometry.values()
+    seen = {tuple(row) for row in stored.visual.vertex_colors[:, :3]}
+    assert seen == {tuple(row) for row in np.rint(255 * decoded(colors / 255)).astype(int)}
+    assert {tuple(row) for row in load(tmp_path / "ball.glb").colors} == {tuple(row) for row in colors}
+
+
+@pytest.mark.parametrize(("factor", "expected"), [(1.0, 188), (0.5, 137)])
+def test_a_picture_times_a_factor_is_multiplied_without_the_encoding(factor, expected):
+    pixels, uv = np.full((8, 8, 4), 188, np.uint8), np.zeros((1, 3, 2))
+    material = {"baseColorTexture": True, "baseColorFactor": np.array([factor, factor, factor, 1])}
+    texture = Texture(uv, [0], (pixels,), (material,))
+    assert (texture.sample(np.zeros(1, int), uv[:, 0]) == expected).all()
+    assert (_in_pictures(texture).images[0] == [expected] * 3 + [188]).all()
+
+
+def test_colours_that_become_a_picture_keep_their_side_and_their_shade(tmp_path):
+    coloured = trimesh.creation.icosphere(1)
+    coloured.visual.vertex_colors = np.tile(np.uint8([200, 40, 9, 255]), (42, 1))
+    scene = trimesh.Scene([coloured, ball(3, baseColorTexture=picture((9, 9, 9)))])
+    (tmp_path / "two.glb").write_bytes(with_linear_colours(scene.export(file_type="glb")))
+    texture = load(tmp_path / "two.glb").texture
+    (number,) = (number for number, image in enumerate(texture.images) if image[0, 0, 0] == 200)
+    assert (texture.images[number][..., :3] == [200, 40, 9]).all()
+    assert texture.materials[number] == {"doubleSided": False, "baseColorTexture": True}

@@ -19,6 +19,7 @@ from haptic_glance.mesh import MeshError, load
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.gltf import as_glb, joined, ready
 from haptic_glance.mesh.materials import not_read
+from haptic_glance.mesh.srgb import encoded
 from stages.meshes.furniture import files_beside
 
 
@@ -212,9 +213,18 @@ def test_normalised_integers_are_the_numbers_that_they_stand_for(kind):
     np.testing.assert_allclose(
         mesh.texture.uv[0], [[u, 1 - v] for u, v in UV[:3]], atol=1 / 127 if "1" in kind else 1e-4
     )
-    tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=of_kind(COLOURS / 255, kind))
-    colors = parse(json.dumps(tree).encode(), ".gltf").colors
-    assert np.abs(colors.astype(int) - COLOURS).max() <= (kind == "i1")  # 127 steps are too few for a byte
+    stored = of_kind(COLOURS / 255, kind)
+    tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=stored)
+    linear = stored / (1 if kind == "f4" else np.iinfo(kind).max)
+    assert (parse(json.dumps(tree).encode(), ".gltf").colors == np.rint(255 * encoded(linear))).all()
+
+
+def test_a_colour_that_two_primitives_share_is_encoded_once():
+    linear = np.full((4, 4), 0.2, "f4")
+    tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=linear)
+    tree["meshes"][0]["primitives"] *= 2
+    tree = json.loads(json.dumps(tree))
+    assert (parse(json.dumps(tree).encode(), ".gltf").colors == 124).all()
 
 
 @pytest.mark.parametrize("name", ["KHR_materials_unlit", "KHR_texture_transform"])
@@ -240,6 +250,15 @@ DRACO = '{"extensionsRequired": ["KHR_draco_mesh_compression"], "buffers": [{"ur
 def test_a_buffer_that_is_cut_or_packed_is_refused(text, reason):
     with pytest.raises(MeshError, match=reason):
         parse(text.encode(), ".gltf")
+
+
+@pytest.mark.parametrize(("uri", "name"), [("p%20q.png", "p q.png"), ("%C3%A9.png", "é.png"), ("p.png", "p.png")])
+def test_a_glb_shows_the_picture_beside_it_also_by_an_encoded_name(uri, name, glb, tmp_path):
+    Image.new("RGB", (4, 4), (200, 40, 40)).save(tmp_path / name)
+    (tmp_path / "out.glb").write_bytes(changed(glb, lambda tree, _: tree.update(images=[{"uri": uri}])))
+    assert any((image == [200, 40, 40, 255]).all() for image in load(tmp_path / "out.glb").texture.images)
+    (tmp_path / name).unlink()
+    assert not_read(as_glb(tmp_path / "out.glb")) == [f"picture {name}, not beside it"]
 
 
 def changed(content, change):

@@ -13,6 +13,7 @@ from trimesh.visual.material import PBRMaterial
 
 from haptic_glance.base.files import read_mesh, read_table
 from haptic_glance.mesh import MeshError
+from haptic_glance.mesh.gltf import with_linear_colours
 from haptic_glance.mesh.materials import PALETTE, coloured
 from haptic_glance.mesh.mesh import Mesh
 from stages.meshes import __main__ as stage
@@ -53,8 +54,13 @@ def coloured_obj(*head):
     return "\n".join([*lines, *("f " + " ".join(map(str, face)) for face in FACES + 1), ""]).encode()
 
 
+def linear_glb(loaded):
+    """The bytes of a GLB as other programs write it: its colours are linear."""
+    return with_linear_colours(loaded.export(file_type="glb"))
+
+
 def glb(visual, corners=CORNERS, faces=FACES):
-    return {"it.glb": trimesh.Trimesh(corners, faces, process=False, visual=visual).export(file_type="glb")}
+    return {"it.glb": linear_glb(trimesh.Trimesh(corners, faces, process=False, visual=visual))}
 
 
 def pictured(uv):
@@ -85,10 +91,10 @@ CARRIERS = {  # name: (files, colours of the corners)
     "obj, colours of vertices": ({"it.obj": coloured_obj()}, PAINTED),
     "glb, a picture": (glb(pictured(UV)), PAINTED),
     "glb, a coloured part beside one with a material": (
-        {"it.glb": trimesh.Scene([
+        {"it.glb": linear_glb(trimesh.Scene([
             trimesh.Trimesh(CORNERS, FACES[:2], process=False, vertex_colors=PAINTED),
             trimesh.Trimesh(CORNERS, FACES[2:], process=False, visual=pictured(UV)),
-        ]).export(file_type="glb")}, PAINTED),
+        ]))}, PAINTED),
     "obj, colours of vertices and a plain material": (
         {"it.obj": coloured_obj("mtllib paint.mtl", "usemtl a"), "paint.mtl": b"newmtl a\nKd .7 .7 .7\n"}, PAINTED),
     "glb, a picture on loose faces": (

@@ -12,6 +12,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.srgb import decoded
 from stages.scene.export import (
     check_glb,
     describe,
@@ -57,7 +58,7 @@ def test_a_level_comes_back_with_its_faces_places_and_colours(painted, tmp_path)
     loaded = trimesh.load(tmp_path / "a.glb", process=False, force="mesh")
     assert len(loaded.faces) == painted[0].faces
     assert np.allclose(loaded.vertices, mesh.vertices, atol=1e-6) and np.array_equal(loaded.faces, mesh.faces)
-    assert np.array_equal(loaded.visual.vertex_colors[:, :3], mesh.colors)
+    assert np.array_equal(loaded.visual.vertex_colors[:, :3], np.rint(255 * decoded(mesh.colors / 255)))
 
 
 def test_up_is_y_and_sides_are_not_mirrored(chains):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.mesh.srgb import encoded
 from haptic_glance.studio.glb import glb
 from haptic_glance.studio.scene import escaped
 
@@ -21,11 +22,11 @@ def test_another_reader_finds_the_same_mesh(mesh, flat):
         assert np.allclose(solid.vertex_normals, mesh.vertex_normals, atol=1e-5)
 
 
-def test_colours_come_back_under_the_displays_gamma(mesh):
+def test_colours_come_back_under_the_encoding_of_the_display(mesh):
     colors = np.tile([[0, 60, 255]], (len(mesh.vertices), 1)).astype(np.uint8)
     content = glb(mesh, colors)
     stored = np.frombuffer(content, "<u2", 4, content.index(b"BIN\0") + 4 + mesh.vertices.astype("<f4").nbytes)
-    assert np.allclose(255 * (stored / 65535) ** (1 / 2.2), [0, 60, 255, 255], atol=0.1)
+    assert np.allclose(255 * encoded(stored / 65535), [0, 60, 255, 255], atol=0.1)
 
 
 def test_what_a_files_name_holds_is_not_run_as_markdown():

@@ -8,6 +8,7 @@ import numpy as np
 
 from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.srgb import decoded
 
 from ..views import View
 from .cropped_view import cropped_view
@@ -53,8 +54,7 @@ def opponency(rgb: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 # Brettel and Mollon, Digital video colourmaps for checking the legibility of displays by dichromats, Color Research
 # and Application 24(4), 1999, equation 4. White has L + M = 100.
 RGB_TO_LMS = np.array([[17.8824, 43.5161, 4.11935], [3.45565, 27.1554, 3.86714], [0.0299566, 0.184309, 1.46709]])
-LEVELS = np.arange(256) / 255
-LINEAR = np.where(LEVELS <= 0.04045, LEVELS / 12.92, ((LEVELS + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1 (sRGB)
+LINEAR = decoded(np.arange(256) / 255)
 FIRST = 2  # the first scale that is used; the matrix is applied there, since it commutes with linear filters
 
 
