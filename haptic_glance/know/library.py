@@ -237,6 +237,8 @@ class Library:
         Seed of the calibration.
     skin : Skin, optional
         The sensor by which the objects were touched; None: an ideal one.
+    turned : bool
+        Whether each array was turned at random about its normal; an `Exploration` then turns its arrays, too.
 
     Notes
     -----
@@ -247,9 +249,10 @@ class Library:
 
     def __init__(
         self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0,
-        skin: Skin | None = None,
+        skin: Skin | None = None, turned: bool = False,
     ) -> None:  # fmt: skip
-        self.names, self.placed, self.skin, (classes, self._touches) = names, placed, skin, samples.shape[:2]
+        self.names, self.placed, self.skin, self.turned = names, placed, skin, turned
+        classes, self._touches = samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._touches)
         self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
@@ -347,7 +350,8 @@ class _Named:
 def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
     samples, positions = zip(*map(_learned, objects), strict=True)
     names = tuple(item.name for item in objects)
-    return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed, objects[0].skin)
+    _, seed, _, turned, skin = objects[0].key
+    return Library(names, np.stack(samples), np.stack(positions), placed, seed, skin, turned)
 
 
 SCALE = 0.87, 2.0  # the diagonal of a normalised object is 1 to 1.74; no object of half or double the size passes

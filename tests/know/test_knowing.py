@@ -221,6 +221,22 @@ def test_an_exploration_touches_with_the_sensor_of_its_library(shapes):
     assert (first == 1).mean() >= 0.1 and not np.array_equal(first, again)  # a dead cell reads no load; noise is new
 
 
+def test_an_exploration_turns_its_arrays_as_those_of_its_library_were(shapes, blind):
+    pair = {name: shapes[name] for name in ("box", "torus")}
+    explorations = [
+        Exploration(library, shapes["box"], rng(0, "turn")) for library in (learn(pair, False, turned=True), blind)
+    ]
+    for exploration in explorations:
+        for place in range(20):
+            image = exploration.touch(exploration.candidate(place))
+        felt_again = press_at(exploration.surface, exploration.positions[-1:], exploration.axes[-1:], CELLS, PITCH)[0]
+        assert np.array_equal(image, felt_again)
+    any_way, upright = (exploration.axes for exploration in explorations)
+    assert np.array_equal(upright, sensor_axes(explorations[1].normals))
+    turns = np.degrees(np.arccos(np.clip((any_way[:, 1] * sensor_axes(explorations[0].normals)[:, 1]).sum(1), -1, 1)))
+    assert turns.min() < 40 and turns.max() > 140 and len(np.unique(turns)) == 20
+
+
 def test_places_depend_on_the_surface_and_not_on_the_order_in_which_a_file_has_it(shapes):
     mesh, random = shapes["cone"], np.random.default_rng(0)
     order, faces = random.permutation(len(mesh.vertices)), random.permutation(len(mesh.faces))
