@@ -124,9 +124,9 @@ def as_mesh(source: MeshLike) -> Mesh:
 
     Notes
     -----
-    Only a Mesh and some files state which axis points up. For the others the shape chooses y or z, as in `load`, so
-    that a file and its arrays have the same axis; `haptic_glance.as_mesh` warns of the choice. A Mesh is z up unless it
-    is made with another `up`.
+    Only a Mesh, the Cloud of a depth image and some files state which axis points up. For the others the shape chooses
+    y or z, as in `load`, so that a file and its arrays have the same axis; `haptic_glance.as_mesh` warns of the choice.
+    A Mesh is z up unless it is made with another `up`.
 
     Examples
     --------
@@ -144,7 +144,7 @@ def as_stated(source: MeshLike) -> Mesh:
         return source
     if isinstance(source, str | Path):
         return load_as_stated(source)
-    return replace(_converted(source), up=AUTO)
+    return replace(_converted(source), up=(source.up if isinstance(source, Cloud) else "") or AUTO)
 
 
 def with_known_up(source: MeshLike, remedy: str = WITH_UP, reason: str = "") -> Mesh:
