@@ -249,7 +249,7 @@ def follow_many(
     """
     surface = as_surface(mesh_or_surface)
     planes = _check_planes(planes)
-    if not frames >= 1 or frames % 1:
+    if not isinstance(frames, int | float | np.number) or not frames >= 1 or frames % 1:
         raise ValueError(f"frames must be a whole number from 1, got {frames}")
     cells, pitch, _ = check_array(cells, pitch)
     cutter = _cutter(surface.mesh)

@@ -129,8 +129,8 @@ def gaps_at(
         For invalid arrays, and for lengths that are none.
     """
     _check_unit(unit)
-    if not within >= 0:  # NaN fails as well
-        raise ValueError(f"within must be 0 m or more, got {within:g}")
+    if not isinstance(within, int | float | np.number) or not within >= 0:  # NaN fails as well
+        raise ValueError(f"within must be 0 m or more, got {within}")
     centres, axes = check_places(centres, axes)
     cells, pitches, reaches = check_arrays(cells, pitch, None, len(centres))
     starts = centres + reaches[:, None] * axes[:, 2]

@@ -153,7 +153,9 @@ def test_rounding_says_nothing_about_the_way_at_the_vertex_where_a_contour_begin
         (LEVEL, {"frames": 0}, "must be"),
         (LEVEL, {"frames": 2.5}, "must be"),
         (LEVEL, {"frames": np.nan}, "must be"),
+        (LEVEL, {"frames": None}, "frames must be a whole number from 1, got None"),
         (LEVEL, {"cells": (0, 8)}, "must be"),
+        (LEVEL, {"cells": ("8", "8")}, "cells must be two whole numbers from 1"),
         (LEVEL, {"pitch": 0.0}, "must be"),
     ],
 )

@@ -265,9 +265,9 @@ def test_numbers_that_no_touch_has_are_named(work, words):
         work()
 
 
-@pytest.mark.parametrize("within", [np.nan, -0.001])
+@pytest.mark.parametrize("within", [np.nan, -0.001, None])
 def test_a_reach_that_cannot_be_is_named(punch, within):
-    with pytest.raises(ValueError, match=f"within must be 0 m or more, got {within:g}"):
+    with pytest.raises(ValueError, match=f"within must be 0 m or more, got {within}"):
         gaps_at(punch, *ABOVE, within)
 
 
