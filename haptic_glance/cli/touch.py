@@ -128,6 +128,12 @@ def lengths_in_units(options: argparse.Namespace, unit: float) -> None:
     for name in ("pitch", "depth"):
         if isinstance(value := getattr(options, name), Metres):
             setattr(options, name, float(value / (unit * options.metres)))
+            if name == "pitch" and options.pitch >= 1 and max(options.cells) > 1:
+                across = 1000 * unit * options.metres
+                raise ValueError(
+                    f"--pitch {1000 * value:g}mm is larger than the object, which is {across:.3g} mm across if its "
+                    f"coordinates are in {options.unit}: is --unit {options.unit} right?"
+                )
     check_lengths(options)
 
 

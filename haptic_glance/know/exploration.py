@@ -7,7 +7,7 @@ import numpy as np
 from haptic_glance.mesh.files import MeshLike, with_known_up
 from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
-from haptic_glance.touch.surface import as_surface
+from haptic_glance.touch.surface import as_surface, turned
 
 from .library import CELLS, PITCH, Belief, Expected, Library, check_scale, sample_places
 
@@ -28,9 +28,9 @@ class Exploration:
         The known objects, from `learn`.
     surface : Surface, Mesh or any input of `as_mesh`
         The object, scaled by `normalise` as the library's objects are, with z up. It is touched by the sensor that the
-        library was learned with.
+        library was learned with; each array is turned at random about its normal if the library was learned so.
     random : numpy.random.Generator
-        Draws the places.
+        Draws the places, and the turns of the arrays.
 
     Raises
     ------
@@ -64,9 +64,11 @@ class Exploration:
             )
         self.candidates = sample_places(self.surface, PLACES, random)
         self.positions, self.normals = np.zeros((0, 3)), np.zeros((0, 3))  # of the touches so far
+        self.axes = np.zeros((0, 3, 3))  # of the arrays
         self.images = np.zeros((0, *CELLS), dtype=np.float32)  # what was felt there
         self.beliefs = [library.belief()]
         self._noise = "" if library.skin is None else f"exploration {random.integers(2**31)}"
+        self._turns = np.random.default_rng(random.integers(2**31)) if library.turned else None
 
     @property
     def belief(self) -> Belief:
@@ -76,15 +78,19 @@ class Exploration:
     def touch(self, place: Places) -> np.ndarray:
         """(rows, cols) f4: the imprint at the first of the places, by which the belief is updated.
 
-        A second touch of the same place feels the same but for the noise, so the belief stays as it is.
+        A second touch of the same place feels the same but for the noise and the turn of the array, so the belief stays
+        as it is.
         """
         position, axes = place.positions[:1], sensor_axes(place.normals[:1])
+        if self._turns is not None:
+            axes = turned(axes, 360 * self._turns.random())
         image = press_at(self.surface, position, axes, CELLS, PITCH)[0]
         if self.library.skin is not None:
             image = self.library.skin(image[None], self._noise, len(self.images))[0]
         is_repeat = (self.positions == position).all(axis=1).any()
         self.positions = np.concatenate([self.positions, position])
         self.normals = np.concatenate([self.normals, place.normals[:1]])
+        self.axes = np.concatenate([self.axes, axes])
         self.images = np.concatenate([self.images, image[None]])
         self.beliefs.append(self.belief if is_repeat else self.belief.after(image, position[0]))
         return image

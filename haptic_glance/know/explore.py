@@ -25,6 +25,8 @@ def explore(
     predicted, probabilities: as in `State`; max_touches: at most q. A strategy uses `observed` only of the places that
     it has touched.
     """
+    if strategy not in STRATEGIES:
+        raise ValueError(f"unknown strategy {strategy!r}: choose one of {', '.join(STRATEGIES)}")
     count, places, classes = observed.shape
     if not 1 <= max_touches <= places:
         raise ValueError(

@@ -16,8 +16,9 @@ from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.rng import rng
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.base.weak_cache import weak_cache
-from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
+from haptic_glance.mesh import MeshError, normalise, rotate_to_z_up
 from haptic_glance.mesh.files import FORMATS, MeshLike, names_of, with_known_up
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.sampling import along_curve, sample_surface
@@ -54,11 +55,14 @@ class Belief:
     def after(self, image: np.ndarray, position: np.ndarray) -> "Belief":
         """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,).
 
-        image: bytes, or numbers in 0..1; 0 where the array meets the surface first. Raises ValueError for others.
+        image: bytes, or numbers in 0..1; 0 where the array meets the surface first. position: in units of the
+        normalised object, in which its centre is the origin. Raises ValueError for others, and,
+        if the objects are `placed`, for a position more than one unit from all learned touches.
         """
         place = np.asarray(position, dtype=np.float64)
         if place.shape != (3,) or not np.isfinite(place).all():
             raise ValueError(f"a touch needs a position of three finite numbers, got {position}")
+        self.library.check_near(place)
         evidence = self.library.log_likelihoods(as_shares(np.asarray(image))[None], place[None])[0]
         return Belief(self.library, self.log_likelihoods + evidence, self.touches + 1)
 
@@ -132,6 +136,7 @@ ORDERS, LONGEST = 5, 20  # random orders of each object's touches, and touches o
 STOPS, LAST = 400, 30  # orders of all objects together, and touches of each, for the belief at which touching ends
 BLOCK = 256  # touches compared at once, in the processor's cache
 AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three widths of `place_kernel` away
+FAR = 1.0  # units, a normalised object's size: a place farther from all learned touches is in another unit
 
 
 def learn(
@@ -142,7 +147,8 @@ def learn(
     Parameters
     ----------
     meshes : mapping of str to Mesh or any input of `as_mesh`
-        Two or more meshes that `normalise` has scaled, by name. They are rotated so that z is up.
+        Two or more meshes by name. They are rotated so that z is up. A Mesh must be scaled by `normalise`; any other
+        input is scaled here.
     placed : bool
         True: the objects stand where they were learned. False: they stand upright at an unknown place.
     seed : int
@@ -170,7 +176,7 @@ def learn(
     Warns
     -----
     UserWarning
-        For a mesh that does not say which axis points up.
+        For a mesh that does not say which axis points up, and for two equal meshes.
 
     Examples
     --------
@@ -187,7 +193,22 @@ def learn(
     if skin is not None and not callable(skin):
         raise TypeError(f"skin must be a Skin such as Skin(noise=0.02), got {skin!r}")
     upright = {name: upright_named(name, meshes[name]) for name in sorted(meshes)}
-    return _library(tuple(_Named(name, mesh, seed, turned, skin) for name, mesh in upright.items()), placed)
+    upright = {name: mesh if isinstance(meshes[name], Mesh) else normalise(mesh) for name, mesh in upright.items()}
+    objects = tuple(_Named(name, mesh, seed, turned, skin) for name, mesh in upright.items())
+    _warn_of_equal(objects)
+    return _library(objects, placed)
+
+
+def _warn_of_equal(objects):
+    """Warns of each mesh that was given under an earlier name, too."""
+    first = {}
+    for item in objects:
+        name = first.setdefault(item.content, item.name)
+        if name != item.name:
+            warn_caller(
+                f"{name} and {item.name} are the same mesh, which no touch tells apart: a name of one of the two may "
+                "be wrong, so leave one out"
+            )
 
 
 def check_names(meshes: object) -> None:
@@ -237,6 +258,13 @@ class Library:
         Seed of the calibration.
     skin : Skin, optional
         The sensor by which the objects were touched; None: an ideal one.
+    turned : bool
+        Whether each array was turned at random about its normal; an `Exploration` then turns its arrays, too.
+
+    Raises
+    ------
+    ValueError
+        For equal names, and for samples and positions that are not finite or do not fit them.
 
     Notes
     -----
@@ -247,9 +275,11 @@ class Library:
 
     def __init__(
         self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0,
-        skin: Skin | None = None,
+        skin: Skin | None = None, turned: bool = False,
     ) -> None:  # fmt: skip
-        self.names, self.placed, self.skin, (classes, self._touches) = names, placed, skin, samples.shape[:2]
+        self.names, self.placed, self.skin, self.turned = names, placed, skin, turned
+        _check_samples(names, samples, positions)
+        classes, self._touches = samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._touches)
         self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
@@ -260,12 +290,30 @@ class Library:
         """The Belief before the first touch: all objects alike."""
         return Belief(self, np.zeros(len(self.names)))
 
+    def check_near(self, position: np.ndarray) -> None:
+        """Raises ValueError if the objects are `placed` and a position (3,) is more than FAR from all their touches."""
+        distance = np.linalg.norm(self._positions - position, axis=1).min()
+        if self.placed and distance > FAR:
+            raise ValueError(
+                f"the touch at {position.tolist()} is {distance:.3g} units from all touches that were learned: give "
+                "its position in units of the normalised object, whose centre is the origin, or learn with placed=False"
+            )
+
     def log_likelihoods(self, images: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """(k, classes) log likelihoods of imprints (k, *CELLS) at positions (k, 3) under each object, to a constant."""
+        """(k, classes) log likelihoods of imprints (k, *CELLS) at positions (k, 3) under each object, to a constant.
+
+        If the objects are `placed`, a touch counts less the farther it is from all learned touches: there none of them
+        says what an object feels like.
+        """
         if np.shape(images)[1:] != CELLS:
             raise ValueError(f"this library was learned with {CELLS} cells, the imprints have {np.shape(images)[1:]}")
         kernel = feature_kernel(self._reduction.transform(features(images)), self._components)
-        return self._log_likelihood(kernel, np.asarray(positions), np.arange(len(self._owners)))
+        positions = np.asarray(positions)
+        evidence = self._log_likelihood(kernel, positions, np.arange(len(self._owners)))
+        if not self.placed:
+            return evidence
+        near = place_kernel(positions, self._positions).sum(axis=1, keepdims=True)
+        return evidence * (1 - (AWAY / (near + AWAY)) ** 2)  # 0 away from all objects, 1 at one of them
 
     def expect(self, places: Places) -> Expected:
         """The possible findings of touches at places: on object c, one of the learned touches of c near the place.
@@ -328,12 +376,26 @@ class Library:
         return calibrate_to_stop(*sequences(orders, LAST, rng(seed, "stops")), SURE, average)
 
 
+def _check_samples(names, samples, positions):
+    if repeated := [name for name in dict.fromkeys(names) if names.count(name) > 1]:
+        raise ValueError(f"names must differ, {repeated[0]!r} occurs twice")
+    if samples.ndim != 3 or len(samples) != len(names) or positions.shape != (*samples.shape[:2], 3):
+        raise ValueError(
+            f"samples and positions must have shapes (classes, touches, features) and (classes, touches, 3) with "
+            f"{len(names)} classes, one per name, got {samples.shape} and {positions.shape}"
+        )
+    for kind, values in (("samples", samples), ("positions", positions)):
+        if len(wrong := np.argwhere(~np.isfinite(values))):
+            raise ValueError(f"{kind} must be finite, got {values[tuple(wrong[0])]} in touch {wrong[0][1]} of "
+                             f"{names[wrong[0][0]]}")  # fmt: skip
+
+
 class _Named:
     """A mesh under a name; equal where name, seed, content, `turned` and skin are."""
 
     def __init__(self, name: str, mesh: Mesh, seed: int, turned: bool, skin: Skin | None) -> None:
-        content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
-        self.name, self.mesh, self.key = name, mesh, (name, seed, content, turned, skin)
+        self.content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
+        self.name, self.mesh, self.key = name, mesh, (name, seed, self.content, turned, skin)
         self.seed, self.turned, self.skin = seed, turned, skin
 
     def __eq__(self, other: object) -> bool:
@@ -347,7 +409,8 @@ class _Named:
 def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
     samples, positions = zip(*map(_learned, objects), strict=True)
     names = tuple(item.name for item in objects)
-    return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed, objects[0].skin)
+    _, seed, _, turned, skin = objects[0].key
+    return Library(names, np.stack(samples), np.stack(positions), placed, seed, skin, turned)
 
 
 SCALE = 0.87, 2.0  # the diagonal of a normalised object is 1 to 1.74; no object of half or double the size passes
@@ -413,14 +476,26 @@ def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], 
         Normalised meshes by name.
     left_out : list of str
         Names of the files that were left out, with the reasons.
+
+    Raises
+    ------
+    ValueError
+        For a file in place of a folder.
+
+    Warns
+    -----
+    UserWarning
+        For a mesh that does not say which axis points up.
     """
+    if Path(folder).is_file():
+        raise ValueError(f"{folder} is a file: give the folder that holds it")
     files = sorted(path for path in Path(folder).glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
     stems = {path.stem for path in files}
     files = [path for path in files if path.suffix != ".npz" or not _is_another_size(path.stem, stems)]
     meshes, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
     for path, name in zip(files[:most], names_of(files), strict=False):
         try:
-            meshes[name] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
+            meshes[name] = read_mesh(path) if path.suffix == ".npz" else normalise(upright_named(path.name, path))
         except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
             notes.append(f"{path.name}: {str(error).removeprefix(f'{path}: ')}")
     return meshes, notes

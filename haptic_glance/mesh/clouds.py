@@ -43,6 +43,8 @@ class Cloud:
         Colours.
     sensor : (3,) array of float, optional
         Place from which all points were seen.
+    up : str
+        The axis that points up, such as "z"; empty: the shape of the surface decides.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Cloud:
     normals: np.ndarray | None = None
     colors: np.ndarray | None = None
     sensor: np.ndarray | None = None
+    up: str = ""
 
     def __post_init__(self) -> None:
         points = np.asarray(self.points, np.float64)
@@ -72,7 +75,7 @@ class Cloud:
     def part(self, chosen: np.ndarray) -> Cloud:
         """The Cloud of some points: their ids, or (n,) boolean."""
         normals, colors = (None if values is None else values[chosen] for values in (self.normals, self.colors))
-        return Cloud(self.points[chosen], normals, colors, self.sensor)
+        return Cloud(self.points[chosen], normals, colors, self.sensor, self.up)
 
 
 def usable(cloud: Cloud) -> Cloud:
@@ -212,7 +215,7 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
     Parameters
     ----------
     depth : (h, w) array
-        Distances along the optical axis. 0, NaN and infinity mean no reading.
+        Distances along the optical axis. 0, NaN, infinity and the mask of a masked array mean no reading.
     fx, fy : float
         Focal lengths of a pinhole camera, in pixels.
     cx, cy : float
@@ -239,7 +242,7 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
     >>> cloud_of_depth(bump, fx=60, fy=60, cx=20, cy=20).points.shape[1]
     3
     """
-    depth = np.asarray(depth, np.float64) * scale
+    depth = np.ma.filled(np.ma.asarray(depth, np.float64), np.nan) * scale
     if depth.ndim != 2:
         raise MeshError(f"a depth image has one channel, this one has shape {depth.shape}")
     rows, columns = depth.shape
@@ -258,7 +261,8 @@ def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float
             part &= ~jump
     v, u = np.nonzero(solid)
     distance = depth[v, u]
-    return Cloud(np.stack([(u - cx) / fx * distance, distance, (cy - v) / fy * distance], axis=1), sensor=np.zeros(3))
+    points = np.stack([(u - cx) / fx * distance, distance, (cy - v) / fy * distance], axis=1)
+    return Cloud(points, sensor=np.zeros(3), up="z")
 
 
 def names_in(content: bytes) -> list[str]:

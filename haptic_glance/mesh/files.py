@@ -88,11 +88,15 @@ COARSE = 1e-3  # of the diagonal: steps between coordinates that change normals,
 
 def coarse_steps(path: Path, mesh: Mesh) -> str:
     """A sentence where an object lies so far from the origin that its file has coarse steps; else an empty text."""
+    return _coarse_steps(mesh) if path.suffix.lower() in SINGLE else ""
+
+
+def _coarse_steps(mesh):
+    """As `coarse_steps`, of a mesh whose coordinates may have single precision."""
     with np.errstate(over="ignore"):
         rounded = mesh.vertices.astype(np.float32)
     step = np.spacing(np.abs(rounded).max(initial=0))
-    is_single = path.suffix.lower() in SINGLE and np.array_equal(rounded, mesh.vertices)
-    if is_single and 0 < COARSE * mesh.diagonal < step:
+    if np.array_equal(rounded, mesh.vertices) and 0 < COARSE * mesh.diagonal < step:
         remedy = "move the object to the origin before it is exported"
         share = 100 * step / mesh.diagonal
         return f"its coordinates have steps of {share:.2g} % of the diagonal: {remedy}"
@@ -125,9 +129,9 @@ def as_mesh(source: MeshLike) -> Mesh:
 
     Notes
     -----
-    Only a Mesh and some files state which axis points up. For the others the shape chooses y or z, as in `load`, so
-    that a file and its arrays have the same axis; `haptic_glance.as_mesh` warns of the choice. A Mesh is z up unless it
-    is made with another `up`.
+    Only a Mesh, the Cloud of a depth image and some files state which axis points up. For the others the shape chooses
+    y or z, as in `load`, so that a file and its arrays have the same axis; `haptic_glance.as_mesh` warns of the choice.
+    A Mesh is z up unless it is made with another `up`.
 
     Examples
     --------
@@ -145,7 +149,10 @@ def as_stated(source: MeshLike) -> Mesh:
         return source
     if isinstance(source, str | Path):
         return load_as_stated(source)
-    return replace(_converted(source), up=AUTO)
+    mesh = _converted(source)
+    if isinstance(source, tuple) and np.asarray(source[0]).dtype == np.float32 and (coarse := _coarse_steps(mesh)):
+        warn_caller(f"the mesh: {coarse}")
+    return replace(mesh, up=(source.up if isinstance(source, Cloud) else "") or AUTO)
 
 
 def with_known_up(source: MeshLike, remedy: str = WITH_UP, reason: str = "") -> Mesh:

@@ -138,7 +138,11 @@ def check_arrays(
 
 
 def _check_cells(cells):
-    if np.shape(cells) != (2,) or any(not number >= 1 or number % 1 for number in cells):
+    if (
+        np.shape(cells) != (2,)
+        or np.asarray(cells).dtype.kind not in "iuf"
+        or any(not number >= 1 or number % 1 for number in cells)
+    ):
         raise ValueError(f"cells must be two whole numbers from 1 (rows, columns), got {cells}")
     if cells[0] * cells[1] > MOST_CELLS:
         raise ValueError(f"cells={tuple(cells)}: an array has at most {MOST_CELLS:,} cells")

@@ -129,8 +129,8 @@ def gaps_at(
         For invalid arrays, and for lengths that are none.
     """
     _check_unit(unit)
-    if not within >= 0:  # NaN fails as well
-        raise ValueError(f"within must be 0 m or more, got {within:g}")
+    if not isinstance(within, int | float | np.number) or not within >= 0:  # NaN fails as well
+        raise ValueError(f"within must be 0 m or more, got {within}")
     centres, axes = check_places(centres, axes)
     cells, pitches, reaches = check_arrays(cells, pitch, None, len(centres))
     starts = centres + reaches[:, None] * axes[:, 2]
@@ -256,13 +256,17 @@ def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) 
     [[0.6, 0.0]]
     """
     normal, slips = np.asarray(normal, dtype=np.float64), np.asarray(slips, dtype=np.float64)
+    if normal.ndim == 0:
+        raise ValueError("normal must hold the forces of one or more taxels, as `forces` gives them, got a number")
+    if not isinstance(layer, Layer):
+        raise TypeError(f"layer must be a Layer such as Layer(friction=0.6), got {layer!r}")
     if slips.shape not in ((len(normal), 2), (*normal.shape, 2)) or not np.isfinite(slips).all():
         raise ValueError(f"slips must be finite and of shape (k, 2) or {(*normal.shape, 2)}, got {slips.shape}")
     if not ((normal >= 0) & np.isfinite(normal)).all():
         raise ValueError("normal must hold newtons of 0 or more, as `forces` gives them")
-    _check_areas(areas := np.asarray(areas, dtype=np.float64))
+    _check_areas(areas := _per_taxel("areas", areas, normal.shape))
     slips = slips.reshape(len(normal), *(normal.shape[1:] if slips.ndim > 2 else [1] * (normal.ndim - 1)), 2)
-    distance = np.linalg.norm(slips, axis=-1)
+    distance = np.hypot(slips[..., 0], slips[..., 1])
     magnitude = np.minimum(layer.shear_stiffness * areas * distance, layer.friction * normal)
     return magnitude[..., None] * np.divide(slips, distance[..., None], out=np.zeros_like(slips), where=slips != 0)
 

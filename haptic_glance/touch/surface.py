@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.axes import Axis, axis_named, to_z_up
 from haptic_glance.mesh.files import MeshLike, with_known_up
+from haptic_glance.mesh.materials import merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
 from .kernels.faces import Taxels, face_tree
@@ -200,10 +201,18 @@ def check_vertices(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
 
 @lru_cache(maxsize=4)  # used at every touch
 def mean_vertex_normals(mesh: Mesh) -> np.ndarray:
-    """(n, 3) means of the unit normals of the faces around each vertex; zero at a vertex in no face."""
+    """(n, 3) means of the unit normals of the faces around each vertex; zero at a vertex in no face.
+
+    Vertices at one place have one normal: a mesh may be split there for its colours, or be a soup of triangles.
+    """
     solid = mesh.face_areas > 0
     total = corner_sum(mesh, np.repeat(mesh.face_normals[:, None], 3, axis=1))
     count = corner_sum(mesh, np.repeat(solid[:, None], 3, axis=1))
+    used = np.flatnonzero(count)  # a vertex in no face keeps none
+    first, ids = merge_equal_rows(mesh.vertices[used])
+    if len(first) < len(used):
+        total[used] = np.stack([np.bincount(ids, column) for column in total[used].T], axis=1)[ids]
+        count[used] = np.bincount(ids, count[used])[ids]
     return total / np.maximum(count, 1)[:, None]
 
 
@@ -242,6 +251,8 @@ def sensor_axes(normals: ArrayLike, up: Axis = "z") -> np.ndarray:
         raise ValueError(f"normals must have shape (k, 3), got {normals.shape}")
     if len(wrong := np.flatnonzero(~(np.isfinite(normals).all(axis=1) & normals.any(axis=1)))):
         raise ValueError(f"normals must be finite and not zero, got {normals[wrong[0]]} at place {wrong[0]}")
+    largest = np.abs(normals).max(axis=1, keepdims=True, initial=0)
+    normals = np.where((largest < 1e-100) | (largest > 1e100), normals / largest, normals)  # their squares round to 0
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.where(np.abs(lengths - 1) > ROUNDED, normals / lengths, normals)
     if (axis := axis_named(up)) != "z":

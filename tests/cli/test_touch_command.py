@@ -239,7 +239,7 @@ def test_place_behind_another_part_is_out_of_sight():
         (["--at", "0", "--unit", "mm"], "--unit applies to --load, and to a --pitch or --depth such as 1mm"),
         (["--at", "0", "--pitch", "1mm"], "--pitch needs --unit"),
         (["--at", "0", "--pitch=-1mm", "--unit", "mm"], "pitch must be"),
-        (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 1.5.* is larger than the object"),
+        (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 90mm is larger .* is --unit mm right"),
         (["--at", "0", "--depth", "0mm", "--unit", "mm"], "--depth 0: give a positive length"),
         (["--at", "0", "--load", "1", "--unit", "m", "--layer", "modulus=0"], "layer: modulus must be above 0"),
         (["--at", "0", "--load", "9e9", "--unit", "mm"], "--load 9e.09: place 1 needs more than the layer's"),

@@ -88,13 +88,13 @@ def test_meshes_of_any_size_are_normalised(task):
 
 def test_an_object_that_is_known_is_the_right_one():
     task, answers = TouchUntilSure(), []
-    for seed in range(20):
+    for seed in range(40):
         task.reset(seed=seed)
         while not task.ended:
             *_, info = task.step(task.planned())
         answers += [info["known"] == info["name"]] if info["known"] else []
     assert (
-        len(answers) >= 4 and np.mean(answers) >= 0.8
+        len(answers) >= 8 and np.mean(answers) >= 0.8
     )  # three of ten are wrong with the belief that is right on average
 
 

@@ -57,6 +57,11 @@ def test_touching_more_than_there_is_to_touch_is_refused(most):
         touch("saliency", TELLING, most)
 
 
+def test_an_unknown_strategy_is_named_with_the_known_ones():
+    with pytest.raises(ValueError, match="unknown strategy 'greedy': choose one of saliency, random, gain"):
+        touch("greedy", TELLING, 1)
+
+
 def test_stopping_waits_for_the_confidence_and_no_longer():
     beliefs = np.log([[[0.5, 0.5], [0.9, 0.1], [0.99, 0.01]], [[0.5, 0.5], [0.4, 0.6], [0.3, 0.7]]])
     touches, belief, right = stop(beliefs, np.array([0, 0]), 0.9)

@@ -221,6 +221,64 @@ def test_an_exploration_touches_with_the_sensor_of_its_library(shapes):
     assert (first == 1).mean() >= 0.1 and not np.array_equal(first, again)  # a dead cell reads no load; noise is new
 
 
+def test_an_exploration_turns_its_arrays_as_those_of_its_library_were(shapes, blind):
+    pair = {name: shapes[name] for name in ("box", "torus")}
+    explorations = [
+        Exploration(library, shapes["box"], rng(0, "turn")) for library in (learn(pair, False, turned=True), blind)
+    ]
+    for exploration in explorations:
+        for place in range(20):
+            image = exploration.touch(exploration.candidate(place))
+        felt_again = press_at(exploration.surface, exploration.positions[-1:], exploration.axes[-1:], CELLS, PITCH)[0]
+        assert np.array_equal(image, felt_again)
+    any_way, upright = (exploration.axes for exploration in explorations)
+    assert np.array_equal(upright, sensor_axes(explorations[1].normals))
+    turns = np.degrees(np.arccos(np.clip((any_way[:, 1] * sensor_axes(explorations[0].normals)[:, 1]).sum(1), -1, 1)))
+    assert turns.min() < 40 and turns.max() > 140 and len(np.unique(turns)) == 20
+
+
+def test_equal_meshes_are_named_in_a_warning(shapes, recwarn):
+    learn({"ball": shapes["ball"], "box": shapes["box"]}, placed=False)
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match="mug 1 and mug 2 are the same mesh"):
+        learn({"mug 1": shapes["capsule"], "mug 2": shapes["capsule"], "ball": shapes["ball"]}, placed=False)
+
+
+def test_a_touch_away_from_all_objects_says_nothing_and_one_in_another_unit_is_refused(library, blind):
+    flat = np.zeros(CELLS)
+    values = library.belief().after(flat, [0, 0, 1.3]).values
+    assert values == pytest.approx([1 / 6] * 6, abs=1e-4)
+    with pytest.raises(ValueError, match=r"\[0.0, 0.0, 3.0\] is 2.\d+ units from .* units of the normalised object"):
+        library.belief().after(flat, [0, 0, 3.0])
+    assert blind.belief().after(flat, [0, 0, 3.0]).touches == 1
+
+
+def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
+    trimesh.Trimesh(30 * shapes["box"].vertices, shapes["box"].faces).export(tmp_path / "box.ply")
+    with pytest.warns(UserWarning, match="box does not say which axis points up"):
+        library = learn({"box": tmp_path / "box.ply", "ball": shapes["ball"]}, placed=False)
+    assert np.linalg.norm(library._positions, axis=1).max() < 0.51
+
+
+@pytest.mark.parametrize(
+    ("names", "samples", "positions", "words"),
+    [
+        (("a", "a"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), "names must differ, 'a' occurs twice"),
+        (("a", "b", "c"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), r"with 3 classes, .* got \(2, 9, 4\)"),
+        (("a", "b"), np.zeros((2, 9, 4)), np.zeros((2, 8, 3)), r"got \(2, 9, 4\) and \(2, 8, 3\)"),
+        (
+            ("a", "b"),
+            np.full((2, 9, 4), np.nan),
+            np.zeros((2, 9, 3)),
+            "samples must be finite, got nan in touch 0",
+        ),
+    ],
+)
+def test_samples_that_do_not_fit_a_library_are_named(names, samples, positions, words):
+    with pytest.raises(ValueError, match=words):
+        Library(names, samples, positions, False)
+
+
 def test_places_depend_on_the_surface_and_not_on_the_order_in_which_a_file_has_it(shapes):
     mesh, random = shapes["cone"], np.random.default_rng(0)
     order, faces = random.permutation(len(mesh.vertices)), random.permutation(len(mesh.faces))
@@ -299,6 +357,11 @@ def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes
     few, left_out = known_objects(tmp_path, most=1)
     assert not few and len(left_out) == 6  # the first by name is the broken one
     assert known_objects(tmp_path / "nowhere") == ({}, [])
+    with pytest.raises(ValueError, match="small.stl is a file: give the folder"):
+        known_objects(tmp_path / "small.stl")
+    trimesh.Trimesh(shapes["box"].vertices, shapes["box"].faces).export(tmp_path / "small.stl")
+    with pytest.warns(UserWarning, match="small.stl does not say which axis points up"):
+        known_objects(tmp_path)
 
 
 def test_files_that_differ_in_their_suffix_alone_are_two_objects(tmp_path, shapes):

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh import MeshError, clean, load
-from haptic_glance.mesh.files import load_as_stated, parse
+from haptic_glance.mesh.files import as_stated, load_as_stated, parse
 from haptic_glance.mesh.gltf import joined
 from haptic_glance.mesh.obj import not_read as obj_not_read
 
@@ -251,6 +251,13 @@ def test_single_precision_far_from_the_origin_is_named(tmp_path, recwarn, suffix
     load_as_stated(tmp_path / f"far.{suffix}")
     message = f"far.{suffix}: its coordinates have steps of 0.45 % of the diagonal: move the object to the origin"
     assert [message in str(warning.message) for warning in recwarn] == [True] * warned
+
+
+@pytest.mark.parametrize(("kind", "warned"), [(np.float32, True), (np.float64, False)])
+def test_single_precision_arrays_far_from_the_origin_are_named(recwarn, kind, warned):
+    far = trimesh.creation.icosphere(subdivisions=2)
+    as_stated(((far.vertices + [2e5, 0, 0]).astype(kind), far.faces))
+    assert ["the mesh: its coordinates have steps" in str(warning.message) for warning in recwarn] == [True] * warned
 
 
 def test_an_object_without_extent_has_no_coarse_steps(tmp_path, recwarn):

@@ -17,6 +17,7 @@ from haptic_glance import load
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.mesh import MeshError, clean, clouds
 from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, read_cloud, surface_of
+from haptic_glance.mesh.files import as_stated
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.rays import RayScene
 
@@ -326,3 +327,13 @@ def test_the_colours_of_a_pcd_may_be_called_rgba():
         read_cloud(pcd(Encoding.BINARY).replace(b" rgb", name, 1), ".pcd") for name in (b" rgb", b" rgba")
     )
     assert plain.colors is not None and np.array_equal(plain.colors, renamed.colors)
+
+
+def test_a_depth_image_has_z_up_and_its_mask_means_no_reading():
+    rows, columns = np.mgrid[:40, :40] - 20
+    depth = 1 - 0.01 * np.exp(-(rows**2 + columns**2) / 100)
+    whole = cloud_of_depth(depth, 60, 60, 20, 20)
+    assert whole.up == whole.part(np.arange(9)).up == "z" and Cloud(whole.points).up == ""
+    half = cloud_of_depth(np.ma.masked_array(depth, columns > 0), 60, 60, 20, 20)
+    assert half.points[:, 0].max() < 0 < whole.points[:, 0].max()
+    assert as_stated(whole).up == "z" and as_stated(Cloud(whole.points, sensor=whole.sensor)).up == "auto"

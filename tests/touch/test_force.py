@@ -265,7 +265,21 @@ def test_numbers_that_no_touch_has_are_named(work, words):
         work()
 
 
-@pytest.mark.parametrize("within", [np.nan, -0.001])
+@pytest.mark.parametrize("within", [np.nan, -0.001, None])
 def test_a_reach_that_cannot_be_is_named(punch, within):
-    with pytest.raises(ValueError, match=f"within must be 0 m or more, got {within:g}"):
+    with pytest.raises(ValueError, match=f"within must be 0 m or more, got {within}"):
         gaps_at(punch, *ABOVE, within)
+
+
+def test_shear_of_any_slip_is_finite_and_its_wrong_arguments_are_named():
+    layer, normal = Layer(friction=0.6), np.ones(3)
+    tiny, huge = (shear(normal, np.tile([[length, 0.0]], (3, 1)), layer, 1e-6) for length in (1e-200, 1e200))
+    assert (tiny[:, 0] > 0).all() and huge.tolist() == [[0.6, 0.0]] * 3
+    slips = np.zeros((3, 2))
+    for error, words, arguments in [
+        (ValueError, "normal must hold the forces of one or more taxels", (1.0, [0.0, 0.0], layer, 1e-6)),
+        (ValueError, r"areas must be a number, or one per taxel: \(3,\)", (normal, slips, layer, [1, 1])),
+        (TypeError, r"layer must be a Layer such as Layer\(friction=0.6\), got None", (normal, slips, None, 1e-6)),
+    ]:
+        with pytest.raises(error, match=words):
+            shear(*arguments)

@@ -252,3 +252,22 @@ def test_where_a_sensor_cannot_touch_it_says_so(ball, sensor):
 def test_an_array_longer_than_the_object_is_named_with_the_remedy():
     assert misfit((16, 16), 0.01) == misfit((10, 5), 0.1) == ""
     assert "1.6 units long" in misfit((4, 16), 0.1) and "smaller pitch" in misfit((4, 16), 0.1)
+
+
+def test_vertices_at_one_place_have_one_normal_and_a_mesh_without_them_keeps_its_bits():
+    ball = trimesh.creation.icosphere(2, radius=0.5)
+    vertices, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
+    soup = Mesh(vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3))
+    whole = sensor_normals(Mesh(vertices, faces), faces.ravel())
+    assert sensor_normals(soup, np.arange(faces.size)) == pytest.approx(whole, abs=1e-12)
+    lonely = Mesh(np.vstack([vertices, vertices[:1]]), faces)  # a vertex of no face
+    first = np.unique(faces, return_index=True)[1]
+    assert np.array_equal(sensor_normals(lonely, np.arange(len(vertices))), whole[first])
+    with pytest.raises(ValueError, match="has no normal"):
+        sensor_normals(lonely, [len(vertices)])
+
+
+@pytest.mark.parametrize("length", [1e-200, 1e-310, 1e200, 1e307])
+def test_normals_of_any_length_have_axes(length):
+    normals = np.array([[0.6, 0.0, 0.8], [1.0, 2.0, -2.0]])
+    assert sensor_axes(length * normals) == pytest.approx(sensor_axes(normals), abs=1e-12)

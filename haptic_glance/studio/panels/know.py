@@ -5,7 +5,6 @@ import viser
 
 from haptic_glance.know import Library, place_at
 from haptic_glance.know.library import CELLS, PITCH
-from haptic_glance.touch import sensor_axes
 from haptic_glance.touch.places import Places
 
 from ..drawing import bars_html, draw_cells, grid_html
@@ -260,5 +259,5 @@ class KnowPanel(Panel):
         """The finding of a touch, in the object's own units."""
         assert self.guess is not None
         exploration, specimen = self.guess.exploration, self.guess.specimen
-        axes = sensor_axes(exploration.normals[[number]])[0]
-        return feel_by_rays(exploration.surface, exploration.positions[number], axes, CELLS, PITCH, specimen.unit)
+        position, axes = exploration.positions[number], exploration.axes[number]
+        return feel_by_rays(exploration.surface, position, axes, CELLS, PITCH, specimen.unit)
