@@ -4,12 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from haptic_glance.know import place_at
 from haptic_glance.touch import Layer, Skin, Surface, distances_at, sensor_axes
 from haptic_glance.touch.force import gaps_at, press_forces
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.press import normalise
 from haptic_glance.touch.quasi_tangent import contour_imprints, quasi_tangent
 from haptic_glance.touch.surface import turned
+
+from .specimen import Hit
 
 RAYS, RIGID, CONTOURS, NEWTONS = "rays", "rays, rigid plate", "contours", "newtons"
 SENSORS = (RAYS, RIGID, CONTOURS, NEWTONS)
@@ -77,6 +80,11 @@ class Felt:
         x, y = column - (columns - 1) / 2, (rows - 1) / 2 - row
         on_array = self.centre + self.pitch * (x[:, None] * right + y[:, None] * up)
         return on_array + (LIFT - self.depths[row, column])[:, None] * normal, self.pressed[row, column]
+
+
+def place_of(surface: Surface, hit: Hit) -> Places:
+    """The place of a click on the surface."""
+    return place_at(surface, hit.position[None], np.array([hit.face]))
 
 
 def feel(surface: Surface, place: Places, sensor: Sensor, unit: float = 1.0) -> Felt:

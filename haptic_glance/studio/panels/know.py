@@ -1,23 +1,21 @@
 """Recognition by touch: bars of belief that move with each touch, the next touch, and a mystery object."""
 
-import numpy as np
 import viser
 
-from haptic_glance.know import Library, place_at
+from haptic_glance.know import Library
 from haptic_glance.know.library import CELLS, PITCH
 from haptic_glance.touch import sensor_axes
 from haptic_glance.touch.places import Places
 
 from ..drawing import bars_html, draw_cells, grid_html
-from ..feeling import Felt, feel_by_rays
+from ..feeling import Felt, feel_by_rays, place_of
 from ..jobs import Report
 from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict
 from ..panel import Panel
-from ..scene import GREY, MESH, escaped
+from ..scene import BLUE, MESH, escaped
 from ..specimen import Hit, Specimen
 
 DRAWN, FELT, TOUCHED, SHOWN, ROOM = "/know", "/know/felt", "/know/touched", "/know/shown", "/know/room"
-BLUE = (0, 85, 140)
 ASK = "Click the mesh to touch it, or let the planner touch where it learns most."
 HIDDEN = "An object hides in the ball. Click where it may be: what you touch is shown."
 GUESS = "guess"
@@ -111,7 +109,7 @@ class KnowPanel(Panel):
     def on_click(self, hit: Hit) -> None:
         if not self.touchable() or self.guess is None:
             return
-        self.touch(place_at(self.guess.exploration.surface, hit.position[None], np.array([hit.face])))
+        self.touch(place_of(self.guess.exploration.surface, hit))
 
     def on_miss(self) -> None:
         """Says so, of a hidden object."""
@@ -241,7 +239,7 @@ class KnowPanel(Panel):
             self.name.options = (GUESS, *game.exploration.library.names)
             scene.api.add_icosphere(ROOM, 0.5, (150, 160, 190), subdivisions=5, opacity=0.12, cast_shadow=False)
         elif game.hidden:
-            scene.mesh(SHOWN, game.specimen.mesh, np.full((len(game.specimen.mesh.vertices), 3), GREY, np.uint8))
+            scene.mesh(SHOWN, game.specimen.mesh, None)
         for number in range(game.touches):
             self.show_touch(number)
         self.report()

@@ -12,7 +12,7 @@ from haptic_glance.look.marks import MarksChanged, check_annotator, check_on_mes
 from haptic_glance.mesh.mesh import Mesh
 
 from ..panel import Panel
-from ..scene import escaped
+from ..scene import BLUE, escaped
 from ..specimen import Hit
 
 Mark = tuple[str, int]  # time (UTC), vertex
@@ -94,7 +94,6 @@ class Marking:
 
 
 MARKS = "/marks"
-BLUE = (0, 85, 140)
 
 
 class MarkPanel(Panel):
