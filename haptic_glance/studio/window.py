@@ -135,7 +135,8 @@ class Window:
             job.stop()
         if not keep:
             self.session.put(specimen)
-        self.scene.clear(MESH, "/points")
+        self.run(self.panel.title, self.panel.on_hide)
+        self.scene.clear(MESH)
         self.opening.named(specimen)
         for panel in self.panels:
             self.run(panel.title, panel.on_mesh)

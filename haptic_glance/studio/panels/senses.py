@@ -123,6 +123,7 @@ class SensesPanel(TouchingPanel):
             self.window.on(control.on_update, self.again)
 
     def on_mesh(self) -> None:
+        self.about.content = ASK
         self.images.visible = self.seen.visible = self.felt.visible = False
 
     def on_show(self) -> None:
@@ -133,6 +134,8 @@ class SensesPanel(TouchingPanel):
             self.about.content = MISSING
         elif self.network is None:
             self.window.work("Loading the network", lambda _: load_network(path), self.loaded)
+        else:
+            self.again()
 
     def loaded(self, network: Trained) -> None:
         """The network is there."""
@@ -141,13 +144,9 @@ class SensesPanel(TouchingPanel):
 
     def again(self) -> None:
         """Looks, touches, and asks the network."""
-        specimen, place, network, camera = (
-            self.window.session.specimen,
-            self.place,
-            self.network,
-            self.window.client.camera,
-        )
-        if specimen is None or place is None or network is None:
+        specimen, camera = self.window.session.specimen, self.window.client.camera
+        place, network = self.place, self.network
+        if specimen is None or place is None or network is None or self.window.panel is not self:
             return
         surface, seen_from = as_surface(specimen.mesh), viewpoint(np.array(camera.position), np.array(camera.look_at))
         dark, dead = self.dark.value, self.dead.value
@@ -167,7 +166,5 @@ class SensesPanel(TouchingPanel):
         self.about.content = trusted
         self.images.content, self.images.visible = pair_html(verdict.picture, verdict.imprint), True
         for part, values in ((self.seen, verdict.vision), (self.felt, verdict.touch)):
-            part.content, part.visible = (
-                bars_html(dict(list(values.items())[:BARS]), best if values is of_all else ""),
-                True,
-            )
+            likeliest = dict(list(values.items())[:BARS])
+            part.content, part.visible = bars_html(likeliest, best if values is of_all else ""), True

@@ -44,7 +44,6 @@ class TouchPanel(TouchingPanel):
 
     def on_mesh(self) -> None:
         self.about.content, self.grid.visible = ASK, False
-        self.window.scene.clear(self.array)
 
     def on_show(self) -> None:
         mesh = self.window.session.on_table.mesh
