@@ -209,11 +209,11 @@ PERCENT = "not a share of the diagonal"
 def test_a_value_that_cannot_be_read_is_named_with_its_form(option, reason, capsys):
     target = [] if option.startswith(("--tolerance", "--levels")) else ["--faces", "9"]
     with pytest.raises(SystemExit):
-        parser("").parse_args(["x.stl", "--out", "x.glb", *target, option])
+        parser().parse_args(["x.stl", "--out", "x.glb", *target, option])
     assert reason in capsys.readouterr().err
 
 
 def test_values_are_read_as_shares_and_weights():
     assert [share(text) for text in ("0.2%", "0.002", "1e-4", ".5%")] == pytest.approx([0.002, 0.002, 1e-4, 0.005])
-    chosen = parser("x").parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", "uv=1, colors=.5"])
+    chosen = parser().parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", "uv=1, colors=.5"])
     assert chosen.attributes == {"uv": 1.0, "colors": 0.5}

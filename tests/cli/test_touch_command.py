@@ -266,7 +266,7 @@ def test_a_quantity_that_is_none_is_named_with_its_remedy(options, words, file, 
 
 def test_a_load_may_have_its_unit():
     options = ["mesh.stl", "--unit", "mm", "--load"]
-    assert parser("").parse_args([*options, "5N"]).load == parser("").parse_args([*options, "5"]).load == 5
+    assert parser().parse_args([*options, "5N"]).load == parser().parse_args([*options, "5"]).load == 5
 
 
 def test_folders_are_no_meshes_and_files_no_folders(file, tmp_path):
