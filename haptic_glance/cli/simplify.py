@@ -195,7 +195,7 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
 
 def check_options(options: argparse.Namespace) -> None:
     """Raises ValueError for options without effect, unknown methods, and invalid counts."""
-    if options.faces:
+    if options.faces is not None:
         face_count(options.faces, name="--faces")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: give 0 or more")

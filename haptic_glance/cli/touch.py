@@ -48,7 +48,7 @@ from .arguments import command_parser
 
 report = partial(progress.report, "touch")
 SELECTIONS = ("salient", "random")  # of places, which --count applies to
-POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin with a minus like an option
+POINT = re.compile(r"-[\d.][^,]*,[^,]+,[^,]+")  # a position that begins with a minus like an option
 
 
 def parser() -> argparse.ArgumentParser:

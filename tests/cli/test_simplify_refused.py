@@ -96,6 +96,7 @@ def test_results_in_a_folder_spare_the_materials_of_others(file, tmp_path):
         (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
         (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the mesh has only 1,280 faces"),
         (["--faces", "many", "--out", "x.glb"], "^--faces='many' is not a face count"),
+        (["--faces", "", "--out", "x.glb"], "^--faces='' is not a face count"),
         (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
         (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
         (["--faces", "300", "--out", "ball.obj/x.glb"], "ball.obj is a file: name a folder"),
