@@ -8,7 +8,7 @@ from haptic_glance.touch import sensor_axes
 from haptic_glance.touch.places import Places
 
 from ..drawing import bars_html, draw_cells, grid_html
-from ..feeling import Felt, feel_by_rays, place_of
+from ..feeling import Felt, Sensor, feel_in_pose, place_of
 from ..jobs import Report
 from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict
 from ..panel import Panel
@@ -16,6 +16,7 @@ from ..scene import BLUE, MESH, escaped
 from ..specimen import Hit, Specimen
 
 DRAWN, FELT, TOUCHED, SHOWN, ROOM = "/know", "/know/felt", "/know/touched", "/know/shown", "/know/room"
+SENSOR = Sensor(cells=CELLS[0], pitch=PITCH)
 ASK = "Click the mesh to touch it, or let the planner touch where it learns most."
 HIDDEN = "An object hides in the ball. Click where it may be: what you touch is shown."
 GUESS = "guess"
@@ -268,4 +269,4 @@ class KnowPanel(Panel):
         assert self.guess is not None
         exploration, specimen = self.guess.exploration, self.guess.specimen
         axes = sensor_axes(exploration.normals[[number]])[0]
-        return feel_by_rays(exploration.surface, exploration.positions[number], axes, CELLS, PITCH, specimen.unit)
+        return feel_in_pose(exploration.surface, exploration.positions[number], axes, SENSOR, specimen.unit)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import viser
 
+from haptic_glance.lod.task import number
 from haptic_glance.look.marks import MarksChanged, check_annotator, check_on_mesh, read_rows, utc, write_marks
 from haptic_glance.mesh.mesh import Mesh
 
@@ -175,5 +176,5 @@ class MarkPanel(Panel):
 
 def state(marking: Marking) -> str:
     """How many points there are, and whether they are saved, in Markdown."""
-    count = f"{len(marking.marks)} point{'' if len(marking.marks) == 1 else 's'}"
+    count = number(len(marking.marks), "point")
     return f"**{count}**, all saved in {escaped(str(marking.path))}" if marking.saved else f"**{count}, not saved**"

@@ -19,7 +19,7 @@ from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import as_surface
 
 from ..drawing import bars_html, draw_array, pair_html
-from ..feeling import feel_by_rays
+from ..feeling import Sensor, feel
 from ..panel import TouchingPanel
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _shares(values: np.ndarray, classes: list[str]) -> dict[str, float]:
     return {} if np.isnan(values).any() else {classes[i]: float(values[i]) for i in order}
 
 
-DRAWN, WIDE = 16, PITCH * CELLS / 16  # cells of the array as it is drawn, and their pitch
+DRAWN = Sensor(cells=16, pitch=PITCH * CELLS / 16)  # the array as it is drawn, in larger cells
 BARS = 4  # classes of each sense
 ASK = "Click the mesh: the picture is what you see now, the touch is where you click."
 
@@ -150,8 +150,7 @@ class SensesPanel(TouchingPanel):
             return
         surface, seen_from = as_surface(specimen.mesh), viewpoint(np.array(camera.position), np.array(camera.look_at))
         dark, dead = self.dark.value, self.dead.value
-        axes = sensor_axes(place.normals[:1])[0]
-        draw_array(self.window.scene, self.array, feel_by_rays(surface, place.positions[0], axes, (DRAWN, DRAWN), WIDE))
+        draw_array(self.window.scene, self.array, feel(surface, place, DRAWN))
         self.window.work(
             "Asking the network",
             lambda _: ask(network, *sense(specimen.mesh, surface, seen_from, place), dark, dead),
