@@ -23,6 +23,7 @@ MESH_COMMANDS = {
     "studio": "haptic_glance.studio.command",
 }
 SHELL_COMMANDS = {"completion": "haptic_glance.cli.completion"}
+COMMANDS = {**MESH_COMMANDS, **SHELL_COMMANDS}
 ABOUT = """\
 exit status: 0 done; 1 an input or an option cannot be used, which the last lines name; 2 the command line cannot be
 parsed; 130 stopped by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
@@ -51,12 +52,11 @@ def main() -> None:
         sys.exit(2)
     rest = sys.argv[2:]  # as it is: argparse would take a `--` out
     options = parser.parse_args(sys.argv[1:2])
-    names = {**MESH_COMMANDS, **SHELL_COMMANDS}
     if options.command in PIPELINE:
         in_clone = f"run `python -m stages.{options.command}` in a clone of the repository"
         parser.error(f"{options.command} belongs to the pipeline: {in_clone}")
-    if options.command not in names:
-        close = " or ".join(get_close_matches(options.command, names)) or "one of those that --help lists"
+    if options.command not in COMMANDS:
+        close = " or ".join(get_close_matches(options.command, COMMANDS)) or "one of those that --help lists"
         parser.error(f"there is no command {options.command!r}: try {close}")
     sys.argv[1:] = rest
 
@@ -71,7 +71,7 @@ def main() -> None:
             sys.exit(status)
     except MissingExtra as error:
         if {"-h", "--help"} & set(rest):  # what it does can be read without what it needs
-            print(f"usage: haptic-glance {options.command} ...\n\n{docstring(names[options.command])}\n\n{error}")
+            print(f"usage: haptic-glance {options.command} ...\n\n{docstring(COMMANDS[options.command])}\n\n{error}")
             return
         sys.exit(f"haptic-glance {options.command}: {error}")
 
@@ -88,14 +88,14 @@ def run(command: str, argv: Sequence[str]) -> int:
     # Pillow warns of large pictures in two lines; `materials` refuses those that are too large in one.
     warnings.filterwarnings("ignore", message="Image size .* exceeds limit")
     with interrupts_wait():
-        work: Callable[[Sequence[str]], int | None] = import_module({**MESH_COMMANDS, **SHELL_COMMANDS}[command]).run
+        work: Callable[[Sequence[str]], int | None] = import_module(COMMANDS[command]).run
     with no_silence():
         return work(argv) or 0
 
 
 def listing() -> str:
     """The commands with the first line of their docstrings."""
-    wide, lines = max(map(len, {**MESH_COMMANDS, **SHELL_COMMANDS})), []
+    wide, lines = max(map(len, COMMANDS)), []
     for title, group in {"with a mesh of your own": MESH_COMMANDS, "for the shell": SHELL_COMMANDS}.items():
         lines += [f"{title}:", *(f"  {name:{wide}}  {summary(docstring(group[name]))}" for name in group), ""]
     return "\n".join([*lines, "COMMAND --help has options and examples.", "", ABOUT])

@@ -48,10 +48,9 @@ PASSING = "clean", "normalise", "simplify"  # hand an axis that nobody has said 
 def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     """The public function of a name, made of the one of the stages."""
     convert = as_stated if name in PASSING else as_mesh
-    work = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING, convert)
-    if name in METRIC:
-        work = with_metres(work, METRIC[name])
-    elif name in LENGTHS:
+    work = with_metres(function, METRIC[name]) if name in METRIC else simplify if name == "simplify" else function
+    work = takes_any_mesh(work, MESHES[name], name in LOOKING, convert)
+    if name in LENGTHS:
         work = with_lengths(work, LENGTHS[name], name in LOOKING)
     work.__module__ = __package__  # where pickle finds it
     return work
@@ -139,10 +138,8 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
         if not isinstance(values.get("layer", Layer()), Layer):
             raise TypeError(f"layer must be a Layer such as Layer(thickness=0.002), got {values['layer']!r}")
         if "layer" in values and "gaps" not in values:
-            name, whole = next(iter(values.items()))
-            if not isinstance(getattr(whole, "mesh", whole), Mesh):
-                values[name] = whole = as_mesh(whole)
-            whole = getattr(whole, "mesh", whole)
+            surface = next(iter(values.values()))
+            whole = getattr(surface, "mesh", surface)
             if "layout" in values:
                 pitch = max(np.ptp(values["layout"].positions, axis=0).max(), np.sqrt(values["layout"].areas.max()))
                 _warn_of_units(whole, values["layer"], (1, 1), float(pitch), unit, "layout")

@@ -37,10 +37,10 @@ def run(argv: Sequence[str]) -> None:
     )
     parser.add_argument("shell", choices=["bash", "zsh", "fish"])
     shell = parser.parse_args(argv).shell
-    from haptic_glance.__main__ import MESH_COMMANDS, SHELL_COMMANDS
+    from haptic_glance.__main__ import COMMANDS
 
     option_table = json.loads(OPTIONS.read_text())
-    options = {command: option_table.get(command, []) for command in {**MESH_COMMANDS, **SHELL_COMMANDS}}
+    options = {command: option_table.get(command, []) for command in COMMANDS}
     print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
 
 
@@ -52,16 +52,10 @@ def options_of(command: str) -> list[str]:
 
 def write_options() -> None:
     """Asks every command for its --help, half a minute, and keeps the options; a test says when that is due."""
-    from haptic_glance.__main__ import MESH_COMMANDS, SHELL_COMMANDS
+    from haptic_glance.__main__ import COMMANDS
 
     with ThreadPoolExecutor() as pool:
-        options = dict(
-            zip(
-                {**MESH_COMMANDS, **SHELL_COMMANDS},
-                pool.map(options_of, {**MESH_COMMANDS, **SHELL_COMMANDS}),
-                strict=True,
-            )
-        )
+        options = dict(zip(COMMANDS, pool.map(options_of, COMMANDS), strict=True))
     OPTIONS.write_text(json.dumps(options, indent=1) + "\n")
 
 

@@ -40,6 +40,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import area_share, centre_and_radius, significant_digits
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
+from .arguments import command_parser
 from .simplify import check_outputs, dropped_from
 
 LONG, FINE = 0.1, 0.02  # shares of the diameter: an edge that is long, and the longest of the finer copy
@@ -61,10 +62,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
-    """The options that `saliency` and `points` share; about: the text of --help, whose first line comes first."""
-    first, _, rest = about.partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)
+    """The options that `saliency` and `points` share; about: the text of --help."""
+    command = command_parser(name, about)
     command.set_defaults(name=name)
     command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
     command.add_argument(

@@ -24,6 +24,7 @@ import json
 import re
 from argparse import Namespace
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -59,14 +60,16 @@ from haptic_glance.mesh.materials import COLOURS_OF, bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
+from .arguments import check_output_folder, command_parser
+
+RIVAL = "plain QEM"
+report = partial(progress.report, "simplify")
 LEAST_PERCENT = 0.01  # a bare tolerance from here on is more likely one in percent: few want 1 % of the diagonal
 
 
-def parser(about: str) -> argparse.ArgumentParser:
-    """The parser; about: the text of --help, whose first line comes first."""
-    first, _, rest = about.partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    command = argparse.ArgumentParser("haptic-glance simplify", description=first, epilog=rest, formatter_class=form)
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    command = command_parser("simplify", __doc__ or "")
     command.add_argument("mesh", metavar="MESH", type=Path, help="the file to simplify, or a folder of files")
     target = command.add_mutually_exclusive_group(required=True)
     help_levels = "several results from one look: face counts or shares, such as 50%%,25%%,10%%"
@@ -161,11 +164,9 @@ def targets(options: argparse.Namespace) -> list[str]:
 
 def check_folder_of_several(options: argparse.Namespace) -> None:
     """Raises ValueError where --out is no folder, or not another one than that of the meshes."""
-    check_folder(options.out, f"--out {options.out}")
+    check_output_folder(options.out, options.mesh)
     if options.out.suffix.lower() in FORMATS:
         raise ValueError(f"--out {options.out}: name a folder, since there are several results")
-    if options.out.resolve() == (options.mesh if options.mesh.is_dir() else options.mesh.parent).resolve():
-        raise ValueError(f"--out {options.out} is the folder of the meshes: name another one")
     if options.picture:
         raise ValueError("--picture is for one result: use --faces, or leave it out")
 
@@ -194,7 +195,7 @@ def check_outputs(mesh: Path, *paths: Path | None) -> None:
 
 def check_options(options: argparse.Namespace) -> None:
     """Raises ValueError for options without effect, unknown methods, and invalid counts."""
-    if options.faces:
+    if options.faces is not None:
         face_count(options.faces, name="--faces")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: give 0 or more")
@@ -224,7 +225,7 @@ MIN_EXTENT = 1e-60  # units: areas, and products of two, underflow near 1e-80
 
 def run(argv: Sequence[str]) -> int:
     """Runs the command line `argv`, without the program's name; 1 where a level, or a mesh of a folder, failed."""
-    options = parser(__doc__ or "").parse_args(argv)
+    options = parser().parse_args(argv)
     check_paths(options)
     check_options(options)
     files, figures, failed = mesh_files(options.mesh), [], []
@@ -263,13 +264,14 @@ def simplify_file(path: Path, name: str, options: Namespace) -> dict[str, Any]:
     written = []
     for out, level in zip(out_paths, meshes, strict=True):
         written += write_level(out, task, level, original, parts)
-    alone = not options.levels and options.method != PLAIN
-    rival = plain(task, len(meshes[0].faces)) if alone else None
+    heads, compared = list(by_target) if options.levels else [method_label(options)], [*meshes]
+    if not options.levels and options.method != PLAIN and (rival := plain(task, len(meshes[0].faces))):
+        heads, compared = [*heads, RIVAL], [*meshes, rival]
     hint_at_pictures(options, mesh)
     report("measuring the errors")
-    errors = measure_meshes(task, [*meshes, *([] if rival is None else [rival])], options.seed, report)
+    errors = measure_meshes(task, compared, options.seed, report)
     if not options.json:
-        print(summary(task, list(by_target) if options.levels else [method_label(options)], meshes, rival, errors))
+        print(summary(task, heads, compared, errors))
     if options.picture:
         draw(task, meshes[0], options.picture)
     report(said_of([path for path in (*written, options.picture) if path], before))
@@ -400,23 +402,15 @@ def plain(task: SimplificationTask, faces: int) -> Mesh | None:
         return None
 
 
-def report(text: str) -> None:
-    """Prints progress to stderr, apart from the results."""
-    progress.report("simplify", text)
-
-
-def summary(
-    task: SimplificationTask, heads: Sequence[str], meshes: Sequence[Mesh], rival: Mesh | None, errors: Sequence[dict]
-) -> str:
-    """The table that the command prints: the mesh, the meshes under their heads, and plain QEM where there is one."""
-    compared = [*meshes, *([] if rival is None else [rival])]
-    blanks = [None] * (len(compared) - len(meshes))
-    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in compared))]
+def summary(task: SimplificationTask, heads: Sequence[str], meshes: Sequence[Mesh], errors: Sequence[dict]) -> str:
+    """The table that the command prints: the mesh, and the meshes under their heads; the RIVAL keeps nothing."""
+    kept = [None if head == RIVAL else mesh for head, mesh in zip(heads, meshes, strict=True)]
+    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in meshes))]
     if len(task.points):
-        rows += [("points kept", len(task.points), *(int(task.points_kept(mesh).sum()) for mesh in meshes), *blanks)]
+        rows += [("points kept", len(task.points), *(mesh and int(task.points_kept(mesh).sum()) for mesh in kept))]
     if len(task.border) and not task.free_borders:
-        rows += [("border edges kept", len(task.border), *(task.border_edges_kept(mesh) for mesh in meshes), *blanks)]
+        rows += [("border edges kept", len(task.border), *(mesh and task.border_edges_kept(mesh) for mesh in kept))]
     if len(task.points) or len(task.border):
-        rows += [("fewest faces that keep them", None, *([task.smallest_with_borders] * len(meshes)), *blanks)]
+        rows += [("fewest faces that keep them", None, *(mesh and task.smallest_with_borders for mesh in kept))]
     rows += [(NAMES[name], None, *(values[name] for values in errors)) for name in NAMES if name in errors[0]]
-    return format_table(["before", *heads, *["plain QEM"] * len(blanks)], rows)
+    return format_table(["before", *heads], rows)

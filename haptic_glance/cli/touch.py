@@ -25,6 +25,7 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -43,16 +44,16 @@ from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
 from haptic_glance.touch.skin import LAYER_UNITS, METRES, Layer, Metres, Skin, indent, length
 from haptic_glance.touch.surface import sensor_axes
 
+from .arguments import command_parser
+
+report = partial(progress.report, "touch")
 SELECTIONS = ("salient", "random")  # of places, which --count applies to
-POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin with a minus like an option
+POINT = re.compile(r"-[\d.][^,]*,[^,]+,[^,]+")  # a position that begins with a minus like an option
 
 
-def parser(description: str) -> argparse.ArgumentParser:
-    """The parser of the command line; description: the text of --help."""
-    first, _, rest = description.partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    usage = "%(prog)s MESH [--at PLACE ...] [options]"
-    result = argparse.ArgumentParser("haptic-glance touch", usage, first, rest, formatter_class=form)
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    result = command_parser("touch", __doc__ or "", "%(prog)s MESH [--at PLACE ...] [options]")
     result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF, GLB or glTF")
     help_at = "places: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
     result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
@@ -90,16 +91,17 @@ def parser(description: str) -> argparse.ArgumentParser:
     return result
 
 
-def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
+def parse_options(argv: list[str]) -> argparse.Namespace:
     """The options of a command line, checked; a position may begin with a minus."""
-    options = parser(description).parse_args([f" {word}" if POINT.fullmatch(word) else word for word in argv])
+    options = parser().parse_args([f" {word}" if POINT.fullmatch(word) else word for word in argv])
     check_lengths(options)
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: give 0 or more")
     _check_combination(options)
     _check_load(options)
     options.metres = METRES.get(options.unit)
-    options.skin = parse_skin(options.skin, options.seed)
+    if options.skin is not None:
+        options.skin = Skin(**parse_values("--skin", Skin, options.skin), seed=options.seed)
     options.layer = Layer(**parse_values("--layer", Layer, options.layer))
     options.out = options.out or Path(f"{options.mesh.stem}_imprints")
     check_folder(options.out, f"--out {options.out}")
@@ -144,11 +146,6 @@ def check_lengths(options: argparse.Namespace) -> None:
         raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
     if options.depth is not None and not 0 < options.depth < float("inf"):
         raise ValueError(f"--depth {options.depth:g}: give a positive length")
-
-
-def parse_skin(text: str | None, seed: int) -> Skin | None:
-    """The Skin of a text such as `blur=0.8,noise=0.02`; None of None."""
-    return None if text is None else Skin(**parse_values("--skin", Skin, text), seed=seed)
 
 
 def names_of(kind: type) -> list[str]:
@@ -209,7 +206,7 @@ MAX_CELLS = 50_000_000  # of all places together, which need about 2 GB of memor
 
 def run(argv: list[str]) -> None:
     """Runs the command line `argv`, which excludes the program's name."""
-    options = parse_options(__doc__ or "", argv)
+    options = parse_options(argv)
     if options.show:
         with from_extra("--show needs matplotlib, which "):
             from haptic_glance.touch.pictures import check_window
@@ -220,13 +217,13 @@ def run(argv: list[str]) -> None:
         places = user_mesh.places(options.at, options.count, options.method, options.seed)
         check_size(len(places.positions), options.cells)
     if places.note:
-        report_progress(places.note)
-    report_progress("pressing")
+        report(places.note)
+    report("pressing")
     axes = sensor_axes(places.normals)
     raw = distances_at(user_mesh.surface, places.positions, axes, options.cells, options.pitch, contact=options.contact)
     images = make_images(raw, options, user_mesh.name)
     if (raw == raw.max(axis=(1, 2), keepdims=True)).all():
-        report_progress("every imprint is flat: the array is small compared with the shape, or touches nothing")
+        report("every imprint is flat: the array is small compared with the shape, or touches nothing")
     forces = press_load(user_mesh, places.positions, axes, options)
     rows = places_rows(user_mesh, places, raw)
     if len(forces):
@@ -243,9 +240,9 @@ def run(argv: list[str]) -> None:
         draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
         file_names = [PICTURE, *file_names]
     except MissingExtra as error:
-        report_progress(f"no {PICTURE}: {error}")
+        report(f"no {PICTURE}: {error}")
     print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
-    report_progress(said_of([options.out / name for name in file_names], before))
+    report(said_of([options.out / name for name in file_names], before))
     if options.show:
         from haptic_glance.touch.pictures import open_window
 
@@ -261,18 +258,18 @@ def check_size(places: int, cells: list[int]) -> None:
 
 def open_mesh(options: argparse.Namespace) -> UserMesh:
     """The UserMesh of the file; reports its size and that of the array."""
-    report_progress(f"reading {options.mesh.name}")
+    report(f"reading {options.mesh.name}")
     user_mesh, notes = read_user_mesh(options.mesh, options.up)
-    report_progress("; ".join([f"{len(user_mesh.mesh.faces):,} faces", *notes]))
+    report("; ".join([f"{len(user_mesh.mesh.faces):,} faces", *notes]))
     lengths_in_units(options, user_mesh.unit)
     if wrong := misfit(options.cells, options.pitch):
-        report_progress(wrong)
+        report(wrong)
     if options.load is not None:
         size = user_mesh.unit * options.metres
         if wrong := misfit_of_layer(options.layer, max(options.cells) * options.pitch * size, size):
-            report_progress(f"{wrong}: is --unit {options.unit} right?")
+            report(f"{wrong}: is --unit {options.unit} right?")
     if options.at[0] == "salient":
-        report_progress("looking at it, to find what is salient")
+        report("looking at it, to find what is salient")
     return user_mesh
 
 
@@ -303,7 +300,7 @@ def draw_picture(
     with from_extra("it is drawn by matplotlib, which "):
         from haptic_glance.touch.pictures import write_picture
 
-    report_progress("drawing")
+    report("drawing")
     scale = "the depth" if options.depth else "the imprint's relief"
     write_picture(options.out / PICTURE, user_mesh.mesh, places.positions, axes, images, np.asarray(reliefs),
                   options.pitch, scale, user_mesh.source.up)  # fmt: skip
@@ -364,8 +361,3 @@ def summary(user_mesh: UserMesh, rows: Sequence[dict[str, Any]], options: argpar
             f"the layer is indented by {min(indented):.4g} to {max(indented):.4g} mm"
         )
     return "\n".join(lines)
-
-
-def report_progress(text: str) -> None:
-    """Prints a line of progress to stderr, apart from the results."""
-    progress.report("touch", text)

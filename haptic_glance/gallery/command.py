@@ -19,9 +19,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from haptic_glance.base.errors import DEBUG
-from haptic_glance.base.files import check_folder, write_text
+from haptic_glance.base.files import write_text
 from haptic_glance.base.progress import report
 from haptic_glance.base.timing import WallClock
+from haptic_glance.cli.arguments import check_output_folder, command_parser
 from haptic_glance.lod.export import levels
 from haptic_glance.lod.task import number
 from haptic_glance.mesh.files import mesh_files, names_of
@@ -48,16 +49,13 @@ def run(argv: Sequence[str]) -> int:
     place = options.meshes.resolve()
     name = place.name if place.is_dir() else place.stem
     out = options.out or Path(f"{name}_gallery")
-    if out.resolve() == (place if place.is_dir() else place.parent):
-        raise ValueError(f"--out {out} is the folder of the meshes: name another one")
+    check_output_folder(out, options.meshes)
     return show("gallery", f"Gallery of {name}", options, out)
 
 
 def parser(name: str, about: str) -> argparse.ArgumentParser:
-    """The parser of `gallery` and `demo`; about: the text of --help, whose first line comes first."""
-    first, _, rest = about.partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)
+    """The parser of `gallery` and `demo`; about: the text of --help."""
+    command = command_parser(name, about)
     command.add_argument("--json", action="store_true", help="print what was made as JSON")
     return command
 
@@ -68,7 +66,6 @@ def show(name: str, title: str, options: argparse.Namespace, out: Path) -> int:
     options: meshes (a file or a folder), up, count, levels, json. Where a person stops it (Ctrl-C), the page shows what
     is done.
     """
-    check_folder(out, f"--out {out}")
     files = mesh_files(options.meshes)
     exhibits: list[Exhibit] = []
     failures: dict[str, str] = {}

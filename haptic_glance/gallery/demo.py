@@ -11,6 +11,7 @@ examples:
 from collections.abc import Sequence
 from pathlib import Path
 
+from haptic_glance.base.files import check_folder
 from haptic_glance.lod.export import levels
 
 from .command import COUNT, LEVELS, commands, parser, show
@@ -25,6 +26,7 @@ def run(argv: Sequence[str]) -> int:
     command.add_argument("--out", metavar="FOLDER", type=Path, default=Path("haptic_glance_demo"), help=text)
     command.set_defaults(meshes=sample(), up=None, count=COUNT, levels=levels(LEVELS))
     options = command.parse_args(argv)
+    check_folder(options.out, f"--out {options.out}")
     status = show("demo", "Haptic Glance: a demo", options, options.out)
     if not options.json:
         print("\n".join(["the same with a mesh of your own:", *(f"  {line}" for line in commands(options))]))

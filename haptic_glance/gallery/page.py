@@ -163,4 +163,4 @@ def data_uri(image: np.ndarray, wide: int | None = None) -> str:
 
 def as_script(value: object) -> str:
     """JSON that is safe inside a script element."""
-    return json.dumps(value, separators=(",", ":")).replace("</", "<\\/")
+    return json.dumps(value, separators=(",", ":")).replace("</", "<\\/").replace("<!--", "<\\u0021--")

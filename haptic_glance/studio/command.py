@@ -22,6 +22,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from haptic_glance.base.extras import from_extra
+from haptic_glance.cli.arguments import command_parser
 from haptic_glance.mesh.up import add_up
 
 from .specimen import files_at
@@ -31,9 +32,7 @@ PORT, MOST_PORT = 8062, 65535
 
 def parser() -> argparse.ArgumentParser:
     """The parser of the command line."""
-    first, _, rest = (__doc__ or "").partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    command = argparse.ArgumentParser("haptic-glance studio", description=first, epilog=rest, formatter_class=form)
+    command = command_parser("studio", __doc__ or "")
     command.add_argument("meshes", metavar="MESH", nargs="*", type=Path, help="a mesh file, or a folder of them")
     command.add_argument("--port", type=port, default=PORT, help="port (default: %(default)s or the next free; 0: any)")
     command.add_argument("--no-browser", action="store_true", help="print the address alone")

@@ -3,14 +3,12 @@
 Cells have no smoothing, and bars have their numbers beside them.
 """
 
-import base64
 from collections.abc import Mapping
 from html import escape
-from io import BytesIO
 
 import numpy as np
-from PIL import Image
 
+from haptic_glance.gallery.page import data_uri
 from haptic_glance.lod.pictures import viridis
 
 from .feeling import Felt
@@ -71,7 +69,7 @@ def pair_html(picture: np.ndarray, imprint: np.ndarray) -> str:
     return "".join(
         f'<div style="display:inline-block;width:46%;margin:0 2%;font-size:0.8em"><img class="{kind}" alt="{kind}" '
         f'src="{source}" style="image-rendering:pixelated;width:100%"><br>{kind}</div>'
-        for kind, source in (("vision", _png(pixels)), ("touch", _source(1 - imprint)))
+        for kind, source in (("vision", data_uri(pixels)), ("touch", _source(1 - imprint)))
     )
 
 
@@ -98,10 +96,4 @@ def _bar(name, value, colour):
 
 def _source(pressed):
     """One pixel a cell."""
-    return _png(viridis(pressed.ravel()).reshape(*pressed.shape, 3))
-
-
-def _png(image):
-    stream = BytesIO()
-    Image.fromarray(image).save(stream, "PNG")
-    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
+    return data_uri(viridis(pressed.ravel()).reshape(*pressed.shape, 3))

@@ -1,15 +1,18 @@
 """The imprint of a sensor at one place, and where each of its cells met the object: the touch panels, free of viser."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from haptic_glance.know import place_at
 from haptic_glance.touch import Layer, Skin, Surface, distances_at, sensor_axes
 from haptic_glance.touch.force import gaps_at, press_forces
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.press import normalise
 from haptic_glance.touch.quasi_tangent import contour_imprints, quasi_tangent
 from haptic_glance.touch.surface import turned
+
+from .specimen import Hit
 
 RAYS, RIGID, CONTOURS, NEWTONS = "rays", "rays, rigid plate", "contours", "newtons"
 SENSORS = (RAYS, RIGID, CONTOURS, NEWTONS)
@@ -79,52 +82,43 @@ class Felt:
         return on_array + (LIFT - self.depths[row, column])[:, None] * normal, self.pressed[row, column]
 
 
+def place_of(surface: Surface, hit: Hit) -> Places:
+    """The place of a click on the surface."""
+    return place_at(surface, hit.position[None], np.array([hit.face]))
+
+
 def feel(surface: Surface, place: Places, sensor: Sensor, unit: float = 1.0) -> Felt:
     """Presses the sensor at the first of the places. unit: of the mesh, in those of its file.
 
     CONTOURS is felt at vertices alone. Raises ValueError for it where the place is none, and as `press_forces` does.
     """
-    centre, axes = _pose(surface, place, sensor)
-    if sensor.kind == NEWTONS:
-        force = press_forces(surface, centre, axes, LAYER, sensor.array, sensor.pitch, sensor.load, unit=sensor.size)
-        images, span, name = 1 - force / force.max(), (0.0, float(force.max())), "newtons"
-    elif sensor.kind == CONTOURS:
-        images, span, name = (
-            contour_imprints(surface, place.vertices[:1], sensor.array, sensor.pitch),
-            (0.0, 1.0),
-            "shares of the planes",
-        )
-    else:
-        contact = "rigid" if sensor.kind == RIGID else "tangent"
-        distances = distances_at(surface, centre, axes, sensor.array, sensor.pitch, contact=contact)
-        images, span, name = normalise(distances, sensor.pitch), (unit * float(np.ptp(distances)), 0.0), UNIT
-    imprint = 1 - Skin(blur=sensor.blur, noise=sensor.noise)(images)[0]
-    return Felt(imprint, span, name, centre[0], axes[0], sensor.pitch, _depths(surface, centre, axes, sensor))
-
-
-def _depths(surface, centre, axes, sensor):
-    """(rows, cols) units from the array to the surface that its cells meet, inf where there is none."""
-    reach = sensor.cells * sensor.pitch
-    if sensor.kind in (RIGID, NEWTONS):  # they come from above, and meet what overhangs the place
-        return gaps_at(surface, centre, axes, reach, sensor.array, sensor.pitch)[0]
-    distances = distances_at(surface, centre, axes, sensor.array, sensor.pitch)[0]
-    return np.where(distances < reach, distances, np.inf)
-
-
-def feel_by_rays(
-    surface: Surface, centre: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitch: float, unit: float = 1.0
-) -> Felt:
-    """Presses an ideal array at a centre (3,) with axes (3, 3); unit: of the mesh, in those of its file."""
-    distances = distances_at(surface, centre[None], axes[None], cells, pitch)
-    span = unit * float(np.ptp(distances)), 0.0
-    depths = np.where(distances[0] < max(cells) * pitch, distances[0], np.inf)
-    return Felt(1 - normalise(distances, pitch)[0], span, UNIT, centre, axes, pitch, depths)
-
-
-def _pose(surface, place, sensor):
-    """(centre (1, 3), axes (1, 3, 3)) of the array."""
     if sensor.kind != CONTOURS:
-        return place.positions[:1], turned(sensor_axes(place.normals[:1]), sensor.turn)
+        axes = turned(sensor_axes(place.normals[:1]), sensor.turn)
+        return feel_in_pose(surface, place.positions[0], axes[0], sensor, unit)
     if place.vertices[0] < 0:
         raise ValueError("contours are felt at vertices alone: click nearer to a corner of a face, or take rays")
-    return quasi_tangent(surface.mesh, place.vertices[:1])
+    (centre,), (axes,) = quasi_tangent(surface.mesh, place.vertices[:1])
+    images = contour_imprints(surface, place.vertices[:1], sensor.array, sensor.pitch)
+    by_rays = feel_in_pose(surface, centre, axes, replace(sensor, kind=RAYS))
+    return replace(by_rays, pressed=_pressed(images, sensor), span=(0.0, 1.0), unit="shares of the planes")
+
+
+def feel_in_pose(surface: Surface, centre: np.ndarray, axes: np.ndarray, sensor: Sensor, unit: float = 1.0) -> Felt:
+    """Presses the sensor, which is not CONTOURS, at a centre (3,) with axes (3, 3). unit: as of `feel`."""
+    pose, array, reach = (centre[None], axes[None]), (sensor.array, sensor.pitch), sensor.cells * sensor.pitch
+    if sensor.kind == NEWTONS:
+        force = press_forces(surface, *pose, LAYER, *array, sensor.load, unit=sensor.size)
+        images, span, name = 1 - force / force.max(), (0.0, float(force.max())), "newtons"
+    else:
+        distances = distances_at(surface, *pose, *array, contact="rigid" if sensor.kind == RIGID else "tangent")
+        images, span, name = normalise(distances, sensor.pitch), (unit * float(np.ptp(distances)), 0.0), UNIT
+    if sensor.kind == RAYS:
+        depths = np.where(distances < reach, distances, np.inf)
+    else:  # the plate comes from above, and meets what overhangs the place
+        depths = gaps_at(surface, *pose, reach, *array)
+    return Felt(_pressed(images, sensor), span, name, centre, axes, sensor.pitch, depths[0])
+
+
+def _pressed(images, sensor):
+    """(rows, cols) the first of the images as the skin passes it on, 1 where it is pressed hardest."""
+    return 1 - Skin(blur=sensor.blur, noise=sensor.noise)(images)[0]

@@ -20,7 +20,7 @@ LIGHTS = (((1.0, -1.4, 1.6), 1.9), ((-1.4, 1.0, 0.8), 1.2), ((0.3, 0.6, -1.0), 0
 LEAST_ASPECT = 0.85  # of the picture, in which the object fits from there
 FIELD = 0.62  # radians from the lower to the upper edge of the picture
 MARKER = 0.011  # radius, in diameters of the object
-RED = (216, 27, 27)
+RED, BLUE = (216, 27, 27), (0, 85, 140)
 
 
 class Scene:
@@ -68,8 +68,12 @@ class Scene:
         towards = normal + 0.5 * offset / distance  # not quite along the normal, which may be the up axis
         self.turn(camera.look_at + towards / np.linalg.norm(towards) * distance, camera.look_at)
 
-    def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:
-        """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""
+    def mesh(
+        self, name: str, mesh: Mesh, colors: np.ndarray | None, flat: bool = False, at: np.ndarray = MIDDLE
+    ) -> None:
+        """A mesh with colours (n, 3) u1, or grey. flat: one normal a face, so that faces are seen. at: its place."""
+        if colors is None:
+            colors = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8)
         self.api.add_glb(name, glb(mesh, colors, flat), position=at, cast_shadow=False, receive_shadow=False)
 
     def on_click(self, clicked: Callable[[np.ndarray, np.ndarray], None]) -> None:

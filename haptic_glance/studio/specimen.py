@@ -67,8 +67,8 @@ class Specimen:
     Several threads may ask: each answer is computed once.
     """
 
-    def __init__(self, source: Mesh, name: str, note: str = "", path: Path | None = None) -> None:
-        self.source, self.name, self.note, self.path = source, name, note, path
+    def __init__(self, source: Mesh, name: str, note: str = "") -> None:
+        self.source, self.name, self.note = source, name, note
         self.lock = RLock()
         self._looks: dict[tuple, Look] = {}
         self._looked: tuple[str, Looked] | None = None  # of the last method
@@ -154,8 +154,8 @@ def files_at(place: Path) -> list[Path]:
 def open_file(path: Path, up: str | None = None) -> Specimen:
     """The Specimen of a mesh, a cloud, a scan, or a mesh of the pipeline (.npz). MeshError, ValueError, OSError."""
     if path.suffix.lower() == STORED:
-        return Specimen(read_mesh(path), path.stem, "z up, as the pipeline stores it", path)
-    return _upright(load_unnamed(path), path, up, path)
+        return Specimen(read_mesh(path), path.stem, "z up, as the pipeline stores it")
+    return _upright(load_unnamed(path), path, up)
 
 
 def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
@@ -164,16 +164,16 @@ def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
     return _upright(parse(content, path.suffix.lower(), name=path.name), path, up)
 
 
-def _upright(mesh: Mesh, path: Path, up: str | None, place: Path | None = None) -> Specimen:
+def _upright(mesh: Mesh, path: Path, up: str | None) -> Specimen:
     """The Specimen of a mesh as its file has it; the note says what is wrong with it first, then the axis."""
     coarse = coarse_steps(path, mesh)
     mesh, note = upright_by(mesh, path, up)
-    return Specimen(mesh, path.stem, f"{coarse}; {note}" if coarse else note, place)
+    return Specimen(mesh, path.stem, f"{coarse}; {note}" if coarse else note)
 
 
 def turned(specimen: Specimen, up: str) -> Specimen:
     """The same mesh with another axis up; nothing that was found on the old one is kept."""
-    return Specimen(replace(specimen.source, up=up), specimen.name, f"{up} up", specimen.path)
+    return Specimen(replace(specimen.source, up=up), specimen.name, f"{up} up")
 
 
 def as_bytes(mesh: Mesh, suffix: str, weights: np.ndarray | None = None) -> bytes:

@@ -11,15 +11,16 @@ import numpy as np
 import viser
 
 from haptic_glance.base.errors import DEBUG
+from haptic_glance.cli.saliency import as_csv
 
 from .guard import bound_uploads
 from .jobs import Job, Report
 from .opening import Opening
 from .panels import PANELS
 from .progress import Progress
-from .scene import BESIDE, GREY, MESH, Scene
+from .scene import BESIDE, MESH, Scene
 from .session import Session, Settings
-from .specimen import Specimen
+from .specimen import Look, Specimen
 from .tour import Tour
 
 
@@ -34,7 +35,7 @@ class Window:
         self.scene = Scene(client)
         if not self.scene.covered:
             self.gui.main_panel.dock_right()
-        self.scene.on_click(self.clicked)
+        self.scene.on_click(lambda *ray: self.run("", lambda: self.clicked(*ray)))
         self.progress = Progress(self.gui, self.on)
         self.tour = Tour(self)
         self.opening = Opening(self, settings)
@@ -100,9 +101,19 @@ class Window:
             self.progress.begin(job)
             job.start()
 
-    def download(self, name: str, content: bytes) -> None:
-        """Hands a file to the browser."""
-        self.client.send_file_download(name, content, save_immediately=True)
+    def save(self, ending: str, make: Callable[[], bytes]) -> None:
+        """Makes a file in the background, then hands it to the browser under the mesh's name and the ending."""
+        name = f"{self.session.on_table.name}_{ending}"
+
+        def send(content: bytes) -> None:
+            self.client.send_file_download(name, content, save_immediately=True)
+
+        self.work(f"Writing {name}", lambda _: make(), send)
+
+    def save_points(self, look: Look) -> None:
+        """Hands the points of a Look to the browser, in the file's coordinates."""
+        source = self.session.on_table.source
+        self.save("points.csv", lambda: (as_csv(look.points, source) + "\n").encode())
 
     def say(self, title: str, text: str = "", colour: Any = None, seconds: float | None = 6) -> None:
         """Shows a message; seconds: until it closes by itself, None for never."""
@@ -124,7 +135,8 @@ class Window:
             job.stop()
         if not keep:
             self.session.put(specimen)
-        self.scene.clear(MESH, "/points")
+        self.run(self.panel.title, self.panel.on_hide)
+        self.scene.clear(MESH)
         self.opening.named(specimen)
         for panel in self.panels:
             self.run(panel.title, panel.on_mesh)
@@ -133,14 +145,10 @@ class Window:
     def show(self) -> None:
         """The mesh on the table in its own colours, or grey."""
         mesh = self.session.on_table.mesh
-        colors = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8) if mesh.colors is None else mesh.colors
-        self.scene.mesh(MESH, mesh, colors)
+        self.scene.mesh(MESH, mesh, mesh.colors)
 
     def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
         """A click on the picture."""
-        self.run("", lambda: self._clicked(origin, direction))
-
-    def _clicked(self, origin, direction):
         target = self.panel.target()
         if target is None:
             return

@@ -96,6 +96,7 @@ def test_results_in_a_folder_spare_the_materials_of_others(file, tmp_path):
         (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
         (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the mesh has only 1,280 faces"),
         (["--faces", "many", "--out", "x.glb"], "^--faces='many' is not a face count"),
+        (["--faces", "", "--out", "x.glb"], "^--faces='' is not a face count"),
         (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
         (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
         (["--faces", "300", "--out", "ball.obj/x.glb"], "ball.obj is a file: name a folder"),
@@ -211,11 +212,11 @@ PERCENT = "not a share of the diagonal"
 def test_a_value_that_cannot_be_read_is_named_with_its_form(option, reason, capsys):
     target = [] if option.startswith(("--tolerance", "--levels")) else ["--faces", "9"]
     with pytest.raises(SystemExit):
-        parser("").parse_args(["x.stl", "--out", "x.glb", *target, option])
+        parser().parse_args(["x.stl", "--out", "x.glb", *target, option])
     assert reason in capsys.readouterr().err
 
 
 def test_values_are_read_as_shares_and_weights():
     assert [share(text) for text in ("0.2%", "0.002", "1e-4", ".5%")] == pytest.approx([0.002, 0.002, 1e-4, 0.005])
-    chosen = parser("x").parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", "uv=1, colors=.5"])
+    chosen = parser().parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", "uv=1, colors=.5"])
     assert chosen.attributes == {"uv": 1.0, "colors": 0.5}

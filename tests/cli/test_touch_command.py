@@ -9,7 +9,7 @@ import trimesh
 from PIL import Image
 
 from haptic_glance import press
-from haptic_glance.cli.touch import POINT, parser, run
+from haptic_glance.cli.touch import POINT, parse_options, parser, run
 from haptic_glance.look.points import find_points
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
@@ -94,6 +94,7 @@ def test_position_of_a_vertex_feels_as_the_vertex_and_may_be_negative(touched, f
     assert table["vertex"].fillna(-1).tolist() == [lowest, -1] and table["y"][1] < 0
     assert np.allclose(table[["x", "y", "z"]], vertices[lowest], atol=1e-4)
     assert POINT.fullmatch("-.5,1,-2e-3") and not POINT.fullmatch("-5") and not POINT.fullmatch("--at")
+    assert str(parse_options(["1,2,3.stl", "--out", "2024,11,29"]).out) == "2024,11,29"
 
 
 def test_normals_and_axes_are_those_of_the_file(touched, file):
@@ -266,7 +267,7 @@ def test_a_quantity_that_is_none_is_named_with_its_remedy(options, words, file, 
 
 def test_a_load_may_have_its_unit():
     options = ["mesh.stl", "--unit", "mm", "--load"]
-    assert parser("").parse_args([*options, "5N"]).load == parser("").parse_args([*options, "5"]).load == 5
+    assert parser().parse_args([*options, "5N"]).load == parser().parse_args([*options, "5"]).load == 5
 
 
 def test_folders_are_no_meshes_and_files_no_folders(file, tmp_path):

@@ -32,7 +32,7 @@ DEFAULTS = {
     "know": {"points": library.TOUCHES, "cells": library.CELLS[0], "level": WHOLE},
     "studio": {"cells": Sensor().cells},
     "press": {"cells": signature(press).parameters["cells"].default[0]},
-    "touch": {"cells": parser("").get_default("cells")[0]},
+    "touch": {"cells": parser().get_default("cells")[0]},
     "gallery": {"cells": exhibit.CELLS[0]},
 }
 ROWS = "rows of household and furniture, and claims on them, rest on it: it changes when they are measured again"
@@ -60,5 +60,5 @@ def test_the_front_asks_about_the_defaults_of_the_pipeline():
 
 def test_the_array_is_as_wide_at_every_door_as_in_the_front():
     pitches = {RUN["imprints"]["pitch"], library.PITCH, exhibit.PITCH, Sensor().pitch}
-    pitches |= {signature(press).parameters["pitch"].default, parser("").get_default("pitch")}
+    pitches |= {signature(press).parameters["pitch"].default, parser().get_default("pitch")}
     assert [pitch * PIPELINE["cells"] for pitch in pitches] == [pytest.approx(WIDTH)]

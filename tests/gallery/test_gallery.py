@@ -18,7 +18,7 @@ from haptic_glance.cli.touch import run as touch
 from haptic_glance.gallery import command
 from haptic_glance.gallery.command import run
 from haptic_glance.gallery.exhibit import exhibit
-from haptic_glance.gallery.page import turnable
+from haptic_glance.gallery.page import as_script, turnable
 from haptic_glance.lod import vertex_errors
 from haptic_glance.mesh import load, rotate_to_z_up
 from tests.shapes import flat_grid
@@ -216,3 +216,10 @@ def test_the_page_of_a_folder_has_its_whole_name(tmp_path, monkeypatch):
 def test_a_gallery_does_not_go_among_the_meshes(tmp_path):
     with pytest.raises(ValueError, match="is the folder of the meshes: name another one"):
         run([str(tmp_path), "--out", f"{tmp_path}/."])
+
+
+def test_data_do_not_end_the_script_that_holds_them():
+    """A name of a file may hold anything; after `<!--<script>` the end of the script would not count as such."""
+    value = ["</script>", "<!--<script>"]
+    text = as_script(value)
+    assert "</" not in text and "<!--" not in text and json.loads(text) == value

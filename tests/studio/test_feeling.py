@@ -17,7 +17,7 @@ from haptic_glance.studio.feeling import (
     SENSORS,
     Sensor,
     feel,
-    feel_by_rays,
+    feel_in_pose,
     turned,
 )
 from haptic_glance.touch import Surface, press, sensor_axes
@@ -125,7 +125,7 @@ def test_contours_are_felt_at_vertices_alone(torus):
 def test_rays_of_a_frame_are_those_of_the_sensor(torus):
     place = at_vertex(torus, 5)
     felt = feel(torus, place, Sensor(kind=RAYS), unit=3.0)
-    same = feel_by_rays(torus, place.positions[0], sensor_axes(place.normals)[0], (16, 16), 0.01, 3.0)
+    same = feel_in_pose(torus, place.positions[0], sensor_axes(place.normals)[0], Sensor(), 3.0)
     assert np.array_equal(felt.pressed, same.pressed) and felt.span == same.span
     assert np.array_equal(felt.depths, same.depths)
 

@@ -1,5 +1,7 @@
 """The panel Know without a page: what is known, what hides, and who finds it out."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ from haptic_glance.know import learn, primitives
 from haptic_glance.lod import write_any
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.mystery import by_planner, gather, guess, study, verdict
+from haptic_glance.studio.panels.know import KnowPanel
+from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen
 
 
@@ -83,3 +87,20 @@ def test_the_verdict_counts_the_planners_help(library, shapes):
     game.helped = 1
     assert "after 1 touch, 1 of them the planner's;" in verdict(game, (2, game.name))
     assert np.isclose(sum(game.exploration.belief.probabilities.values()), 1)
+
+
+def test_the_planner_does_not_touch_an_object_that_came_meanwhile(library, shapes):
+    """Otherwise it would never end: it counts the touches of the old one."""
+    old, new = (guess(library, shapes, Specimen(shapes["cone"], "cone")) for _ in range(2))
+    panel = KnowPanel(SimpleNamespace(session=Session(kept={"Know": new})))
+    panel.touch_planned(old, old.exploration.candidate(0))
+    assert old.touches == new.touches == 0
+
+
+def test_a_touch_behind_another_panel_is_not_drawn(library, shapes):
+    game = guess(library, shapes, Specimen(shapes["cone"], "cone"))
+    panel = KnowPanel(SimpleNamespace(session=Session(kept={"Know": game}), panel=None))
+    panel.bars, panel.about = SimpleNamespace(), SimpleNamespace()
+    panel.touch_planned(game, game.exploration.candidate(0))
+    panel.draw()
+    assert game.touches == game.helped == 1 and panel.bars.visible

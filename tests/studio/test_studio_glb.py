@@ -1,6 +1,7 @@
 """The meshes that the page gets: other readers find the same geometry and colours in them."""
 
 import io
+import json
 
 import numpy as np
 import pytest
@@ -25,7 +26,11 @@ def test_another_reader_finds_the_same_mesh(mesh, flat):
 def test_colours_come_back_under_the_encoding_of_the_display(mesh):
     colors = np.tile([[0, 60, 255]], (len(mesh.vertices), 1)).astype(np.uint8)
     content = glb(mesh, colors)
-    stored = np.frombuffer(content, "<u2", 4, content.index(b"BIN\0") + 4 + mesh.vertices.astype("<f4").nbytes)
+    header = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    accessor = header["accessors"][header["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
+    start = header["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    stored = np.frombuffer(content, "<u2", 4, content.index(b"BIN\0") + 4 + start)
+    assert accessor["normalized"]
     assert np.allclose(255 * encoded(stored / 65535), [0, 60, 255, 255], atol=0.1)
 
 

@@ -19,6 +19,7 @@ from haptic_glance.studio.panels.levels import HARD, SOFT, Levels
 from haptic_glance.studio.panels.look import views_of
 from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
+from haptic_glance.studio.window import Window
 
 PATIENCE = 300  # seconds, on a machine with other work
 
@@ -148,7 +149,7 @@ def test_turning_keeps_the_vertices_and_changes_what_is_high(mesh):
 
 def test_an_uploaded_file_is_that_on_disk_and_reads_no_other(knob_file):
     opened = open_content(f"../../{knob_file.name}", knob_file.read_bytes())
-    assert opened.name == "knob" and opened.path is None
+    assert opened.name == "knob"
     assert np.array_equal(opened.source.vertices, load(knob_file).vertices)
     with pytest.raises(MeshError, match="formats are"):
         open_content("/etc/passwd", b"root")
@@ -212,6 +213,40 @@ def test_the_twelve_views_show_the_object(mesh):
     assert image.shape == (4 * 150, 3 * 200, 3) and image.dtype == np.uint8
     tiles = image.reshape(4, 150, 3, 200, 3).swapaxes(1, 2).reshape(12, -1, 3)
     assert all((tile != 255).any(axis=1).mean() > 0.2 for tile in tiles)
+
+
+class Shown:
+    """A window with one panel, which note what is asked of them, and a scene of names."""
+
+    title = "Touch"
+
+    def __init__(self):
+        self.jobs, self.session, self.asked, self.panels, self.panel = {}, Session(), [], [self], self
+        self.scene = self.opening = self
+
+    def run(self, title, work):
+        work()
+
+    def clear(self, *names):
+        self.asked.append("clear")
+
+    def named(self, specimen):
+        self.asked.append("name")
+
+    def on_hide(self):
+        self.asked.append("hide")
+
+    def on_mesh(self):
+        self.asked.append(f"mesh {self.session.on_table.name}")
+
+    def on_show(self):
+        self.asked.append("show")
+
+
+def test_another_mesh_takes_the_drawings_of_the_panel_away(mesh):
+    window = Shown()
+    Window.put(window, Specimen(mesh, "ball"))
+    assert window.asked == ["hide", "clear", "name", "mesh ball", "show"]
 
 
 class Log(list):

@@ -1,22 +1,21 @@
 """Recognition by touch: bars of belief that move with each touch, the next touch, and a mystery object."""
 
-import numpy as np
 import viser
 
-from haptic_glance.know import Library, place_at
+from haptic_glance.know import Library
 from haptic_glance.know.library import CELLS, PITCH
 from haptic_glance.touch.places import Places
 
 from ..drawing import bars_html, draw_cells, grid_html
-from ..feeling import Felt, feel_by_rays
+from ..feeling import Felt, Sensor, feel_in_pose, place_of
 from ..jobs import Report
 from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict
 from ..panel import Panel
-from ..scene import GREY, MESH, escaped
+from ..scene import BLUE, MESH, escaped
 from ..specimen import Hit, Specimen
 
 DRAWN, FELT, TOUCHED, SHOWN, ROOM = "/know", "/know/felt", "/know/touched", "/know/shown", "/know/room"
-BLUE = (0, 85, 140)
+SENSOR = Sensor(cells=CELLS[0], pitch=PITCH)
 ASK = "Click the mesh to touch it, or let the planner touch where it learns most."
 HIDDEN = "An object hides in the ball. Click where it may be: what you touch is shown."
 GUESS = "guess"
@@ -104,25 +103,25 @@ class KnowPanel(Panel):
         self.window.session.kept[self.title] = begun
         left_out = "".join(f"\n- left out: {escaped(note)}" for note in notes)
         self.known.content = f"{len(library.names)} objects, learned in {seconds:.1f} s.{left_out}"
-        if self.window.panel is self:
-            self.draw()
+        self.draw()
 
     def on_click(self, hit: Hit) -> None:
         if not self.touchable() or self.guess is None:
             return
-        self.touch(place_at(self.guess.exploration.surface, hit.position[None], np.array([hit.face])))
+        self.touch(self.guess, place_of(self.guess.exploration.surface, hit))
 
     def on_miss(self) -> None:
         """Says so, of a hidden object."""
         if self.guess is not None and self.guess.hidden:
             self.window.say("Nothing there", "the object is elsewhere in the ball", seconds=2)
 
-    def touch(self, place: Places, by_hand: bool = True) -> None:
-        """Touches a place."""
-        assert self.guess is not None
-        self.guess.exploration.touch(place)
-        self.guess.helped += not by_hand
-        self.show_touch(self.guess.touches - 1)
+    def touch(self, game: Guess, place: Places, by_hand: bool = True) -> None:
+        """Touches a place of an object, unless another one has come meanwhile."""
+        if game is not self.guess:
+            return
+        game.exploration.touch(place)
+        game.helped += not by_hand
+        self.show_touch(game.touches - 1)
         self.report()
 
     def touchable(self) -> bool:
@@ -140,17 +139,22 @@ class KnowPanel(Panel):
         """Finds the most telling place in the background, then touches it."""
         if not self.touchable() or self.guess is None:
             return
-        exploration = self.guess.exploration
-        self.window.work("Choosing a place", lambda _: exploration.next_place(), self.touch_planned)
+        game = self.guess
 
-    def touch_planned(self, place: Places | None) -> None:
+        def touch(place: Places | None) -> None:
+            self.touch_planned(game, place)
+
+        self.window.work("Choosing a place", lambda _: game.exploration.next_place(), touch)
+
+    def touch_planned(self, game: Guess, place: Places | None) -> None:
         """Marks the chosen place and touches it."""
         if place is None:
             self.no_touch_helps()
             return
-        self.touch(place, by_hand=False)
-        assert self.guess is not None
-        number = self.guess.touches
+        self.touch(game, place, by_hand=False)
+        if game is not self.guess or self.window.panel is not self:
+            return
+        number = game.touches
         words = [f"{number}, the planner's"]
         self.window.scene.markers(f"{TOUCHED}/{number - 1}", place.positions, place.normals, words, BLUE)
         self.window.scene.face(place.positions[0], place.normals[0])
@@ -167,12 +171,12 @@ class KnowPanel(Panel):
 
         def work(report: Report) -> bool:
             exploration = game.exploration
-            while not exploration.belief.known and game.touches < before + 30:
+            while game is self.guess and not exploration.belief.known and game.touches < before + 30:
                 report((game.touches - before) / 30, f"touch {game.touches + 1}")
                 place = exploration.next_place()
                 if place is None:
                     return False
-                self.window.run(self.title, lambda place=place: self.touch(place, by_hand=False))
+                self.window.run(self.title, lambda place=place: self.touch(game, place, by_hand=False))
             return True
 
         def ended(helpful: bool) -> None:
@@ -225,6 +229,8 @@ class KnowPanel(Panel):
 
     def draw(self) -> None:
         """Everything anew: the mesh unless it hides, the touches, the controls that fit."""
+        if self.window.panel is not self:
+            return
         scene, game = self.window.scene, self.guess
         scene.clear(DRAWN)
         hides = game is not None and game.hidden and not game.over
@@ -240,13 +246,15 @@ class KnowPanel(Panel):
             self.name.options = (GUESS, *game.exploration.library.names)
             scene.api.add_icosphere(ROOM, 0.5, (150, 160, 190), subdivisions=5, opacity=0.12, cast_shadow=False)
         elif game.hidden:
-            scene.mesh(SHOWN, game.specimen.mesh, np.full((len(game.specimen.mesh.vertices), 3), GREY, np.uint8))
+            scene.mesh(SHOWN, game.specimen.mesh, None)
         for number in range(game.touches):
             self.show_touch(number)
         self.report()
 
     def show_touch(self, number: int) -> None:
         """Draws one touch on the object, and what was felt there."""
+        if self.window.panel is not self:  # `draw` shows it later
+            return
         felt = self.felt(number)
         draw_cells(self.window.scene, f"{FELT}/{number}", felt)
         self.window.scene.markers(
@@ -259,5 +267,10 @@ class KnowPanel(Panel):
         """The finding of a touch, in the object's own units."""
         assert self.guess is not None
         exploration, specimen = self.guess.exploration, self.guess.specimen
+<<<<<<< HEAD
         position, axes = exploration.positions[number], exploration.axes[number]
         return feel_by_rays(exploration.surface, position, axes, CELLS, PITCH, specimen.unit)
+=======
+        axes = sensor_axes(exploration.normals[[number]])[0]
+        return feel_in_pose(exploration.surface, exploration.positions[number], axes, SENSOR, specimen.unit)
+>>>>>>> d22535a7522f4bed8cba1652c1c2abd902b8084f

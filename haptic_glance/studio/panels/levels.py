@@ -12,7 +12,6 @@ import numpy as np
 import viser
 from scipy.spatial import KDTree
 
-from haptic_glance.cli.saliency import as_csv
 from haptic_glance.lod import InfeasibleTarget, metro, neighbourhoods, vertex_errors
 from haptic_glance.lod.kernels.jit import FOLDER
 from haptic_glance.lod.pictures import viridis, vivid
@@ -24,7 +23,7 @@ from haptic_glance.mesh.mesh import Mesh
 
 from ..jobs import Report
 from ..panel import Panel
-from ..scene import GREY, MESH
+from ..scene import MESH
 from ..specimen import Look, Specimen, as_bytes
 
 SAMPLES = 4000  # of the Metro error: its mean within 2 % of that of 40,000
@@ -167,24 +166,21 @@ class LevelsPanel(Panel):
             return
         self.window.scene.mesh(MESH, self.level.shown, self.colours(self.level), flat=True)
 
-    def colours(self, level: Level) -> np.ndarray:
-        """(k, 3) u1 colours of the vertices of a level."""
+    def colours(self, level: Level) -> np.ndarray | None:
+        """(k, 3) u1 colours of the vertices of a level; None for grey."""
         if self.colour.value == ERROR:
             return viridis(level.error / (level.error.max() or 1.0))
         if self.colour.value == SALIENCY:
             return viridis(vivid(level.saliency))
-        return np.full((len(level.mesh.vertices), 3), GREY, dtype=np.uint8)
+        return None
 
     def save(self) -> None:
         """Hands out what is shown as a file."""
-        session, level, levels, kind = self.window.session, self.level, self.levels, self.kind.value
+        level, levels, kind, choice = self.level, self.levels, self.kind.value, self.saves.value
         if level is None or levels is None:
             raise ValueError("there is no level yet: wait until it is shown")
-        name, send = session.on_table.name, self.window.download
-        if self.saves.value.startswith("CSV"):
-            return send(f"{name}_points.csv", (as_csv(levels.looked.points, session.on_table.source) + "\n").encode())
-        suffix = f".{self.saves.value.lower()}"
-        file = f"{name}_{len(level.mesh.faces)}{suffix}"
-        self.window.work(
-            f"Writing {file}", lambda _: levels.content(level, kind, suffix), lambda content: send(file, content)
-        )
+        suffix = f".{choice.lower()}"
+        if choice.startswith("CSV"):
+            self.window.save_points(levels.looked)
+        else:
+            self.window.save(f"{len(level.mesh.faces)}{suffix}", lambda: levels.content(level, kind, suffix))

@@ -1,12 +1,11 @@
 """Shows where people look: the mesh coloured by a method, its points with their reasons, another method beside it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 import viser
 
-from haptic_glance.cli.saliency import as_csv
 from haptic_glance.lod.pictures import coloured
 from haptic_glance.look.points import METHODS
 from haptic_glance.look.points.methods import split_runnable
@@ -99,10 +98,10 @@ class LookPanel(Panel):
         scene, specimen = self.window.scene, self.window.session.on_table
         mesh, first = specimen.mesh, looks[0]
         self.on_hide()
-        scene.mesh(MESH, first.drawn[0], colours(*first.drawn))
+        scene.mesh(MESH, first.drawn[0], coloured(*first.drawn).colors)
         self.number(POINTS, mesh, first)
         if len(looks) > 1:
-            scene.mesh(OTHER, looks[1].drawn[0], colours(*looks[1].drawn), at=BESIDE)
+            scene.mesh(OTHER, looks[1].drawn[0], coloured(*looks[1].drawn).colors, at=BESIDE)
             self.number(f"{OTHER}/points", mesh, looks[1])
             scene.labels(NAMES, np.array([ABOVE, BESIDE + ABOVE]), [look.method for look in looks])
         self.explain(specimen, first)
@@ -150,38 +149,24 @@ class LookPanel(Panel):
 
     def save_points(self) -> None:
         """Hands out the points in the file's coordinates."""
-        session = self.window.session
-        content = as_csv(session.look().points, session.on_table.source) + "\n"
-        self.window.download(f"{session.on_table.name}_points.csv", content.encode())
+        self.window.save_points(self.window.session.look())
 
     def save_mesh(self) -> None:
         """Hands out the coloured mesh in the file's coordinates, turned upright as glTF has it."""
         session = self.window.session
         specimen, look = session.on_table, session.look()
-        self.save(f"{look.method}.glb", lambda: as_bytes(coloured(specimen.source, look.saliency), ".glb"))
+        self.window.save(f"{look.method}.glb", lambda: as_bytes(coloured(specimen.source, look.saliency), ".glb"))
 
     def save_weights(self) -> None:
         """Hands out the mesh as it was opened, with the saliency of each vertex."""
         session, suffix = self.window.session, f".{self.weights.value.lower()}"
         specimen, look = session.on_table, session.look()
-        self.save(f"{look.method}_weights{suffix}", lambda: as_bytes(specimen.source, suffix, look.saliency))
-
-    def save(self, ending: str, make: Callable[[], bytes]) -> None:
-        """Makes a file in the background, then hands it out under the mesh's name and the ending."""
-        name, window = f"{self.window.session.on_table.name}_{ending}", self.window
-        window.work(f"Writing {name}", lambda _: make(), lambda content: window.download(name, content))
+        self.window.save(f"{look.method}_weights{suffix}", lambda: as_bytes(specimen.source, suffix, look.saliency))
 
 
 def methods() -> list[str]:
     """The names of the methods that have a saliency and run on any mesh."""
     return [name for name in split_runnable(METHODS, LearnedWeights())[0] if hasattr(METHODS[name], "saliency")]
-
-
-def colours(mesh: Mesh, values: np.ndarray) -> np.ndarray:
-    """(n, 3) u1 colours of values (n,) >= 0."""
-    colors = coloured(mesh, values).colors
-    assert colors is not None
-    return colors
 
 
 def listing(look: Look, why: Sequence[Sequence[tuple[str, float]]]) -> str:

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import viser
 
+from haptic_glance.lod.task import number
 from haptic_glance.look.marks import MarksChanged, check_annotator, check_on_mesh, read_rows, utc, write_marks
 from haptic_glance.mesh.mesh import Mesh
 
 from ..panel import Panel
-from ..scene import escaped
+from ..scene import BLUE, escaped
 from ..specimen import Hit
 
 Mark = tuple[str, int]  # time (UTC), vertex
@@ -94,7 +95,6 @@ class Marking:
 
 
 MARKS = "/marks"
-BLUE = (0, 85, 140)
 
 
 class MarkPanel(Panel):
@@ -176,5 +176,5 @@ class MarkPanel(Panel):
 
 def state(marking: Marking) -> str:
     """How many points there are, and whether they are saved, in Markdown."""
-    count = f"{len(marking.marks)} point{'' if len(marking.marks) == 1 else 's'}"
+    count = number(len(marking.marks), "point")
     return f"**{count}**, all saved in {escaped(str(marking.path))}" if marking.saved else f"**{count}, not saved**"

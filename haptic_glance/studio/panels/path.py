@@ -16,7 +16,7 @@ from haptic_glance.touch import Surface, contour, follow
 from haptic_glance.touch.surface import as_surface, mean_vertex_normals
 
 from ..drawing import draw_array, draw_line, grid_html
-from ..feeling import Sensor, feel_by_rays
+from ..feeling import Sensor, feel_in_pose
 from ..jobs import Report
 from ..panel import Panel
 from ..specimen import Hit
@@ -220,8 +220,9 @@ class PathPanel(Panel):
         if self.path is None or self.window.panel is not self:
             return
         number, specimen, path = self.frame.value - 1, self.window.session.on_table, self.path
-        pose, array = (path.positions[number], path.axes[number]), (self.cells.value, self.cells.value)
-        felt = feel_by_rays(as_surface(specimen.mesh), *pose, array, path.pitches[number], specimen.unit)
+        sensor = Sensor(cells=self.cells.value, pitch=path.pitches[number])
+        pose = path.positions[number], path.axes[number]
+        felt = feel_in_pose(as_surface(specimen.mesh), *pose, sensor, specimen.unit)
         draw_array(self.window.scene, ARRAY, felt)
         words = f"frame {number + 1} of {FRAMES}"
         self.grid.content, self.grid.visible = grid_html(felt.pressed, felt.span, felt.unit, words), True

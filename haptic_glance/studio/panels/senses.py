@@ -12,7 +12,6 @@ import viser
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.rng import rng
-from haptic_glance.know import place_at
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, press_at, sensor_axes
@@ -20,9 +19,8 @@ from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import as_surface
 
 from ..drawing import bars_html, draw_array, pair_html
-from ..feeling import feel_by_rays
-from ..panel import Panel
-from ..specimen import Hit
+from ..feeling import Sensor, feel
+from ..panel import TouchingPanel
 
 if TYPE_CHECKING:
     from haptic_glance.deep.hybrid import HybridNet
@@ -55,19 +53,14 @@ def newest_network(root: Path = Path()) -> Path | None:
     return max(root.glob(NETWORKS), key=lambda path: path.stat().st_mtime, default=None)
 
 
-@dataclass(frozen=True)
-class Trained:
-    """A hybrid network and the names of its classes."""
-
-    network: "HybridNet"
-    classes: list[str]
+Trained = tuple["HybridNet", list[str]]  # a network and the names of its classes
 
 
 def load_network(path: Path) -> Trained:
-    """The network of a file. MissingExtra without torch; ValueError for a damaged file."""
+    """The Trained network of a file. MissingExtra without torch; ValueError for a damaged file."""
     with from_extra():
         from haptic_glance.deep.hybrid import load
-    return Trained(*load(path))
+    return load(path)
 
 
 def viewpoint(position: np.ndarray, look_at: np.ndarray) -> Viewpoint:
@@ -93,12 +86,12 @@ def ask(trained: Trained, picture: np.ndarray, imprint: np.ndarray, dark: float,
         from haptic_glance.deep.pictures import as_images
         from haptic_glance.disturb.imprint import disturb
         from haptic_glance.disturb.picture import damage_pictures
-    network, random = trained.network, rng(0, "studio")
+    (network, classes), random = trained, rng(0, "studio")
     pictures = damage_pictures(picture[None], "darkness", dark, random)
     cells = disturb(imprint[None], "dead_cells", dead, random) if dead < 1 else np.ones((1, *imprint.shape), np.float32)
     images = join_senses(as_images(pictures, SIZE), as_images(cells, SIZE))
     scores = [part[0] / t for part, t in zip(network.separate_scores(images), network.temperature, strict=True)]
-    vision, touch = (_shares(part.softmax(0).numpy(), trained.classes) for part in scores)
+    vision, touch = (_shares(part.softmax(0).numpy(), classes) for part in scores)
     trusted = int(network.predict(images).sense[0])
     return Answer(pictures[0], cells[0], vision, touch, SENSES[trusted] if trusted >= 0 else "")
 
@@ -108,16 +101,15 @@ def _shares(values: np.ndarray, classes: list[str]) -> dict[str, float]:
     return {} if np.isnan(values).any() else {classes[i]: float(values[i]) for i in order}
 
 
-ARRAY = "/senses"
-DRAWN, WIDE = 16, PITCH * CELLS / 16  # cells of the array as it is drawn, and their pitch
+DRAWN = Sensor(cells=16, pitch=PITCH * CELLS / 16)  # the array as it is drawn, in larger cells
 BARS = 4  # classes of each sense
 ASK = "Click the mesh: the picture is what you see now, the touch is where you click."
 
 
-class SensesPanel(Panel):
+class SensesPanel(TouchingPanel):
     """Asks the hybrid network that was trained last."""
 
-    title = "Senses"
+    title, array = "Senses", "/senses"
 
     def build(self, gui: viser.GuiApi) -> None:
         self.network: Trained | None = None
@@ -130,12 +122,8 @@ class SensesPanel(Panel):
         for control in (self.dark, self.dead):
             self.window.on(control.on_update, self.again)
 
-    @property
-    def place(self) -> Places | None:
-        """The place that was touched."""
-        return self.window.session.kept.get(self.title)
-
     def on_mesh(self) -> None:
+        self.about.content = ASK
         self.images.visible = self.seen.visible = self.felt.visible = False
 
     def on_show(self) -> None:
@@ -146,34 +134,23 @@ class SensesPanel(Panel):
             self.about.content = MISSING
         elif self.network is None:
             self.window.work("Loading the network", lambda _: load_network(path), self.loaded)
+        else:
+            self.again()
 
     def loaded(self, network: Trained) -> None:
         """The network is there."""
         self.network, self.about.content = network, ASK
         self.again()
 
-    def on_hide(self) -> None:
-        self.window.scene.clear(ARRAY)
-
-    def on_click(self, hit: Hit) -> None:
-        surface = as_surface(self.window.session.on_table.mesh)
-        self.window.session.kept[self.title] = place_at(surface, hit.position[None], np.array([hit.face]))
-        self.again()
-
     def again(self) -> None:
         """Looks, touches, and asks the network."""
-        specimen, place, network, camera = (
-            self.window.session.specimen,
-            self.place,
-            self.network,
-            self.window.client.camera,
-        )
-        if specimen is None or place is None or network is None:
+        specimen, camera = self.window.session.specimen, self.window.client.camera
+        place, network = self.place, self.network
+        if specimen is None or place is None or network is None or self.window.panel is not self:
             return
         surface, seen_from = as_surface(specimen.mesh), viewpoint(np.array(camera.position), np.array(camera.look_at))
         dark, dead = self.dark.value, self.dead.value
-        axes = sensor_axes(place.normals[:1])[0]
-        draw_array(self.window.scene, ARRAY, feel_by_rays(surface, place.positions[0], axes, (DRAWN, DRAWN), WIDE))
+        draw_array(self.window.scene, self.array, feel(surface, place, DRAWN))
         self.window.work(
             "Asking the network",
             lambda _: ask(network, *sense(specimen.mesh, surface, seen_from, place), dark, dead),
@@ -188,7 +165,5 @@ class SensesPanel(Panel):
         self.about.content = trusted
         self.images.content, self.images.visible = pair_html(verdict.picture, verdict.imprint), True
         for part, values in ((self.seen, verdict.vision), (self.felt, verdict.touch)):
-            part.content, part.visible = (
-                bars_html(dict(list(values.items())[:BARS]), best if values is of_all else ""),
-                True,
-            )
+            likeliest = dict(list(values.items())[:BARS])
+            part.content, part.visible = bars_html(likeliest, best if values is of_all else ""), True

@@ -1,27 +1,22 @@
 """The imprint at a place: click the mesh, and turn the sensor's settings."""
 
-import numpy as np
 import viser
 
-from haptic_glance.know import place_at
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch.places import Places
 from haptic_glance.touch.press import warm_up
 from haptic_glance.touch.surface import as_surface, mean_vertex_normals
 
 from ..drawing import draw_array, grid_html
 from ..feeling import CONTOURS, NEWTONS, SENSORS, Sensor, feel
-from ..panel import Panel
-from ..specimen import Hit
+from ..panel import TouchingPanel
 
-ARRAY = "/array"
 ASK = "Click the mesh: the array is pressed there."
 
 
-class TouchPanel(Panel):
+class TouchPanel(TouchingPanel):
     """Presses the array where the person clicks, and again there when a setting moves."""
 
-    title = "Touch"
+    title, array = "Touch", "/array"
 
     def build(self, gui: viser.GuiApi) -> None:
         first = Sensor()
@@ -47,27 +42,13 @@ class TouchPanel(Panel):
             *array, self.blur.value, self.noise.value, self.turn.value, self.load.value, self.size.value / 1000
         )
 
-    @property
-    def place(self) -> Places | None:
-        """The place where the array is pressed."""
-        return self.window.session.kept.get(self.title)
-
     def on_mesh(self) -> None:
         self.about.content, self.grid.visible = ASK, False
-        self.window.scene.clear(ARRAY)
 
     def on_show(self) -> None:
         mesh = self.window.session.on_table.mesh
         self.window.show()
         self.window.work("Preparing the mesh for touch", lambda _: prepare(mesh), lambda _: self.again())
-
-    def on_hide(self) -> None:
-        self.window.scene.clear(ARRAY)
-
-    def on_click(self, hit: Hit) -> None:
-        surface = as_surface(self.window.session.on_table.mesh)
-        self.window.session.kept[self.title] = place_at(surface, hit.position[None], np.array([hit.face]))
-        self.again()
 
     def again(self) -> None:
         """Presses the array where it was pressed before."""
@@ -82,7 +63,7 @@ class TouchPanel(Panel):
         self.about.content = f"Pressed at **{where}**, {self.kind.value}."
         self.grid.content = grid_html(felt.pressed, felt.span, felt.unit, f"{rows} x {columns} cells at {where}")
         self.grid.visible = True
-        draw_array(self.window.scene, ARRAY, felt)
+        draw_array(self.window.scene, self.array, felt)
 
 
 def prepare(mesh: Mesh) -> None:
