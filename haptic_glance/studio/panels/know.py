@@ -267,10 +267,5 @@ class KnowPanel(Panel):
         """The finding of a touch, in the object's own units."""
         assert self.guess is not None
         exploration, specimen = self.guess.exploration, self.guess.specimen
-<<<<<<< HEAD
         position, axes = exploration.positions[number], exploration.axes[number]
-        return feel_by_rays(exploration.surface, position, axes, CELLS, PITCH, specimen.unit)
-=======
-        axes = sensor_axes(exploration.normals[[number]])[0]
-        return feel_in_pose(exploration.surface, exploration.positions[number], axes, SENSOR, specimen.unit)
->>>>>>> d22535a7522f4bed8cba1652c1c2abd902b8084f
+        return feel_in_pose(exploration.surface, position, axes, SENSOR, specimen.unit)
