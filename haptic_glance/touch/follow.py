@@ -217,7 +217,8 @@ def follow(
 
     Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
     keeps its heading. So a rotation of the object does not change a sequence, if the pitch stays the same (a share of
-    the diameter changes with the bounding box, a length such as "1mm" does not). The frames do not spin where the
+    the diameter changes with the bounding box, a length such as "1mm" does not). Where the plane runs along an edge,
+    rounding decides on which side the contour lies, and so whose normals count. The frames do not spin where the
     contour passes a pole, as they would with `sensor_axes`. The thesis does not say this either. The array is smaller
     at saddles, with the same number of cells (T4.4.3, `adaptive_distances`).
 
