@@ -209,8 +209,10 @@ def mean_vertex_normals(mesh: Mesh) -> np.ndarray:
     total = corner_sum(mesh, np.repeat(mesh.face_normals[:, None], 3, axis=1))
     count = corner_sum(mesh, np.repeat(solid[:, None], 3, axis=1))
     used = np.flatnonzero(count)  # a vertex in no face keeps none
-    first, ids = merge_equal_rows(mesh.vertices[used])
-    if len(first) < len(used):
+    x, y, z = mesh.vertices[used].T
+    places = np.sort(x + np.sqrt(2) * y + np.sqrt(3) * z)  # equal at one place: a quick test for meshes without any
+    if (places[1:] == places[:-1]).any():
+        _, ids = merge_equal_rows(mesh.vertices[used])
         total[used] = np.stack([np.bincount(ids, column) for column in total[used].T], axis=1)[ids]
         count[used] = np.bincount(ids, count[used])[ids]
     return total / np.maximum(count, 1)[:, None]

@@ -35,8 +35,8 @@ def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     text_table["holds"] = claims["holds"]
     text_table["tested on"] = claims["tested_on"]
     text_table["on each set"] = [sets_text(row) for row in claims.itertuples()]
-    text_table["readings"] = claims["readings"].fillna("")
-    text_table["invalid"] = claims["validity"].fillna("")
+    text_table["readings"] = claims["readings"]
+    text_table["invalid"] = claims["validity"]
     text_table["carries over"] = [carries_text(row) for row in claims.itertuples()]
     text_table["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
     text_table["open"] = [open_text(row) for row in claims.itertuples()]
@@ -51,20 +51,17 @@ def over_text(row: Any) -> str:
 
 def sets_text(row: Any) -> str:
     """The effect on each set, and the share of their variation that is between them; empty for one set."""
-    if row.by_set != row.by_set or not row.by_set:
-        return ""
-    return row.by_set + (f"; {100 * row.i2:.0f} % of the variation between sets" if row.i2 == row.i2 else "")
+    shown = row.by_set and row.i2 == row.i2
+    return row.by_set + (f"; {100 * row.i2:.0f} % of the variation between sets" if shown else "")
 
 
 def carries_text(row: Any) -> str:
     """Whether the sentence holds on all sets together; of a secondary claim, the sentence that it tests elsewhere."""
-    return f"tests `{row.of}` elsewhere" if row.of else "" if row.carries != row.carries else row.carries
+    return f"tests `{row.of}` elsewhere" if row.of else row.carries
 
 
 def open_text(row: Any) -> str:
     """Why a claim is open, and how many units would decide it at its present effect and spread; empty for others."""
-    if row.cause != row.cause or not row.cause:
-        return ""
     return row.cause + (f": about {row.needed:,.0f} {row.needed_of} would decide" if row.needed == row.needed else "")
 
 
@@ -151,8 +148,8 @@ def _claim_html(
         "Tested on": prose(row.tested_on),
         "On each set": prose(sets_text(row)),
         "Carries over": prose(carries_text(row)),
-        "Readings": prose("" if row.readings != row.readings else row.readings),
-        "Invalid": prose("" if row.validity != row.validity else row.validity),
+        "Readings": prose(row.readings),
+        "Invalid": prose(row.validity),
         "Open": prose(open_text(row)),
         "Data": links if row.pairs else "not measured",
         "Holds among the claims of its chapter": row.holds,

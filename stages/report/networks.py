@@ -36,6 +36,11 @@ PASSES = {  # of the trainings, over the touches
 }  # fmt: skip
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
 NETWORK = "mobilenet_v2"
+WORDS = {  # phrases of claims
+    ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
+    ("mode", "finetuned"): "fine-tuned", ("mode", "frozen"): "frozen",
+    ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
+}  # fmt: skip
 SEEN = ("size", "touches")  # columns of what a network saw: a claim compares only what saw the same
 GUESS = 7.6  # points over chance that frozen filters have in T table 5.3, which calls that around a random guess
 

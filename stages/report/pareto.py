@@ -147,7 +147,9 @@ def pareto_chart(
             _legend(axes, [(legends or {}).get(column, column) for column in (colour, marker) if column])
         if not tints:
             point_names = _names(front if colour and marker and len(rows) > FEW else rows, quality, better)
-            place_names(axes, point_names, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, certain, quality))
+            place_names(
+                axes, point_names, rows[["cost_ratio", quality]].to_numpy(), lines(rows, certain, "cost_ratio", quality)
+            )
     names, maybe = _listed(certain), _listed(rows.loc[rows["on_front"] == PERHAPS].sort_values("cost_ratio"))
     noise_text = f"; the costs vary by {100 * np.mean(noise):.2g} %" if clock else ""
     first = f"{unit:.3g} s in the median case ({clock})" if clock else f"{unit:,.0f} {cost_name}"
@@ -240,11 +242,11 @@ def _names(rows: pd.DataFrame, quality: str, better: str) -> list[tuple[str, Spo
     return list(zip(order["name"], zip(order["cost_ratio"], order[quality], strict=True), strict=True))
 
 
-def _lines(rows: pd.DataFrame, front: pd.DataFrame, quality: str) -> list[tuple[Spot, Spot]]:
-    """The two ends of each drawn line: the intervals, and the steps of the front."""
+def lines(rows: pd.DataFrame, front: pd.DataFrame, cost: str, quality: str) -> list[tuple[Spot, Spot]]:
+    """The two ends of each drawn line, for `place_names`: the intervals, and the steps of the front."""
     bounded = rows.dropna(subset=["low", "high"]) if "low" in rows else rows[:0]
-    bars = [((row["cost_ratio"], row["low"]), (row["cost_ratio"], row["high"])) for _, row in bounded.iterrows()]
-    across, up = front[["cost_ratio", quality]].to_numpy().repeat(2, axis=0).T
+    bars = [((row[cost], row["low"]), (row[cost], row["high"])) for _, row in bounded.iterrows()]
+    across, up = front[[cost, quality]].to_numpy().repeat(2, axis=0).T
     return [*bars, *pairwise(zip(across[1:], up[:-1], strict=True))]
 
 

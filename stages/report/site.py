@@ -48,7 +48,7 @@ class Finding:
     places: int = 0
 
     def of(self, value: float) -> float:
-        """The text of a difference."""
+        """The number that is shown of a difference."""
         return PREFIXES[self.shown](value)
 
 

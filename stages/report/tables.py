@@ -58,6 +58,12 @@ def with_means(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
+def with_printed_means(thesis: pd.DataFrame) -> pd.DataFrame:
+    """The thesis's figures by classifier, the index, and behind them their means over the classifiers of MEANS."""
+    means = {name: thesis.loc[list(several)].mean() for name, several in MEANS.items()}
+    return pd.concat([thesis, pd.DataFrame(means).T]).rename_axis("classifier")
+
+
 def over_items(rows: pd.DataFrame) -> pd.Series:
     """Column `value`, indexed by `item` where each row is about one: an interval then counts copies of a shape once."""
     if "item" not in rows or rows["item"].isna().any():

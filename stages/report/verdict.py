@@ -36,6 +36,7 @@ COLUMNS = [
     "section", "claim", "verdict", "effect", "low", "high", "unit", "p", "holds", "pairs", "over", "units", "shared",
     "i2", "by_set", "carries", "readings", "validity", "needed", "needed_of", "cause", "tested_on", "of", "key",
 ]  # fmt: skip
+TEXTS = ["by_set", "carries", "readings", "validity", "cause"]  # columns that are empty where there is nothing to say
 Row = tuple[Mapping[str, object], list[tuple[str, str, float, bool]]]  # (columns of a claim, the differences behind it)
 
 
@@ -77,7 +78,7 @@ def tabled(claims: Sequence[Claim], rows: Sequence[Row]) -> tuple[pd.DataFrame, 
     """The frames of `judged` from the rows of `by_claim`: adds the columns that depend on other claims."""
     first: dict[tuple[bool, str], str] = {}
     primaries = [claim.of or first.setdefault((claim.is_ours, claim.sentence), claim.key) for claim in claims]
-    frame = pd.DataFrame([columns for columns, _ in rows], columns=COLUMNS)
+    frame = pd.DataFrame([columns for columns, _ in rows], columns=COLUMNS).fillna(dict.fromkeys(TEXTS, ""))
     frame["of"] = [key if key != claim.key else "" for key, claim in zip(primaries, claims, strict=True)]
     frame["holds"] = holding(frame)
     pairs = [pair for _, differences in rows for pair in differences]

@@ -1,6 +1,5 @@
 """One network for vision and touch, and what two senses are worth together (T5.5, T5.6)."""
 
-from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import Any
@@ -256,14 +255,12 @@ PHRASES = {
 }  # fmt: skip
 
 
-def claim(
-    key: str, section: str, sentence: str, first: Side, second: Side | float, where: Side, margin: float = 0.0
-) -> Claim:
+def claim(key: str, section: str, sentence: str, first: Side, second: Side | float, where: Side, **more: Any) -> Claim:
     """The claim of one way to recognise over another, or over an accuracy. where: what both have in common."""
     return Claim(
-        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, margin=margin,
+        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second,
         where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
-        dataset=SETS, checked=section != "ours",  # ours compare ways to use the same networks
+        dataset=SETS, checked=section != "ours", **more,  # ours compare ways to use the same networks
     )  # fmt: skip
 
 
@@ -271,8 +268,7 @@ def joined(
     key: str, section: str, sentence: str, first: str, second: str, damage: Side = UNHARMED, **more: Any
 ) -> Claim:  # fmt: skip
     """A claim on both senses: one way of joining them, or one sense alone, over another."""
-    base = claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage})
-    return replace(base, **more)
+    return claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage}, **more)
 
 
 on_both_splits = partial(both, items="items", verb="met")
@@ -280,14 +276,14 @@ THESIS = on_both_splits(
     claim("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
           {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, {"perturbation": None}),
     claim("sight_certain", "T5.5", "With layers 18 to 139 frozen, sight reaches 100 %, but for one point.",
-          {"method": "vision", "sense": "vision"}, 1.0, {"perturbation": None}, POINT),
+          {"method": "vision", "sense": "vision"}, 1.0, {"perturbation": None}, margin=POINT),
     joined("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.", "fusion_entropy", "vision", DARK),
 )  # fmt: skip
 OURS = on_both_splits(
     *(  # not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread
         claim(f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
               "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense},
-              {"sense": sense, "perturbation": None}, POINT)
+              {"sense": sense, "perturbation": None}, margin=POINT)
         for sense, word in SENSES.items()
     ),
     joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",

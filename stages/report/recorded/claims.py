@@ -10,7 +10,7 @@ from haptic_glance.know.split import Split, shared_by
 from stages.recorded.pressure_images import UNREDUCED
 from stages.report.claims import NO_SVM, SCALE, SCALED, TRAINED, Claim, Side, highest_of, reading
 from stages.report.effects import difference, side, statistic
-from stages.report.networks import GUESS, NETWORK, PRINTED
+from stages.report.networks import GUESS, NETWORK, PRINTED, WORDS
 from stages.report.results import NUMBERS, Results
 
 from .networks import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
@@ -119,12 +119,10 @@ OTHER_NETWORKS = highest_of(*(network for network in PRINTED if network != "resn
 SEEN, UNSEEN = {"weights": "imagenet"}, {"weights": "random"}
 ACCURACY, GUESSING = {"metric": "accuracy"}, {"metric": highest_of("chance", "majority")}
 OF_SIGHT = {
+    **WORDS,
     **{("data", data): words.partition(", ")[2] for data, words in DATA.items()},
     **{("split", split): words for split, words in SPLITS.items()},
-    ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
-    ("mode", "frozen"): "frozen", ("mode", "finetuned"): "fine-tuned",
     ("method", CLASSICAL[0]): "features and kNN", ("over", "method"): "networks",
-    ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
     ("metric", "majority"): "the commonest answer",
 }  # fmt: skip
 
@@ -147,15 +145,10 @@ def over_classifiers(results: Results, claim: Claim) -> pd.Series:
     key, where = claim.over[0], {"metric": "accuracy", "split": claim.where["split"]}
     where |= {"group": "all", "method": ("all", UNREDUCED)} if "pressure" in claim.where["data"] else {"palm": "all"}
     rows = results.measured("recorded", claim.sets[0], **where)
-    ways = [
-        name
-        for name in ("classifier", "method", "scaling", "scaled", "components")
-        if name in rows and rows[name].notna().any()
-    ]
+    rows = rows[rows["classifier"] != "majority"].dropna(axis=1, how="all")
+    ways = rows.columns.intersection(["classifier", "method", "scaling", "scaled", "components"])
     first = side(results, claim, claim.first, None)
-    table = (
-        rows[rows["classifier"] != "majority"].pivot_table(index=key, columns=ways, values="value").reindex(first.index)
-    )
+    table = rows.pivot_table(index=key, columns=list(ways), values="value").reindex(first.index)
     return first - table[table.mean().idxmax()]
 
 

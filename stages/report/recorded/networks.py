@@ -5,7 +5,6 @@ numbers, and `chart` accuracy against cost. `build_table` compares real touches 
 imprints, by kNN."""
 
 from contextlib import suppress
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from stages.engine.statistics import interval
 from stages.report.drawing import INK, label, place_names, plain_logarithm, plt
 from stages.report.items import Figure, Table
 from stages.report.networks import MODES, PRINTED, STARTS, of_passes, origin
-from stages.report.pareto import NOISE, ON, placed, ticks
+from stages.report.pareto import NOISE, ON, lines, placed, ticks
 from stages.report.results import NotRun, Results, some
 from stages.report.tables import (
     Ranking,
@@ -197,18 +196,14 @@ def _draw(axes: Axes, frame: pd.DataFrame) -> None:
     ranked = placed(frame, "cost", "accuracy", noise=NOISE[CLOCK])
     front = ranked[ranked["on_front"] == ON].sort_values("cost")
     axes.step(front["cost"], front["accuracy"], where="post", color=INK, lw=1, zorder=1)
-    across, up = front[["cost", "accuracy"]].to_numpy().repeat(2, axis=0).T
-    steps = pairwise(zip(across[1:], up[:-1], strict=True))
-    bounded = frame.dropna(subset=["low", "high"])
-    low, high = (zip(bounded["cost"], bounded[end], strict=True) for end in ("low", "high"))
-    axes.plot([bounded["cost"]] * 2, [bounded["low"], bounded["high"]], color="#0072B2", lw=1.2, alpha=0.5)
+    axes.plot([frame["cost"]] * 2, [frame["low"], frame["high"]], color="#0072B2", lw=1.2, alpha=0.5)
     axes.plot(frame["cost"], frame["accuracy"], "o", color="#0072B2", ms=6, mec="white")
     axes.margins(x=0.2)
     axes.grid(True)
     plain_logarithm(axes.xaxis)
     axes.xaxis.set_major_locator(ticks(frame["cost"].max() / frame["cost"].min()))
     names = zip(frame["name"], zip(frame["cost"], frame["accuracy"], strict=True), strict=True)
-    place_names(axes, names, frame[["cost", "accuracy"]].to_numpy(), [*zip(low, high, strict=True), *steps])
+    place_names(axes, names, frame[["cost", "accuracy"]].to_numpy(), lines(frame, front, "cost", "accuracy"))
 
 
 BY = ["training", "simulation", "aligned", "touches", "classifier"]

@@ -7,6 +7,7 @@ fingertip with the published networks; `grasp_series` has grasps by a hand with 
 
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,10 +18,10 @@ from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.results import Results
 from stages.report.tables import (
-    MEANS,
     READINGS,
     Ranking,
     blocks,
+    cell_texts,
     grid,
     grouped,
     number,
@@ -30,6 +31,7 @@ from stages.report.tables import (
     signed,
     with_interval,
     with_means,
+    with_printed_means,
     within,
 )
 
@@ -51,9 +53,7 @@ VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_block
 def table_4_4(results: Results) -> Table:
     """Accuracy by set of classes, selection and classifier, beside the thesis's where it has one."""
     trials = results.rows("recorded", "pressure_images")
-    thesis = results.thesis("table_4_4_imprint_selection_real").set_index("classifier")
-    means = pd.DataFrame({name: thesis.loc[list(several)].mean() for name, several in MEANS.items()})
-    thesis = pd.concat([thesis, means.T])
+    thesis = with_printed_means(results.thesis("table_4_4_imprint_selection_real").set_index("classifier"))
     rows = scaled(trials).rename(columns=COLUMNS)
     scores = _scores(scaled(trials))
     frame = pd.DataFrame(
@@ -181,8 +181,7 @@ def touch_events(results: Results) -> Table:
         key: part["value"].iloc[0] for key, part in grouped(rows[rows["item"].isna()], ["group", "method", "metric"])
     }
     frame = pd.DataFrame([
-        {"group": group, "method": method, **dict(zip(("accuracy", "low", "high"), within(part), strict=True))}
-        | dict(zip(("gain", "gain_low", "gain_high"), interval(scores[group, OURS] - part), strict=True))
+        {"group": group, "method": method} | _beside_ours(part, scores[group, OURS])
         | {metric: overall[group, method, metric] for metric in ("cross_validated", "milliseconds", "training_seconds")}
         | tested[(tested["group"] == group) & (tested["method"] == method)].iloc[0][["bins", "parameter"]].to_dict()
         for (group, method), part in scores.items()
@@ -195,6 +194,18 @@ def touch_events(results: Results) -> Table:
     return Table(frame, text_table, {"chosen": _chosen(frame)})
 
 
+def _beside_ours(hits: pd.Series, ours: pd.Series) -> dict[str, float]:
+    """Accuracy of a method from its hits by item, and what ours gains over it; both with an interval over the items."""
+    names = ("accuracy", "low", "high", "gain", "gain_low", "gain_high")
+    return dict(zip(names, (*within(hits), *interval(ours - hits)), strict=True))
+
+
+def _gain_text(row: Any, places: int) -> str:
+    """What ours gains over the method of a row, in points; a dash for ours."""
+    ends = (100 * value for value in (row.gain, row.gain_low, row.gain_high))
+    return "–" if row.method == OURS else signed(*ends, places=places)
+
+
 def touch_events_conditions(results: Results) -> Table:
     """Accuracy within the training part by time heard, taxels and disturbance."""
     lines = [
@@ -205,22 +216,16 @@ def touch_events_conditions(results: Results) -> Table:
     ]
     frame = pd.DataFrame(lines)
     subset = frame[frame["method"].isin(SHOWN)]
-    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(subset)]
-    names = [
-        f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(subset["group"], subset["method"], strict=True)
-    ]
-    wide = subset.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
-    wide = wide.pivot(index=["condition", "level"], columns="name", values="cell")
-    wide = wide.reindex(frame.set_index(["condition", "level"]).index.unique()).rename_axis(columns=None).reset_index()
-    return Table(frame, wide.assign(condition=wide["condition"].map(CONDITIONS), level=wide["level"].map(number)))
+    head = subset["group"].map(GROUPS) + ": " + subset["method"].map(label) + ", %"
+    names = {"condition": CONDITIONS.get, "level": number}
+    return Table(frame, grid(subset.assign(head=head), ["condition", "level"], "head", names))
 
 
 def _event_line(rows: pd.DataFrame) -> dict[str, str]:
     line = {"method": label(rows["method"].iloc[0])}
     for row in records(rows):
-        ends = [100 * value for value in (row.gain, row.gain_low, row.gain_high)]
         line[GROUPS[row.group]] = with_interval(row.accuracy, row.low, row.high, 100, 2)
-        line[f"{label(OURS)} − it, {row.group}"] = "–" if row.method == OURS else signed(*ends, places=1)
+        line[f"{label(OURS)} − it, {row.group}"] = _gain_text(row, 1)
     for row in records(rows):
         line[f"in training, {row.group}, %"] = percent(row.cross_validated, 1)
     for row in records(rows):
@@ -243,10 +248,8 @@ def _varied(results: Results) -> Iterator[tuple[str, pd.DataFrame]]:
     rows = results.rows("recorded", SET, part="training", metric="accuracy")
     plain, max_cells = rows[rows["disturbance"].isna()], rows["cells"].max()
     yield "heard", plain[plain["cells"] == max_cells].assign(level=lambda part: part["heard"])
-    yield (
-        "cells",
-        plain[plain["heard"] == 1].assign(level=lambda part: part["cells"]).sort_values("level", kind="stable"),
-    )
+    whole = plain[plain["heard"] == 1]
+    yield "cells", whole.assign(level=whole["cells"]).sort_values("level", kind="stable")
     for kind, part in grouped(rows.dropna(subset=["disturbance"]), ["disturbance"]):
         yield str(kind[0]), part.assign(level=part["severity"])
 
@@ -262,19 +265,13 @@ def grasp_series(results: Results) -> Table:
     lines = []
     for method in rows["method"].unique():
         trials, test_hits = scores[method, "training"], scores[method, "test"]
-        line = {"method": method, **dict(zip(("accuracy", "low", "high"), within(trials), strict=True))}
-        gain = dict(zip(("gain", "gain_low", "gain_high"), interval(scores[OURS, "training"] - trials), strict=True))
-        lines.append(line | gain | {"grasps": len(trials), "listed": int(test_hits.sum()), "listed_of": len(test_hits)})
+        line = {"method": method} | _beside_ours(trials, scores[OURS, "training"])
+        lines.append(line | {"grasps": len(trials), "listed": int(test_hits.sum()), "listed_of": len(test_hits)})
     frame = pd.DataFrame(lines)
     text_table = pd.DataFrame({
         "method": frame["method"].map(label),
-        "grasps left out in turn, %": [
-            with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(frame)
-        ],
-        f"{label(OURS)} − it": [
-            "–" if row.method == OURS else signed(100 * row.gain, 100 * row.gain_low, 100 * row.gain_high, places=0)
-            for row in records(frame)
-        ],
+        "grasps left out in turn, %": cell_texts(frame),
+        f"{label(OURS)} − it": [_gain_text(row, 0) for row in records(frame)],
         "published test list": frame["listed"].astype(str) + " of " + frame["listed_of"].astype(str),
     })  # fmt: skip
     counts = rows[rows["part"] == "training"].drop_duplicates("item")["item"].str.split("/").str[0].value_counts()

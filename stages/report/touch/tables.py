@@ -14,7 +14,18 @@ from haptic_glance.know.split import Split
 from stages.report.drawing import label
 from stages.report.items import Table
 from stages.report.results import OWN_FOLDER, SETS_4_2, NotRun, Results, some
-from stages.report.tables import CLASSIFIERS, MEANS, READINGS, Ranking, blocks, grid, grouped, scaled, with_means
+from stages.report.tables import (
+    CLASSIFIERS,
+    MEANS,
+    READINGS,
+    Ranking,
+    blocks,
+    grid,
+    grouped,
+    scaled,
+    with_means,
+    with_printed_means,
+)
 from stages.report.words import shared_notes
 
 from .rows import STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
@@ -38,8 +49,7 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
 
     Then the readings of the scale of the samples, each as a protocol.
     """
-    thesis = results.thesis(printed).set_index("sampling")
-    thesis = thesis.assign(**{name: thesis[list(several)].mean(axis=1) for name, several in MEANS.items()})
+    thesis = with_printed_means(results.thesis(printed).set_index("sampling").T).T
     parts, fifteen_parts = [], []
     for protocol in protocols(results, on_sets=True, group=group, variant=variant):
         parts.append(_cells(protocol, thesis, whole=not parts))
@@ -118,9 +128,7 @@ def recognition(results: Results) -> Table:
 
 def table_4_6(results: Results) -> Table:
     """Recognition by one to five touches, beside the thesis, by protocol."""
-    thesis = results.thesis("table_4_6_number_of_imprints").set_index("classifier")
-    means = {name: thesis.loc[list(several)].mean() for name, several in MEANS.items()}
-    thesis = pd.concat([thesis, pd.DataFrame(means).T]).rename_axis("classifier").reset_index()
+    thesis = with_printed_means(results.thesis("table_4_6_number_of_imprints").set_index("classifier")).reset_index()
     thesis = thesis.melt("classifier", var_name="touches", value_name="thesis")
     variants = [name for name in results.measured(STAGE)["variant"].dropna().unique() if "touches_" in name]
     where = {"group": "six", "variant": variants or ["touches"]}  # sets of single touches alone do not count
