@@ -53,7 +53,7 @@ class Viewpoint:
 
     @cached_property
     def axes(self) -> np.ndarray:
-        """(3, 3) rows right, up, back: the camera's axes in the world; back points from the origin to the camera."""
+        """(3, 3): the camera's axes in the world, in rows: to the right, upwards, and from the origin to the camera."""
         az, el, roll = np.radians([self.azimuth, self.elevation, self.roll])
         back = np.array([np.cos(el) * np.cos(az), np.cos(el) * np.sin(az), np.sin(el)])
         right = np.array([-np.sin(az), np.cos(az), 0.0])

@@ -56,7 +56,7 @@ class Camera:
 
     @cached_property
     def axes(self) -> np.ndarray:
-        """(3, 3) rows right, up, forward: the camera's axes in the world."""
+        """(3, 3): the camera's axes in the world, in rows: to the right, upwards and forward."""
         forward = unit(np.subtract(self.target, self.eye))
         right = unit(np.cross(forward, [0.0, 0.0, 1.0]))
         return np.array([right, np.cross(right, forward), forward])
