@@ -134,6 +134,8 @@ def touch(
     place = KDTree(user_mesh.source.vertices)
     vertices = np.asarray(place.query(np.array([row[2:5] for row in points]))[1])  # repairs may renumber them
     is_touchable = touchable(user_mesh.mesh, vertices)
+    if not is_touchable.any():
+        raise ValueError("no salient point has a normal, so nothing can be touched: does the mesh have an area?")
     places = user_mesh.places([str(vertex) for vertex in vertices[is_touchable]])
     axes = sensor_axes(places.normals)
     raw = distances_at(user_mesh.surface, places.positions, axes, CELLS, PITCH)

@@ -25,7 +25,7 @@ IDS = 5125  # the kind of the vertices of faces
 KINDS_OF_NUMBERS = INTEGERS | {IDS: "<u4", FLOAT: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 TRIANGLES, FAN = 4, 6  # modes of primitives
-GLOSS = "KHR_materials_pbrSpecularGlossiness"
+GLOSS, TRANSFORM = "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform"
 PLACE = ("matrix", "translation", "rotation", "scale")  # of a node
 
 
@@ -74,8 +74,9 @@ def ready(content: bytes) -> bytes:
     """The bytes of a GLB in the form that the parser reads (glTF 2.0, sections 3.5, 3.6.2.2 and 3.7).
 
     Colours, which a glTF states linear, become those of sRGB, as pictures hold them, before the parser makes bytes of
-    them. Normalised integers and texture coordinates become floats, and fans single triangles. A mesh with a skin
-    stands where its skin puts it in the pose of the file. A file without a scene shows all nodes. A malformed file
+    them. Texture coordinates are where the pictures of a material want them. Normalised integers and texture
+    coordinates become floats, and fans single triangles. A mesh with a skin stands where its skin puts it in the pose
+    of the file. A file without a scene shows all nodes. A malformed file
     stays as it is: the parser refuses it.
     """
     try:
@@ -83,6 +84,7 @@ def ready(content: bytes) -> bytes:
         tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
         before = json.dumps(tree)
         _as_srgb(tree, binary, content)
+        _place_pictures(tree, binary, content)
         _as_floats(tree, binary, content)
         _as_triangles(tree, binary, content)
         _place_skins(tree, content)
@@ -103,19 +105,62 @@ def _as_srgb(tree, binary, content):
         number = primitive["attributes"].get("COLOR_0")
         if number is None or "bufferView" not in tree["accessors"][number]:  # none, or all are zero
             continue
-        if number not in made:  # a new accessor: others may use the old one for something else
+        if number not in made:  # others may use the old accessor for something else
             values = _colours(tree, tree["accessors"][number], content)
             values[:, :3] = encoded(values[:, :3])
-            kind = {"type": f"VEC{values.shape[1]}", "componentType": FLOAT, "count": len(values)}
-            made[number] = len(tree["accessors"])
-            view = _added(tree, binary, values.astype("<f4"))
-            tree["accessors"].append(kind | {"bufferView": view, "byteOffset": 0})
+            made[number] = _new_accessor(tree, binary, values)
         primitive["attributes"]["COLOR_0"] = made[number]
     for material in tree.get("materials", []):
         _encode_factor(material.get("pbrMetallicRoughness", {}), "baseColorFactor")
         gloss = material.get("extensions", {}).get(GLOSS, {})
         if "diffuseTexture" not in gloss:  # the parser itself multiplies a picture
             _encode_factor(gloss, "diffuseFactor")
+
+
+def _new_accessor(tree, binary, values):
+    """The number of a new accessor of floats (n, d)."""
+    kind = {"type": f"VEC{values.shape[1]}", "componentType": FLOAT, "count": len(values), "byteOffset": 0}
+    tree["accessors"].append(kind | {"bufferView": _added(tree, binary, values.astype("<f4"))})
+    return len(tree["accessors"]) - 1
+
+
+def _place_pictures(tree, binary, content):
+    """Makes the coordinates that all pictures of a material share those of the first set, moved and scaled.
+
+    The parser reads the first set alone, and no KHR_texture_transform. Pictures of a material that differ, and those
+    that are turned, stay as they are: `materials.not_read` names them.
+    """
+    primitives = [primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]]
+    for number, material in enumerate(tree.get("materials", [])):
+        properties = material | material.get("pbrMetallicRoughness", {})
+        uses = [use for use in properties.values() if isinstance(use, dict) and "index" in use]
+        shared = {_coordinates_of(use) for use in uses}
+        if len(shared) != 1 or None in shared or shared == {(0, (0, 0), (1, 1))}:
+            continue
+        place, offset, scale = shared.pop()
+        own, name = f"TEXCOORD_{place}", "TEXCOORD_0"
+        users = [primitive["attributes"] for primitive in primitives if primitive.get("material") == number]
+        if not all(own in attributes for attributes in users):
+            continue
+        for attributes in users:
+            entry = tree["accessors"][attributes.pop(own)]
+            values = numbers_of(tree, entry, content)
+            values = values / np.float64(np.iinfo(values.dtype).max if entry.get("normalized") else 1)
+            if name in attributes:  # another set, which no picture uses
+                attributes[own] = attributes[name]
+            attributes[name] = _new_accessor(tree, binary, values * scale + offset)
+        for use in uses:
+            use.pop("texCoord", None)
+            use.get("extensions", {}).pop(TRANSFORM, None)
+
+
+def _coordinates_of(use):
+    """(set of coordinates, offset, scale) of a picture in a material; None of one that is turned."""
+    transform = use.get("extensions", {}).get(TRANSFORM, {})
+    if transform.get("rotation", 0) != 0:
+        return None
+    place = transform.get("texCoord", use.get("texCoord", 0))
+    return place, tuple(transform.get("offset", (0, 0))), tuple(transform.get("scale", (1, 1)))
 
 
 def _encode_factor(properties, name):

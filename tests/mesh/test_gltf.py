@@ -328,6 +328,42 @@ def test_points_and_lines_beside_the_surface_are_named(write):
     assert not_read(as_glb(path)) == ["points", "lines"]
 
 
+@pytest.mark.parametrize("second_set", [False, True])
+def test_a_picture_stands_where_its_transform_puts_it(glb, second_set):
+    """KHR_texture_transform, as compressors of GLB files write it, on the first set of coordinates and on another."""
+    plain = parse(glb, ".glb").texture
+
+    def move(tree, _):
+        use = tree["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+        (attributes,) = (
+            primitive["attributes"]
+            for mesh in tree["meshes"]
+            for primitive in mesh["primitives"]
+            if primitive["material"] == 0 and "TEXCOORD_0" in primitive["attributes"]
+        )
+        use["extensions"] = {"KHR_texture_transform": {"scale": [0.5, 0.25], "offset": [0.25, 0.125]}}
+        tree["extensionsRequired"] = ["KHR_texture_transform"]
+        if second_set:
+            use["texCoord"] = 1
+            attributes["TEXCOORD_1"] = attributes.pop("TEXCOORD_0")
+
+    content = changed(glb, move)
+    moved = parse(content, ".glb").texture
+    of_ball = np.array([image.shape == (8, 8, 4) for image in plain.images])[plain.image]
+    expected = plain.uv[of_ball].copy()
+    expected[..., 0] = 0.5 * expected[..., 0] + 0.25
+    expected[..., 1] = 1 - (0.25 * (1 - expected[..., 1]) + 0.125)  # v runs downwards in a glTF
+    assert np.allclose(moved.uv[of_ball], expected, atol=1e-6) and not_read(ready(content)) == []
+
+
+def test_a_turned_picture_is_named(glb):
+    def turn(tree, _):
+        use = tree["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+        use["extensions"] = {"KHR_texture_transform": {"rotation": 0.5}}
+
+    assert not_read(ready(changed(glb, turn))) == ["baseColorTexture.KHR_texture_transform"]
+
+
 def test_further_scenes_and_extras_are_named(glb):
     def add(tree, _):
         tree["scenes"].append({"nodes": [0]})

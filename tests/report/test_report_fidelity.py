@@ -49,6 +49,7 @@ def test_each_row_names_code_sets_and_twins_that_exist():
     known = cache(defined)
     for row in ROWS:
         path, _, name = row.code.partition(":")
+        assert not path or (ROOT / path).is_file(), row.code
         assert not name or name in known(ROOT / path), row.code
         assert not row.sets or (ROOT / "conf/data" / f"{row.sets}.yaml").is_file(), row.sets
         assert row.twin in ("", "claims", *TWINS) and (row.twin or row.run == "illustration"), row.thesis

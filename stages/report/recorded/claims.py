@@ -24,6 +24,8 @@ OF_SETS = {
     **{("group", name): words for name, words in CLASSES.items()},
     **{("method", name): words for name, words in SELECTIONS.items()},
     ("method", "selected"): "selection before the split, as in the thesis,",
+    ("scaling", "beforehand"): "z-transform of all data beforehand", ("scaling", "training"): "",
+    ("scaling", "min_max"): "all data from 0 to 1",
 }  # fmt: skip
 OF_TEN = {
     ("group", "all"): "ten classes",
@@ -173,16 +175,16 @@ def claims(
 SHARED = "Filters learned by sight help beyond their architecture:"
 BEYOND: dict[str, Any] = {"section": "ours", "printed": 1}
 INITIAL = reading("random side with its initial statistics", second={"weights": "random_initial"})
-SIMULATED = "frozen_coarse_by_chance_random"  # the sentence on the thesis's sensor, on simulated imprints of its size
+OF_SIMULATION = "frozen_coarse_by_chance_random"  # the same sentence, on simulated imprints of the thesis's size
 BETTER = "Frozen visual filters tell recorded touches apart better than guessing."
 NETWORKS = [
     *claims("frozen_over_guessing", BETTER, ACCURACY, GUESSING, [name for name in SETTINGS if name != SLIP]),
     *claims("frozen_over_guessing", BETTER, ACCURACY, {"metric": "majority"}, [SLIP], statistic="over_commonest"),
     *claims("frozen_by_guessing", "On a pressure array frozen visual filters are hardly better than guessing.",
-            GUESSING, ACCURACY, ARRAY, margin=GUESS, of=SIMULATED,
+            GUESSING, ACCURACY, ARRAY, margin=GUESS, of=OF_SIMULATION,
             note="the thesis's own largest lead; 28 x 50 cells, the thesis has 16 x 16"),
     *claims("instant_by_guessing", "One reading of 7 x 3 cells is hardly better than guessing what is grasped.",
-            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM), of=SIMULATED,
+            GUESSING, ACCURACY, HAND, margin=GUESS, shared=shared_by(Split.RANDOM), of=OF_SIMULATION,
             note="another hand than BiGS's; at random, other fingers of a grasp are trained on"),
     *claims("series_over_instant", "A series of readings tells grasped objects apart better than one of 7 x 3 cells.",
             {"data": "schunk"}, {"data": "schunk_coarse"}, HAND, shared=shared_by(Split.RANDOM),
