@@ -134,10 +134,10 @@ def _place_pictures(tree, binary, content):
     for number, material in enumerate(tree.get("materials", [])):
         properties = material | material.get("pbrMetallicRoughness", {})
         uses = [use for use in properties.values() if isinstance(use, dict) and "index" in use]
-        shared = {_coordinates_of(use) for use in uses}
-        if len(shared) != 1 or None in shared or shared == {(0, (0, 0), (1, 1))}:
+        shared = [_coordinates_of(use) for use in uses] or [None]
+        if shared[0] is None or shared[0] == (0, (0, 0), (1, 1)) or shared.count(shared[0]) < len(shared):
             continue
-        place, offset, scale = shared.pop()
+        place, offset, scale = shared[0]
         own, name = f"TEXCOORD_{place}", "TEXCOORD_0"
         users = [primitive["attributes"] for primitive in primitives if primitive.get("material") == number]
         if not all(own in attributes for attributes in users):
