@@ -101,7 +101,7 @@ def test_claims_follow_the_measurements(measure):
     assert judged.loc["more_touches", "effect"] == pytest.approx(19, abs=1)  # over one with its position
     itti = judged.loc["equal_over_itti"]
     assert itti["effect"] == pytest.approx(10, abs=1)
-    assert "scaling beforehand, the first 15 imprints" in itti["tested_on"]
+    assert "z-transform of all data beforehand, the first 15 imprints" in itti["tested_on"]
     assert "; 60 imprints of each object: contradicted -" in itti["readings"]
 
 
