@@ -1,4 +1,4 @@
-"""What the command lines share: the parser, and the check of an output folder."""
+"""The parser of all commands, and the check of an output folder."""
 
 import argparse
 from pathlib import Path

@@ -203,7 +203,8 @@ def check_vertices(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
 def mean_vertex_normals(mesh: Mesh) -> np.ndarray:
     """(n, 3) means of the unit normals of the faces around each vertex; zero at a vertex in no face.
 
-    Vertices at one place have one normal: a mesh may be split there for its colours, or be a soup of triangles.
+    Vertices at one place share their faces: a mesh may be split there for its colours, or be a soup of triangles. A
+    vertex that looks the other way keeps its own faces, as on the two sides of a sheet.
     """
     solid = mesh.face_areas > 0
     total = corner_sum(mesh, np.repeat(mesh.face_normals[:, None], 3, axis=1))
@@ -213,8 +214,9 @@ def mean_vertex_normals(mesh: Mesh) -> np.ndarray:
     places = np.sort(x + np.sqrt(2) * y + np.sqrt(3) * z)  # equal at one place: a quick test for meshes without any
     if (places[1:] == places[:-1]).any():
         _, ids = merge_equal_rows(mesh.vertices[used])
-        total[used] = np.stack([np.bincount(ids, column) for column in total[used].T], axis=1)[ids]
-        count[used] = np.bincount(ids, count[used])[ids]
+        shared = np.stack([np.bincount(ids, column) for column in total[used].T], axis=1)[ids]
+        agrees = np.einsum("ij,ij->i", shared, total[used]) > CANCELLED
+        total[used[agrees]], count[used[agrees]] = shared[agrees], np.bincount(ids, count[used])[ids][agrees]
     return total / np.maximum(count, 1)[:, None]
 
 

@@ -1,4 +1,4 @@
-"""What the fidelity table states of agreements with the thesis: its forms, and whether a measured value has it."""
+"""The agreements that the fidelity table states: their forms, and the comparison with a measured value."""
 
 import re
 

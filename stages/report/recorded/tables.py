@@ -201,7 +201,7 @@ def _beside_ours(hits: pd.Series, ours: pd.Series) -> dict[str, float]:
 
 
 def _gain_text(row: Any, places: int) -> str:
-    """What ours gains over the method of a row, in points; a dash for ours."""
+    """The gain of our method over the method of a row, in points; a dash for our own row."""
     ends = (100 * value for value in (row.gain, row.gain_low, row.gain_high))
     return "–" if row.method == OURS else signed(*ends, places=places)
 
