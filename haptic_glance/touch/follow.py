@@ -53,7 +53,7 @@ def walk(cutter: MeshCutter, plane_points: np.ndarray, frames: int, width: float
     ahead = np.roll(curve.points, -1, axis=0) - curve.points
     tangents = unit(ahead[segment])
     positions = curve.points[segment] + np.maximum(arc_lengths - knots[segment], 0)[:, None] * tangents
-    face_normals = cutter.mesh.face_normals[curve.faces]
+    face_normals = cutter.normals(curve, plane_points[0], normal)
     below = face_normals[np.minimum(segment, len(face_normals) - 1)]
     normals = _averaged(face_normals, curve.steps, curve.closed, arc_lengths, width, below)
     return ContourPath(positions, _axes(normals, tangents, normal), len(curves), curve.length, curve.length / total)
@@ -212,13 +212,13 @@ def follow(
     plane points (the first after the centre). The direction is counter-clockwise about the plane's normal, (second -
     centre) x (third - centre), so towards the third by the shorter way. A place on a contour is not a vertex: the
     array's normal is the mean of the unit normals of the faces that the contour crosses within one pitch before and
-    behind, weighted by the length crossed, as T4.3.1 averages the faces around a vertex. Interpolation between the
-    averages at the vertices would tilt the array on the large faces of flat sides, in their middle by tens of degrees.
+    behind, weighted by the length crossed (along an edge in the plane, of the mean of its faces), as T4.3.1 averages
+    the faces around a vertex. Interpolation between the averages at the vertices would tilt the array on the large
+    faces of flat sides, in their middle by tens of degrees.
 
     Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
     keeps its heading. So a rotation of the object does not change a sequence, if the pitch stays the same (a share of
-    the diameter changes with the bounding box, a length such as "1mm" does not). Where the plane runs along an edge,
-    rounding decides on which side the contour lies, and so whose normals count. The frames do not spin where the
+    the diameter changes with the bounding box, a length such as "1mm" does not). The frames do not spin where the
     contour passes a pole, as they would with `sensor_axes`. The thesis does not say this either. The array is smaller
     at saddles, with the same number of cells (T4.4.3, `adaptive_distances`).
 

@@ -12,6 +12,7 @@ from haptic_glance.mesh.nearest import closest
 
 from .surface import CANCELLED, Surface, as_surface, mean_vertex_normals
 
+IN_PLANE = 1e-9  # of the mesh's diagonal: an edge with both ends within this distance lies in the plane
 MAX_CRACK = 1e-3  # of the mesh's diagonal: a finger does not notice a gap of a tenth of a sensel
 
 
@@ -70,8 +71,7 @@ class MeshCutter:
         continue between faces that follow each other in the mesh. Ends that are each other's nearest, across a gap of
         at most a thousandth of the diagonal, are joined.
         """
-        origin, direction = _plane(point, normal)
-        heights = (self.positions - origin) @ direction
+        heights = self._heights(point, normal)
         above = (heights >= 0)[self.corners]
         crossed = np.flatnonzero((above != above[:, :1]).any(axis=1))
         above = above[crossed]
@@ -98,6 +98,41 @@ class MeshCutter:
             for ids, closed in _trace_curves(_close_cracks(_partners(nodes), points, MAX_CRACK * self.mesh.diagonal))
         ]
         return sorted(curves, key=lambda curve: -curve.length)
+
+    def _heights(self, point, normal):
+        """(n,) of the positions above the plane, exactly 0 at both ends of an edge that lies in it but for rounding."""
+        origin, direction = _plane(point, normal)
+        heights = (self.positions - origin) @ direction
+        near = (np.abs(heights) < IN_PLANE * self.mesh.diagonal)[self.corners]
+        heights[self.corners[near & (near.sum(axis=1) >= 2)[:, None]]] = 0
+        return heights
+
+    def normals(self, curve: SectionCurve, point: ArrayLike, normal: ArrayLike) -> np.ndarray:
+        """(k, 3) unit normals at the segments of a curve of the plane: of the segment's face.
+
+        Where the curve runs along an edge, it is the mean of the normals of all faces at the edge: the curve could as
+        well be in any of them.
+        """
+        normals, corners = self.mesh.face_normals[curve.faces], self.corners[curve.faces]
+        level = self._heights(point, normal)[corners] == 0
+        along = np.flatnonzero(level.sum(axis=1) == 2)
+        if len(along) == 0:
+            return normals
+        own, back = np.unique(self._edges(corners[along][level[along]].reshape(-1, 2)), return_inverse=True)
+        edges = self._edges(self.corners[:, [[0, 1], [1, 2], [2, 0]]])
+        total = np.zeros((len(own), 3))
+        for side in edges.T:
+            slot = np.searchsorted(own, side).clip(max=len(own) - 1)
+            at = np.flatnonzero(own[slot] == side)
+            np.add.at(total, slot[at], self.mesh.face_normals[at])
+        total = total[back.reshape(-1)]
+        cancelled = np.linalg.norm(total, axis=1, keepdims=True) <= CANCELLED
+        normals[along] = np.where(cancelled, normals[along], unit(total))
+        return normals
+
+    def _edges(self, ends):
+        """(...) one number per edge of the positions (..., 2)."""
+        return ends.min(axis=-1) * len(self.positions) + ends.max(axis=-1)
 
 
 def _plane(point, normal):

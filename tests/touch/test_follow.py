@@ -175,3 +175,17 @@ def test_broken_meshes_give_finite_sequences_or_a_reason():
                 parts = (sequence.images, sequence.normals, sequence.positions, sequence.pitches)
                 assert all(np.isfinite(part).all() for part in parts)
                 assert np.allclose(np.linalg.norm(sequence.normals, axis=1), 1)
+
+
+@pytest.mark.parametrize("shape", [
+    trimesh.creation.torus(1, 0.35), trimesh.creation.box((1, 0.7, 0.5)).subdivide(),
+])  # fmt: skip
+def test_a_contour_along_edges_turns_with_the_object(shape):
+    plane = np.array([(0, 0, 0), (1.35, 0.1, 0), (0.1, 1.35, 0)])
+    first = follow(mesh_of(shape), plane, cells=(8, 8))
+    assert abs(first.normals[:, 2]).max() < 1e-6  # half of the shape lies on either side
+    for state in range(4):
+        turn = Rotation.random(random_state=state).as_matrix()
+        again = follow(Mesh(shape.vertices @ turn.T, shape.faces), plane @ turn.T, cells=(8, 8))
+        assert first.normals @ turn.T == pytest.approx(again.normals, abs=1e-6)
+        assert first.images == pytest.approx(again.images, abs=1e-4)
