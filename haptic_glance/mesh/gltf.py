@@ -71,14 +71,16 @@ def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -
 
 
 def ready(content: bytes) -> bytes:
-    """The bytes of a GLB in the form that the parser reads (glTF 2.0, sections 3.5, 3.6.2.2 and 3.7).
+    """The bytes of a GLB in the form that the parser reads (glTF 2.0, sections 3.5, 3.6.2 and 3.7).
 
-    Colours, which a glTF states linear, become those of sRGB, as pictures hold them, before the parser makes bytes of
-    them. Texture coordinates are where the pictures of a material want them. Normalised integers and texture
-    coordinates become floats, and fans single triangles. A mesh with a skin stands where its skin puts it in the pose
-    of the file. A file without a scene shows all nodes. A malformed file
-    stays as it is: the parser refuses it.
+    Meshes have the shape of their morph weights, and sparse accessors are full. Colours, which a glTF states linear,
+    become those of sRGB, as pictures hold them, before the parser makes bytes of them. Texture coordinates are where
+    the pictures of a material want them. Normalised integers and texture coordinates become floats, and fans single
+    triangles. A mesh with a skin stands where its skin puts it in the pose of the file. A file without a scene shows
+    all nodes. A malformed file stays as it is: the parser refuses it. Raises MeshError for malformed morph targets and
+    sparse accessors, which the parser would read as zeros.
     """
+    content = _morphed(content) if b'"sparse"' in content or b'"weights"' in content else content
     try:
         start = 20 + int.from_bytes(content[12:16], "little")
         tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
@@ -96,6 +98,61 @@ def ready(content: bytes) -> bytes:
         return joined(tree, binary)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
         return content
+
+
+def _morphed(content):
+    """The bytes of a GLB with full accessors, whose nodes show the shape of their morph weights (section 3.7.2.2)."""
+    try:
+        start = 20 + int.from_bytes(content[12:16], "little")
+        tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+        _show_weights(tree, binary, content)
+        _fill(tree, binary, content)
+        tree["buffers"][0]["byteLength"] = len(binary)
+        return joined(tree, binary)
+    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+        where = "its morph targets or sparse accessors"
+        raise MeshError(f"unreadable as GLB ({type(error).__name__} in {where})") from None
+
+
+def _show_weights(tree, binary, content):
+    """Gives each node with morph weights a mesh whose positions are moved towards its targets."""
+    meshes, shapes = tree.get("meshes", []), {}
+    for node in (node for node in tree.get("nodes", []) if "mesh" in node):
+        mesh = meshes[node["mesh"]]
+        weights = tuple(node.get("weights", mesh.get("weights", ())))
+        key = node["mesh"], weights  # two nodes can show one mesh with different weights
+        if any(weights) and key not in shapes:
+            shapes[key] = len(meshes)
+            parts = [_moved(tree, binary, content, part, weights) for part in mesh["primitives"]]
+            meshes.append(mesh | {"primitives": parts})
+        node["mesh"] = shapes.get(key, node["mesh"])
+
+
+def _fill(tree, binary, content):
+    """Makes the sparse accessors of attributes full ones; those of morph targets are read no more."""
+    attributes = [primitive["attributes"] for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]]
+    for number in sorted({number for names in attributes for number in names.values()}):
+        entry = tree["accessors"][number]
+        if "sparse" in entry:
+            tree["accessors"][number] = tree["accessors"][_new_accessor(tree, binary, _floats(tree, entry, content))]
+    for entry in tree.get("accessors", []):
+        entry.pop("sparse", None)
+
+
+def _moved(tree, binary, content, primitive, weights):
+    """A primitive whose positions are moved towards its targets."""
+    attributes = primitive["attributes"]
+    positions = _floats(tree, tree["accessors"][attributes["POSITION"]], content)
+    for target, weight in zip(primitive.get("targets", []), weights, strict=False):
+        if weight and "POSITION" in target:
+            positions = positions + weight * _floats(tree, tree["accessors"][target["POSITION"]], content)
+    return primitive | {"attributes": attributes | {"POSITION": _new_accessor(tree, binary, positions)}}
+
+
+def _floats(tree, entry, content):
+    """(n, d): the numbers of an accessor, integers that are normalised as -1..1."""
+    values = numbers_of(tree, entry, content)
+    return np.maximum(values / np.iinfo(values.dtype).max, -1) if entry.get("normalized") else values.astype(float)
 
 
 def _as_srgb(tree, binary, content):
@@ -143,9 +200,7 @@ def _place_pictures(tree, binary, content):
         if not all(own in attributes for attributes in users):
             continue
         for attributes in users:
-            entry = tree["accessors"][attributes.pop(own)]
-            values = numbers_of(tree, entry, content)
-            values = values / np.float64(np.iinfo(values.dtype).max if entry.get("normalized") else 1)
+            values = _floats(tree, tree["accessors"][attributes.pop(own)], content)
             if name in attributes:  # another set, which no picture uses
                 attributes[own] = attributes[name]
             attributes[name] = _new_accessor(tree, binary, values * scale + offset)
@@ -202,9 +257,8 @@ def _as_floats(tree, binary, content):
         is_plain = entry["componentType"] not in INTEGERS or "bufferView" not in entry
         if is_plain or not (entry.get("normalized") or entry["type"] == "VEC2"):
             continue
-        values = numbers_of(tree, entry, content)
-        if entry.pop("normalized", False):
-            values = np.maximum(values / np.iinfo(values.dtype).max, -1)
+        values = _floats(tree, entry, content)
+        entry.pop("normalized", None)
         entry |= {"bufferView": _added(tree, binary, values.astype("<f4")), "byteOffset": 0, "componentType": FLOAT}
 
 
@@ -279,10 +333,19 @@ def _roots(tree):
 def numbers_of(tree: dict[str, Any], accessor: dict[str, Any], content: bytes) -> np.ndarray:
     """(n, width): the numbers of an accessor of a GLB with this tree, as the bytes store them.
 
-    Raises LookupError, TypeError or ValueError for a malformed one.
+    A sparse one is a full one, or zeros, with some other numbers (section 3.6.2.3). Raises LookupError, TypeError or
+    ValueError for a malformed one.
     """
-    view, kind = tree["bufferViews"][accessor["bufferView"]], np.dtype(KINDS_OF_NUMBERS[accessor["componentType"]])
-    width = WIDTHS[accessor["type"]]
+    kind, width = np.dtype(KINDS_OF_NUMBERS[accessor["componentType"]]), WIDTHS[accessor["type"]]
+    if "sparse" in accessor:
+        full, sparse = {key: value for key, value in accessor.items() if key != "sparse"}, accessor["sparse"]
+        is_zero = "bufferView" not in full
+        values = np.zeros((full["count"], width), kind) if is_zero else numbers_of(tree, full, content).copy()
+        ids = sparse["indices"] | {"type": "SCALAR", "count": sparse["count"]}
+        others = {"type": full["type"], "componentType": full["componentType"], "count": sparse["count"]}
+        values[numbers_of(tree, ids, content)[:, 0]] = numbers_of(tree, sparse["values"] | others, content)
+        return values
+    view = tree["bufferViews"][accessor["bufferView"]]
     strides = view.get("byteStride", width * kind.itemsize), kind.itemsize
     first = 28 + int.from_bytes(content[12:16], "little") + view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
     return np.ndarray((accessor["count"], width), kind, content, first, strides)

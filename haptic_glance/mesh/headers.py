@@ -47,8 +47,6 @@ def _glb(content):
         raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
     if stated_count > len(content):
         raise MeshError(f"truncated: its header states {stated_count} numbers, the file has {len(content)} bytes")
-    if any("sparse" in accessor for accessor in tree.get("accessors", [])):
-        raise MeshError("has sparse accessors, which are not read: export it without morph targets, or as .ply")
     if primitives > MOST_PRIMITIVES:
         raise MeshError(
             f"{primitives:,} primitives are more than {MOST_PRIMITIVES:,}: join its parts in the program that wrote it"

@@ -372,17 +372,63 @@ def test_further_scenes_and_extras_are_named(glb):
     assert not_read(changed(glb, add)) == ["further scenes", "extras"] and not_read(glb) == []
 
 
-def test_morph_targets_and_lights_are_named_and_sparse_accessors_refused(write):
+def test_morph_targets_and_lights_are_named(write):
     path = write(embedded)
     tree = json.loads(path.read_text())
     tree["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
     tree["extensionsUsed"] = ["KHR_lights_punctual"]
     path.write_text(json.dumps(tree))
     assert not_read(as_glb(path)) == ["KHR_lights_punctual", "morph targets"]
-    tree["accessors"][0]["sparse"] = {"count": 1}
-    path.write_text(json.dumps(tree))
-    with pytest.raises(MeshError, match="sparse accessors, which are not read"):
-        load(path)
+
+
+def test_a_node_shows_the_shape_of_its_morph_weights_in_sparse_accessors():
+    """As Blender writes shape keys: a target lists only the vertices that move."""
+
+    def add_targets(tree, begin):
+        (primitive,) = tree["meshes"][0]["primitives"]
+        tree["bufferViews"] += [{"buffer": 0, "byteOffset": begin, "byteLength": 4},
+                                {"buffer": 0, "byteOffset": begin + 4, "byteLength": 24}]  # fmt: skip
+        ids, values = len(tree["bufferViews"]) - 2, len(tree["bufferViews"]) - 1
+        sparse = {"count": 2, "indices": {"bufferView": ids, "componentType": 5123}, "values": {"bufferView": values}}
+        tree["accessors"].append({"type": "VEC3", "componentType": 5126, "count": 3, "sparse": sparse})
+        primitive["targets"] = [{"POSITION": len(tree["accessors"]) - 1}]
+        tree["meshes"][0]["weights"] = [0.5]
+        node = next(node for node in tree["nodes"] if "mesh" in node)
+        tree["nodes"].append({"mesh": 0, "weights": [2.0], "translation": [10, 0, 0]})
+        tree["nodes"].append({"mesh": 0, "weights": [0.0], "translation": [20, 0, 0]})
+        tree["scenes"] = [{"nodes": [tree["nodes"].index(node), len(tree["nodes"]) - 2, len(tree["nodes"]) - 1]}]
+        return np.array([1, 2], "<u2").tobytes() + np.array([[0, 0, 1], [0, 0, 2]], "<f4").tobytes()
+
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    content = trimesh.Scene(trimesh.Trimesh(corners, [[0, 1, 2]], process=False)).export(file_type="glb")
+    mesh = parse(changed(content, add_targets), ".glb")
+    expected = [corners + [place, 0, 0] + weight * np.array([[0, 0, 0], [0, 0, 1], [0, 0, 2]])
+                for place, weight in ((0, 0.5), (10, 2), (20, 0))]  # fmt: skip
+    assert sorted(mesh.vertices.tolist()) == sorted(np.concatenate(expected).tolist())
+
+    def damage(tree, begin):
+        end = add_targets(tree, begin)
+        tree["accessors"][-1]["sparse"]["indices"]["componentType"] = 99
+        return end
+
+    with pytest.raises(MeshError, match="KeyError in its morph targets or sparse accessors"):
+        parse(changed(content, damage), ".glb")
+
+
+def test_a_sparse_accessor_of_an_attribute_is_full():
+    def make_sparse(tree, begin):
+        place = tree["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+        tree["bufferViews"] += [{"buffer": 0, "byteOffset": begin, "byteLength": 4},
+                                {"buffer": 0, "byteOffset": begin + 4, "byteLength": 12}]  # fmt: skip
+        count = len(tree["bufferViews"])
+        ids = {"bufferView": count - 2, "componentType": 5121}
+        tree["accessors"][place]["sparse"] = {"count": 1, "indices": ids, "values": {"bufferView": count - 1}}
+        return bytes([1, 0, 0, 0]) + np.array([[5, 0, 0]], "<f4").tobytes()
+
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    content = trimesh.Scene(trimesh.Trimesh(corners, [[0, 1, 2]], process=False)).export(file_type="glb")
+    mesh = parse(changed(content, make_sparse), ".glb")
+    assert mesh.vertices.tolist() == [[0, 0, 0], [5, 0, 0], [0, 1, 0]]
 
 
 @pytest.mark.parametrize(
