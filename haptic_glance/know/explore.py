@@ -87,12 +87,14 @@ def by_gain(state: State) -> np.ndarray:
     1956). The robot knows the places, but not the object. If it were object c, the touch would be like one of the
     training touches of c near the place.
     """
-    log_after = state.calibration.log_belief(
-        state.log_likelihoods[:, None, None, None] + state.predicted, state.touches + 1
-    )
-    entropy = -np.einsum("eqcoj,eqcoj->eqco", np.exp(log_after), log_after)
     belief = np.exp(state.calibration.log_belief(state.log_likelihoods, max(state.touches, 1)))
-    return -np.einsum("eqco,eqco,ec->eq", entropy, state.probabilities, belief)
+    scores = np.empty(state.predicted.shape[:2])
+    for place in range(scores.shape[1]):  # all places at once would need the memory of `predicted` four times more
+        likelihoods = state.log_likelihoods[:, None, None] + state.predicted[:, place]
+        log_after = state.calibration.log_belief(likelihoods, state.touches + 1)
+        entropy = -np.einsum("ecoj,ecoj->eco", np.exp(log_after), log_after)
+        scores[:, place] = -np.einsum("eco,eco,ec->e", entropy, state.probabilities[:, place], belief)
+    return scores
 
 
 STRATEGIES = {"saliency": by_saliency, "random": at_random, "gain": by_gain}
