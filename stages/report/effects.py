@@ -224,9 +224,7 @@ def _mostly_valid(rows: pd.DataFrame, column: str, reasons: pd.Series) -> pd.Dat
     return rows[(reasons == "") & (refused <= TOO_MANY)]
 
 
-def _picked(
-    parts: Sequence[pd.DataFrame], claim: Claim, column: str, pick: Pick, other: Side | float | None
-) -> object:
+def _picked(parts: Sequence[pd.DataFrame], claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
     """The value that a Pick chooses by its mean in the rows, or by the first part's minus the second's."""
     rival = other.get(column) if isinstance(other, dict) else None
     out, tables = [*pick.but, *listed(rival or ())], []
