@@ -176,11 +176,14 @@ def _select(
     for column, value in patterns.items():
         rows = _some(rows[[fnmatch(str(name), value) for name in rows[column]]], claim, f"{column} like {value}")
     for column, value in picks.items():
-        valid = _mostly_valid(rows, column, reasons_of(results, claim, rows))
+        parts = [rows]
+        if claim.contrast:  # one method in both parts, by what the contrast is of
+            parts = [results.measured(claim.stage, dataset, **{**plain, **part}) for part in claim.contrast]
+        valid = [_mostly_valid(part, column, reasons_of(results, claim, part)) for part in parts]
         try:
             choice = _picked(valid, claim, column, value, other)
         except NotRun:
-            choice = _picked(rows, claim, column, value, other)
+            choice = _picked(parts, claim, column, value, other)
         rows = rows[rows[column] == choice]
     keys = [*claim.over, *claim.within]
     for column in keys:
@@ -221,14 +224,19 @@ def _mostly_valid(rows: pd.DataFrame, column: str, reasons: pd.Series) -> pd.Dat
     return rows[(reasons == "") & (refused <= TOO_MANY)]
 
 
-def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
+def _picked(parts: Sequence[pd.DataFrame], claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
+    """The value that a Pick chooses by its mean in the rows, or by the first part's minus the second's."""
     rival = other.get(column) if isinstance(other, dict) else None
-    out = [*pick.but, *listed(rival or ())]
-    _some(rows, claim, column)
-    rows = rows[[not any(fnmatch(str(name), str(pattern)) for pattern in out) for name in rows[column]]]
-    rows = rows[rows[column].isin(pick.names)] if pick.names else rows
-    _some(rows, claim, f"other {column} than {either(out)}" if out else column)
-    table = rows.pivot_table(index=[*claim.over, *claim.within], columns=column, values="value", sort=False)
+    out, tables = [*pick.but, *listed(rival or ())], []
+    for rows in parts:
+        _some(rows, claim, column)
+        rows = rows[[not any(fnmatch(str(name), str(pattern)) for pattern in out) for name in rows[column]]]
+        rows = rows[rows[column].isin(pick.names)] if pick.names else rows
+        _some(rows, claim, f"other {column} than {either(out)}" if out else column)
+        index = [*claim.over, *claim.within]
+        tables.append(rows.pivot_table(index=index, columns=column, values="value", sort=False))
+    table = tables[0] if len(tables) == 1 else (tables[0] - tables[1]).dropna(axis=1, how="all")
+    _some(table, claim, f"{column} in both parts")
     averages = (table if table.dropna().empty else table.dropna()).mean()  # over the pairs that all of them have
     return averages.idxmin() if pick.lowest else averages.idxmax()
 

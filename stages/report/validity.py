@@ -97,7 +97,8 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     """Rows of tuned networks whose training was stopped after some passes while it still improved, or may have been.
 
     A network that knows its test part has learned its training part. The changes of its weights are checked alike.
-    Accuracies of all networks, frozen ones too, are invalid where no pass had a loss below that of guessing.
+    Accuracies of all networks, frozen ones too, are invalid where no pass had a loss below that of guessing; those on
+    single objects as well.
     """
     is_accuracy = rows["metric"] == "accuracy"
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (is_accuracy | rows["metric"].isin(CHANGES))
@@ -106,7 +107,8 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
     doubtful = tuned & ~converged & ~(is_accuracy & (rows["value"] >= SATURATED))
     reasons = pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
         doubtful & train_accuracy.isna(), UNMEASURED)  # fmt: skip
-    return reasons.mask(is_accuracy & _diverged(results, stage, dataset, rows), DIVERGED)
+    accuracies = is_accuracy | (rows["metric"] == "object_accuracy")
+    return reasons.mask(accuracies & _diverged(results, stage, dataset, rows), DIVERGED)
 
 
 @of_all_rows

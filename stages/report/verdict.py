@@ -90,7 +90,8 @@ def _row(claim: Claim, results: Results) -> Row:
     try:
         judgements, not_run = _judgements(claim, results)
     except NotRun as absent:
-        unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {absent}", "cause": CAUSES[0]}
+        reason = str(absent).removeprefix("not run: ")  # a note of a stage may say so, too
+        unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {reason}", "cause": CAUSES[0]}
         return row | unmeasured | {"verdict": "open"}, []
     judgement = next((entry for entry in judgements if entry.word != UNTESTABLE), judgements[0])
     pairs = []

@@ -14,7 +14,7 @@ from haptic_glance.look.weights.convexity import convexity, nearest_convexity
 from haptic_glance.mesh.mesh import Mesh
 from stages.fixation.fusion import fuse, highest_level, subtractive_clusters
 from stages.fixation.places import FLAT, curvature_shares, eccentricity, gaussian_curvature
-from stages.fixation.tasks import CLUSTERS, FUSED_TASKS, SHAPE_MEASURES
+from stages.fixation.tasks import CLUSTERS, FUSED_TASKS, SHAPE_MEASURES, assign_classes
 
 ROOT = Path(__file__).parents[2]
 
@@ -62,7 +62,14 @@ def test_nearest_convexity(agreement):
 
 def test_tasks_of_shape(agreement):
     """T3.3.2.1: "three classification problems respectively based on each of these characteristics"."""
-    agreement("settings", (sum(name in SHAPE_MEASURES for name in ("convexity", "curvature", "eccentricity")), 3))
+    random, names = np.random.default_rng(0), [f"o{k}" for k in range(12)]
+    clumps = {task: random.permutation(np.arange(12) // 4) for task in ("convexity", "curvature", "eccentricity")}
+    values = {task: 0.4 * clump + 0.01 * random.random(12) for task, clump in clumps.items()}
+    shares = {"positive": values["curvature"], "negative": 1 - values["curvature"], "zero": np.zeros(12)}
+    measures = {name: {key: column[k] for key, column in (values | shares).items()} for k, name in enumerate(names)}
+    tasks, _ = assign_classes(measures, "none", 0, ROOT / "data/reference/semantics.csv")
+    held = [[tasks[task][name] for name in names] == [*map(str, clump)] for task, clump in clumps.items()]
+    agreement("settings", (sum(held), len(held)))
 
 
 def torus(count=96, tube=48):

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.deep.images import to_images
+from haptic_glance.know import network as neural_network
 from haptic_glance.know.classifiers import CLASSIFIERS, COMPONENTS
 from haptic_glance.know.protocol import FOLDS, HOLDOUT
 from haptic_glance.look.points.methods import SUMMED
@@ -14,7 +15,8 @@ from haptic_glance.look.views.viewpoints import PRINCIPAL
 from haptic_glance.look.weights.svm import SIDE, pixel_samples
 from stages.engine.rows import read_rows
 from stages.fixation.tasks import viewpoint_sphere
-from stages.sequences.classifiers import MAP_DIMENSIONS, NEIGHBOURS, svm
+from stages.sensor_size import protocol as arrays
+from stages.sequences.classifiers import MAP_DIMENSIONS, Reduced, knn, svm
 from stages.sequences.networks import IMAGE_BATCH, NORMAL_BATCH
 from stages.weights.training import AREAS, PIXELS
 from stages.weights.training import FOLDS as SVM_FOLDS
@@ -163,6 +165,20 @@ def test_array_sizes(settings, agreement):
     agreement("settings", settings("princeton_eight", printed))
 
 
+def test_classifiers_of_arrays(agreement):
+    """T4.3.1: ten components, a quadratic SVM, bagged trees, Euclidean kNN, a network by gradient descent."""
+    samples, labels = np.random.default_rng(0).normal(size=(40, 10)), np.arange(40) % 4
+    nearest, machine, trees, _ = (arrays.classifier(name).fit(samples, labels) for name in arrays.CLASSIFIERS)
+    held = [
+        arrays.COMPONENTS == 10,
+        (machine.kernel, machine.degree) == ("poly", 2),
+        trees.bootstrap and len(trees.estimators_) > 1,
+        nearest.effective_metric_ == "euclidean",
+        not hasattr(neural_network, "RHO"),  # the decay of Adadelta
+    ]
+    agreement("settings", (sum(held), len(held)))
+
+
 def test_section_4_4(settings, agreement):
     """T4.4.5 to T4.4.10: 22,800 sequences of 25 frames of 32 x 32 cells, 80:20, 50 and 10 passes."""
     printed = CONTOURS | {
@@ -180,9 +196,21 @@ def test_section_4_4_8(settings, agreement):
 
 
 def test_series_classifiers(agreement):
-    """T4.4.9 and T4.4.10: a map of 2 to 6 dimensions, ten neighbours, gamma 1, epsilon 0.5 and C 1."""
-    machine = svm(reduced=True)
-    held = [MAP_DIMENSIONS == (2, 3, 4, 5, 6), NEIGHBOURS == 10, machine.gamma == 1, machine.tol == 0.5, machine.C == 1]
+    """T4.4.9 and T4.4.10: z-scores, a map of 2 to 6 dimensions, ten neighbours, RBF, gamma 1, epsilon 0.5 and C 1."""
+    machine, random, labels = svm(reduced=True), np.random.default_rng(0), np.arange(60) % 2
+    samples = random.normal(5, 3, (60, 8)) + labels[:, None]
+    nearest = knn(reduced=True).fit(samples, labels).nearest_
+    scores = Reduced(samples, labels, np.arange(40), np.arange(40, 60)).mapped(None).train
+    held = [
+        MAP_DIMENSIONS == (2, 3, 4, 5, 6),
+        nearest.n_neighbors == 10,
+        nearest.effective_metric_ == "euclidean",
+        machine.kernel == "rbf",
+        machine.gamma == 1,
+        machine.tol == 0.5,
+        machine.C == 1,
+        np.allclose(scores.mean(axis=0), 0) and np.allclose(scores.std(axis=0), 1),
+    ]
     agreement("settings", (sum(held), len(held)))
 
 

@@ -1,5 +1,7 @@
 """Chapter 4: imprints, their similarity and features, contours and sequences."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import pywt
@@ -15,9 +17,11 @@ from haptic_glance.touch.follow import follow
 from haptic_glance.touch.press import press_many
 from haptic_glance.touch.quasi_tangent import quasi_tangent
 from haptic_glance.touch.surface import sensor_axes, sensor_normals
+from stages.engine.rows import read_rows
 from stages.imprints.imprints import FaceCentres
 from stages.sequences.series import sequence_features
 
+ROOT = Path(__file__).parents[2]
 CELLS, PITCH = (16, 16), 0.01
 
 
@@ -203,6 +207,14 @@ def test_contour(agreement):
     literal = at(start + along[-1] / 25 * np.arange(25))
     assert len(positions) == 25
     agreement("difference", float(np.linalg.norm(positions - literal, axis=1).max()))
+
+
+def test_longest_curve_of_a_section(agreement):
+    """T4.4.6: "the set of points belonging both to the object and the plane"; the share that is not followed."""
+    rows = read_rows(ROOT / "reports/measurements/princeton_eight/contours.csv.gz")
+    shares = rows[rows["metric"] == "share"]["value"]
+    assert len(shares) == 24 * 2
+    agreement("share", 100 * (1 - shares.mean()))
 
 
 def test_series(agreement):

@@ -31,6 +31,7 @@ def rows(repetitions=3, both=0.05, small=-0.003):
                 for name in (sense, *HYBRIDS):
                     gain = small + 0.0005 * number if name == "hybrid_int8" else 0.0
                     entries.append(base | {"method": name, "sense": sense, "metric": "accuracy", "value": value + gain})
+            entries.append(base | {"method": "hybrid", "metric": "size_ratio", "value": 1.43 + 1e-5 * number})
             dark = "picture_darkness"
             for damage, severity, loss in (("none", 0.0, 0.0), (dark, 0.7, 0.2), (dark, 0.95, 0.8)):
                 for way in JOINED:
@@ -83,6 +84,14 @@ def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert judged.loc["eight_bits_touch_random", "effect"] == pytest.approx(-3 + 0.05 + 1, abs=1e-6)
     assert judged.loc["sight_over_touch_random", "verdict"] == "supported"
     assert judged.loc["sight_over_touch_objects", "verdict"] == "contradicted"
+
+
+def test_a_file_is_as_much_smaller_as_in_print_or_more(run, measure):
+    row = verdicts(run, "hybrid_smaller").iloc[0]
+    assert row["verdict"] == "supported" and row["effect"] == pytest.approx(0.00161) and row["unit"] == "times"
+    frame = rows()
+    frame.loc[frame["metric"] == "size_ratio", "value"] -= 0.01
+    assert verdicts(measure("transfer", frame), "hybrid_smaller").iloc[0]["verdict"] == "contradicted"
 
 
 OBJECTS = ("horse", "dog", "oldtimer", "urn", "dome_lamp", "lying_man", "long_sofa", "low_table")  # of seven classes

@@ -246,9 +246,9 @@ def test_a_statistic_of_its_own_leaves_the_same_pairs_out(measure):
     assert invalid(results, falls)[0].index.tolist() == [("o00", "1500"), ("o00", "3000")]
 
 
-def causes_in(results, stage):
+def causes_in(results, stage, metric="accuracy"):
     """The causes for which the accuracies of a stage are invalid."""
-    return causes(results, stage, "test", results.rows(stage, metric="accuracy")).tolist()
+    return causes(results, stage, "test", results.rows(stage, metric=metric)).tolist()
 
 
 @pytest.mark.parametrize(("stage", "group"), [("classification", "{}"), ("recorded", "{}_drawn")])
@@ -293,9 +293,11 @@ def test_a_network_whose_loss_never_falls_below_guessing_is_no_evidence(measure)
     )
     curves = [(0, 1, 1.4), (0, 2, 1.5), (1, 1, 1.4), (1, 2, 1.3), (2, 1, 1.3), (2, 2, 9.0)]  # four classes: 1.386
     losses = pd.DataFrame(curves, columns=["repetition", "epoch", "value"]).assign(metric="curve_loss", mode="frozen")
-    classes = pd.DataFrame({"group": list("abcd"), "metric": "object_accuracy", "value": 0.6, "mode": "frozen"})
-    results = measure("transfer", pd.concat([rows, losses, classes]).assign(dataset="test"))
+    classes = pd.DataFrame({"group": list("abcd"), "metric": "class_accuracy", "value": 0.6, "mode": "frozen"})
+    on_objects = rows[:2].assign(metric="object_accuracy", item="one")
+    results = measure("transfer", pd.concat([rows, losses, classes, on_objects]).assign(dataset="test"))
     assert causes_in(results, "transfer") == [DIVERGED, "", "", ""]
+    assert causes_in(results, "transfer", "object_accuracy") == [DIVERGED, ""]
 
 
 def test_a_selection_that_left_nothing_out_is_no_evidence(measure):

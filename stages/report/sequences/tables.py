@@ -129,6 +129,8 @@ PHRASES = {
     **{("metric", metric): "" for metric in METRICS.values()},
     ("classifier", WITH_MAP): "mean of kNN and SVM with the map",
     ("classifier", NO_MAP): "mean of both without the map",
+    ("classifier", (*WITH_MAP, *NO_MAP)): "kNN and SVM, with the map and without,",
+    ("classifier", tuple(CLASSIFIERS)): "all classifiers",
 }  # fmt: skip
 OBJECTS = {  # the pairs: one of each class left out
     "over": ("group", "repetition"), "shared": SHARED[Split.OBJECTS],
@@ -151,6 +153,8 @@ def whole_sequences(results: Results, claim: Claim) -> pd.Series:
     return difference(results, replace(claim, where={**claim.where, **size})).sort_index()
 
 
+CONVENTIONAL = (*WITH_MAP, *NO_MAP)
+CLASSIFIED = "over ways to classify, not over objects; without the networks, which stopped before they were saturated"
 ALIKE = (("bird", "airplane"), ("bust", "vase"))  # by touch, says T4.4.10; its cars are not among the classes
 
 
@@ -191,7 +195,8 @@ BASES = [
            sentence="Contours through visually interesting points are better than blind ones."),
     guided(key="contours_guided_all", where={"classifier": PRINTED_METHODS},
            sentence="Guided contours are better, whichever the classifier.", note="mean of the classifiers",
-           readings=tuple(reading(f"{CLASSIFIERS[way]} alone", where={"classifier": way}) for way in PRINTED_METHODS)),
+           readings=tuple(reading(f"{CLASSIFIERS[way]} alone", where={"classifier": way}, note="")
+                          for way in PRINTED_METHODS)),
     guided(key="contours_glance", section="ours", where={"classifier": "cnn"}, first={"method": "glance"},
            sentence="Contours through points of our glance are better than blind ones."),
     cnn(key="contours_cnn_best", sentence="Networks lead on sequences.", second={"classifier": highest_of(*WITH_MAP)},
@@ -215,9 +220,11 @@ CLAIMS = [
     ),
     *(
         claim(key=key, sentence=sentence, first={"method": GUIDED if second is None else BLIND}, second=second,
-              where={"metric": "confusion", "split": Split.RANDOM}, over=("classifier",), statistic="alike_confused",
-              shared=0.0, checked=False, note=note, phrases=PHRASES | {("over", "classifier"): "classifiers"},
-              readings=(reading("unseen objects", where={"split": Split.OBJECTS}),))
+              where={"metric": "confusion", "split": Split.RANDOM, "classifier": CONVENTIONAL}, over=("classifier",),
+              statistic="alike_confused", shared=0.0, checked=False, note=f"{note}; {CLASSIFIED}",
+              phrases=PHRASES | {("over", "classifier"): "classifiers of the same sequences"},
+              readings=(reading("unseen objects", where={"split": Split.OBJECTS}),
+                        reading("with the networks", where={"classifier": tuple(CLASSIFIERS)})))
         for key, sentence, second, note in (
             ("alike_confused", "Bird and plane, head and vase are confused more than the mean other pair.", None,
              "share that is taken for each other, minus that of the mean other pair"),
@@ -225,6 +232,8 @@ CLAIMS = [
              "share of birds and planes, heads and vases that are taken for each other"),
         )
     ),
+    guided(key="contours_guided_gain", where={"classifier": "cnn"} | RANDOM, shared=SHARED[Split.RANDOM], margin=-15.68,
+           sentence="Guided contours gain the printed 15.68 points of accuracy by networks, or more."),
     claim(key="contours_random_flatters", section="ours", **OF_MORE,
           sentence="Drawing test sequences at random flatters: the same objects are known.",
           where={"method": GUIDED, "classifier": "cnn"}, first=RANDOM, second=UNSEEN, mean_of="first", **OBJECTS),
