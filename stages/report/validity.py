@@ -24,7 +24,7 @@ UNKNOWN = "nobody counted the answers of a classifier that often gives one"
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 UNMEASURED = "nobody measured whether the training was saturated"
 DIVERGED, LOSS = "the training's loss is never below that of guessing", "curve_loss"
-ONE_LABEL = "less accurate than one answer for all pixels"
+BACKGROUND = "less accurate than `on the object, hence salient`"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
 FROM_RANDOM, RANDOM_LAYERS = "fully connected layers from random weights", "vgg16-last_block"
@@ -147,14 +147,14 @@ def attentive(results: Results, stage: str, dataset: str, rows: pd.DataFrame) ->
 
 @check("weights")
 def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Accuracies on kinds of pixels where an SVM is right less often than one answer for all of them."""
+    """Accuracies on kinds of pixels where an SVM is right less often than `on the object, hence salient`."""
     if "background_alone" not in rows or not rows["metric"].eq("accuracy").all():
         return pd.Series("", index=rows.index)
     all_rows = results.rows(stage, dataset, metric="accuracy")
     means = all_rows.groupby(["training", "validation", "area"])[["value", "background_alone"]].mean()
     poor = means[means["value"] < means["background_alone"]].reset_index()
     kinds, bad = (pd.MultiIndex.from_frame(frame[["validation", "area"]]) for frame in (rows, poor))
-    return pd.Series(kinds.isin(bad), index=rows.index).map({True: ONE_LABEL, False: ""})
+    return pd.Series(kinds.isin(bad), index=rows.index).map({True: BACKGROUND, False: ""})
 
 
 @check("sequences")

@@ -92,6 +92,7 @@ def test_table_3_2(settings, agreement):
         "views.viewpoints": "best",
         "salient_points.selection": "suppression",
         "salient_points.methods": holds(*guided, "VisAttAll", "mesh_saliency", "heat_kernel"),
+        "conspicuity.size": [900, 1200],  # T3.2.3
         "lod.methods": holds(*guided, *(f"{name}-adaptive" for name in guided)),
         "lod.targets": ["3000", "1500"],
         "lod.size": [900, 1200],

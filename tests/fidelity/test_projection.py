@@ -64,8 +64,8 @@ def test_rays(dromedary, agreement):
         origins, directions = pixel_rays(rows + 0.3, columns - 0.2, viewpoint, SIZE)
         hits = scene.cast(origins, directions)
         literal = np.array([crossings(dromedary, o, d)[0] for o, d in zip(origins, directions, strict=True)])
-        common = np.isfinite(literal) & hits.hit
-        apart.append(np.abs(literal[common] - hits.distance[common]).max())
+        assert (np.isfinite(literal) == hits.hit).all() and hits.hit.any()
+        apart.append(np.abs(literal[hits.hit] - hits.distance[hits.hit]).max())
     agreement("difference", float(max(apart)))
 
 

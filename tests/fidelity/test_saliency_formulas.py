@@ -237,8 +237,9 @@ def test_edge(picture, agreement):
 
 def test_average(agreement):
     """eq. 3.8: the sum of the maps over their number, for i = {I, O, RG, DKL, Sym, Con, Ent} and curvature."""
+    seven = {"intensity", "orientation", "color", "dkl", "symmetry", "contrast", "entropy"}
+    assert set(COMBINATIONS["VisAttAll"]) - seven == {"curvature"}  # T3.2.2 lists it, eq. 3.8 does not
     maps = {name: np.random.default_rng(k).random((20, 30)) for k, name in enumerate(COMBINATIONS["VisAttAll"])}
-    assert len(maps) == 8
     agreement("difference", np.abs(fuse(maps) - sum(maps.values()) / len(maps)).max())
 
 

@@ -136,6 +136,12 @@ def stated(results, statistic, **fields):
     return differences(results, claim(key="k", section="s", sentence="Sentence.", statistic=statistic, **fields))
 
 
+def test_combinations_tell_how_many_objects_reach_each_face_count(run):
+    rows = without(measured("household_3_1"), item="d", target="1500", method="itti")
+    words = table("table_3_1_5_combinations", run(rows)).words
+    assert words["reached"] == ": 4 at 25%, 4 at 3,000 faces, 3 at 1,500 faces"
+
+
 def test_a_set_without_any_of_the_methods_is_said_to_lack_them(plain):
     with pytest.raises(NotRun, match="no mesh was simplified by nobody or nothing"):
         data_sets(plain, ("nobody", "nothing"))
@@ -187,10 +193,24 @@ def test_error_falls_with_faces(plain, run):
         stated(run(rows[rows["target"] == "1500"]), "falls_with_faces", **fields)
 
 
-def room(results, margin, methods, base):
+def test_error_falls_from_the_fewest_to_the_most_of_the_faces_in_print(run):
+    rows = measured("household_3_1")
+    other = rows["target"] == "25%"  # a count that print does not have
+    rows = rows.assign(faces=rows["faces"].mask(other, 500), value=rows["value"].mask(other, 1e6 * rows["value"]))
+    (entry,) = (entry for entry in CLAIMS if entry.key == "more_faces")
+    assert differences(run(rows), entry.on("household_3_1")).max() < 10
+
+
+def room(results, margin, methods, base, statistic="room"):
     """What the differences of methods from a base leave of a margin."""
     sides = {"first": {"method": methods}, "second": {"method": base}}
-    return stated(results, "room", where=ERROR | BOTH, margin=margin, **sides)
+    return stated(results, statistic, where=ERROR | BOTH, margin=margin, **sides)
+
+
+def test_a_fall_has_one_side_and_the_farthest_decides(plain):
+    assert interval(room(plain, 0.2, ("corners",), "itti", "fall"))[1] > 0  # the error rises
+    assert interval(room(plain, 0.2, ("corners",), "itti"))[2] < 0
+    assert interval(room(plain, 0.2, ("corners", "itti"), "harris", "fall"))[2] < 0
 
 
 def test_equivalence_holds_within_the_margin_and_fails_beyond_it(plain):

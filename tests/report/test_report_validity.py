@@ -18,6 +18,7 @@ from stages.report.results import SECTION_3_1
 from stages.report.topics import build_one
 from stages.report.validity import (
     AS_PLAIN,
+    BACKGROUND,
     DIVERGED,
     FROM_RANDOM,
     GUESSING,
@@ -26,7 +27,6 @@ from stages.report.validity import (
     NOISE_NEARER,
     NOTHING_OUT,
     ONE_CLASS,
-    ONE_LABEL,
     SAME,
     UNIT,
     UNKNOWN,
@@ -350,7 +350,7 @@ def test_an_svm_worse_than_calling_all_background_refuses_its_kind_of_pixels_als
     on_object = replace(claim, key="object", where={"metric": "accuracy", "area": "object"})
     table = judge([claim, on_object], results).set_index("key")
     assert table["verdict"].to_dict() == {"own": "not testable", "object": "supported"}
-    assert table.loc["own", "validity"] == f"meshes with human gaze: 4 of 4 pairs invalid: {ONE_LABEL} (4)"
+    assert table.loc["own", "validity"] == f"meshes with human gaze: 4 of 4 pairs invalid: {BACKGROUND} (4)"
     assert table.loc["object", "effect"] == pytest.approx(10.15)
 
 

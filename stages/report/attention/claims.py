@@ -152,7 +152,8 @@ CLAIMS = [
         sentence="Four perpendicular viewpoints see the whole surface, but for one percent.", over=("item",),
         where={"metric": "seen_share", "views": 4}, first={"method": "principal"}, second=0.99, scale=100.0,
         unit="% of the surface", readings=(reading("four viewpoints around the object", first={"method": "four"}),),
-        phrases={("method", "principal"): "four principal viewpoints", ("method", "four"): "four viewpoints around"},
+        phrases={("method", "principal"): "four principal viewpoints", ("method", "four"): "four viewpoints around",
+                 ("metric", "seen_share"): "share of the surface that any of 62 viewpoints sees"},
     ),
     closer(key="equal_over_itti_gaze", first={"method": "VisAttAll"}, second={"method": CLASSICAL}, dataset=OF_3_2,
            sentence="All channels with equal weights (VisAttAll) predict where people look better than the classical "

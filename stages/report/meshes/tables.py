@@ -261,10 +261,12 @@ def combinations(results: Results) -> Table:
     """The combinations of channels, in the thesis's order, and the mean errors that each led to."""
     if results.own_meshes:
         raise NotRun("the combinations of T3.1.5 are judged on the project's own data sets", OWN_FOLDER, runnable=False)
-    averages = []
+    averages, reached = [], ""
     with suppress(NotRun):  # the list is worth having without the errors
         rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
         averages = means(rows, ["method", "metric"])
+        counts = rows.groupby("target")["item"].nunique()
+        reached = ": " + ", ".join(f"{counts[name]} at {target_text(name)}" for name in sorted(counts.index, key=size))
     averages = pd.DataFrame(averages, columns=["method", "metric", "mean"])
     errors = averages.pivot(index="method", columns="metric", values="mean")
     metrics = [metric for metric in ERRORS if metric in errors] or list(METRICS)
@@ -272,7 +274,8 @@ def combinations(results: Results) -> Table:
     frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
     frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)
     columns = {metric: (UNITS[metric] * frame[metric]).map(number).replace("–", "not run") for metric in metrics}
-    return Table(frame, frame.assign(**columns).rename(columns=ERRORS), best=Ranking(ERRORS[metrics[0]], lowest=True))
+    text_table, best = frame.assign(**columns).rename(columns=ERRORS), Ranking(ERRORS[metrics[0]], lowest=True)
+    return Table(frame, text_table, {"reached": reached}, best)
 
 
 def every_detector(results: Results) -> Table:
