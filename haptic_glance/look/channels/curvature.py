@@ -20,7 +20,7 @@ def curvature(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     The thesis filters the image of the curvature "to simulate the center-surround mechanism" and gives no formula. This
     is the on-centre cell that its text describes, which the surround inhibits: with |c - s|, as for intensity, a flat
     region next to a sharp one is as conspicuous as the sharp one. On the meshes with human gaze, Curv has an NSS of
-    0.40 with on-centre cells and of 0.11 with |c - s|. For VisAttAll the values are 0.38 and 0.30. Symmetry, whose map
+    0.39 with on-centre cells and of 0.11 with |c - s|. For VisAttAll the values are 0.38 and 0.30. Symmetry, whose map
     is a thin line on black, uses |c - s|: an NSS of 0.12 against 0.05.
     """
     surface = visible_surface(view, mesh)

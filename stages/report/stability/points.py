@@ -43,7 +43,8 @@ def table(results: Results) -> Table:
     unharmed = {name: entry.unharmed for name, entry in PERTURBATIONS.items()}
     text_table = broken(frame, frame["method"].map(label), unharmed)
     text_table["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
-    words = {"objects": ", ".join(dict.fromkeys(points["item"])), "not_run": results.left_out(STAGE)}
+    names = list(dict.fromkeys(points["item"]))
+    words = {"objects": ", ".join(names), "count": len(names), "not_run": results.left_out(STAGE)}
     return Table(frame, text_table, words)
 
 
