@@ -17,6 +17,7 @@ UNIT = ["item", "method", "target"]
 NOTHING_OUT = "nothing was left out"
 NO_POINT, AS_PLAIN, NO_RING = "no point found", "equal to plain simplification", "less than one ring kept"
 SATURATED = 0.95  # training accuracy of a network that has learned its training part
+CERTAIN = 0.99  # test accuracy of a network that cannot be told to have stopped too early
 ONE_ANSWER = 2.0  # times guessing: a share of the commonest answer that no classifier has that looks at the samples
 MOST = 0.5  # the same share where the number of classes is not known by the name of their group
 DEAF, WIDE = "svm", "min_max"  # a classifier that often gives one answer, but not where all data lie in 0 to 1
@@ -96,15 +97,15 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
 def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of tuned networks whose training was stopped after some passes while it still improved, or may have been.
 
-    A network that knows its test part has learned its training part. The changes of its weights are checked alike.
-    Accuracies of all networks, frozen ones too, are invalid where no pass had a loss below that of guessing; those on
-    single objects as well.
+    A network that hardly errs on its test part has learned its training part. The changes of its weights are checked
+    alike. Accuracies of all networks, frozen ones too, are invalid where no pass had a loss below that of guessing;
+    those on single objects as well.
     """
     is_accuracy = rows["metric"] == "accuracy"
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (is_accuracy | rows["metric"].isin(CHANGES))
     converged = rows["passes"] == "converged" if "passes" in rows else False
     train_accuracy = _beside(results, stage, dataset, rows, "train_accuracy")
-    doubtful = tuned & ~converged & ~(is_accuracy & (rows["value"] >= SATURATED))
+    doubtful = tuned & ~converged & ~(is_accuracy & (rows["value"] >= CERTAIN))
     reasons = pd.Series("", index=rows.index).mask(doubtful & (train_accuracy < SATURATED), UNTRAINED).mask(
         doubtful & train_accuracy.isna(), UNMEASURED)  # fmt: skip
     accuracies = is_accuracy | (rows["metric"] == "object_accuracy")

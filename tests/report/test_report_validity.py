@@ -283,7 +283,7 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     rows = rows.assign(mode=["finetuned", "finetuned", "frozen", "18:139"], passes=["printed"] * 3 + ["converged"])
     learned = rows.assign(metric="train_accuracy", value=[0.77, 0.97, 0.1, 0.5])
     assert causes_in(measure(stage, pd.concat([rows, learned])), stage) == [UNTRAINED, "", "", ""]
-    unknown = rows.drop(columns="passes").assign(value=[0.6, 0.96, 0.6, 0.6])  # nobody knows how far they were trained
+    unknown = rows.drop(columns="passes").assign(value=[0.96, 0.99, 0.6, 0.6])  # nobody knows how far they were trained
     assert causes_in(measure(stage, unknown), stage) == [UNMEASURED, "", "", UNMEASURED]
 
 
