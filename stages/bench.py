@@ -19,6 +19,7 @@ import argparse
 import importlib.util
 import json
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stdout
 from dataclasses import replace
@@ -177,6 +178,8 @@ def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
     from stages.weights.ground_truth import ground_truth_amounts, published_files, spread_on_surface
     from stages.weights.training import SPREAD
 
+    if not archive.exists():
+        raise ValueError(f"{archive} is not there: conf/data/{dataset}.yaml says where to get it, --gaze names it")
     files, objects = published_files(dataset, archive), {}
     settings = Params(dataset, str(archive), "y", "unknown", list(only), {}, False)
     for item in SOURCES[dataset](settings):
@@ -284,6 +287,7 @@ def _bracketed(row: dict[str, Any], name: str, sign: str = "") -> str:
 def main() -> None:
     """Runs the command line."""
     errors_in_one_line("bench")
+    warnings.showwarning = lambda message, *_: report(str(message))
     run(sys.argv[1:])
 
 

@@ -2,6 +2,8 @@
 
 import json
 import re
+import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -206,6 +208,20 @@ def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys
         pytest.raises(ValueError, match="holds no mesh with gaze"),
     ):
         bench.gazed("gaze", tmp_path)
+
+
+def test_a_default_archive_that_is_not_there_is_named_with_its_source_and_the_option(tmp_path):
+    with pytest.raises(ValueError, match="gone.zip is not there: conf/data/gaze_clouds.yaml says .*, --gaze names it"):
+        bench.gazed("gaze_clouds", tmp_path / "gone.zip")
+
+
+def test_a_warning_is_one_line_of_progress(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
+    monkeypatch.setattr(bench, "run", lambda argv: warnings.warn("a cloud has odd normals", stacklevel=1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        bench.main()
+    assert capsys.readouterr().err == "bench: a cloud has odd normals\n"
 
 
 @pytest.mark.slow
