@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import trimesh
 
-from haptic_glance.look.agreement import METRICS, GroundTruth
+from haptic_glance.look.agreement import METRICS, GroundTruth, nss
 from haptic_glance.mesh.mesh import Mesh
 from stages import bench
 from stages.engine import statistics
@@ -147,6 +147,13 @@ def test_a_method_that_learns_never_gets_the_object_that_it_is_judged_on(file, t
     for metric in ("nss", "cc"):
         assert options[0]["yours"][metric] == pytest.approx(options[1]["yours"][metric])
         assert options[0]["yours"][metric] > 0
+
+
+def test_an_object_of_ones_own_with_a_published_name_is_compared_with_no_row_of_that_name(file, toys, capsys):
+    objects = bench.gazed("gaze", Path())
+    (_, truth), *_ = objects.values()
+    rows = [("first", "human", nss(truth.density, truth) + 4e-6), ("second", "human", 0.1)]
+    assert [*bench.with_own_names(objects, frame_of(rows))] == ["first", "second (yours)", "third"]
 
 
 def test_a_function_that_is_no_saliency_is_named(file, toys):
