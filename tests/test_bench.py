@@ -2,6 +2,8 @@
 
 import json
 import re
+import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,7 @@ import pandas as pd
 import pytest
 import trimesh
 
-from haptic_glance.look.agreement import METRICS, GroundTruth
+from haptic_glance.look.agreement import METRICS, GroundTruth, nss
 from haptic_glance.mesh.mesh import Mesh
 from stages import bench
 from stages.engine import statistics
@@ -147,6 +149,13 @@ def test_a_method_that_learns_never_gets_the_object_that_it_is_judged_on(file, t
         assert options[0]["yours"][metric] > 0
 
 
+def test_an_object_of_ones_own_with_a_published_name_is_compared_with_no_row_of_that_name(file, toys, capsys):
+    objects = bench.gazed("gaze", Path())
+    (_, truth), *_ = objects.values()
+    rows = [("first", "human", nss(truth.density, truth) + 4e-6), ("second", "human", 0.1)]
+    assert [*bench.with_own_names(objects, frame_of(rows))] == ["first", "second (yours)", "third"]
+
+
 def test_a_function_that_is_no_saliency_is_named(file, toys):
     with pytest.raises(ValueError, match="failed on every object.*saliency must have shape"):
         bench.run([f"{file}:positions"])
@@ -206,6 +215,20 @@ def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys
         pytest.raises(ValueError, match="holds no mesh with gaze"),
     ):
         bench.gazed("gaze", tmp_path)
+
+
+def test_a_default_archive_that_is_not_there_is_named_with_its_source_and_the_option(tmp_path):
+    with pytest.raises(ValueError, match="gone.zip is not there: conf/data/gaze_clouds.yaml says .*, --gaze names it"):
+        bench.gazed("gaze_clouds", tmp_path / "gone.zip")
+
+
+def test_a_warning_is_one_line_of_progress(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
+    monkeypatch.setattr(bench, "run", lambda argv: warnings.warn("a cloud has odd normals", stacklevel=1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        bench.main()
+    assert capsys.readouterr().err == "bench: a cloud has odd normals\n"
 
 
 @pytest.mark.slow

@@ -173,7 +173,7 @@ def _converted(source):
     if isinstance(source, trimesh.Scene):
         return join_parts(source, every_colour=True) or _to_mesh(None, False, False)
     if isinstance(source, Cloud):
-        return clouds.surface_of(source)
+        return _surface(source, "the point cloud")
     if isinstance(source, trimesh.Trimesh | trimesh.PointCloud):
         return _to_mesh(source, False, every_colour=True)
     if isinstance(source, tuple) and len(source) == 2:

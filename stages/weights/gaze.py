@@ -117,10 +117,10 @@ def _check_matches(unmatched, distance, scale):
     if len(off) == 0 and unmatched.mean() <= 1 - MIN_MATCHED:
         return
     worst = np.argsort(-distance, kind="stable")[:3]
-    lines = ", ".join(f"line {row + 1}: {distance[row]:.2%}" for row in worst)
+    rows = ", ".join(f"row {row + 1}: {distance[row]:.2%}" for row in worst)
     raise ValueError(
         f"{unmatched.sum()} of {len(unmatched)} gaze rows match no vertex and {len(off)} are off the mesh; distances as"
-        f" shares of its diagonal: median {np.median(distance[unmatched]):.2%}, largest {lines}. Is it the file of this"
+        f" shares of its diagonal: median {np.median(distance[unmatched]):.2%}, largest {rows}. Is it the file of this"
         f" mesh, in the units of the mesh file?{scale and f' {scale} as the mesh.'}"
     )
 

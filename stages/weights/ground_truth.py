@@ -130,11 +130,11 @@ def _gaze(files, _):
     unmatched = np.flatnonzero(vertex < 0)
     amounts = _named(path, lambda rows: gaze_on_vertices(mesh, rows, seconds, tolerance), positions)
     if len(unmatched):
-        shares, lines = distance[unmatched] / mesh.diagonal, ", ".join(str(row + 1) for row in unmatched[:3])
+        shares, rows = distance[unmatched] / mesh.diagonal, ", ".join(str(row + 1) for row in unmatched[:3])
         print(
             f"{path}: {len(unmatched)} of {len(positions)} rows match no vertex and are left out, with"
             f" {seconds[unmatched].sum():.0f} of {seconds.sum():.0f} s of gaze; they are {shares.min():.2%} to"
-            f" {shares.max():.2%} of the diagonal off; lines {lines}{', ...' if len(unmatched) > 3 else ''}",
+            f" {shares.max():.2%} of the diagonal off; rows {rows}{', ...' if len(unmatched) > 3 else ''}",
             file=sys.stderr,
         )
     return amounts

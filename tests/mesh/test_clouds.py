@@ -13,7 +13,7 @@ import pytest
 import trimesh
 from pypcd4 import Encoding, PointCloud
 
-from haptic_glance import load
+from haptic_glance import as_mesh, load
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.mesh import MeshError, clean, clouds
 from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, read_cloud, surface_of
@@ -160,6 +160,8 @@ def test_wrong_normals_of_every_format_are_estimated_anew_with_a_warning(signs, 
             UserWarning, match=rf"^{name}: \d+ % of its normals look to the wrong side, so normals are est"
         ):
             assert load(tmp_path / name, up="z").faces.tolist() == SHEET.faces.tolist()
+    with pytest.warns(UserWarning, match=r"^the point cloud: \d+ % of its normals look to the wrong side"):
+        assert as_mesh(Cloud(BALL, normals, up="z")).faces.tolist() == SHEET.faces.tolist()
 
 
 def test_normals_look_to_the_sensor_that_a_file_states():

@@ -114,13 +114,13 @@ def test_made_up_rows_are_left_out_and_rounded_ones_are_taken_in_by_tolerance():
         (lambda: gaze_on_vertices(MESH, MESH.vertices.round(6) + 3e-6, np.ones(162)), "match no vertex"),
         (
             lambda: gaze_on_vertices(MESH, MESH.vertices * 3, np.ones(162)),
-            r"162 of 162 gaze rows match no vertex and 162 are off .* line \d+: 57\.7",
+            r"162 of 162 gaze rows match no vertex and 162 are off .* row \d+: 57\.7",
         ),
         (
             lambda: gaze_on_vertices(
                 MESH, np.r_[MESH.vertices[:100], 2 * MESH.vertices[100:101], MESH.vertices[101:]], np.ones(162)
             ),
-            r"1 of 162 .* 1 are off the mesh.* line 101: ",
+            r"1 of 162 .* 1 are off the mesh.* row 101: ",
         ),
         (lambda: read_gaze(b"1 2 3\n"), "8 columns, got 1 rows of 3"),
         (lambda: read_gaze(b" \n"), "is empty"),
