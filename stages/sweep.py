@@ -6,13 +6,15 @@ examples:
   python -m stages.sweep -m data=folder '+classification.sets.mine=[cup,spoon]' classifier=knn,svm
 
 Every job finds the points, presses the array and recognises the objects of classification.sets, on the meshes and
-conspicuity maps of data/SET; SET is household, or `data=SET`. Where these are not there, `dvc repro` makes them first.
+conspicuity maps of data/SET; SET is household, or `data=SET`. Where these are not there, or their inputs have changed,
+`dvc repro` makes them first.
 A group of classification.sets with objects that SET does not have is left out. Settings are those of params.yaml,
 where it has the set, but for what the command line says. The rows of a job are appended to
 runs/sweeps/recognition.csv when it ends (a repeated job replaces its rows), so that a sweep that is stopped loses the
 job in work alone. A job that fails is named, and the others go on. A table of the jobs ends the sweep.
 """
 
+import json
 import re
 import signal
 import subprocess
@@ -160,19 +162,28 @@ def prepare(argv: Sequence[str]) -> None:
                 "params": params[dataset] | {"seed": params["seed"]},
                 "conf": {name: conf[name] for name in (*sections, "seed")},
             }
-        missing = [f"{stage}@{dataset}" for stage in NEEDED if not any(Path("data", dataset, stage).glob("*"))]
-        if missing:
+        needed = [f"{stage}@{dataset}" for stage in NEEDED]
+        present = all(any(Path("data", dataset, stage).glob("*")) for stage in NEEDED)
+        if not present or (dataset in bases and inputs_changed(needed)):
             if dataset not in params.get("sets", []):
                 raise ParamsError(
                     f"{dataset} is not switched on: `python -m stages.compose 'sets=[{dataset}]'` does so, "
                     "and data=SET sweeps another set"
                 )
-            print(f"sweep: {', '.join(missing)} first: `dvc repro` makes them", file=sys.stderr, flush=True)
+            print(f"sweep: {', '.join(needed)} first: `dvc repro` makes them", file=sys.stderr, flush=True)
             with results_in(OUT.parent):
-                exit_status = subprocess.run([sys.executable, "-m", "dvc", "repro", *missing]).returncode
+                exit_status = subprocess.run([sys.executable, "-m", "dvc", "repro", *needed]).returncode
             if exit_status:
-                raise ParamsError(f"dvc repro {' '.join(missing)} failed, as said above")
+                raise ParamsError(f"dvc repro {' '.join(needed)} failed, as said above")
     write_json(BASES, bases)
+
+
+def inputs_changed(stages: Sequence[str]) -> bool:
+    """Whether stages, or those before them, last ran on other files or settings; False where DVC cannot tell."""
+    command = [sys.executable, "-m", "dvc", "status", "--json", "--with-deps", *stages]
+    completed = subprocess.run(command, capture_output=True, text=True)
+    changes = json.loads(completed.stdout).values() if completed.returncode == 0 else ()
+    return any("changed deps" in change for stage_changes in changes for change in stage_changes)
 
 
 @contextmanager

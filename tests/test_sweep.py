@@ -1,5 +1,6 @@
 """The sweep appends tidy rows, replaces those of a repeated job, and ends with a table."""
 
+import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
@@ -95,6 +96,7 @@ def root(params, tmp_path, monkeypatch):
     (tmp_path / "params.yaml").write_text(params)
     for stage in sweep.NEEDED:
         write_json(tmp_path / "data/household_four" / stage / "there.json", {})
+    monkeypatch.setattr(sweep, "inputs_changed", lambda stages: False)  # no repository of DVC
     return tmp_path
 
 
@@ -195,8 +197,11 @@ def test_settings_that_a_killed_sweep_left_are_put_back(root):
 
 
 @pytest.mark.slow
-def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
-    (root / "data/household_four/weights/there.json").unlink()
+@pytest.mark.parametrize("fault", ["absent", "changed"])
+def test_what_jobs_read_is_made_first(root, monkeypatch, capsys, fault):
+    if fault == "absent":
+        (root / "data/household_four/weights/there.json").unlink()
+    monkeypatch.setattr(sweep, "inputs_changed", lambda stages: fault == "changed")
     commands, before = [], Path("params.yaml").read_text()
 
     def run(command):
@@ -205,6 +210,22 @@ def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
 
     monkeypatch.setattr(sweep.subprocess, "run", run)
     sweep.prepare(["-m", "data=household_four"])
-    assert commands == [(["-m", "dvc", "repro", "weights@household_four"], "runs/sweeps")]
+    names = [f"{stage}@household_four" for stage in sweep.NEEDED]
+    assert commands == [(["-m", "dvc", "repro", *names], "runs/sweeps")]
     assert Path("params.yaml").read_text() == before
     assert "weights@household_four first: `dvc repro` makes them" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"meshes@toys": [{"changed deps": {"scans": "modified"}}]}, True),
+        ({"views@toys": [{"changed outs": {"runs/sweeps/metrics/toys/views.json": "deleted"}}]}, False),  # of a sweep
+        ({}, False),
+        (None, False),
+    ],
+)
+def test_files_and_settings_that_changed_since_the_stages_ran_are_seen(monkeypatch, changes, expected):
+    answer = SimpleNamespace(returncode=int(changes is None), stdout=json.dumps(changes))
+    monkeypatch.setattr(sweep.subprocess, "run", lambda command, **_: answer)
+    assert sweep.inputs_changed(["meshes@toys"]) == expected

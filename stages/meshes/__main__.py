@@ -24,7 +24,7 @@ from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
 from . import Params
-from .collect import CLASSES, chosen_objects, prepare_mesh, small_classes
+from .collect import CLASSES, chosen_objects, prepare_mesh, reads_beside, small_classes
 from .sources import SOURCES, MeshFile
 
 REFUSED = ["object", "file", "reason"]
@@ -43,14 +43,14 @@ def process(item: MeshFile, folder: Path, without_plane: bool, colours: str) -> 
 
 
 def content_hash(item: MeshFile, colours: str) -> str:
-    """The hash of what a mesh is made of: its file, what the source says of it, and the files of the colours in use.
+    """The hash of what a mesh is made of: its file, what the source says of it, and the files beside it in use.
 
     Unreadable files have one, too.
     """
     beside = {}
     try:
         content = item.content()
-        beside = {} if colours == "vertex" else item.beside()
+        beside = item.beside() if reads_beside(item, colours) else {}
     except (OSError, ValueError, RuntimeError) as error:
         content = str(error).encode()
     parts = (item.name, item.file, item.suffix, item.up, item.unit, item.licence, item.creator)

@@ -33,8 +33,7 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
     MeshError with the reason when the file gives no usable mesh.
     """
     try:
-        content, painted = item.content(), colours != "vertex"
-        needs_files = painted or item.suffix in (DEPTH, ".gltf")
+        content, painted, needs_files = item.content(), colours != "vertex", reads_beside(item, colours)
         beside = item.beside() if needs_files else {}
         resolver = ZipResolver({name: data for name, data in beside.items() if data})
         parsed = parse(content, item.suffix, resolver if needs_files else None, painted, item.file)
@@ -59,6 +58,11 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
         "nonmanifold_edges": int((counts > 2).sum()), "colors": mesh.colors is not None,
         "repairs": "; ".join(notes), "sha256": hashlib.sha256(content).hexdigest(),
     }  # fmt: skip
+
+
+def reads_beside(item: MeshFile, colours: str) -> bool:
+    """Whether a mesh is made of the files beside its own, too: those of its colours or of its geometry."""
+    return colours != "vertex" or item.suffix in (DEPTH, ".gltf")
 
 
 def _without_table(mesh, notes):

@@ -22,6 +22,7 @@ from haptic_glance.base.fetch import LARGEST, FetchError, fetch_package, read_me
 from haptic_glance.mesh.files import FORMATS
 from haptic_glance.mesh.gltf import SUFFIXES as GLTF
 from haptic_glance.mesh.headers import MeshError
+from stages.engine.run import only_reads
 
 from . import Params
 from .furniture import FURNITURE, LICENCES, files_beside, furniture_files, material_files
@@ -42,12 +43,16 @@ HOUSEHOLD = (
 
 @dataclass(frozen=True)
 class Content:
-    """Reads a file, or the files beside it, when it is called or sent to another machine: there the bytes go along."""
+    """Reads a file, or the files beside it, when it is called or sent to another machine: there the bytes go along.
+
+    An item that holds one names the bytes in `made_of`, so the file need not be declared where it lies below data/.
+    """
 
     read: Callable[[], Any]
 
     def __call__(self) -> Any:
-        return self.read()
+        with only_reads([], []):
+            return self.read()
 
     def __reduce__(self) -> tuple[type, tuple]:
         try:

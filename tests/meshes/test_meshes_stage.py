@@ -77,6 +77,22 @@ def test_only_a_changed_file_is_prepared_again(start, tmp_path, monkeypatch):
     assert len(prepared) == 5 + 4
 
 
+def test_a_gltf_whose_buffer_changed_is_prepared_again(start, tmp_path):
+    for height, suffix in ((2, ""), (8, ".bin")):
+        for name, content in trimesh.Scene(trimesh.creation.box((1, height, 1))).export(file_type="gltf").items():
+            if name.endswith(suffix):
+                (tmp_path / "mine" / name).write_bytes(content)
+        manifest = read_table(start().data / "meshes/manifest.csv").set_index("object")
+        assert manifest["size"]["model"] == height
+
+
+def test_meshes_may_lie_below_data(start, tmp_path):
+    (tmp_path / "data").mkdir()
+    (tmp_path / "mine").rename(tmp_path / "data/mine")
+    workspace = start(folder=str(tmp_path / "data/mine"))
+    assert len(list((workspace.data / "meshes").glob("*.npz"))) == 3
+
+
 def test_strict_stops_at_the_first_refusal_and_keeps_the_earlier_result(start):
     workspace = start()
     for settings, words in (
