@@ -53,7 +53,7 @@ def run(argv: Sequence[str]) -> int:
             row = judged_again(workspace, claim, anew=True)
         print(json.dumps(row) if options.json else as_text(row))
         if claim.key not in committed.index:
-            changes.append(f"{claim.key}: not yet in reports/claims.csv; `dvc repro --single-item report` adds it")
+            changes.append(f"{claim.key}: not yet in reports/claims.csv; `make repro` adds it")
             continue
         reference = committed.loc[claim.key].to_dict()
         if not agree(row, reference, COMPARED[:1] if options.measure else COMPARED):

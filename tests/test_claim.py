@@ -74,7 +74,7 @@ def test_a_new_claim_is_judged_and_what_adds_it_is_named(clone, capsys):
     assert run(["fit_gaze"]) == 1
     captured = capsys.readouterr()
     assert "supported" in captured.out
-    assert captured.err == "claim: fit_gaze: not yet in reports/claims.csv; `dvc repro --single-item report` adds it\n"
+    assert captured.err == "claim: fit_gaze: not yet in reports/claims.csv; `make repro` adds it\n"
 
 
 @pytest.mark.parametrize(
