@@ -66,6 +66,17 @@ def test_rows_that_are_missing_are_named(clone, capsys):
     assert f"{file} is missing; `git checkout {file}`" in message
 
 
+@pytest.mark.slow
+def test_a_new_claim_is_judged_and_what_adds_it_is_named(clone, capsys):
+    file = Path("reports/claims.csv")
+    claims = rows_of(file)
+    claims[claims["key"] != "fit_gaze"].to_csv(file, index=False)
+    assert run(["fit_gaze"]) == 1
+    captured = capsys.readouterr()
+    assert "supported" in captured.out
+    assert captured.err == "claim: fit_gaze: not yet in reports/claims.csv; `make repro` adds it\n"
+
+
 @pytest.mark.parametrize(
     ("key", "text"),
     [

@@ -100,7 +100,8 @@ for method in ["thin_parts", "glance"]:
 #
 #    python -m stages.compose experiment=attention 'salient_points.methods=[glance,itti,thin_parts]' && dvc repro
 #
-# These are the rows that it would stand beside. A bar is a 95 % interval over the meshes.
+# These are the rows that it would stand beside; ``human`` is the truth itself. A bar is a 95 % interval over
+# the meshes.
 
 rows = pd.read_csv(sample().parents[1] / "reports/tables/attention_gaze.csv")
 rows = rows[(rows["metric"] == "nss") & ~rows["has_seen"].astype(bool)].sort_values("mean").tail(14)

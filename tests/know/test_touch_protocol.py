@@ -17,7 +17,7 @@ def noise(*shape):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"])
+@pytest.mark.parametrize("name", CLASSIFIERS)
 def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, name):
     rows = evaluate(bumps(count=24), name, 3)
     assert mean(rows, "random") > 0.8 and mean(rows, "folds") > 0.7
@@ -26,7 +26,7 @@ def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, n
 
 
 def test_classifiers_are_the_thesis_s_behind_twelve_components():
-    assert set(CLASSIFIERS) == {"knn", "svm", "decision_tree", "naive_bayes", "deep_learning"}
+    assert set(CLASSIFIERS) >= {"knn", "svm", "decision_tree", "naive_bayes", "deep_learning"}
     assert classifier("deep_learning", 5)[-1].get_params() == {"hidden": (50, 50), "epochs": 10, "seed": 5}
     assert classifier("knn")[-2].n_components == 12
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.look.points.methods import PUBLISHED
 from haptic_glance.look.rivals import (
     corners,
     harris,
@@ -46,6 +47,7 @@ HELD = [
     Held(song, 1e-4, samples=300, turns=False),
     Held(tasse, 1e-6, most=1 + 1e-12),
 ]
+HELD += [Held(rival, 1e-6) for rival in PUBLISHED.values() if rival not in [held.rival for held in HELD]]
 
 
 @pytest.fixture(scope="module", params=HELD, ids=lambda held: held.rival.__name__.rpartition(".")[2])

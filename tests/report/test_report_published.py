@@ -25,7 +25,7 @@ FROM_DATA = {  # items that need what stages leave in data/
 }  # fmt: skip
 RECORDED = ("files", "rows", "objects", "methods", "sizes")  # of a record, what follows from the rows alone
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
-REMEDY = "where this change is wanted, `dvc repro --single-item report` writes it anew"
+REMEDY = "where this change is wanted, `make repro` writes it anew"
 
 
 @pytest.fixture(scope="module", autouse=True)

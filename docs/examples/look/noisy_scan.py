@@ -4,6 +4,8 @@ Points found again under noise
 
 A scanner moves every vertex a little. Repeatability is the share of points that are found again within 2 % of the
 diagonal. :doc:`/concepts/stability` has the same on many objects, with intervals.
+
+Needs a clone and ``pip install '.[pipeline]'``.
 """
 
 import matplotlib.pyplot as plt
