@@ -21,6 +21,7 @@ from haptic_glance.lod.pictures import coloured
 from haptic_glance.lod.task import repaired
 from haptic_glance.mesh.axes import AUTO, AXES, Axis, axis_named
 from haptic_glance.mesh.files import WITH_UP, MeshLike, as_mesh, as_stated, with_known_up
+from haptic_glance.mesh.headers import MeshError
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius, rotate_to_z_up
 from haptic_glance.touch.skin import METRES, Layer, Metres, length
@@ -247,7 +248,7 @@ def load(path: str | Path, up: Axis | None = None) -> Mesh:
 def simplify(
     mesh: Mesh, faces: int | float | str, keep: Sequence[int] | np.ndarray | None = None, rings: Any = 3,
     backend: str = "fast", shrink: bool = False, weights: np.ndarray | None = None, attributes: Any = None,
-    free_borders: bool | np.ndarray | None = None,
+    free_borders: bool | Sequence[bool] | np.ndarray | None = None,
 ) -> Mesh:  # fmt: skip
     """Simplifies a mesh, with chosen neighbourhoods kept or with more detail where weights are high.
 
@@ -308,21 +309,18 @@ def simplify(
     target = str(faces)
     keep = None if keep is None else np.atleast_1d(keep)
     if isinstance(faces, float | np.floating) and 0 < faces <= 1:
-        target = f"{100 * float(target):.12g}%" if faces < 1 else str(len(mesh.faces))
+        target = f"{100 * float(target):.12f}%" if faces < 1 else str(len(mesh.faces))
     count = face_count(target, len(mesh.faces), "faces")
     arguments = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
     borders = [False if free_borders is None else free_borders]
     if free_borders is None and not attributes and backend != "pymeshlab":
         borders.append(True)
     failures = []
-    # vertex by vertex, which repairs would renumber
-    has_border_ids = isinstance(free_borders, np.ndarray) and free_borders.ndim > 0
-    for whole, settings in [(mesh, arguments)] if has_border_ids else _as_given_and_mended(mesh, arguments):
-        for free in borders:
-            try:
-                return _around_folds(work, whole, count, free_borders=free, **settings)
-            except (InfeasibleTarget, SimplifyError) as error:
-                failures.append(error)
+    for whole, settings, free in _attempts(mesh, arguments, borders):
+        try:
+            return _around_folds(work, whole, count, free_borders=free, **settings)
+        except (InfeasibleTarget, SimplifyError) as error:
+            failures.append(error)
     if len(borders) > 1 and keep is None:
         with suppress(InfeasibleTarget, SimplifyError):
             return work(whole, count, free_borders=True, below=True, **settings)
@@ -341,17 +339,31 @@ def _around_folds(work: Callable[..., Mesh], mesh: Mesh, count: int, **options: 
         raise
 
 
-def _as_given_and_mended(mesh: Mesh, arguments: dict[str, Any]) -> Iterator[tuple[Mesh, dict[str, Any]]]:
-    """The mesh and its arguments, then those of the mesh repaired, where that differs and its vertices can be named."""
-    yield mesh, arguments
-    if not np.ndim(arguments["rings"]) and (mended := repair(mesh)) != mesh:
+def _attempts(
+    mesh: Mesh, arguments: dict[str, Any], borders: Sequence[Any]
+) -> Iterator[tuple[Mesh, dict[str, Any], Any]]:
+    """(mesh, arguments, borders that may move): the mesh as given; repaired, where that differs; its borders free.
+
+    A repair closes seams, which free borders would tear open. It renumbers vertices: not where borders or rings are
+    given one by one.
+    """
+    yield mesh, arguments, borders[0]
+    mended = mesh
+    if not np.ndim(borders[0]) and not np.ndim(arguments["rings"]):
+        with suppress(MeshError):  # says nothing of the count
+            mended = repair(mesh)
+    uncounted = mended.colors is None and "colors" in (arguments["attributes"] or ())  # they became a texture
+    if mended != mesh and not uncounted:
         nearest = KDTree(mesh.vertices).query(mended.vertices)[1]
         weights, keep = arguments["weights"], arguments["keep"]
         if weights is not None:
             weights = np.asarray(weights)[nearest]
         if keep is not None:
             keep = KDTree(mended.vertices).query(mesh.vertices[np.asarray(keep, dtype=np.int64)])[1]
-        yield mended, arguments | {"weights": weights, "keep": keep}
+        mesh, arguments = mended, arguments | {"weights": weights, "keep": keep}
+        yield mesh, arguments, borders[0]
+    for free in borders[1:]:
+        yield mesh, arguments, free
 
 
 def repair(mesh: MeshLike) -> Mesh:

@@ -342,6 +342,44 @@ def test_a_triangle_soup_and_an_open_patch_are_simplified(body):
     assert len(simplify(patch, error.value.smallest, free_borders=False).faces) <= error.value.smallest
 
 
+def _torus(turn):
+    """A torus of a grid whose last row and column repeat the first; turn: the angle of the last ones."""
+    angles = np.append(np.linspace(0, 2 * np.pi, 25)[:-1], turn)
+    a, b = (angle.ravel() for angle in np.meshgrid(angles, angles, indexing="ij"))
+    around = 0.5 + 0.2 * np.cos(b)
+    return Mesh(np.stack([around * np.cos(a), around * np.sin(a), 0.2 * np.sin(b)], axis=1), flat_grid(25, 25).faces)
+
+
+@pytest.mark.parametrize("turn", [0.0, 2 * np.pi])
+def test_a_seam_is_closed_before_borders_are_freed_though_its_sides_differ_by_rounding(turn):
+    mesh = _torus(turn)
+    assert not mesh.watertight
+    small = simplify(mesh, "15%")
+    assert small.watertight and len(small.faces) <= 0.15 * len(mesh.faces)
+
+
+def test_a_mesh_that_cannot_be_repaired_and_colours_that_a_repair_makes_a_texture_give_the_feasible_count(body):
+    wire = Mesh(Mesh(*body).vertices * [1, 1e-6, 1e-6], body[1])
+    with pytest.raises(haptic_glance.InfeasibleTarget):
+        simplify(wire, 2)
+    vertices, faces = body
+    colors = np.repeat(np.arange(len(faces)) % 256, 9).reshape(-1, 3).astype(np.uint8)
+    soup = Mesh(vertices[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3), colors)
+    with pytest.raises(haptic_glance.InfeasibleTarget):
+        simplify(soup, "25%", attributes={"colors": 1.0})
+    with pytest.raises(ValueError, match="no colors of vertices: weigh those of its texture by uv"):
+        simplify(haptic_glance.repair(soup), "25%", attributes={"colors": 1.0})
+
+
+def test_any_share_is_a_count_and_borders_may_be_a_list(body):
+    patch = _sheet()
+    with pytest.raises(haptic_glance.InfeasibleTarget, match="a count of 1 faces"):
+        simplify(Mesh(*body), 1e-7)
+    soup = Mesh(patch.vertices[patch.faces].reshape(-1, 3), np.arange(3 * len(patch.faces)).reshape(-1, 3))
+    with pytest.raises(haptic_glance.InfeasibleTarget):
+        simplify(soup, "25%", free_borders=[True] * len(soup.vertices))
+
+
 def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch):
     import haptic_glance.lod
 

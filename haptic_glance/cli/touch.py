@@ -165,7 +165,8 @@ def parse_values(option: str, kind: type, text: str | None) -> dict[str, Any]:
         try:
             values[name] = float(value)
         except ValueError:
-            raise ValueError(f"{option} {part}: {value!r} is not a number") from None
+            unit = f" of {LAYER_UNITS[name]}" if kind is Layer and name in LAYER_UNITS else ""
+            raise ValueError(f"{option} {part}: {value!r} is not a number{unit}") from None
     return values
 
 
@@ -224,7 +225,8 @@ def run(argv: list[str]) -> None:
     images = make_images(raw, options, user_mesh.name)
     if (raw == raw.max(axis=(1, 2), keepdims=True)).all():
         report("every imprint is flat: the array is small compared with the shape, or touches nothing")
-    forces = press_load(user_mesh, places.positions, axes, options)
+    with about(options.mesh):
+        forces = press_load(user_mesh, places.positions, axes, options)
     rows = places_rows(user_mesh, places, raw)
     if len(forces):
         stiffness = options.layer.stiffness * (options.pitch * user_mesh.unit * options.metres) ** 2

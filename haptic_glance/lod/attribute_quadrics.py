@@ -27,7 +27,9 @@ def check_attributes(mesh: Mesh, weights: Mapping[str, float] | None) -> Attribu
         if not 0 <= weight < np.inf:
             raise ValueError(f"the weight of {name} must be 0 or more, got {weight}")
         if weight and is_absent.get(name):
-            raise ValueError(f"the mesh has no {name}: leave out their weight")
+            painted = name == "colors" and mesh.texture is not None  # as faces of one colour each are, once repaired
+            remedy = "weigh those of its texture by uv" if painted else "leave out their weight"
+            raise ValueError(f"the mesh has no {name}{' of vertices' if painted else ''}: {remedy}")
     return tuple(sorted((name, float(weight)) for name, weight in attributes.items() if weight))
 
 

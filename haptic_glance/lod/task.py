@@ -160,6 +160,9 @@ def _unpaired_edges(faces, opposite):
     return np.unique(np.sort(ends, axis=1), axis=0)
 
 
+SAME = 1e-9  # of the diagonal: closer vertices coincide; a circle's last point is 1e-16 away from its first
+
+
 def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
     """(Mesh, notes): `haptic_glance.mesh.repair` of the mesh, coincident vertices merged where that closes the
     boundary.
@@ -170,7 +173,7 @@ def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
     cleaned, notes = clean(mesh)
     if (half_edges(cleaned.faces)[1] >= 0).all():
         return cleaned, notes
-    first, ids = merge_equal_rows(mesh.vertices)
+    first, ids = merge_equal_rows(np.rint(mesh.vertices / (SAME * mesh.diagonal)))
     joint_mesh = replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=None)
     joint_mesh, blended = _coloured(joint_mesh, mesh, first, ids)
     joint_mesh, remarks = clean(joint_mesh)

@@ -243,7 +243,8 @@ def test_place_behind_another_part_is_out_of_sight():
         (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 90mm is larger .* is --unit mm right"),
         (["--at", "0", "--depth", "0mm", "--unit", "mm"], "--depth 0: give a positive length"),
         (["--at", "0", "--load", "1", "--unit", "m", "--layer", "modulus=0"], "layer: modulus must be above 0"),
-        (["--at", "0", "--load", "9e9", "--unit", "mm"], "--load 9e.09: place 1 needs more than the layer's"),
+        (["--at", "0", "--load", "1", "--unit", "m", "--layer", "thickness=2mm"], "'2mm' is not a number of metres"),
+        (["--at", "0", "--load", "9e9", "--unit", "mm"], r"ball.ply: --load 9e.09: place 1 needs more than the"),
     ],
 )
 def test_what_a_person_gets_wrong_is_named_with_its_remedy(options, words, file, tmp_path):
