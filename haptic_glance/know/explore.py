@@ -88,8 +88,8 @@ def by_gain(state: State) -> np.ndarray:
     training touches of c near the place.
     """
     belief = np.exp(state.calibration.log_belief(state.log_likelihoods, max(state.touches, 1)))
-    scores = np.empty(state.predicted.shape[:2])
-    for place in range(scores.shape[1]):  # all places at once would need the memory of `predicted` four times more
+    scores = np.empty(state.random_scores.shape)
+    for place in range(len(scores[0])):  # all places at once would need the memory of `predicted` four times more
         likelihoods = state.log_likelihoods[:, None, None] + state.predicted[:, place]
         log_after = state.calibration.log_belief(likelihoods, state.touches + 1)
         entropy = -np.einsum("ecoj,ecoj->eco", np.exp(log_after), log_after)
