@@ -147,7 +147,7 @@ def prepare(argv: Sequence[str]) -> None:
     options = dict(word.split("=", 1) for word in argv if is_override(word) and not word.startswith("hydra"))
     unused = composed([]).keys() - {*SECTIONS, "profile", "seed"}
     for key, values in options.items():
-        if key.lstrip("+~").partition(".")[0] in unused and key != "meshes.folder":  # which data=folder asks for
+        if key.lstrip("+~").partition(".")[0] in unused:
             raise ParamsError(f"{key} does not change a sweep: its jobs read {', '.join(SECTIONS)} and seed")
         for value in split_values(values):
             values_of = composed([quoted(f"{key}={value}")])

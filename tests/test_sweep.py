@@ -101,7 +101,9 @@ def root(params, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("setting", ["lod.rings=two", "sets=[household_four]", "+meshes.unit=mm"])
+@pytest.mark.parametrize(
+    "setting", ["lod.rings=two", "sets=[household_four]", "+meshes.unit=mm", "meshes.folder=/scans"]
+)
 def test_a_setting_that_no_job_reads_is_refused(root, setting):
     name = setting.partition("=")[0]
     with pytest.raises(ParamsError, match=rf"^{re.escape(name)} does not change a sweep: its jobs read salient_points"):
@@ -173,14 +175,14 @@ def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):
 
 @pytest.mark.slow
 def test_a_path_with_a_blank_and_an_accent_reaches_the_jobs(root, monkeypatch):
-    words = ["sweep", "-m", "data=household_four", "meshes.folder=/my scans/Möbel (alt)", "classifier=knn,svm"]
+    words = ["sweep", "-m", "data=household_four", "hydra.sweep.dir=/my scans/Möbel (alt)", "classifier=knn,svm"]
     arguments = []
     monkeypatch.setattr(sweep.sys, "argv", words)
     monkeypatch.setattr(sweep, "check_clone", lambda: None)
     monkeypatch.setattr(sweep, "job", lambda: arguments.extend(sweep.sys.argv))
     monkeypatch.setattr(sweep, "errors_in_one_line", lambda name: None)
     sweep.main()
-    assert arguments == [*words[:3], 'meshes.folder="/my scans/Möbel (alt)"', words[4]]
+    assert arguments == [*words[:3], 'hydra.sweep.dir="/my scans/Möbel (alt)"', words[4]]
 
 
 @pytest.mark.slow
