@@ -156,6 +156,11 @@ def test_an_object_of_ones_own_with_a_published_name_is_compared_with_no_row_of_
     assert [*bench.with_own_names(objects, frame_of(rows))] == ["first", "second (yours)", "third"]
 
 
+def test_a_function_that_learns_is_told_of_train(file, toys):
+    with pytest.raises(ValueError, match="not iterable; a function that learns needs --train"):
+        bench.run([f"{file}:counts"])
+
+
 def test_a_function_that_is_no_saliency_is_named(file, toys):
     with pytest.raises(ValueError, match="failed on every object.*saliency must have shape"):
         bench.run([f"{file}:positions"])

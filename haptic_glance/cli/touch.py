@@ -262,7 +262,8 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     """The UserMesh of the file; reports its size and that of the array."""
     report(f"reading {options.mesh.name}")
     user_mesh, notes = read_user_mesh(options.mesh, options.up)
-    report("; ".join([f"{len(user_mesh.mesh.faces):,} faces", *notes]))
+    count = len(user_mesh.mesh.faces)
+    report("; ".join([f"{count:,} face{'s' * (count != 1)}", *notes]))
     lengths_in_units(options, user_mesh.unit)
     if wrong := misfit(options.cells, options.pitch):
         report(wrong)

@@ -185,6 +185,9 @@ def _numbers(path, line, row, delimiter):
     try:
         if None in row:
             raise ValueError("more values than columns")
-        return [float(row[name] if delimiter == "," else row[name].replace(",", ".")) for name in COLUMNS]
+        values = [float(row[name] if delimiter == "," else row[name].replace(",", ".")) for name in COLUMNS]
+        if not np.isfinite(values).all():
+            raise ValueError("NaN or infinite")
+        return values
     except (AttributeError, TypeError, ValueError):
         raise ValueError(f"{path}: line {line} has a taxel that is not seven numbers: {','.join(COLUMNS)}") from None

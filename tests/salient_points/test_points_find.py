@@ -226,6 +226,8 @@ def test_a_viewpoint_comes_back_from_its_name():
         (lambda mesh: find_points(mesh, "itti", weights="equal"), "'itti' has no weights"),
         (lambda mesh: saliency(mesh, "guided_ssim"), "needs weights that the stage `weights` learns"),
         (lambda mesh: saliency(mesh, "glance", weights={"shine": 1.0}), "no feature shine"),
+        (lambda mesh: saliency(mesh, "guided_ssim", weights=[1, 2]), "must be a dict of channels"),
+        (lambda mesh: saliency(mesh, "guided_ssim", weights={"color": "much"}), "weights as numbers"),
         (lambda mesh: saliency(mesh, "svm", weights="equal"), "run the pipeline for it"),
         (lambda mesh: saliency(mesh, "itti", viewpoints=[]), "no viewpoints"),
         (lambda mesh: saliency(mesh, "height", viewpoints=[]), "no viewpoints"),

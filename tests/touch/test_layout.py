@@ -141,7 +141,7 @@ def test_tables_of_spreadsheets_in_any_language_are_read(tmp_path, separator, en
         (HEAD + ROW + "0,1,0,0,0,-1,\n", "layout.csv: line 3 has a taxel that is not seven numbers"),
         (HEAD + ROW.strip() + ",7\n", "line 2 has a taxel that is not seven numbers"),
         (HEAD + "0,1,0\n", "line 2 has a taxel that is not seven numbers"),
-        (HEAD + "0,nan,0,0,0,-1,1\n", "positions must be finite"),
+        (HEAD + "0,nan,0,0,0,-1,1\n", "line 2 has a taxel that is not seven numbers"),
         (HEAD + ROW + "0,1,0,0,0,-1,0\n", "taxel 2 has an area of 0"),
         (HEAD + "0,1,0,0,0,0,1\n", "taxel 1 has a normal without length"),
         (HEAD + "0,1,0,0,0,1,1\n", "no taxel faces the object; normals point out of the sensor"),

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -291,9 +292,11 @@ def _learned(method, weights):
         return learned
     if required is None:
         raise ValueError(f"method {method!r} has no weights")
-    return LearnedWeights(
-        learned.weights | {required: published(weights) if isinstance(weights, str) else dict(weights)}
-    )
+    if isinstance(weights, str):
+        return LearnedWeights(learned.weights | {required: published(weights)})
+    if not isinstance(weights, Mapping) or not all(isinstance(weight, Real) for weight in weights.values()):
+        raise ValueError(f"weights must be a dict of channels and their weights as numbers, got {weights!r}")
+    return LearnedWeights(learned.weights | {required: dict(weights)})
 
 
 HELP = (
