@@ -49,8 +49,8 @@ def commands() -> list[Command]:
     written = {row["key"]: row for row in rows_of(REPORTS / "claims.csv").to_dict("records")}
     by_text: dict[str, Command] = {}
     for claim in CLAIMS:
-        if claim.key not in written or not (sets := sets_of(claim)):
-            continue
+        if written.get(claim.key, {"pairs": "0"})["pairs"] == "0" or not (sets := sets_of(claim)):
+            continue  # nothing was measured
         text = command_for(sets[0], claim.stage)
         command = by_text.setdefault(text, Command(text))
         command.claims.append(written[claim.key])
