@@ -342,18 +342,18 @@ def _around_folds(work: Callable[..., Mesh], mesh: Mesh, count: int, **options: 
 def _attempts(
     mesh: Mesh, arguments: dict[str, Any], borders: Sequence[Any]
 ) -> Iterator[tuple[Mesh, dict[str, Any], Any]]:
-    """(mesh, arguments, borders that may move): the mesh as given; repaired, where that differs; its borders free.
+    """(mesh, arguments, borders that may move) of each attempt: the mesh as given, repaired, and with free borders.
 
-    A repair closes seams, which free borders would tear open. It renumbers vertices: not where borders or rings are
-    given one by one.
+    The repair comes before the free borders, since it closes seams, which free borders would tear open. A mesh is not
+    repaired where borders or rings are given vertex by vertex, since the repair renumbers vertices.
     """
     yield mesh, arguments, borders[0]
     mended = mesh
     if not np.ndim(borders[0]) and not np.ndim(arguments["rings"]):
-        with suppress(MeshError):  # says nothing of the count
+        with suppress(MeshError):  # the errors of the other attempts say which count is feasible
             mended = repair(mesh)
-    uncounted = mended.colors is None and "colors" in (arguments["attributes"] or ())  # they became a texture
-    if mended != mesh and not uncounted:
+    loses_colors = mended.colors is None and "colors" in (arguments["attributes"] or ())  # they became a texture
+    if mended != mesh and not loses_colors:
         nearest = KDTree(mesh.vertices).query(mended.vertices)[1]
         weights, keep = arguments["weights"], arguments["keep"]
         if weights is not None:
