@@ -17,6 +17,7 @@ from .section import MeshCutter, SectionCurve
 from .surface import CANCELLED, Surface, as_surface
 
 COLLINEAR = 1e-4  # sine of the angle between the two points, seen from the centre; below it rounding decides the plane
+STRAIGHT = 1e-6  # of the squared length: around a curve that encloses less, rounding would decide the direction
 LENGTH_TIE = 1e-6  # of the length: of curves that differ by less the one nearest to the first point is followed
 KNOT_TOLERANCE = 1e-9  # of the length: a place this near a knot is at it and continues along the segment ahead
 MIN_HEADING = (
@@ -68,7 +69,10 @@ def followed_curve(cutter: MeshCutter, plane_points: np.ndarray) -> tuple[Sectio
         raise ValueError(f"the plane through {_text(centre)}, {_text(first)} and {_text(second)} misses the mesh")
     longest = [curve for curve in curves if curve.length >= (1 - LENGTH_TIE) * curves[0].length]
     curve = min(longest, key=lambda candidate: _nearest(candidate, first)[1])
-    return curve if _area(curve.points, normal) >= 0 else curve.backwards(), curves, normal
+    turn = _area(curve.points, normal)
+    if abs(turn) <= STRAIGHT * curve.length**2:  # as on a flat sheet
+        turn = (curve.points[-1] - curve.points[0]) @ (second - first)
+    return curve if turn >= 0 else curve.backwards(), curves, normal
 
 
 def _normal(centre, first, second):
@@ -210,11 +214,12 @@ def follow(
 
     The thesis gives neither start nor direction. Here the start is the contour's point nearest to the second of the
     plane points (the first after the centre). The direction is counter-clockwise about the plane's normal, (second -
-    centre) x (third - centre), so towards the third by the shorter way. A place on a contour is not a vertex: the
-    array's normal is the mean of the unit normals of the faces that the contour crosses within one pitch before and
-    behind, weighted by the length crossed (along an edge in the plane, of the mean of its faces), as T4.3.1 averages
-    the faces around a vertex. Interpolation between the averages at the vertices would tilt the array on the large
-    faces of flat sides, in their middle by tens of degrees.
+    centre) x (third - centre), so towards the third by the shorter way. A straight contour, as on a flat sheet, leads
+    from the second towards the third. A place on a contour is not a vertex: the array's normal is the mean of the unit
+    normals of the faces that the contour crosses within one pitch before and behind, weighted by the length crossed
+    (along an edge in the plane, of the mean of its faces), as T4.3.1 averages the faces around a vertex. Interpolation
+    between the averages at the vertices would tilt the array on the large faces of flat sides, in their middle by tens
+    of degrees.
 
     Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
     keeps its heading. So a rotation of the object does not change a sequence, if the pitch stays the same (a share of

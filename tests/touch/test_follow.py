@@ -104,6 +104,16 @@ def test_the_contour_is_that_of_the_sequence_in_its_direction():
     assert turn.sum(axis=0) @ np.cross(UPRIGHT[1], UPRIGHT[2]) > 0
 
 
+def test_a_straight_contour_leads_from_the_first_point_to_the_second():
+    sheet = mesh_of(trimesh.creation.box((0.8, 0.6, 0.2)))
+    top = (sheet.vertices[sheet.faces][:, :, 2] > 0).all(axis=1)
+    points = np.array([[0, 0, 0.1], [0.3, 0.1, 0.1], [-0.2, -0.05, 0.3]])
+    for turn in Rotation.random(20, random_state=0).as_matrix():
+        flat = Mesh(sheet.vertices @ turn.T, sheet.faces[top])
+        line = contour(flat, points @ turn.T).points @ turn
+        assert (line[-1] - line[0]) @ (points[2] - points[1]) > 0
+
+
 def test_the_array_shrinks_inside_a_narrow_ring():
     inside = follow(CUP, [ORIGIN, [0.3, 0, 0.1], [0, 0, 0.2]], pitch=0.03)
     assert inside.pitches.min() < 0.03 == inside.pitches.max()
