@@ -215,7 +215,7 @@ def check_names(meshes: object) -> None:
     """Raises TypeError for meshes that are no mapping, and for names that are no texts."""
     if not isinstance(meshes, Mapping):
         raise TypeError(f"meshes must be a mapping from names to meshes, got {type(meshes).__name__}")
-    if wrong := [name for name in meshes if not isinstance(name, str)]:
+    if wrong := [name for name in meshes if not (isinstance(name, str) and name)]:
         raise TypeError(f"meshes must have texts as names, got {wrong[0]!r}")
 
 
