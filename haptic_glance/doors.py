@@ -142,6 +142,8 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
             surface = next(iter(values.values()))
             whole = getattr(surface, "mesh", surface)
             if "layout" in values:
+                if not hasattr(values["layout"], "cosines"):
+                    raise TypeError(f"layout must be a Layout, as read_layout gives it, got {values['layout']!r}")
                 pitch = max(np.ptp(values["layout"].positions, axis=0).max(), np.sqrt(values["layout"].areas.max()))
                 _warn_of_units(whole, values["layer"], (1, 1), float(pitch), unit, "layout")
             else:

@@ -235,9 +235,11 @@ def test_functions_travel_to_other_processes(name):
     assert pickle.loads(pickle.dumps(getattr(haptic_glance, name))) is getattr(haptic_glance, name)
 
 
-def test_a_layer_that_is_none_is_named(body):
+def test_a_layer_or_a_layout_that_is_none_is_named(body):
     with pytest.raises(TypeError, match=r"layer must be a Layer .*got 0\.002"):
         haptic_glance.press_forces(Mesh(*body), [[0, 0, 0]], [np.eye(3)], 0.002, load=1)
+    with pytest.raises(TypeError, match="layout must be a Layout, as read_layout gives it, got 'tip.csv'"):
+        haptic_glance.layout_forces(Mesh(*body), [[0, 0, 0]], [np.eye(3)], haptic_glance.Layer(), "tip.csv", load=1)
 
 
 def test_values_that_colour_a_mesh_are_one_per_vertex_and_finite(body):

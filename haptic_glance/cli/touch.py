@@ -9,7 +9,8 @@ positions, given and written, are in the file's coordinates. Writes into the fol
   places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
 imprints.png needs the extra `pictures`; the others are written without it.
 With --load a rigid array is pressed from above. Then imprints.npz also has forces (k, rows, cols) in newtons, and
-places.csv has the highest force of each place and the depth of the indentation of the layer, in metres.
+places.csv has the highest force of each place and the depth of the indentation of the layer, in metres. --skin
+does not change forces.
 
 examples:
   haptic-glance touch bunny.stl --at salient

@@ -39,7 +39,7 @@ from .belief import (
 )
 from .components import Components
 from .explore import State, by_gain
-from .features import features
+from .features import FEATURES, features
 
 SURE = 0.95  # belief in one object at which it is known
 
@@ -63,7 +63,7 @@ class Belief:
         if place.shape != (3,) or not np.isfinite(place).all():
             raise ValueError(f"a touch needs a position of three finite numbers, got {position}")
         self.library.check_near(place)
-        evidence = self.library.log_likelihoods(as_shares(np.asarray(image))[None], place[None])[0]
+        evidence = self.library.log_likelihoods(np.asarray(image)[None], place[None])[0]
         return Belief(self.library, self.log_likelihoods + evidence, self.touches + 1)
 
     @cached_property
@@ -215,7 +215,7 @@ def check_names(meshes: object) -> None:
     """Raises TypeError for meshes that are no mapping, and for names that are no texts."""
     if not isinstance(meshes, Mapping):
         raise TypeError(f"meshes must be a mapping from names to meshes, got {type(meshes).__name__}")
-    if wrong := [name for name in meshes if not isinstance(name, str)]:
+    if wrong := [name for name in meshes if not (isinstance(name, str) and name)]:
         raise TypeError(f"meshes must have texts as names, got {wrong[0]!r}")
 
 
@@ -249,7 +249,7 @@ class Library:
     names : tuple of str
         Names of the objects.
     samples : (classes, touches, 41) array of float
-        Features of their touches.
+        Features of their touches, by `features` of imprints in 0..1.
     positions : (classes, touches, 3) array of float
         Places of the touches, in units of the normalised mesh.
     placed : bool
@@ -264,7 +264,7 @@ class Library:
     Raises
     ------
     ValueError
-        For equal names, and for samples and positions that are not finite or do not fit them.
+        For equal names, for samples and positions that are not finite or do not fit them, and for features of bytes.
 
     Notes
     -----
@@ -278,6 +278,7 @@ class Library:
         skin: Skin | None = None, turned: bool = False,
     ) -> None:  # fmt: skip
         self.names, self.placed, self.skin, self.turned = names, placed, skin, turned
+        samples, positions = np.asarray(samples), np.asarray(positions)
         _check_samples(names, samples, positions)
         classes, self._touches = samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._touches)
@@ -302,12 +303,14 @@ class Library:
     def log_likelihoods(self, images: np.ndarray, positions: np.ndarray) -> np.ndarray:
         """(k, classes) log likelihoods of imprints (k, *CELLS) at positions (k, 3) under each object, to a constant.
 
+        images: bytes, or numbers in 0..1; ValueError for others.
         If the objects are `placed`, a touch counts less the farther it is from all learned touches: there none of them
         says what an object feels like.
         """
         if np.shape(images)[1:] != CELLS:
             raise ValueError(f"this library was learned with {CELLS} cells, the imprints have {np.shape(images)[1:]}")
-        kernel = feature_kernel(self._reduction.transform(features(images)), self._components)
+        samples = features(as_shares(np.asarray(images)))
+        kernel = feature_kernel(self._reduction.transform(samples), self._components)
         positions = np.asarray(positions)
         evidence = self._log_likelihood(kernel, positions, np.arange(len(self._owners)))
         if not self.placed:
@@ -379,15 +382,19 @@ class Library:
 def _check_samples(names, samples, positions):
     if repeated := [name for name in dict.fromkeys(names) if names.count(name) > 1]:
         raise ValueError(f"names must differ, {repeated[0]!r} occurs twice")
-    if samples.ndim != 3 or len(samples) != len(names) or positions.shape != (*samples.shape[:2], 3):
+    shapes = (len(names), *samples.shape[1:2])
+    if not all(shapes) or samples.shape != (*shapes, len(FEATURES)) or positions.shape != (*shapes, 3):
         raise ValueError(
-            f"samples and positions must have shapes (classes, touches, features) and (classes, touches, 3) with "
-            f"{len(names)} classes, one per name, got {samples.shape} and {positions.shape}"
+            f"samples and positions must have shapes (classes, touches, {len(FEATURES)}) and (classes, touches, 3) "
+            f"with {len(names)} classes, one per name, got {samples.shape} and {positions.shape}"
         )
     for kind, values in (("samples", samples), ("positions", positions)):
         if len(wrong := np.argwhere(~np.isfinite(values))):
             raise ValueError(f"{kind} must be finite, got {values[tuple(wrong[0])]} in touch {wrong[0][1]} of "
                              f"{names[wrong[0][0]]}")  # fmt: skip
+    if len(wrong := np.argwhere(samples[..., FEATURES.index("max")] > 1)):
+        raise ValueError(f"samples must be features of imprints in 0..1, those of {names[wrong[0][0]]} are of larger "
+                         "numbers: divide bytes by 255")  # fmt: skip
 
 
 class _Named:

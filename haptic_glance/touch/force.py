@@ -55,6 +55,11 @@ def press_forces(
     ValueError
         As `forces` does, and for invalid arrays.
 
+    Notes
+    -----
+    The array starts above the place at a height of its longer side, as in `gaps_at`, and presses on the first surface
+    in its way. For a place in a hole narrower than the array, this is another wall, and the least gap is far below 0.
+
     Examples
     --------
     >>> import numpy as np, trimesh

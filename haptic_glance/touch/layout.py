@@ -97,7 +97,7 @@ def read_layout(path: str | Path) -> Layout:
     Raises
     ------
     ValueError
-        For a missing column or a value that is no number.
+        For a missing or repeated column, and for a value that is no number.
     """
     text = text_of(Path(path).read_bytes())
     header = text.partition("\n")[0]
@@ -106,6 +106,8 @@ def read_layout(path: str | Path) -> Layout:
     names = [name.strip().lower() for name in reader.fieldnames or ()]
     if absent_columns := [name for name in COLUMNS if name not in names]:
         raise ValueError(f"{path}: no column {', '.join(absent_columns)}; a layout has {','.join(COLUMNS)}")
+    if repeated := [name for name in COLUMNS if names.count(name) > 1]:
+        raise ValueError(f"{path}: column {repeated[0]} occurs twice; remove one")
     reader.fieldnames = names
     rows = [_numbers(path, reader.line_num, row, delimiter) for row in reader]
     table = np.array(rows).reshape(len(rows), len(COLUMNS))

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from haptic_glance.base.rng import rng
 from haptic_glance.know import CLASSIFIERS, classifier, features
-from haptic_glance.know.classifiers import SCALINGS, TRAINING, TWICE
+from haptic_glance.know.classifiers import COMPONENTS, SCALINGS, TRAINING, TWICE
 from haptic_glance.know.features import as_many, confusable, similarity
 from haptic_glance.know.protocol import FOLDS, MIN_IMPRINTS, Prepared
 from haptic_glance.know.split import Split
@@ -155,6 +155,10 @@ def _split_rows(
         train, test = draw(labels, number)
         if selected:
             train = train[~confusable(touches.alike[np.ix_(train, train)], labels[train])]
+            if len(train) < COMPONENTS or len(set(labels[train])) < 2:
+                note = f"{len(train)} touches to train on, {COMPONENTS} of two classes are needed"
+                yield {"split": split, "metric": "accuracy", "note": note}
+                continue
         validity = split == Split.RANDOM and method == "all"
         is_wide = split == Split.RANDOM or (class_set.group == "all" and method in ("all", UNREDUCED))
         for scaling in scalings if is_wide else (TRAINING,):

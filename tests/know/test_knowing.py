@@ -181,8 +181,9 @@ def test_arguments_of_the_wrong_kind_are_named(library, shapes):
         Exploration(library, ball, 0)
     with pytest.raises(TypeError, match="meshes must be a mapping from names to meshes, got list"):
         learn([ball, box])
-    with pytest.raises(TypeError, match="meshes must have texts as names, got 1"):
-        learn({1: ball, "box": box})
+    for name in (1, ""):  # an empty name says of an exploration that nothing is known
+        with pytest.raises(TypeError, match=f"meshes must have texts as names, got {name!r}"):
+            learn({name: ball, "box": box})
 
 
 def test_what_cannot_be_learned_or_felt_is_named(library, shapes):
@@ -263,20 +264,25 @@ def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
 @pytest.mark.parametrize(
     ("names", "samples", "positions", "words"),
     [
-        (("a", "a"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), "names must differ, 'a' occurs twice"),
-        (("a", "b", "c"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), r"with 3 classes, .* got \(2, 9, 4\)"),
-        (("a", "b"), np.zeros((2, 9, 4)), np.zeros((2, 8, 3)), r"got \(2, 9, 4\) and \(2, 8, 3\)"),
-        (
-            ("a", "b"),
-            np.full((2, 9, 4), np.nan),
-            np.zeros((2, 9, 3)),
-            "samples must be finite, got nan in touch 0",
-        ),
+        (("a", "a"), np.zeros((2, 9, 41)), np.zeros((2, 9, 3)), "names must differ, 'a' occurs twice"),
+        (("a", "b", "c"), np.zeros((2, 9, 41)), np.zeros((2, 9, 3)), r"with 3 classes, .* got \(2, 9, 41\)"),
+        (("a", "b"), np.zeros((2, 9, 41)), np.zeros((2, 8, 3)), r"got \(2, 9, 41\) and \(2, 8, 3\)"),
+        (("a", "b"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), r"\(classes, touches, 41\) .* got \(2, 9, 4\)"),
+        (("a", "b"), np.zeros((2, 0, 41)), np.zeros((2, 0, 3)), r"got \(2, 0\) and"),
+        (("a", "b"), np.full((2, 9, 41), np.nan), np.zeros((2, 9, 3)), "samples must be finite, got nan in touch 0"),
+        (("a", "b"), np.full((2, 9, 41), 255), np.zeros((2, 9, 3)), "those of a are .* divide bytes by 255"),
     ],
 )
 def test_samples_that_do_not_fit_a_library_are_named(names, samples, positions, words):
     with pytest.raises(ValueError, match=words):
-        Library(names, samples, positions, False)
+        Library(names, samples.tolist(), positions, False)
+
+
+def test_bytes_are_as_likely_as_the_shares_that_they_are(library):
+    images, places = np.arange(256, dtype=np.uint8).reshape(1, *CELLS), np.zeros((1, 3))
+    assert np.allclose(library.log_likelihoods(images, places), library.log_likelihoods(images / 255, places))
+    with pytest.raises(ValueError, match="images must be bytes, or numbers in 0..1"):
+        library.log_likelihoods(images.astype(float), places)
 
 
 def test_places_depend_on_the_surface_and_not_on_the_order_in_which_a_file_has_it(shapes):
@@ -315,7 +321,7 @@ def test_what_is_no_imprint_or_no_place_is_refused(blind, image, position, words
 def test_a_learned_touch_is_not_compared_with_itself():
     """Two objects with samples drawn alike: with itself counted each touch would favour its own object."""
     random = np.random.default_rng(0)
-    samples, places = random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3))
+    samples, places = 0.1 * random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3))
     scores = Library(("one", "two"), samples, places, False)._evidence.reshape(2, TOUCHES, 2)
     ahead = np.stack([scores[0, :, 0] - scores[0, :, 1], scores[1, :, 1] - scores[1, :, 0]])
     assert abs(ahead.mean()) < 0.05

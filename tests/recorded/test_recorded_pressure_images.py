@@ -69,6 +69,15 @@ def test_a_set_of_which_too_little_is_left_says_so(recognised, recordings):
     assert selected["value"].isna().all() and selected["note"].tolist() == ["a keeps 0 touches, 10 are needed"]
 
 
+@pytest.mark.slow
+def test_a_selection_that_leaves_too_little_to_train_on_says_so(recognised, recordings):
+    touches = recordings.touches()["a"]
+    rows = recognised({"a": touches, "b": touches}, "all")
+    selected = rows[rows["method"] == "selected_training"]
+    assert set(selected["note"]) == {"0 touches to train on, 12 of two classes are needed"}
+    assert set(selected["split"]) == {"random", "blocks"} and selected["value"].isna().all()
+
+
 def test_repeated_poses_show_as_correlation_of_neighbours():
     random = np.random.default_rng(0)
     slow = np.repeat(random.random((6, 16, 16)), 4, axis=0)

@@ -136,6 +136,7 @@ def test_tables_of_spreadsheets_in_any_language_are_read(tmp_path, separator, en
     [
         ("", "layout.csv: no column x, y, z, nx, ny, nz, area; a layout has x,y,z,nx,ny,nz,area"),
         ("x,y,z,nx,ny,area\n", "no column nz"),
+        ("X," + HEAD + "5," + ROW, "layout.csv: column x occurs twice; remove one"),
         (HEAD, "layout.csv: layout: there are no taxels"),
         (HEAD + ROW + "1,0,0,0,0,-1,1e-6\n" + ROW, "taxels 1 and 3 are at one place; remove one"),
         (HEAD + ROW + "0,1,0,0,0,-1,\n", "layout.csv: line 3 has a taxel that is not seven numbers"),
