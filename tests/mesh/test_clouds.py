@@ -64,6 +64,7 @@ FILES = {
     "intense_all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS[:, :1], COLORS, BALL])),
     "ascii.pcd": lambda: pcd(Encoding.ASCII),
     "binary.pcd": lambda: pcd(Encoding.BINARY),
+    "renamed.pcd": lambda: pcd(Encoding.BINARY).replace(b" rgb", b" rgba", 1),
     "packed.pcd": lambda: pcd(Encoding.BINARY_COMPRESSED),
     "air.las": las,
     "intense.xyz": lambda: text(np.hstack([BALL, INTENSITY / 7, COLORS])),
@@ -81,17 +82,10 @@ FILES = {
     "normals.pcd": lambda: pcd(Encoding.BINARY, ("normal_x", "normal_y", "normal_z")),
     "short_names.pcd": lambda: pcd(Encoding.BINARY, ("nx", "ny", "nz")),
 }
-COLOURED = ("all.pts", "intense.pts", "intense_all.pts", "binary.pcd", "packed.pcd", "air.las", "intense.xyz",
-            "named.xyz", "last.asc", "shares.xyz", "fractions.xyz", "long.xyz")  # fmt: skip
-WITH_NORMALS = (
-    "normals.xyz",
-    "all.pts",
-    "weighed.pts",
-    "intense_all.pts",
-    "normals.pcd",
-    "short_names.pcd",
-    "named_all.xyz",
-)
+COLOURED = ("all.pts", "intense.pts", "intense_all.pts", "binary.pcd", "renamed.pcd", "packed.pcd", "air.las",
+            "intense.xyz", "named.xyz", "last.asc", "shares.xyz", "fractions.xyz", "long.xyz")  # fmt: skip
+WITH_NORMALS = ("normals.xyz", "all.pts", "weighed.pts", "intense_all.pts", "normals.pcd", "short_names.pcd",
+                "named_all.xyz")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -322,13 +316,6 @@ def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):
     assert np.abs(np.linalg.norm(mesh.vertices - [0, 2, 0], axis=1) - 0.3).mean() < 0.002
     assert not mesh.watertight and mesh.vertices[:, 1].max() < 2.05
     assert (mesh.face_normals[:, 1] < 0.1).mean() > 0.99
-
-
-def test_the_colours_of_a_pcd_may_be_called_rgba():
-    plain, renamed = (
-        read_cloud(pcd(Encoding.BINARY).replace(b" rgb", name, 1), ".pcd") for name in (b" rgb", b" rgba")
-    )
-    assert plain.colors is not None and np.array_equal(plain.colors, renamed.colors)
 
 
 def test_a_depth_image_has_z_up_and_its_mask_means_no_reading():
