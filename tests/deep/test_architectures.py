@@ -14,14 +14,7 @@ from haptic_glance.deep import device as costs
 from haptic_glance.deep.architectures import restore, torchvision
 from haptic_glance.deep.converters import convert_googlenet
 from haptic_glance.deep.device import cost
-from haptic_glance.deep.network import (
-    NETWORKS,
-    SMALLEST,
-    ScaledHead,
-    build,
-    count_parameters,
-    recalibrate,
-)
+from haptic_glance.deep.network import NETWORKS, SMALLEST, ScaledHead, build, count_parameters, recalibrate
 from haptic_glance.deep.resize import GRIDS, cell_positions
 from haptic_glance.deep.weights import available_weights
 

@@ -70,11 +70,7 @@ def test_a_linear_problem_is_learned_to_the_end_before_the_last_pass():
 
 @pytest.mark.parametrize(
     ("accuracies", "patience", "passes", "best"),
-    [
-        ([0.5, 0.8, 0.7, 0.6, 0.9], 2, 4, 2),
-        ([0.5, 0.8, 0.7, 0.6, 0.9], 3, 5, 5),
-        ([0.5, 0.5, 0.5, 0.5], 2, 3, 1),
-    ],
+    [([0.5, 0.8, 0.7, 0.6, 0.9], 2, 4, 2), ([0.5, 0.8, 0.7, 0.6, 0.9], 3, 5, 5), ([0.5, 0.5, 0.5, 0.5], 2, 3, 1)],
 )
 def test_patience_ends_a_training_and_the_best_weights_come_back(accuracies, patience, passes, best):
     learning, model = Learning(np.arange(3), patience), torch.nn.Linear(1, 1)

@@ -28,8 +28,7 @@ def chain(mesh):
 
 
 @pytest.mark.parametrize(
-    ("passes", "level"),
-    [([1, 1, 1], 2), ([1, 1, 0, 1], 1), ([1, 0, 1, 1], 0), ([0, 1, 1], 0), ([1], 0)],
+    ("passes", "level"), [([1, 1, 1], 2), ([1, 1, 0, 1], 1), ([1, 0, 1, 1], 0), ([0, 1, 1], 0), ([1], 0)]
 )
 def test_a_level_is_enough_if_it_and_all_finer_ones_are(passes, level):
     assert coarsest(np.array(passes)) == level

@@ -8,17 +8,7 @@ from stages.front.known import halves
 
 optuna = pytest.importorskip("optuna", reason="pip install 'haptic-glance[front]'")
 from stages.front import search as module  # noqa: E402
-from stages.front.search import (  # noqa: E402
-    DIRECTIONS,
-    OutOfTime,
-    Search,
-    aims,
-    best_share,
-    crowding,
-    losses,
-    ranks,
-    smallest_of,
-)
+from stages.front.search import DIRECTIONS, OutOfTime, Search, aims, best_share, crowding, losses, ranks, smallest_of  # noqa: E402
 from stages.front.space import DEFAULT, choice_of  # noqa: E402
 
 MADE_OF = {"code": "1234", "meshes": "abcd"}

@@ -111,10 +111,7 @@ def test_other_scalings_are_of_all_data():
 def test_a_dead_classifier_shows_in_its_rows():
     near, truth = 100 * np.eye(12), np.repeat([0, 1, 2], 4)
     dead = Prepared(near, truth, -near, truth, 0.0).predict("svm", 0, with_training=True)  # all far from each other
-    assert dead.validity == [
-        {"metric": "train_accuracy", "value": 1.0},
-        {"metric": "commonest_share", "value": 1.0},
-    ]
+    assert dead.validity == [{"metric": "train_accuracy", "value": 1.0}, {"metric": "commonest_share", "value": 1.0}]
     alive = Prepared(near, truth, near[:6], truth[:6], 0.0).predict("knn", 0)
     assert [row["value"] for row in alive.validity] == [None, pytest.approx(4 / 6)]
 

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.lod import (
-    SimplifyError,
-    frozen_faces,
-    qem,
-    quadric_weights,
-    simplify,
-)
+from haptic_glance.lod import SimplifyError, frozen_faces, qem, quadric_weights, simplify
 from haptic_glance.lod.topology import faults, topology
 from haptic_glance.mesh.mesh import Mesh
 from tests.shapes import together

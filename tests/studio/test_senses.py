@@ -4,16 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.know import place_at, primitives
-from haptic_glance.studio.panels.senses import (
-    CELLS,
-    SIZE,
-    Answer,
-    ask,
-    load_network,
-    newest_network,
-    sense,
-    viewpoint,
-)
+from haptic_glance.studio.panels.senses import CELLS, SIZE, Answer, ask, load_network, newest_network, sense, viewpoint
 from haptic_glance.touch import Surface
 
 torch = pytest.importorskip("torch", reason="the hybrid network needs torch: pip install 'haptic-glance[deep]'")

@@ -205,13 +205,7 @@ def test_a_wall_thinner_than_the_depth_presses_like_a_thick_one(shapes):
     assert np.array_equal(contour_imprints(shell, [vertex]), contour_imprints(thin, [vertex]))
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"cells": (0, 1)}, "cells must be"),
-        ({"pitch": 0.0}, "pitch must be"),
-    ],
-)
+@pytest.mark.parametrize(("change", "words"), [({"cells": (0, 1)}, "cells must be"), ({"pitch": 0.0}, "pitch must be")])
 def test_what_makes_no_sensor_is_named(shapes, change, words):
     mesh, vertex = shapes.solid(shapes.sphere, half=4)
     with pytest.raises(ValueError, match=words):
