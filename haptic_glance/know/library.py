@@ -11,6 +11,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
@@ -201,14 +202,26 @@ def learn(
 
 def _warn_of_equal(objects):
     """Warns of each mesh that was given under an earlier name, too."""
-    first = {}
+    earlier = []
     for item in objects:
-        name = first.setdefault(item.content, item.name)
-        if name != item.name:
+        if name := next((other.name for other in earlier if _are_equal(other, item)), ""):
             warn_caller(
                 f"{name} and {item.name} are the same mesh, which no touch tells apart: a name of one of the two may "
                 "be wrong, so leave one out"
             )
+        else:
+            earlier.append(item)
+
+
+SAME = 1e-5  # units: two formats of one mesh round its vertices by less
+
+
+def _are_equal(first: "_Named", second: "_Named") -> bool:
+    """Whether two meshes have the same faces, in any order, to rounding."""
+    if first.content == second.content or len(first.mesh.faces) != len(second.mesh.faces):
+        return first.content == second.content
+    middles, others = (item.mesh.vertices[item.mesh.faces].mean(axis=1) for item in (first, second))
+    return bool((KDTree(middles).query(others, distance_upper_bound=SAME)[0] < SAME).all())
 
 
 def check_names(meshes: object) -> None:

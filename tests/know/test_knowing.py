@@ -244,6 +244,17 @@ def test_equal_meshes_are_named_in_a_warning(shapes, recwarn):
         learn({"mug 1": shapes["capsule"], "mug 2": shapes["capsule"], "ball": shapes["ball"]}, placed=False)
 
 
+def test_a_mesh_in_two_formats_is_equal_and_a_mesh_with_as_many_faces_is_not(shapes, recwarn):
+    ball = shapes["ball"]
+    corners = np.round(ball.vertices, 6)[ball.faces[::-1]].reshape(-1, 3)
+    rounded = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    longer = Mesh(ball.vertices * [1, 1, 1.01], ball.faces)
+    learn({"ball": ball, "longer": longer}, placed=False)
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match="ball and copy are the same mesh"):
+        learn({"ball": ball, "copy": rounded}, placed=False)
+
+
 def test_a_touch_away_from_all_objects_says_nothing_and_one_in_another_unit_is_refused(library, blind):
     flat = np.zeros(CELLS)
     values = library.belief().after(flat, [0, 0, 1.3]).values
