@@ -305,6 +305,10 @@ def main() -> None:
     for dataset, path in missing.items():
         print(f"compose: {dataset} is left out, {path} is not there: {_obtain(dataset)}", file=sys.stderr)
         leave_out(values, dataset)
+    places = {place for stage in STARTS for place in values["graph"].get(stage, {}).values()}
+    for path in sorted(path for place in places for path in Path(place).expanduser().rglob("*")):
+        if path.is_symlink() and not path.exists():
+            raise ParamsError(f"{path} is a link to a file that is not there, which DVC cannot read: remove the link")
     write_text(FILE, OmegaConf.to_yaml(OmegaConf.create(values)))
     suffix = f" with {' '.join(overrides)}" if overrides else ""
     print(f"compose: {FILE} written{suffix}; results go to {values['out']}/")

@@ -148,6 +148,17 @@ def test_a_set_whose_files_are_absent_is_named_and_left_out(tmp_path, monkeypatc
 
 
 @pytest.mark.slow
+def test_a_link_to_nowhere_in_a_folder_of_meshes_is_named(tmp_path, monkeypatch):
+    (tmp_path / "scans").mkdir()
+    (tmp_path / "scans/cup.stl").symlink_to("nowhere.stl")
+    monkeypatch.setattr("sys.argv", ["compose", "sets=[folder]", f"meshes.folder={tmp_path}/scans"])
+    monkeypatch.setattr("stages.compose.FILE", tmp_path / "params.yaml")
+    with pytest.raises(ParamsError, match=r"cup\.stl is a link to a file that is not there"):
+        main()
+    assert not (tmp_path / "params.yaml").exists()
+
+
+@pytest.mark.slow
 def test_results_go_to_reports_for_the_published_configuration_alone():
     assert len(IN_README) >= 3
     outs = [own_folder(overrides) for overrides in IN_README]

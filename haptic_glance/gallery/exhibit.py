@@ -75,6 +75,7 @@ def exhibit(
 ) -> Exhibit:  # fmt: skip
     """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh."""
     original, note = upright_by(load_unnamed(file), file, up)
+    mesh, notes = repaired(original)  # before the first file: a mesh that cannot be repaired leaves none
     detection = detect(bake_texture(original), count=count)
     assert detection.saliency is not None  # glance has one
     points = points_of(original, detection)
@@ -84,7 +85,6 @@ def exhibit(
     write_any(folder / "saliency.ply", coloured(finer, shades))
     write_text(folder / "points.csv", as_csv(points, original))
 
-    mesh, notes = repaired(original)
     keeps_vertices = len(mesh.vertices) == len(original.vertices)
     values = detection.saliency if keeps_vertices else saliency_of(bake_texture(mesh))
     ladder, missing = simplified(mesh, values, levels, folder, file, name, original)

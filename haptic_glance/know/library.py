@@ -11,6 +11,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
@@ -21,6 +22,7 @@ from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh import MeshError, normalise, rotate_to_z_up
 from haptic_glance.mesh.files import FORMATS, MeshLike, names_of, with_known_up
 from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.repair import area_share
 from haptic_glance.mesh.sampling import along_curve, sample_surface
 from haptic_glance.touch import Skin, Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
@@ -201,14 +203,26 @@ def learn(
 
 def _warn_of_equal(objects):
     """Warns of each mesh that was given under an earlier name, too."""
-    first = {}
+    earlier = []
     for item in objects:
-        name = first.setdefault(item.content, item.name)
-        if name != item.name:
+        if name := next((other.name for other in earlier if _are_equal(other, item)), ""):
             warn_caller(
                 f"{name} and {item.name} are the same mesh, which no touch tells apart: a name of one of the two may "
                 "be wrong, so leave one out"
             )
+        else:
+            earlier.append(item)
+
+
+SAME = 1e-5  # units: two formats of one mesh round its vertices by less
+
+
+def _are_equal(first: "_Named", second: "_Named") -> bool:
+    """Whether two meshes have the same faces, in any order, to rounding."""
+    if first.content == second.content or len(first.mesh.faces) != len(second.mesh.faces):
+        return first.content == second.content
+    middles, others = (item.mesh.vertices[item.mesh.faces].mean(axis=1) for item in (first, second))
+    return bool((KDTree(middles).query(others, distance_upper_bound=SAME)[0] < SAME).all())
 
 
 def check_names(meshes: object) -> None:
@@ -496,13 +510,16 @@ def known_objects(folder: str | Path, most: int = 60) -> tuple[dict[str, Mesh], 
     """
     if Path(folder).is_file():
         raise ValueError(f"{folder} is a file: give the folder that holds it")
-    files = sorted(path for path in Path(folder).glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
+    shown = sorted(path for path in Path(folder).glob("*") if not path.name.startswith("."))
+    files = [path for path in shown if path.suffix.lower() in (*FORMATS, ".npz")]
     stems = {path.stem for path in files}
     files = [path for path in files if path.suffix != ".npz" or not _is_another_size(path.stem, stems)]
     meshes, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
     for path, name in zip(files[:most], names_of(files), strict=False):
         try:
-            meshes[name] = read_mesh(path) if path.suffix == ".npz" else normalise(upright_named(path.name, path))
+            mesh = read_mesh(path) if path.suffix == ".npz" else normalise(upright_named(path.name, path))
+            area_share(mesh)  # or `learn` would refuse all
+            meshes[name] = mesh
         except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
             notes.append(f"{path.name}: {str(error).removeprefix(f'{path}: ')}")
     return meshes, notes

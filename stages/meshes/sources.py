@@ -138,12 +138,15 @@ def folder(settings: Params) -> list[MeshFile]:
         print(f"meshes: {ignored} files of other formats ignored ({', '.join(formats)})", file=sys.stderr)
     by_name = {}
     for path in files:
-        name = str(path.relative_to(root).with_suffix("")).replace("/", "__").replace("\\", "__")
+        name = wanted = str(path.relative_to(root).with_suffix("")).replace("/", "__").replace("\\", "__")
         if name in by_name:
             name = f"{name}_{path.suffix[1:].lower()}"
         while name in by_name:
             name += "_"
         by_name[name] = path
+        if name != wanted:
+            namesake = by_name[wanted].relative_to(root)
+            print(f"meshes: {path.relative_to(root)} is named {name}, since {namesake} is {wanted}", file=sys.stderr)
     chosen = _select_objects(tuple(by_name), settings.objects)
     if left_out := sorted(set(by_name) - set(chosen)):
         where = "meshes.objects and meshes.classes"

@@ -193,6 +193,12 @@ def test_vertices_that_a_file_doubles_are_touched_where_they_are(tmp_path, capsy
     assert len(points) == 3 and points == pytest.approx(places, rel=1e-5)
 
 
+def test_a_mesh_without_area_leaves_no_files(tmp_path, capsys):
+    trimesh.Trimesh(np.arange(3)[:, None] * [1, 0, 0], [[0, 1, 2]], process=False).export(tmp_path / "line.ply")
+    assert run([str(tmp_path / "line.ply"), "--out", str(tmp_path / "out")]) == 1
+    assert "the surface has no area" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
 def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):
     with pytest.raises(ValueError, match="--count 0: give 1 or more"):
         run([str(scans), "--count", "0"])

@@ -245,6 +245,17 @@ def test_equal_meshes_are_named_in_a_warning(shapes, recwarn):
         learn({"mug 1": shapes["capsule"], "mug 2": shapes["capsule"], "ball": shapes["ball"]}, placed=False)
 
 
+def test_a_mesh_in_two_formats_is_equal_and_a_mesh_with_as_many_faces_is_not(shapes, recwarn):
+    ball = shapes["ball"]
+    corners = np.round(ball.vertices, 6)[ball.faces[::-1]].reshape(-1, 3)
+    rounded = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    longer = Mesh(ball.vertices * [1, 1, 1.01], ball.faces)
+    learn({"ball": ball, "longer": longer}, placed=False)
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match="ball and copy are the same mesh"):
+        learn({"ball": ball, "copy": rounded}, placed=False)
+
+
 def test_a_touch_away_from_all_objects_says_nothing_and_one_in_another_unit_is_refused(library, blind):
     flat = np.zeros(CELLS)
     values = library.belief().after(flat, [0, 0, 1.3]).values
@@ -352,16 +363,18 @@ def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes
     for name in ("mug_small.stl", "mug_large.stl", "small.stl"):
         write_any(tmp_path / name, shapes["box"])
     (tmp_path / "broken.stl").write_bytes(b"solid nothing")
+    write_any(tmp_path / "line.ply", Mesh(np.arange(3.0)[:, None] * [1, 0, 0], np.array([[0, 1, 2]])))
+    write_any(tmp_path / "._mug.stl", shapes["box"])
     (tmp_path / "notes.txt").write_text("no mesh")
     monkeypatch.setitem(sys.modules, "pymeshlab", None)
     (tmp_path / "cloud.xyz").write_text("\n".join(f"{i % 9} {i % 7} {i % 5}" for i in range(200)))
     meshes, notes = known_objects(tmp_path)
     assert list(meshes) == ["cubelarge", "mug_large", "mug_small", "small"]
-    assert [note.partition(":")[0] for note in notes] == ["broken.stl", "cloud.xyz"]
+    assert [note.partition(":")[0] for note in notes] == ["broken.stl", "cloud.xyz", "line.ply"]
     assert str(tmp_path) not in "".join(notes)
     assert np.linalg.norm(meshes["small"].vertices, axis=1).max() == pytest.approx(0.5)
     few, left_out = known_objects(tmp_path, most=1)
-    assert not few and len(left_out) == 6  # the first by name is the broken one
+    assert not few and len(left_out) == 7  # the first by name is the broken one
     assert known_objects(tmp_path / "nowhere") == ({}, [])
     with pytest.raises(ValueError, match="small.stl is a file: give the folder"):
         known_objects(tmp_path / "small.stl")

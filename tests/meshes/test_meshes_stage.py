@@ -41,6 +41,7 @@ def test_good_meshes_pass_and_bad_ones_are_named(start, capsys):
         and "ignored" not in printed
         and "axes" not in printed
     )
+    assert "sub folder/ball.ply is named sub folder__ball_ply, since sub folder/ball.off is sub folder__ball" in printed
     folder = workspace.data / "meshes"
     manifest = read_table(folder / "manifest.csv")
     assert sorted(manifest.object) == ["Kiste à thé", "sub folder__ball", "sub folder__ball_ply"]

@@ -121,6 +121,13 @@ def test_the_table_shows_the_printed_set_and_holds_all(made, measure):
     assert float(shown.loc["SymRad", "as plain, %, 1,500 faces"]) == 75
 
 
+def test_the_table_leaves_out_a_count_that_no_mesh_has_so_many_faces_for(made, measure):
+    rows = made.assign(asked=1, faces=1, seconds=np.nan, dataset="test", target=made["target"].replace("3000", "50%"))
+    rows.loc[rows["target"] == "1500", "value"] = np.nan
+    columns = list(build_one(meshes, "tables", "lod_points", measure("lod", rows)).shown)
+    assert "rings, 50%" in columns and not any("1,500" in name for name in columns)
+
+
 OVER = Claim(
     key="one", section="T9", sentence="Sentence.", stage="lod", dataset="test", over=("item",), within=("target",),
     first={"method": "x"}, second={"method": "qem"}, where={"metric": "error"}, scale=1.0, unit="units",

@@ -46,7 +46,8 @@ def build(results: Results) -> Table:
     frame = pd.concat({dataset_text(name): counts for name, counts in frames.items()}, names=["data", None])
     frame = frame.reset_index("data").reset_index(drop=True)
     part = frame[frame["data"] == dataset_text(first)]
-    targets = face_counts(results.rows("lod", first))[:2]
+    rows = results.rows("lod", first)
+    targets = face_counts(rows[rows["target"].isin(part["target"])])[:2]  # no object may have so many faces
     some(targets, "no target is a number of faces", "lod", runnable=False)
     return Table(
         frame, _wide(part, targets), {"set": dataset_text(first)}
