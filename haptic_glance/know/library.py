@@ -203,26 +203,26 @@ def learn(
 
 def _warn_of_equal(objects):
     """Warns of each mesh that was given under an earlier name, too."""
-    earlier = []
-    for item in objects:
-        if name := next((other.name for other in earlier if _are_equal(other, item)), ""):
+    middles = [item.mesh.vertices[item.mesh.faces].mean(axis=1) for item in objects]
+    centres = np.array([points.mean(axis=0) for points in middles])
+    for late, item in enumerate(objects):
+        near = np.flatnonzero(np.abs(centres[:late] - centres[late]).max(axis=1) < SAME)
+        name = next((objects[early].name for early in near if _are_equal(middles[early], middles[late])), "")
+        if name:
             warn_caller(
                 f"{name} and {item.name} are the same mesh, which no touch tells apart: a name of one of the two may "
                 "be wrong, so leave one out"
             )
-        else:
-            earlier.append(item)
 
 
 SAME = 1e-5  # units: two formats of one mesh round its vertices by less
 
 
-def _are_equal(first: "_Named", second: "_Named") -> bool:
-    """Whether two meshes have the same faces, in any order, to rounding."""
-    if first.content == second.content or len(first.mesh.faces) != len(second.mesh.faces):
-        return first.content == second.content
-    middles, others = (item.mesh.vertices[item.mesh.faces].mean(axis=1) for item in (first, second))
-    return bool((KDTree(middles).query(others, distance_upper_bound=SAME)[0] < SAME).all())
+def _are_equal(first: np.ndarray, second: np.ndarray) -> bool:
+    """Whether two meshes have the same faces to rounding, by the middles (f, 3) of these in any order."""
+    if len(first) != len(second):
+        return False
+    return bool(np.isfinite(KDTree(first).query(second, distance_upper_bound=SAME)[0]).all())
 
 
 def check_names(meshes: object) -> None:
