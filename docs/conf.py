@@ -43,6 +43,7 @@ add_module_names = False
 html_theme = "pydata_sphinx_theme"
 html_math_renderer = "mathml"
 html_title = "Haptic Glance"
+html_context = {"default_mode": "auto"}  # or each page logs an error
 html_static_path = ["_static"]
 html_css_files = ["style.css"]
 html_js_files = ["names.js"]

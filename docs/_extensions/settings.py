@@ -45,5 +45,6 @@ class SettingsTable(SphinxDirective):
             rows = [
                 (nodes.literal(text=name), nodes.literal(text=value), words) for name, (value, words) in entries.items()
             ]
-            made += [nodes.rubric(text=section), made_table(("setting", "default", "meaning"), rows, (20, 25, 55))]
+            table = made_table(("setting", "default", "meaning"), rows, (20, 25, 55))
+            made.append(nodes.section("", nodes.title(section, section), table, ids=[f"settings-{section}"]))
         return made

@@ -27,6 +27,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from stages.report.cells import parts_of, rows_of, text_of
+from stages.report.drawing import label
 from stages.report.verdict import WORDS
 
 from .commands import Command, commands
@@ -73,7 +74,7 @@ class Rows(SphinxDirective):
         for place, name in enumerate(rows[columns[0]]):
             if not names or name in names:
                 row = rows.iloc[place : place + 1]
-                lines.append([names.get(name, name.replace("_", " ")), *(shown(row, text) for text in columns[1:])])
+                lines.append([names.get(name, label(name)), *(shown(row, text) for text in columns[1:])])
         if not lines:
             raise self.error(f"{file} has no row with {where or 'these names'}")
         return [made_table([text.strip() for text in self.options["titles"].split(";")], lines)]

@@ -46,8 +46,8 @@ print(client.dashboard_link, sum(client.nthreads().values()), "cores")
 # On Slurm
 # --------
 #
-# dask-jobqueue submits the workers. This keeps the cluster until it is stopped; run the pipeline in another shell, with
-# the address that it prints as ``DASK_SCHEDULER``.
+# dask-jobqueue submits the workers. The lines below keep the cluster until you press Enter. Run the pipeline in another
+# shell, with the printed address as ``DASK_SCHEDULER``.
 
 if shutil.which("sbatch"):
     from dask_jobqueue import SLURMCluster
@@ -66,11 +66,12 @@ if shutil.which("sbatch"):
 #
 #    python -m stages.sweep -m hydra/launcher=submitit_slurm classifier=knn,svm
 #
-# What it costs
-# -------------
+# Costs
+# -----
 #
-# One scheduler feeds a limited number of workers: an item's inputs and results pass through it. The measured costs per
-# item, and the number of workers at which the scheduler becomes the limit.
+# One scheduler feeds a limited number of workers, because the inputs and results of all items pass through the
+# scheduler. The table has the measured costs per item, and the number of workers at which the scheduler becomes the
+# limit.
 
 costs = pd.read_csv(sample().parents[1] / "reports/bench/cluster.csv")
 print(costs[["stage", "seconds", "scheduler_ms", "network_ms", "limit"]].to_string(index=False))

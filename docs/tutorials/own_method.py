@@ -69,7 +69,7 @@ for method in ["thin_parts", "glance", "itti", "mesh_saliency"]:
     print(f"{method:14} NSS {scores['nss']:5.2f}   AUC {scores['auc']:.2f}")
 
 # %%
-# Three marks on one mesh that somebody chose prove nothing. They show how the judging works.
+# Three chosen marks on one mesh prove nothing, but show the way of judging.
 #
 # Judge it by what survives
 # -------------------------
@@ -86,8 +86,7 @@ for method in ["thin_parts", "glance"]:
 #
 # The gaze of 32 people on 19 meshes decides. One command evaluates the function in your file on these meshes, and lists
 # it beside all other methods, with five metrics, their intervals and the interval of its lead. :doc:`/judging` has the
-# splits, and how
-# to judge a method that learns:
+# splits, and the way to judge a method that learns:
 #
 # .. code-block:: sh
 #
@@ -100,7 +99,7 @@ for method in ["thin_parts", "glance"]:
 #
 #    python -m stages.compose experiment=attention 'salient_points.methods=[glance,itti,thin_parts]' && dvc repro
 #
-# These are the rows that it would stand beside; ``human`` is the truth itself. A bar is a 95 % interval over
+# The chart shows the rows of the other methods; ``human`` is the truth itself. A bar is a 95 % interval over
 # the meshes.
 
 rows = pd.read_csv(sample().parents[1] / "reports/tables/attention_gaze.csv")

@@ -44,8 +44,8 @@ write_any(folder / "scan.stl", scanned)
 # -------------
 #
 # ``load`` reads STL, OBJ, PLY, OFF, GLB, glTF and point clouds. An STL repeats each vertex at every face; equal ones
-# are merged. Where a file does not say which axis points up, ``load`` asks the shape and warns; we say it. A look takes
-# about a second.
+# are merged. Where a file does not say which axis points up, the shape decides and ``load`` warns; here ``up`` sets the
+# axis. A look takes about a second.
 
 mesh = load(folder / "scan.stl", up="y")
 detection = detect(mesh, count=10)

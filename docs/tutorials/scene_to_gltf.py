@@ -32,7 +32,7 @@ print("levels:", ", ".join(f"{level.faces:,}" for level in chain))
 # ---------
 #
 # Three animals stand along the path of the camera. The tolerance is one pixel of a screen of 270 rows: in every frame,
-# 99 % of the visible pixels of an object must be displaced by no more than that.
+# 99 % of the visible pixels of an object must be displaced by no more than one pixel.
 
 places = [((0.0, 0.0, 0.0), 40), ((5.0, 6.0, 0.0), 200), ((-7.0, 16.0, 0.0), 100)]
 scene = Scene(
@@ -64,9 +64,8 @@ plt.show()
 #
 # ``MSFT_lod`` is a vendor extension in Khronos's registry. The first node is the finest level and names the others;
 # ``MSFT_screencoverage`` lists, for each level, the share of the screen's height below which the next coarser level is
-# enough.
-# A viewer without the extension shows the finest level. ``write_lod`` reads the file back and compares the names of
-# its levels.
+# enough. A viewer without the extension shows the finest level. ``write_lod`` reads the file back and compares the
+# names of its levels.
 
 metres = metres_per_unit(mesh, SIZE)
 rows = [describe("dromedary", level, metres, scene) for level in levels]

@@ -7,8 +7,7 @@ choose the places of the touches. The rows of our measurement are part of the re
 in a second and test the claim behind it without a run. The last section says how to measure the rows anew.
 
 Needs a clone and ``pip install '.[pipeline]'``; runs without a network. For the command of the last section, fetch the
-meshes beforehand: ``python -m stages.meshes household``. The command changes
-the rows of its set below ``reports/``; ``git checkout reports`` restores them.
+meshes beforehand: ``python -m stages.meshes household``.
 """
 
 import matplotlib.pyplot as plt
@@ -84,9 +83,10 @@ plt.show()
 # ---------------------
 #
 # The experiment presses every imprint and trains every classifier again, which takes minutes. Its rows and its page go
-# to ``runs/table_4_1``. Without arguments ``stages.compose`` brings the published settings back.
+# to ``runs/table_4_1``. The last two commands bring the published settings and DVC's notes back.
 #
 # .. code-block:: sh
 #
 #    python -m stages.compose experiment=table_4_1 && dvc repro
 #    python -m stages.compose
+#    git checkout dvc.lock

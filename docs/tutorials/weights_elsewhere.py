@@ -63,7 +63,7 @@ modifier = mesh_object.modifiers.new("Decimate", "DECIMATE")
 modifier.ratio = 0.1
 modifier.vertex_group = group.name
 """
-compile(BLENDER, "blender.py", "exec")
+script = compile(BLENDER, "blender.py", "exec")  # its grammar is right
 
 # %%
 # glTF

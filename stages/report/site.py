@@ -271,10 +271,10 @@ def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, st
         "findings": "" if own_meshes else findings_html(parts["claims"], parts["differences"]),
         "questions": "" if own_meshes else questions_html(questions(out, link)),
         "chart": "" if own_meshes or chart is None else chart_html(chart),
-        "viewer": part("viewer.html") if meshes else f"<p>not run: {escape(not_run.get('viewer', ''))}</p>",
+        "viewer": part("viewer.html") if meshes else f"<p>not run: {prose(not_run.get('viewer', ''))}</p>",
         "meshes": as_script(meshes) if meshes else "null",
         "topics": "".join(
-            f'<li><a href="{FOLDER}/{name}.html">{name.capitalize()}</a> {prose(leads[name])}</li>' for name in mains
+            f'<li><a href="{FOLDER}/{name}.html">{name.capitalize()}</a>: {prose(leads[name])}</li>' for name in mains
         ),
         "not_run": folded(f"{len(not_run | partly)} that were not, or in part", f"<ul>{missing}</ul>") if missing
         else "<p>Everything that this report knows was measured.</p>",

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure as Drawing
 
 from stages.report.drawing import CYCLE, plt
 from stages.report.marks import MOST_PATHS, has_marks_alone, marks, table, vector
+from stages.report.page import part
 
 
 @pytest.fixture
@@ -121,6 +122,10 @@ def test_every_series_keeps_its_exact_colour_and_words_stay_words(drawing):
     assert re.search(r"<text[^>]*>cost &amp; time</text>", text)
     assert "<title>a chart · series &lt;3&gt; · cost &amp; time: 1" in text
     assert 'aria-label="what &quot;it&quot; shows"' in text
+
+
+def test_black_marks_take_the_ink_of_the_page():
+    assert re.search(r"^svg\.chart \{[^}]*fill: var\(--ink\)", part("site.css"), re.M)  # matplotlib writes no black
 
 
 def test_every_mark_can_be_hovered_where_it_is_drawn(drawing):

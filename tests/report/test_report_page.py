@@ -203,7 +203,7 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     lines = [line for line in printed.splitlines() if line.startswith(start)]
     assert len(lines) == 1 and "`dvc repro classification`: tables/table_4_1, " in lines[0]
     text = (bare / "reports/index.html").read_text()
-    assert "<p>not run: no data/SET/salient_points" in text and "no data/SET/meshes" in text
+    assert "<p>not run: no data/SET/salient_points: run <code>dvc repro" in text and "no data/SET/meshes" in text
 
 
 def test_a_folder_of_ones_own_has_a_page_about_it_alone(of_folder):

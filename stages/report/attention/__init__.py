@@ -1,4 +1,4 @@
-"""Attention: models of attention against human gaze and marks (T3.1, T3.2)."""
+"""Models of attention against human gaze and marks (T3.1, T3.2)."""
 
 from . import claims, learned, maps
 

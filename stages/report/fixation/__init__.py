@@ -1,4 +1,4 @@
-"""Fixation: Grad-CAM attention against human gaze (T3.3)."""
+"""Grad-CAM attention against human gaze (T3.3)."""
 
 from functools import partial
 
