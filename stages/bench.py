@@ -196,7 +196,7 @@ def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
         except ValueError as error:
             report(f"{item.name} is left out: {error}")
     if not objects:
-        raise ValueError(f"{archive} holds no mesh with gaze")
+        raise ValueError(f"--gaze {archive} holds no mesh with gaze of --set {dataset}")
     return objects
 
 

@@ -217,7 +217,7 @@ def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys
     (meshes / "good.obj").unlink()
     with (
         pytest.warns(UserWarning, match="good is left out: no Models_3D/good.obj holds its mesh"),
-        pytest.raises(ValueError, match="holds no mesh with gaze"),
+        pytest.raises(ValueError, match="holds no mesh with gaze of --set gaze$"),
     ):
         bench.gazed("gaze", tmp_path)
 

@@ -17,6 +17,7 @@ from scipy.spatial import ConvexHull, KDTree
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.lazy import cv2, trimesh
 from haptic_glance.base.text import NUMBER, lines_of, text_of
+from haptic_glance.base.warner import warn_caller
 
 from .axes import directions
 from .headers import MeshError
@@ -306,6 +307,8 @@ def _pairs(values, axis):
 
 DEPTHS = 5, 9  # of the octree: 32 to 512 cells a side
 SIDE = 1.1  # of the octree, in the largest extent of the points
+COARSER = 4.0  # times as wide as the points are apart: wider cells of the octree may lose the object
+APART = "cut off stray points, or give distant objects one by one"
 GAP = 1.5  # times the distance to the neighbours that points have there: surface farther from them was never seen
 
 
@@ -346,23 +349,28 @@ def surface_of(cloud: Cloud) -> Mesh:
     tree = KDTree(points)
     spacing = tree.query(points, NEIGHBOURS + 1)[0][:, -1]
     normals = normals_of(points, sensor) if cloud.normals is None else cloud.normals
+    cells = _cells(spacing)
+    if (wider := cells / 2 ** DEPTHS[1]) > COARSER:
+        warn_caller(f"the surface is {wider:.0f} times coarser than the points of the cloud: {APART}")
     work = pymeshlab.MeshSet()
     work.add_mesh(pymeshlab.Mesh(vertex_matrix=points, v_normals_matrix=normals))
-    work.generate_surface_reconstruction_screened_poisson(depth=_depth(spacing), preclean=True, threads=1)
+    depth = int(np.clip(np.ceil(np.log2(cells)), *DEPTHS))
+    work.generate_surface_reconstruction_screened_poisson(depth=depth, preclean=True, threads=1)
     solid = work.current_mesh()
     vertices, faces = solid.vertex_matrix(), solid.face_matrix().astype(np.int64)
     distance, nearest = tree.query(vertices)
     is_near = np.asarray(distance <= GAP * spacing[nearest])
     faces = faces[is_near[faces].all(axis=1)]
+    if not len(faces):
+        raise MeshError(f"no surface passes near the points of the cloud: {APART}")
     vertex_ids, ids = np.unique(faces, return_inverse=True)
     colors = None if cloud.colors is None else cloud.colors[np.asarray(nearest)[vertex_ids]]
     return Mesh(vertices[vertex_ids] * extent + centre, ids.reshape(-1, 3), colors)
 
 
-def _depth(away):
-    """The depth of the octree whose cells are as wide as points are apart; away: distance to the eighth neighbour."""
-    spacing = np.median(away) * np.sqrt(np.pi / NEIGHBOURS)  # on a surface, eight points share a disc of that radius
-    return int(np.clip(np.ceil(np.log2(SIDE / spacing)), *DEPTHS))
+def _cells(away):
+    """The cells a side of an octree that are as wide as points are apart; away: distance to the eighth neighbour."""
+    return SIDE / (np.median(away) * np.sqrt(np.pi / NEIGHBOURS))  # on a surface, eight points share a disc
 
 
 TEXT = (".xyz", ".pts", ".asc")

@@ -91,12 +91,13 @@ def coarse_steps(path: Path, mesh: Mesh) -> str:
     return _coarse_steps(mesh) if path.suffix.lower() in SINGLE else ""
 
 
-def _coarse_steps(mesh):
-    """As `coarse_steps`, of a mesh whose coordinates may have single precision."""
+def _coarse_steps(mesh, points=None):
+    """As `coarse_steps`, of a mesh, or of the points (n, 3) it was made of, which may have single precision."""
+    points = mesh.vertices if points is None else points[np.isfinite(points).all(axis=1)]
     with np.errstate(over="ignore"):
-        rounded = mesh.vertices.astype(np.float32)
-    step = np.spacing(np.abs(rounded).max(initial=0))
-    if np.array_equal(rounded, mesh.vertices) and 0 < COARSE * mesh.diagonal < step:
+        is_single = np.array_equal(points.astype(np.float32), points)
+        step = np.spacing(np.float32(np.abs(mesh.vertices).max(initial=0)))
+    if is_single and 0 < COARSE * mesh.diagonal < step:
         remedy = "move the object to the origin before it is exported"
         share = 100 * step / mesh.diagonal
         return f"its coordinates have steps of {share:.2g} % of the diagonal: {remedy}"
@@ -255,7 +256,10 @@ def _surface(cloud, name):
     cloud, note = clouds.checked_normals(cloud)
     if note:
         warn_caller(f"{name}: {note}")
-    return clouds.surface_of(cloud)
+    mesh = clouds.surface_of(cloud)
+    if coarse := _coarse_steps(mesh, cloud.points):
+        warn_caller(f"{name}: {coarse}")
+    return mesh
 
 
 def _open(content, suffix, resolver, **options):

@@ -17,7 +17,7 @@ from haptic_glance import as_mesh, load
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.mesh import MeshError, clean, clouds
 from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, read_cloud, surface_of
-from haptic_glance.mesh.files import as_stated
+from haptic_glance.mesh.files import as_stated, load_as_stated
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.rays import RayScene
 
@@ -231,6 +231,27 @@ def test_a_viewpoint_of_zeros_is_a_sensor_where_the_points_are_what_it_sees(shap
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("kind", "warned"), [("<f4", True), ("<f8", False)])
+def test_single_precision_points_far_from_the_origin_are_named(recwarn, tmp_path, kind, warned):
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(BALL)}\n"
+    header += "".join(f"property {'float' if warned else 'double'} {axis}\n" for axis in "xyz") + "end_header\n"
+    (tmp_path / "far.ply").write_bytes(header.encode() + (BALL * 20 + 5e6).astype(kind).tobytes())
+    load_as_stated(tmp_path / "far.ply")
+    assert ["far.ply: its coordinates have steps of" in str(warning.message) for warning in recwarn] == [True] * warned
+
+
+@pytest.mark.parametrize(("gap", "warned"), [(3, False), (300, True)])
+def test_parts_too_far_apart_for_one_surface_are_named(recwarn, gap, warned):
+    surface_of(Cloud(np.concatenate([BALL, BALL + [gap, 0, 0]])))
+    assert ["coarser than the points" in str(warning.message) for warning in recwarn] == [True] * warned
+
+
+def test_a_cloud_without_a_surface_near_its_points_is_refused(monkeypatch):
+    monkeypatch.setattr(clouds, "GAP", 0)
+    with pytest.raises(MeshError, match="no surface passes near the points"):
+        surface_of(Cloud(BALL))
+
+
 def test_outliers_and_pixels_without_a_reading_change_nothing():
     holes = [np.full((50, 3), np.nan), np.zeros((50, 3)), RANDOM.uniform(-30, 30, (100, 3))]
     mesh = surface_of(Cloud(np.concatenate([BALL, *holes])))

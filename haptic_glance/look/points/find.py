@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
+from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh import MeshError, clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import Axis
 from haptic_glance.mesh.materials import bake_texture
@@ -242,11 +243,12 @@ def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, places: KDTr
 
 
 def prepared(mesh: Mesh, up: Axis | None = None) -> Mesh:
-    """The mesh as the detectors take it; one that cannot be repaired is only turned outwards."""
+    """The mesh as the detectors take it; one that cannot be repaired is only turned outwards, with a warning."""
     mesh = bake_texture(mesh)  # views show the colours of vertices
     try:
         mesh = clean(mesh)[0]
-    except MeshError:
+    except MeshError as error:
+        warn_caller(f"the saliency may be wrong: {error}")
         mesh = orient(mesh)[0]
     return normalise(rotate_to_z_up(mesh, up))
 
