@@ -163,8 +163,11 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
             report(f"{name} is left out: {failed[name]}")
         rows += [row | {"metric": metric, "value": scores.get(metric, np.nan)} for metric in SCORES]
     if len(failed) == len(objects):
-        takes_training = not train and "'Mesh' object is not iterable" in failed[name]
-        hint = "; a function that learns needs --train" if takes_training else ""
+        hint = ""
+        if not train and "'Mesh' object is not iterable" in failed[name]:
+            hint = "; a function that learns needs --train"
+        elif train and "'list' object has no attribute" in failed[name]:
+            hint = "; a function of a mesh needs no --train"
         raise ValueError(f"the method failed on every object, on {name} by {failed[name]}{hint}")
     return rows
 

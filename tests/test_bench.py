@@ -156,9 +156,11 @@ def test_an_object_of_ones_own_with_a_published_name_is_compared_with_no_row_of_
     assert [*bench.with_own_names(objects, frame_of(rows))] == ["first", "second (yours)", "third"]
 
 
-def test_a_function_that_learns_is_told_of_train(file, toys):
+def test_a_function_of_the_other_kind_is_told_of_train(file, toys):
     with pytest.raises(ValueError, match="not iterable; a function that learns needs --train"):
         bench.run([f"{file}:counts"])
+    with pytest.raises(ValueError, match="'vertices'; a function of a mesh needs no --train"):
+        bench.run([f"{file}:height", "--train"])
 
 
 def test_a_function_that_is_no_saliency_is_named(file, toys):

@@ -195,7 +195,8 @@ def parse(
     the file, for warnings about its normals and pictures.
     """
     if suffix not in FORMATS:
-        remedy = f"the formats are {', '.join(FORMATS)}; {CONVERT}"
+        remedy = "save its points as .xyz" if suffix in (".csv", ".npy", ".txt") else CONVERT
+        remedy = f"the formats are {', '.join(FORMATS)}; {remedy}"
         raise MeshError(f"cannot read {suffix or 'a file without suffix'}: {remedy}")
     if not content:
         raise MeshError("the file is empty")

@@ -55,6 +55,7 @@ REFUSED = {
     "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "truncated: its header states"),
     "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),
     "wrong.abc": (b"0 0 0\n", "cannot read .abc"),
+    "points.csv": (b"x,y,z\n0,0,0\n", "cannot read .csv: .*save its points as .xyz"),
     "header_only.stl": (b"\0" * 80 + struct.pack("<I", 0), "no faces|no geometry|unreadable"),
 }
 
