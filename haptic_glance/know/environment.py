@@ -23,6 +23,7 @@ with from_extra():
     from gymnasium.error import ResetNeeded
     from gymnasium.spaces import Box, Dict, Discrete, MultiBinary
 
+ZOOM = 16  # pixels a cell, in a rendered imprint
 REWARD = 10.0  # for the right object, and minus this for a wrong one; each touch costs 1
 
 
@@ -44,6 +45,8 @@ class TouchUntilSure(gymnasium.Env):
         The known objects, which are normalised and rotated so that z is up. Six basic shapes by default.
     most : int
         Touches of an episode, at most.
+    render_mode : {"rgb_array"}, optional
+        `render` gives the last imprint as an image.
     skin : Skin, optional
         The sensor, for example `Skin(dead=0.02, noise=0.02)`; an ideal one by default. It learns the objects and
         touches them.
@@ -51,7 +54,8 @@ class TouchUntilSure(gymnasium.Env):
     Raises
     ------
     ValueError
-        For fewer than two objects, for a mesh that cannot be touched, and for a `most` that is no whole number from 1.
+        For fewer than two objects, for a mesh that cannot be touched, for a `most` that is no whole number from 1, and
+        for another render mode.
     TypeError
         For meshes that are no mapping, and for names that are no texts.
     MissingExtra
@@ -66,9 +70,14 @@ class TouchUntilSure(gymnasium.Env):
     -1.0
     """
 
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 2}
+
     def __init__(
-        self, meshes: Mapping[str, MeshLike] | None = None, most: int = MOST, skin: Skin | None = None
-    ) -> None:
+        self, meshes: Mapping[str, MeshLike] | None = None, most: int = MOST, skin: Skin | None = None,
+        render_mode: str | None = None,
+    ) -> None:  # fmt: skip
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ValueError(f"unknown render mode {render_mode!r}: choose rgb_array")
         if meshes is not None:
             check_names(meshes)
         upright = {name: upright_named(name, mesh) for name, mesh in (meshes or {}).items()}
@@ -76,7 +85,7 @@ class TouchUntilSure(gymnasium.Env):
         if not (isinstance(most, int | np.integer) and most >= 1):
             raise ValueError(f"an episode needs a whole number of touches, at least one, got most={most}")
         self.library = learn(self.meshes, placed=False, turned=True, skin=skin)
-        self.most, self.ended = most, True  # until the first reset
+        self.most, self.ended, self.render_mode = most, True, render_mode  # ended until the first reset
         self.action_space = Discrete(PLACES)
         self.observation_space = Dict({
             "belief": Box(0, 1, (len(self.library.names),)),
@@ -123,6 +132,15 @@ class TouchUntilSure(gymnasium.Env):
             raise ResetNeeded("there is no episode, or it has ended: call reset() before asking for a touch")
         gains = self.exploration.gains()
         return int(gains.argmax() if np.isfinite(gains).any() else self.touched.argmin())
+
+    def render(self) -> np.ndarray | None:
+        """(256, 256, 3) bytes: the last imprint, dark where it is pressed first; None without a render mode."""
+        if self.render_mode is None:
+            return None
+        if not hasattr(self, "exploration"):
+            raise ResetNeeded("there is no episode: call reset() before render()")
+        shades = np.rint(255 * self._observation()["image"]).astype(np.uint8)
+        return np.kron(shades, np.ones((ZOOM, ZOOM), dtype=np.uint8))[..., None].repeat(3, axis=2)
 
     def _observation(self) -> dict[str, np.ndarray]:
         touched, places = self.exploration, self.exploration.candidates

@@ -27,6 +27,21 @@ def test_it_is_registered():
     assert isinstance(gymnasium.make("haptic_glance/TouchUntilSure-v0").unwrapped, TouchUntilSure)
 
 
+@pytest.mark.filterwarnings("error")
+def test_it_renders_the_last_imprint_in_the_mode_of_gymnasium():
+    made = gymnasium.make("haptic_glance/TouchUntilSure-v0", render_mode="rgb_array")
+    check_env(made.unwrapped)
+    made.reset(seed=0)
+    image = made.step(0)[0]["image"]
+    picture = made.render()
+    assert picture.shape == (256, 256, 3) and picture.dtype == np.uint8 and np.ptp(picture, axis=2).max() == 0
+    assert np.abs(picture[8::16, 8::16, 0] / 255 - image).max() < 0.003 and np.ptp(image) > 0
+    with pytest.raises(ValueError, match="human.*choose rgb_array"):
+        TouchUntilSure(render_mode="human")
+    with pytest.raises(gymnasium.error.ResetNeeded, match="call reset"):
+        TouchUntilSure(render_mode="rgb_array").render()
+
+
 def test_a_seed_decides_object_pose_and_places_and_no_pose_is_the_learned_one(task):
     first, info = task.reset(seed=1)
     again, same = task.reset(seed=1)

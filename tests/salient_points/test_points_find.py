@@ -217,6 +217,8 @@ def test_a_viewpoint_comes_back_from_its_name():
         (lambda mesh: find_points(mesh, "random", 2.5), "whole number"),
         (lambda mesh: find_points(mesh, "random", np.nan), "whole number of at least 1, got nan"),
         (lambda mesh: find_points(mesh, "random", "3"), "whole number of at least 1, got '3'"),
+        (lambda mesh: find_points(mesh, True), "whole number of at least 1, got True"),
+        (lambda mesh: find_points(mesh, 3, radius="1mm"), "radius is a length in units .*, got '1mm'"),
         (lambda mesh: saliency(mesh, "itti", viewpoints=[1]), "viewpoints must be of the class Viewpoint, got 1"),
         (lambda mesh: find_points(mesh, "random", 5, selection="brightest"), "unknown selection 'brightest'"),
         (lambda mesh: find_points(mesh, "random", 5, radius=0), "radius must be positive"),

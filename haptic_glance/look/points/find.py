@@ -126,8 +126,8 @@ def find_points(
     Raises
     ------
     ValueError
-        For unknown names, an invalid count, a method beside the purpose `touch`, or `random` or `farthest` without a
-        count.
+        For unknown names, an invalid count or radius, a method beside the purpose `touch`, or `random` or `farthest`
+        without a count.
 
     Examples
     --------
@@ -176,6 +176,8 @@ def detect(
             raise ValueError(f"method {method!r} is not the name of a method")
         method, count = None, method
     method = method_for(purpose, method)
+    if not (isinstance(radius, int | float | np.number) and radius >= 0):
+        raise ValueError(f"radius is a length in units of the normalised mesh, got {radius!r}")
     options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
     _check(count)
     return Looked(mesh, method, options, viewpoints, up).detect(count)
@@ -216,9 +218,8 @@ class Looked:
 
 
 def _check(count):
-    if count is not None and not (
-        isinstance(count, int | float | np.number) and float(count).is_integer() and count >= 1
-    ):
+    is_number = isinstance(count, int | float | np.number) and not isinstance(count, bool)
+    if count is not None and not (is_number and float(count).is_integer() and count >= 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count!r}")
     return None if count is None else int(count)
 
