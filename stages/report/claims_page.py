@@ -160,7 +160,8 @@ def _claim_html(
     pair_text = escape(over_text(row)) if row.pairs else "none"
     details = f'<dl>{terms}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{pair_text}</dd></dl>'
     badge = f'<span class="word {WORDS[row.verdict]}">{row.verdict}</span>'
-    summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}</small>"
+    key = f" · <code>{row.key}</code>" if row.of else ""  # other claims have the same sentence
+    summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}{key}</small>"
     marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'
     marks += f' data-kind="{"elsewhere" if row.of else "sentence"}"'
     return f'<li id="{row.key}" {marks}>{folded(summary, details)}</li>\n'

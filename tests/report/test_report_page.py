@@ -267,6 +267,8 @@ def test_claims_filter_and_open_to_their_pairs(tab, run):
     row.get_by_role("link", name=str(len(once)), exact=True).last.click()
     tab.wait_for_function(f"document.getElementById('found').innerText.startsWith('{len(once)} of')")
     assert shown.count() == len(once) > 0
+    other = claims.loc[claims["of"].notna(), "key"].iloc[0]
+    assert other in tab.locator(f"#{other} summary").text_content()  # its sentence stands elsewhere, too
     key = selected["key"].iloc[0]
     tab.goto("about:blank")
     tab.goto(f"{(site / 'site/claims.html').as_uri()}#{key}")
