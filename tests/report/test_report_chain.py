@@ -45,7 +45,7 @@ def test_confirmed_choices_stand_beside_what_the_search_found(measured):
     assert small["regions"] == pytest.approx(0.5) and small["regions_searched"] == pytest.approx(0.6)
     assert small["regions_low"] < 0.5 < small["regions_high"] and np.isnan(table.frame.iloc[2]["regions_searched"])
     assert small["regions_over"] == pytest.approx(-5) and small["regions_over_low"] < -5 < small["regions_over_high"]
-    assert "takes 10 ms, the default 100 times as long" in " ".join(table.notes)
+    assert "takes 10 ms, the default 1,000 ms" in " ".join(table.notes)
     assert "takes 10 ms" in build_one(chain, "tradeoff", "front", measured).caption
 
 

@@ -75,7 +75,7 @@ def _words(rows, frame):
         texts |= zip((name, f"{name}_regions", f"{name}_objects"), (row["words"], *accuracies), strict=True)
     return texts | {
         "small_ms": brief(1000 * small["seconds"]),
-        "times": brief(usual["seconds"] / small["seconds"]),
+        "usual_ms": brief(1000 * usual["seconds"]),
         "kept": smallest_kept(frame)["words"],
     }
 
