@@ -160,7 +160,7 @@ SALIENCY_METHOD = GLANCE  # its saliency weights the salient error of all method
 def measure_errors(inputs: ObjectInputs, mesh: Mesh, settings: Params, seed: int) -> list[dict]:
     """Parts of rows {metric, value, seconds, note} of one mesh; seconds are those of the call behind the metric."""
     parts = []
-    for measure in (_surface, _pictures):
+    for measure in (_surface, _pictures, _sizes):
         with Stopwatch() as watch:
             values, note = measure(inputs, mesh, settings, seed)
         for name, value in values.items():
@@ -182,6 +182,11 @@ def _pictures(inputs, mesh, settings, _):
     except ValueError as error:  # a mesh that leaves the frame
         return {"ssim_error": None}, str(error)
     return {"ssim_error" if name == "ssim" else name: value for name, value in errors.items()}, ""
+
+
+def _sizes(_inputs, mesh, *_):
+    areas = mesh.face_areas
+    return {"area_deviation": float(areas.std() / areas.mean())}, ""  # T3.2.7: triangles of roughly equal size
 
 
 FACES = 200  # of 1,280: few enough that every step of the backends runs

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from haptic_glance.base.files import read_mesh, write_arrays, write_table
 from haptic_glance.base.lazy import pandas as pd
-from haptic_glance.look.weights.convexity import convexity
 from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
@@ -24,6 +23,7 @@ from .ground_truth import Files, digest, ground_truth_amounts, ground_truth_file
 from .training import (
     collect_training_data,
     read_training_data,
+    shape_rows,
     train_all,
     train_object,
     weight_rows,
@@ -34,7 +34,7 @@ GROUND_TRUTH = "ground_truth"  # the folder of the training data in data/SET/wei
 
 
 def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed: int) -> Rows:
-    """Writes the training data of an object with ground truth; a row with its number of points, or why it has none.
+    """Writes the training data of an object with ground truth; rows on its points and shape, or why it has none.
 
     item: the object's name and the files of its ground truth.
     """
@@ -46,11 +46,11 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
         if amounts is None or not amounts.any():
             return []
         arrays = collect_training_data(name, mesh, path, amounts, seed)
-        row = {"item": name, "metric": "points", "value": len(arrays["points"]), "_convexity": convexity(mesh)}
+        shape = shape_rows(name, mesh)
     except ValueError as error:  # marks of another mesh of this name, for example: the other objects are trained on
         return [{"item": name, "metric": "points", "value": None, "note": str(error)}]
     write_arrays(folder / GROUND_TRUTH / f"{name}.npz", **arrays)
-    return [row]
+    return [{"item": name, "metric": "points", "value": len(arrays["points"])}, *shape]
 
 
 def run(workspace: Workspace) -> None:
@@ -68,7 +68,7 @@ def run(workspace: Workspace) -> None:
         for row in rows:
             if "note" in row:
                 print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)
-        convexities = [(row["item"], row["_convexity"]) for row in rows if "_convexity" in row]
+        convexities = [(row["item"], row["value"]) for row in rows if row["metric"] == "convexity"]
         training_data = read_training_data(stage.folder / GROUND_TRUTH)
         table = weight_table(training_data, settings.method)
         write_table(stage.folder / "weights.csv", table)

@@ -23,7 +23,16 @@ from haptic_glance.look.agreement import gaze_peaks
 from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.glance import samples_of_mesh, standardised
 from haptic_glance.look.weights.attention import view_distances, view_similarities
-from haptic_glance.look.weights.svm import MAX_ROWS, balanced_rows, checked_rows, fit_rows, fit_svm, pixel_samples
+from haptic_glance.look.weights.convexity import convexity
+from haptic_glance.look.weights.svm import (
+    MAX_ROWS,
+    balanced_rows,
+    checked_rows,
+    fit_rows,
+    fit_svm,
+    information_gains,
+    pixel_samples,
+)
 from haptic_glance.look.weights.weights import ALL, GLANCES, METHODS, learned_weight_rows, weights, write_models
 from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.measure import read_maps
@@ -126,6 +135,7 @@ def _view(name, mesh, viewpoint, maps, mask, points, seed):
     return tables, pixel_samples(maps, gts, seed, name), pixel_samples(maps, gts, seed, name, mask, share=1)
 
 
+GAIN = "information_gain"
 AREAS = {"image": "image_", "object": ""}  # area that the pixels were drawn from -> prefix of their arrays
 PIXELS = {"object": "", "picture": "image_"}  # what an object's own SVMs are trained on -> prefix of their arrays
 MIN_ROWS = 40  # per model, so that each of ten folds has two of either class
@@ -146,7 +156,7 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
     other_svms = [_fit(*_joined_rows(other_arrays), seed)] if other_arrays else []
     models = {"object": [_fit(features, labels, seed, most)], "view": per_view, "without": other_svms}
     write_models(folder / "svm" / f"{name}.npz", models)
-    rows = []
+    rows = gain_rows(name, record, seed)
     for area, prefix in AREAS.items():
         features, labels, views = (record[f"{prefix}{key}"] for key in ("pixels", "labels", "views"))
         rows.append(_row(name, area, "one_per_object", "pixels", cross_validated, features, labels, seed))
@@ -157,6 +167,39 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
                 _row(name, area, "one_per_viewpoint", "pixels", cross_validated, features[part], labels[part], seed)
             )
     return [row for row in rows if row]
+
+
+def gain_rows(name: str, record: dict[str, np.ndarray], seed: int) -> Rows:
+    """The information gain in bits of each channel about the pixels of an object, classes balanced (T3.2.3)."""
+    rows = []
+    for area, prefix in AREAS.items():
+        pixels, labels = record[f"{prefix}pixels"], record[f"{prefix}labels"]
+        if not 0 < labels.sum() < len(labels):
+            continue
+        drawn = balanced_rows(labels, rng(seed, "svm"), len(labels))
+        gains = dict(zip(record["channels"], information_gains(pixels[drawn], labels[drawn]), strict=True))
+        shared = {"item": name, "method": "svm", "area": area, "training": "one_per_object", "metric": GAIN}
+        rows += [shared | {"channel": str(channel), "value": gain} for channel, gain in gains.items()]
+    return rows
+
+
+def shape_rows(name: str, mesh: Mesh) -> Rows:
+    """What the thesis holds responsible for the gains of channels: convexity, and how far the extremes are (T3.2.3).
+
+    `extremes` is the distance of the farthest vertex from the centre of mass of the surface over the mean distance,
+    `distances_deviation` the deviation of the distances over their mean.
+    """
+    areas, middles = mesh.face_areas, mesh.vertices[mesh.faces].mean(axis=1)
+    centre = np.average(middles, axis=0, weights=areas)
+    distances = np.linalg.norm(middles - centre, axis=1)
+    mean = np.average(distances, weights=areas)
+    corners = mesh.vertices[np.unique(mesh.faces[areas > 0])]
+    values = {
+        "convexity": convexity(mesh),
+        "extremes": np.linalg.norm(corners - centre, axis=1).max() / mean,
+        "distances_deviation": np.sqrt(np.average((distances - mean) ** 2, weights=areas)) / mean,
+    }
+    return [{"item": name, "metric": metric, "value": float(value)} for metric, value in values.items()]
 
 
 def train_all(folder: Path, training_data: dict[str, dict[str, np.ndarray]], seed: int) -> Rows:

@@ -61,6 +61,8 @@ def test_a_feasible_cell_has_its_mesh_and_all_metrics(rows):
     assert set(metrics) >= {"faces", "metro_mean", "metro_rms", "metro_max", "ssim_error", "salient_error"}
     mesh = read_mesh(folder / "ball" / "glance_50pct.npz")
     assert len(mesh.faces) == metrics["faces"]["value"] == metrics["ssim_error"]["faces"] <= 640
+    areas = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).area_faces
+    assert metrics["area_deviation"]["value"] == pytest.approx(areas.std() / areas.mean())
     assert all(row["value"] > 0 and row["seconds"] > 0 and row["points"] == 2 for row in metrics.values())
     assert all((row["kept"], row["rings"], row["shrunk"]) == (2, 3.0, False) for row in metrics.values())
 

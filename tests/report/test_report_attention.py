@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import stats
 
 from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.look.views import TWELVE
@@ -171,6 +172,61 @@ def test_the_largest_and_the_least_weight_are_held_against_the_next_channel_by_o
     for key, lead in leads.items():
         assert judged.loc[key, ["effect", "low", "high"]].tolist() == pytest.approx(interval(lead), abs=1e-4)
     assert judged["verdict"].tolist() == [word, word]
+
+
+SHAPE_CLAIMS = ["symmetry_gain_varies", "symmetry_gain_extremes", "gain_by_convexity"]
+
+
+def gains_of(objects, symmetry, others, shapes):
+    """Rows of information gains: of symmetry (objects,), of three other channels (objects, 3), and of shapes."""
+    rows = []
+    for k in range(objects):
+        values = {
+            "symmetry": symmetry[k],
+            **dict(zip(("edge", "dkl", "entropy"), others[k], strict=True)),
+            "color": 0.0,
+        }
+        shared = {"item": f"object {k:02d}", "metric": "information_gain", "area": "image"}
+        rows += [shared | {"channel": channel, "value": value} for channel, value in values.items()]
+        rows += [{"item": f"object {k:02d}", "metric": metric, "value": values[k]} for metric, values in shapes.items()]
+    return pd.DataFrame(rows)
+
+
+def test_gains_are_held_against_other_channels_and_against_the_shape_by_object(measure):
+    generator = np.random.default_rng(3)
+    symmetry, others = generator.uniform(0.1, 1, 12), generator.normal(0.6, 0.05, (12, 3))
+    shapes = {"extremes": symmetry + generator.normal(0, 0.2, 12), "convexity": generator.random(12)}
+    results = measure("weights", gains_of(12, symmetry, others, shapes), "gaze_3_2")
+    judged = verdicts(CLAIMS, results, *SHAPE_CLAIMS)
+    lead = 100 * (np.abs(symmetry / symmetry.mean() - 1) - np.abs(others / others.mean(axis=0) - 1).mean(axis=1))
+    columns = ["effect", "low", "high"]
+    assert judged.loc["symmetry_gain_varies", columns].tolist() == pytest.approx(interval(pd.Series(lead)), abs=1e-3)
+
+    def jackknife(correlation):
+        without = [correlation(np.delete(np.arange(12), k)) for k in range(12)]
+        return interval(pd.Series(12 * correlation(np.arange(12)) - 11 * np.array(without)))
+
+    def extremes(ids):
+        share = symmetry[ids] / (symmetry[ids] + others[ids].sum(axis=1))
+        return stats.spearmanr(share, shapes["extremes"][ids])[0]
+
+    def convexity(ids):
+        gains = np.column_stack([symmetry, others])[ids]
+        gains /= gains.sum(axis=1, keepdims=True)
+        pairs = [(i, j) for i in range(len(ids)) for j in range(i)]
+        apart = [np.linalg.norm(gains[i] - gains[j]) for i, j in pairs]
+        return stats.spearmanr(apart, [abs(np.diff(shapes["convexity"][ids][[i, j]])[0]) for i, j in pairs])[0]
+
+    for key, correlation in (("symmetry_gain_extremes", extremes), ("gain_by_convexity", convexity)):
+        assert judged.loc[key, columns].tolist() == pytest.approx(jackknife(correlation), abs=1e-4)
+    assert judged["verdict"].tolist()[0] == "supported"
+
+
+def test_four_objects_are_too_few_for_a_rank_correlation(measure):
+    shapes = {"extremes": np.arange(4.0), "convexity": np.arange(4.0)}
+    results = measure("weights", gains_of(4, np.arange(4.0), np.ones((4, 3)), shapes), "gaze_3_2")
+    judged = verdicts(CLAIMS, results, *SHAPE_CLAIMS[1:])
+    assert judged["verdict"].tolist() == ["open"] * 2 and judged["tested_on"].str.contains("fewer than 5 objects").all()
 
 
 def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root, small):

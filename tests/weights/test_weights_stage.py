@@ -10,7 +10,7 @@ from haptic_glance.look.weights.weights import read_models
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.weights import __main__ as stage
-from stages.weights.training import train_object
+from stages.weights.training import gain_rows, shape_rows, train_object
 
 SECTIONS = {
     "weights": {"method": "fixations", "svm": "object"},
@@ -112,6 +112,12 @@ def check_rows(workspace):
     assert stored.values.tolist() == keys.values.tolist()
     assert weights.value.tolist() == pytest.approx(table.weight.tolist())
     assert set(weights[weights.method == "glance"].item) == {"", "ball", "egg"}
+    gains = rows[rows.metric == "information_gain"]
+    assert set(map(tuple, gains[["item", "area", "channel"]].to_numpy())) == {
+        (name, area, channel) for name in ("ball", "egg") for area in ("object", "image") for channel in CHANNELS
+    }
+    convexity = rows[rows.metric == "convexity"].set_index("item").value
+    assert convexity.to_dict() == pytest.approx({"ball": 1.0, "egg": 1.0})
     accuracies = rows[rows.metric == "accuracy"]
     assert set(accuracies.item) == {"", "ball", "egg"}
     assert accuracies[["area", "training", "validation"]].notna().all().all()
@@ -147,7 +153,8 @@ def test_without_ground_truth_only_the_published_weights_are_written(add_object,
 @pytest.mark.parametrize(("trained_on", "prefix"), [("object", ""), ("picture", "image_")])
 @pytest.mark.slow
 def test_svms_of_an_object_learn_from_its_own_pixels_or_from_all_of_the_picture(tmp_path, trained_on, prefix):
-    generator, arrays = np.random.default_rng(0), {"distances": np.zeros((2, 3))}
+    generator = np.random.default_rng(0)
+    arrays = {"distances": np.zeros((2, 3)), "channels": np.array(["color", "edge", "symmetry"])}
     for kind, shift in (("", 0.0), ("image_", 5.0)):
         labels = np.arange(1400) % 2 == 0
         arrays[f"{kind}pixels"] = generator.normal(shift, 1, (1400, 3)) + labels[:, None]
@@ -158,3 +165,35 @@ def test_svms_of_an_object_learn_from_its_own_pixels_or_from_all_of_the_picture(
     pixels = arrays[f"{prefix}pixels"]
     whole = np.abs(model.center - pixels.mean(axis=0)).max() < 1e-9
     assert np.abs(model.center - pixels.mean(axis=0)).max() < 0.2 and whole == (trained_on == "picture")
+
+
+def test_the_gain_of_a_channel_that_tells_the_classes_is_one_bit_and_of_noise_none():
+    labels = np.arange(4000) % 4 == 0
+    noise = np.random.default_rng(0).random(4000)
+    pixels = np.stack([labels, noise, np.ones(4000)], axis=1)
+    record = {"channels": np.array(["edge", "dkl", "color"]), "pixels": pixels, "labels": labels}
+    record |= {"image_pixels": pixels, "image_labels": np.ones(4000, bool)}  # of one class: no gain can be told
+    rows = gain_rows("mug", record, 0)
+    assert [(row["channel"], row["area"]) for row in rows] == [
+        ("edge", "object"),
+        ("dkl", "object"),
+        ("color", "object"),
+    ]
+    assert [row["value"] for row in rows] == pytest.approx([1, 0, 0], abs=0.01)  # classes balanced: 0.81 bits otherwise
+
+
+def test_extremes_and_deviation_of_distances_of_shapes_by_hand(ball):
+    def values(mesh):
+        return {row["metric"]: row["value"] for row in shape_rows("mug", mesh)}
+
+    assert values(ball) == pytest.approx({"convexity": 1, "extremes": 1, "distances_deviation": 0}, abs=0.01)
+    # A needle along x, from 0 to 1: distances from its middle are uniform in 0..0.5.
+    xs = np.linspace(0, 1, 400)
+    strip = np.concatenate([np.stack([xs, np.full(400, y), np.zeros(400)], axis=1) for y in (0, 1e-3)])
+    k = np.arange(399)
+    faces = np.concatenate([np.stack([k, k + 1, k + 400], axis=1), np.stack([k + 1, k + 401, k + 400], axis=1)])
+    needle = values(Mesh(strip, faces))
+    assert needle["extremes"] == pytest.approx(2, rel=0.01)
+    assert needle["distances_deviation"] == pytest.approx(3**-0.5, rel=0.01)
+    moved = values(Mesh(strip * 7 + 5, faces))
+    assert moved == pytest.approx(needle)

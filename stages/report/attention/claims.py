@@ -106,7 +106,10 @@ ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household 
 PHRASES = {
     ("method", OURS): "our glance", ("method", ANY_POSE): "our glance in any pose",
     ("method", "VisAttAll"): "VisAttAll", ("method", "equal"): "equal weights",
-    ("metric", "weight"): "weights",
+    ("metric", "weight"): "weights", ("metric", "information_gain"): "information gain",
+    ("metric", "extremes"): "largest over mean distance from the centre of mass",
+    ("metric", "distances_deviation"): "deviation of the distances from the centre of mass",
+    ("channel", "symmetry"): "of symmetry",
     ("views", "best"): "four to eight best viewpoints", ("views", "four"): "four around the object",
     ("views", "twelve"): "twelve",
     ("metric", "repeatability"): "points found again", ("perturbation", "clay"): "with the colours taken away",
@@ -116,6 +119,7 @@ PHRASES = {
     ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
     ("validation", "objects"): "on whole objects left out",
 }  # fmt: skip
+MARKED = "household"  # the data set whose marks come with the project
 OF_3_2 = (SECTION_3_2, "gaze_clouds")  # the printed protocol first; elsewhere a method has not seen the object
 UNSEEN = {"guided_ed_seen": "guided_ed", "guided_ssim_seen": "guided_ssim", "svm_object": "svm"}
 MENDED = reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1]))
@@ -126,6 +130,15 @@ closer = partial(about, stage="salient_points", where={"metric": "nss"}, dataset
 checked = partial(closer, stage="attention_checks")
 colour = partial(about, dataset=COLOURED)
 learned = partial(about, stage="weights", dataset=OF_3_2)
+GAIN_OF_PICTURE = {"metric": "information_gain", "area": "image"}
+ON_OBJECT = {"area": "object"}
+MENDED_GAIN = reading("formulas mended", dataset=(MENDED_3_2, MARKED))
+
+
+def gain_of_symmetry(key: str, sentence: str, section: str = "T3.2.3", **more: Any) -> Claim:
+    """A claim on the information gain of channels about the pixels of an object, on objects with clicked marks, too."""
+    options: dict[str, Any] = {"scale": 1, "unit": "rank correlation"} | more
+    return learned(key=key, section=section, sentence=sentence, dataset=(SECTION_3_2, MARKED), **options)
 
 
 def learned_to_gaze(key: str, section: str, first: str, sentence: str) -> Claim:
@@ -201,6 +214,23 @@ CLAIMS = [
       for key, area, alone, joint, words, of in (
           ("svm_per_object", "image", "pixels", "pixels", "than one for all", ""),
           ("svm_per_object_unseen", "object", "views", "objects", "on what it has not seen, too", "svm_per_object"))),
+    gain_of_symmetry(
+        "symmetry_gain_varies", "The weight of symmetry by information gain changes a lot from object to object.",
+        statistic="varies_more", where=GAIN_OF_PICTURE, first={"channel": "symmetry"}, scale=100,
+        unit="% of the mean gain", readings=(reading("pixels of the object alone", where=ON_OBJECT), MENDED_GAIN),
+        note="distance of an object's gain from the mean gain, minus the same of the other channels"),
+    gain_of_symmetry(
+        "symmetry_gain_extremes",
+        "Symmetry contributes less where the extremes of an object deviate less from its centre of mass.",
+        statistic="share_rises_with", first=GAIN_OF_PICTURE | {"channel": "symmetry"}, second={"metric": "extremes"},
+        note="rank correlation over the objects, of the channel's share in the gain",
+        readings=(reading("pixels of the object alone", first=ON_OBJECT), MENDED_GAIN,
+                  reading("deviation of all distances", second={"metric": "distances_deviation"}))),
+    gain_of_symmetry(
+        "gain_by_convexity", "The contribution of the channels depends on the level of convexity of an object.",
+        section="T3.2.9.2", statistic="differs_with", first=GAIN_OF_PICTURE, second={"metric": "convexity"},
+        note="rank correlation over pairs of objects: distance of the channels' shares in the gain, and of convexities",
+        readings=(reading("pixels of the object alone", first=ON_OBJECT), MENDED_GAIN)),
     *(checked(key=f"best_over_{fixed}", where={"method": "equal", "metric": "nss"}, first={"views": "best"},
               second={"views": fixed}, of="best_over_four" if fixed != "four" else "",
               sentence=f"The most salient of 62 viewpoints show where people look better than {views} do.")
@@ -224,7 +254,6 @@ MEANS = {
 NAMED = 5  # methods that a sentence names at most
 PEEKED = {"guided_ssim": "guided_ssim_seen", "guided_ed": "guided_ed_seen", "svm": "svm_object"}
 FILTERED = (CLASSICAL, THESIS, "thesis_ssim", "thesis_ed", "guided_ssim", "guided_ed")  # the thesis's, on black too
-MARKED = "household"  # the data set whose marks come with the project
 
 
 def against_gaze(results: Results) -> Table:

@@ -6,17 +6,18 @@ passes of marks in data/annotations with each other and with human gaze.
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.spatial.distance import pdist
 
 from stages.engine.statistics import interval
 from stages.report.claims import Claim
 from stages.report.drawing import label
-from stages.report.effects import statistic
+from stages.report.effects import side, statistic
 from stages.report.items import Table
 from stages.report.results import COLOURED, MENDED_3_2, SECTION_3_2, NotRun, Results, dataset_text, some
 from stages.report.tables import (
@@ -108,8 +109,12 @@ def _over_objects(group: pd.DataFrame) -> dict[str, float]:
 def own_values(group: pd.DataFrame) -> pd.Series:
     """(objects,) each object's part in one learned weight, the jackknife's pseudo-values: n m - (n - 1) m_without."""
     of_all = group["item"].isna()
-    mean, without = group.loc[of_all, "value"].iloc[0], group[~of_all].set_index("item")["value"]
-    return len(without) * mean - (len(without) - 1) * without
+    return pseudo_values(group.loc[of_all, "value"].iloc[0], group[~of_all].set_index("item")["value"])
+
+
+def pseudo_values(whole: float, without: pd.Series) -> pd.Series:
+    """(objects,) each object's part in a statistic, by its value of all objects and of all but one (Tukey 1958)."""
+    return len(without) * whole - (len(without) - 1) * without
 
 
 @statistic("least_weight")
@@ -132,6 +137,64 @@ def _over_other(results: Results, claim: Claim, extreme: Callable[[pd.Series], A
     of_all = rows[rows["item"].isna() & (rows["channel"] != channel)].set_index("channel")["value"]
     first, other = (own_values(rows[rows["channel"] == name]) for name in (channel, extreme(of_all)))
     return first - other
+
+
+@statistic("varies_more")
+def varies_more(results: Results, claim: Claim) -> pd.Series:
+    """How far the gain of the first side's channel is from its mean, as a share of the mean, by object.
+
+    Minus the same of the other channels, on average; a channel without gain on every object is left out.
+    """
+    gains = _gains(results, claim, claim.where)
+    shares = (gains / gains.mean() - 1).abs().dropna(axis=1)
+    channel = claim.first["channel"]
+    return shares[channel] - shares.drop(columns=channel).mean(axis=1)
+
+
+@statistic("share_rises_with")
+def share_rises_with(results: Results, claim: Claim) -> pd.Series:
+    """Rank correlation over the objects of a channel's share in the gain with the second side, as pseudo-values.
+
+    The share, since every channel gains more where an object fills less of the picture.
+    """
+    channel = claim.first["channel"]
+    gains = _gains(results, claim, {key: value for key, value in claim.first.items() if key != "channel"})
+    second = side(results, claim, claim.other, None)
+    table = pd.concat([gains[channel] / gains.sum(axis=1), second], axis=1, join="inner", keys=["first", "second"])
+    return _by_jackknife(claim, table, lambda part: part["first"].corr(part["second"], method="spearman"))
+
+
+@statistic("differs_with")
+def differs_with(results: Results, claim: Claim) -> pd.Series:
+    """Rank correlation over pairs of objects, as pseudo-values by object (the statistic of Mantel 1967).
+
+    Between the distance of the channels' shares in the gain, and the difference of the second side.
+    """
+    gains = _gains(results, claim, claim.first)
+    shares = gains.div(gains.sum(axis=1), axis=0)
+    table = shares.join(side(results, claim, claim.other, None).rename("second"), how="inner")
+
+    def correlation(part: pd.DataFrame) -> float:
+        far_apart = [pd.Series(pdist(part[columns])) for columns in (list(shares), ["second"])]
+        return far_apart[0].corr(far_apart[1], method="spearman")
+
+    return _by_jackknife(claim, table, correlation)
+
+
+def _gains(results: Results, claim: Claim, where: Mapping[str, Any]) -> pd.DataFrame:
+    """Frame (object, channel) of information gains."""
+    rows = results.measured(claim.stage, claim.sets[0], **where)
+    return rows.pivot(index="item", columns="channel", values="value")
+
+
+FEWEST = 5  # objects that a rank correlation needs
+
+
+def _by_jackknife(claim: Claim, table: pd.DataFrame, measure: Callable[[pd.DataFrame], float]) -> pd.Series:
+    if len(table) < FEWEST:
+        raise NotRun(f"fewer than {FEWEST} objects to rank", claim.stage, runnable=False)
+    without = {name: measure(table.drop(index=name)) for name in table.index}
+    return pseudo_values(measure(table), pd.Series(without).rename_axis("item"))
 
 
 def _ranks(frame: pd.DataFrame) -> str:
@@ -163,10 +226,29 @@ def section_3_2_3(results: Results) -> Table:
         f"background alone gives {100 * row.background_alone:.1f} %."
         for row in records(frame.dropna(subset=["thesis_accuracy"]))
     ]
+    with suppress(NotRun):
+        findings += _spread_of_gains(_gaze_first(results, "information_gain", "no information gain was measured"))
     text_table = pd.DataFrame(map(_shown, records(frame)))
     return Table(
         frame, text_table, {"findings": "\n".join(findings)}
     )  # no ranking: the ways to test differ, not the SVMs
+
+
+def _spread_of_gains(rows: pd.DataFrame) -> list[str]:
+    """One sentence a data set on how much the information gain of symmetry differs between objects."""
+    sentences = []
+    for dataset, part in rows[rows["area"] == "image"].groupby("dataset", sort=False):
+        gains = part.pivot(index="item", columns="channel", values="value")
+        none = (gains["symmetry"] == 0).sum()
+        shares = (gains.std() / gains.mean()).dropna()
+        others = shares.drop("symmetry")
+        sentences.append(
+            f"{dataset_text(str(dataset))}, whole image: the information gain of symmetry deviates by "
+            f"{percent(shares['symmetry'], 0)} % of its mean between objects, that of the other channels by "
+            f"{percent(others.min(), 0)} to {percent(others.max(), 0)} %; symmetry has no gain on {none} of "
+            f"{len(gains)} objects."
+        )
+    return sentences
 
 
 def _shown(row: Any) -> dict[str, str | int]:

@@ -22,6 +22,7 @@ from stages.report.claims import (
     Reading,
     Side,
     highest_of,
+    in_sums,
     lowest_of,
     reading,
 )  # fmt: skip
@@ -124,7 +125,8 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     if "_apart" in end or end == "_60":
         size, sizes = PLAIN, ()
     sets: dict[str, Any] = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
-    readings = (*scalings, *((NO_SVM,) if end == "_all" else sizes))
+    sums = in_sums(first["method"], second["method"])
+    readings = (*scalings, *((NO_SVM,) if end == "_all" else sizes), *sums)
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end] | scale | size, stage=STAGE,
         phrases=PHRASES, note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (),
