@@ -210,8 +210,9 @@ CLAIMS = [
           "measure does not see regions.",
           where={"metric": "half_share", "view": VIEWS}, first={"task": CLASSICAL, "method": "rival"},
           second=NOISE._asdict()),
-    *each_network("ewigc_over_random_weights", "What a network learned from photographs makes its attention like "
-                  "people's.", lambda method: (with_random_weights(method), FUSED), metrics=OUR_METRICS),
+    *each_network("ewigc_over_random_weights", "A network that learned from photographs has attention more like "
+                  "people's than one with random weights.", lambda method: (with_random_weights(method), FUSED),
+                  metrics=OUR_METRICS),
     *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
                   lambda _: PRIOR, metrics=OUR_METRICS),
     *in_each_metric("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH,
