@@ -105,9 +105,10 @@ def test_classes_that_feel_alike_are_confused_more_than_the_mean_pair(measure):
 
 
 def test_a_share_of_a_few_points_is_no_accuracy_of_which_three_are_negligible(measure):
-    frame = pd.concat([confusions(4, 4), confusions(4, 4).assign(classifier=lambda rows: rows["classifier"] + "_no_som")])
-    is_one = (frame["method"] == "thesis_ssim") & (frame["classifier"] == "knn") & (frame["group"] != frame["predicted"])
-    frame.loc[is_one, "value"] += 1
+    frame = confusions(4, 4)
+    frame = pd.concat([frame, frame.assign(classifier=frame["classifier"] + "_no_som")], ignore_index=True)
+    is_wrong = frame["group"] != frame["predicted"]
+    frame.loc[is_wrong & (frame["method"] == "thesis_ssim") & (frame["classifier"] == "knn"), "value"] += 1
     row = judged(measure("sequences", pd.concat([rows(dataset=PRINTED_SET), frame])), "guided_confuses_less").iloc[0]
     assert row["low"] < 0 < row["high"] < 3 and (row["verdict"], row["unit"]) == ("open", "points of the share")
 
