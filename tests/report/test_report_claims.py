@@ -181,8 +181,7 @@ def test_equal_differences_are_open_and_say_why(values):
 
 
 def test_words_are_written_from_the_fields(root, results, small):
-    text = "test, kNN, six objects, test part drawn at random, all imprints, our glance minus blind touch, "
-    text += "five draws"
+    text = "test, kNN, six objects, test part drawn at random, all imprints, our glance minus blind touch, one draw"
     entry = next(claim for claim in CLAIMS if claim.key == "glance_over_blind_ours")
     other = replace(entry, where=entry.where | {"classifier": "deep_learning"}, note="so")
     assert judge([entry, other], results)["tested_on"].tolist() == [text, text.replace("kNN", "deep learning") + ", so"]

@@ -57,6 +57,7 @@ def test_claims_know_the_truth_of_the_rows(explorer):
     assert words["saliency_over_random"] == words["five_touches_perfect_by_imprints"] == "contradicted"
     assert words["product_too_sure"] == words["sure_is_right"] == "supported"
     assert judged.loc["gain_over_saliency", "effect"] == pytest.approx(1.5, abs=0.01)
+    assert "all touches where the belief stays below" in judged.loc["gain_over_saliency", "tested_on"]
     assert judged.loc["adaptive_over_fixed", "effect"] == pytest.approx(7, abs=0.5)
 
 

@@ -86,6 +86,12 @@ def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert judged.loc["sight_over_touch_objects", "verdict"] == "contradicted"
 
 
+def test_what_loses_about_the_point_that_may_be_lost_is_open_and_says_what_nobody_measured(run, measure):
+    row = verdicts(measure("transfer", rows(small=-0.01)), "eight_bits_touch_random").iloc[0]
+    assert -3 < row["low"] < 0 < row["high"] < 3 and row["verdict"] == "open"
+    assert "nobody measured whether the training was saturated" in row["tested_on"]
+
+
 def test_a_file_is_as_much_smaller_as_in_print_or_more(run, measure):
     row = verdicts(run, "hybrid_smaller").iloc[0]
     assert row["verdict"] == "supported" and row["effect"] == pytest.approx(0.00161) and row["unit"] == "times"

@@ -104,6 +104,15 @@ def test_classes_that_feel_alike_are_confused_more_than_the_mean_pair(measure):
     assert "with the networks: supported +12" in table.loc["alike_confused", "readings"]
 
 
+def test_a_share_of_a_few_points_is_no_accuracy_of_which_three_are_negligible(measure):
+    frame = confusions(4, 4)
+    frame = pd.concat([frame, frame.assign(classifier=frame["classifier"] + "_no_som")], ignore_index=True)
+    is_wrong = frame["group"] != frame["predicted"]
+    frame.loc[is_wrong & (frame["method"] == "thesis_ssim") & (frame["classifier"] == "knn"), "value"] += 1
+    row = judged(measure("sequences", pd.concat([rows(dataset=PRINTED_SET), frame])), "guided_confuses_less").iloc[0]
+    assert row["low"] < 0 < row["high"] < 3 and (row["verdict"], row["unit"]) == ("open", "points of the share")
+
+
 def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is_another_reading(measure):
     frame = rows(guided=-0.05, unseen=0.05)
     frame.loc[frame["classifier"] == "knn_no_som", "value"] = 1.2

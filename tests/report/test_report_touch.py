@@ -105,6 +105,12 @@ def test_claims_follow_the_measurements(measure):
     assert "; 60 imprints of each object: contradicted -" in itti["readings"]
 
 
+def test_the_mean_of_four_classifiers_is_read_beside_one_touch_with_the_map_too():
+    (entry,) = (claim for claim in claims.CLAIMS if claim.key == "more_touches_all")
+    (base,) = (base for base in entry.readings if base.name.startswith("without the SVM, beside one touch with"))
+    assert base.of(entry).second == {"variant": "touches_1"} and "svm" not in base.of(entry).where["classifier"]
+
+
 @pytest.mark.slow
 def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(root, small, monkeypatch):
     ours = rows("glance", "test")

@@ -202,7 +202,8 @@ PHRASES = {
 }  # fmt: skip
 claim = partial(Claim, section="ours", stage=STAGE, phrases=PHRASES)
 five = partial(claim, where=AT_RANDOM | FIXED, first=FIVE)
-touches = partial(claim, where=AT_RANDOM | SURE, scale=1.0, unit="touches", statistic="touches_saved")
+touches = partial(claim, where=AT_RANDOM | SURE, scale=1.0, unit="touches", statistic="touches_saved",
+                  note="all touches where the belief stays below")  # fmt: skip
 
 
 @statistic("touches_saved")

@@ -167,8 +167,8 @@ CLAIMS = [
       for entry in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
                                   "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
                                   within=("method",), of="excluded_least_masked")],
-    *in_each_metric("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC,
-                    (TUNED, AVERAGE), "T3.3.4", within=("method",)),
+    *in_each_metric("entropy_over_average", "Weighing maps by their entropy beats averaging them, as the thesis "
+                    "expects.", EWIGC, (TUNED, AVERAGE), "T3.3.4", within=("method",)),
     *[entry for method, name in SHORT.items()
       for entry in in_each_metric(f"ewigc_over_rest_{method.partition('-')[0]}", f"Fused Grad-CAM of {name} correlates "
                                   "more with fixations than the models of Lee, Song and Tasse.", (method, FUSED),
@@ -210,8 +210,9 @@ CLAIMS = [
           "measure does not see regions.",
           where={"metric": "half_share", "view": VIEWS}, first={"task": CLASSICAL, "method": "rival"},
           second=NOISE._asdict()),
-    *each_network("ewigc_over_random_weights", "What a network learned from photographs makes its attention like "
-                  "people's.", lambda method: (with_random_weights(method), FUSED), metrics=OUR_METRICS),
+    *each_network("ewigc_over_random_weights", "A network that learned from photographs has attention more like "
+                  "people's than one with random weights.", lambda method: (with_random_weights(method), FUSED),
+                  metrics=OUR_METRICS),
     *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
                   lambda _: PRIOR, metrics=OUR_METRICS),
     *in_each_metric("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH,

@@ -8,13 +8,14 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from stages.engine.settings import conf_folder, load_params
-from stages.report.claims import Claim, Side, reading
+from stages.report.claims import POINTS, Claim, Side, reading
 from stages.report.drawing import plt
 from stages.report.effects import difference, statistic
 from stages.report.items import Figure, Table
 from stages.report.networks import SEEN, SETS, SPLITS, accuracy, both, draw_matrices, everywhere, mean, measured, seen
 from stages.report.results import NotRun, Results, dataset_text
 from stages.report.tables import Ranking, grid, grouped, number, percent, with_interval, within
+from stages.report.validity import UNMEASURED
 
 SENSES = {"vision": "sight", "touch": "touch"}
 ITEMS = {split: words.replace("touches", "items") for split, words in SPLITS.items()}
@@ -260,8 +261,8 @@ def claim(key: str, section: str, sentence: str, first: Side, second: Side | flo
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second,
         where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
-        dataset=SETS, checked=section != "ours",  # ours compare ways to use the same networks
-        note="" if section == "ours" else "at 80 pixels, in print at 224", **more,
+        dataset=SETS, checked=section != "ours",  # ours compare ways to use the same networks, and the note warns
+        note=UNMEASURED if section == "ours" else "at 80 pixels, in print at 224", **more,
     )  # fmt: skip
 
 
@@ -289,7 +290,7 @@ OURS = on_both_splits(
     *(  # not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread
         claim(f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
               "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense},
-              {"sense": sense, "perturbation": None}, margin=POINT)
+              {"sense": sense, "perturbation": None}, margin=POINT, unit=f"{POINTS} within the margin")
         for sense, word in SENSES.items()
     ),
     joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",

@@ -221,7 +221,8 @@ CLAIMS = [
     *(
         claim(key=key, sentence=sentence, first={"method": GUIDED if second is None else BLIND}, second=second,
               where={"metric": "confusion", "split": Split.RANDOM, "classifier": CONVENTIONAL}, over=("classifier",),
-              statistic="alike_confused", shared=0.0, checked=False, note=f"{note}; {CLASSIFIED}",
+              statistic="alike_confused", unit="points of the share", shared=0.0, checked=False,
+              note=f"{note}; {CLASSIFIED}",
               phrases=PHRASES | {("over", "classifier"): "classifiers of the same sequences"},
               readings=(reading("unseen objects", where={"split": Split.OBJECTS}),
                         reading("with the networks", where={"classifier": tuple(CLASSIFIERS)})))
