@@ -63,7 +63,8 @@ class Learning:
         self.curve.append(values)
         wrong = [name for name, value in values.items() if not math.isfinite(value)]
         if wrong:
-            raise Diverged(f"diverged: {wrong[0].replace('_', ' ')} is not finite in pass {len(self.curve)}")
+            cause = f"{wrong[0].replace('_', ' ')} is not finite in pass {len(self.curve)}"
+            raise Diverged(f"diverged: {cause}: take a lower learning rate")
         if self.validation is not None and (
             not self.best_pass or _rank(values) > _rank(self.curve[self.best_pass - 1])
         ):

@@ -121,6 +121,13 @@ def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypat
     assert rates in ([0.01], [0.03]) if mode == "last_block" else not rates
 
 
+@pytest.mark.slow
+def test_a_network_that_diverges_ends_the_run_and_looks_nowhere_in_no_row(run, monkeypatch):
+    monkeypatch.setitem(backbone.MODES, "finetuned", "random")
+    with pytest.raises(ValueError, match="diverged: loss is not finite in pass 1: take a lower learning rate"):
+        run(methods=["mobilenet_v2-finetuned"], rate=1e30)
+
+
 def test_one_object_alone_is_refused_with_the_remedy(run):
     with pytest.raises(ValueError, match="give two objects or more"):
         run(names=["ball"])
