@@ -11,13 +11,14 @@ import json
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 import torch
 
 from haptic_glance.base.files import read_arrays, write_arrays
 
+from .architectures import restore
 from .device import device_of
 from .images import MEAN, STD
 from .network import Network, build
@@ -98,6 +99,10 @@ class HybridNet(torch.nn.Module):
         self.register_buffer("temperature", torch.ones(2))  # of each head's softmax, fitted by the stage transfer
         self.requires_grad_(False).eval().to(device_of(vision))
 
+    def train(self, mode: bool = True) -> Self:
+        """Stays in evaluation mode: training would change the statistics of the normalisation layers."""
+        return super().train(False)
+
     def forward(self, images: torch.Tensor) -> Scores:
         """Scores of images (b, 6, h, w) in 0..1."""
         shared = self.shared(self._stream(images, 0) + self._stream(images, 1))
@@ -117,10 +122,13 @@ class HybridNet(torch.nn.Module):
         """Prediction for images (b, 6, h, w) by the more confident of the present senses, of equals vision.
 
         Confidence is the highest probability after each head's `temperature`. Raises ValueError for images of another
-        shape and for values that are not in 0..1.
+        shape, for values that are not in 0..1, and for a temperature that is not finite and above 0.
         """
         check_images(images)
-        scaled_scores = [scores / t for scores, t in zip(self.separate_scores(images), self.temperature, strict=True)]
+        if not bool(((self.temperature > 0) & self.temperature.isfinite()).all()):
+            raise ValueError(f"temperatures must be finite and above 0, got {self.temperature.tolist()}")
+        apart = self.separate_scores(images.to(self.mean.dtype))
+        scaled_scores = [scores / t for scores, t in zip(apart, self.temperature, strict=True)]
         best = torch.stack([scores.softmax(dim=1).amax(dim=1).nan_to_num(nan=-1) for scores in scaled_scores])
         probability, sense = best.max(dim=0)
         labels = torch.stack([scores.argmax(dim=1) for scores in scaled_scores])
@@ -213,7 +221,7 @@ def save(path: Path, network: HybridNet, classes: Sequence[str], precision: str 
 def load(path: Path) -> tuple[HybridNet, list[str]]:
     """(HybridNet, names of its classes) from a file that `save` wrote, with the weights unpacked to float32.
 
-    Raises ValueError for another file, a damaged one or another architecture.
+    Raises ValueError for another file, a damaged one, another architecture, or weights that are not finite.
     """
     header, arrays = _read(path)
     try:
@@ -222,7 +230,7 @@ def load(path: Path) -> tuple[HybridNet, list[str]]:
         network = build("mobilenet_v2", len(classes), "random", 0)
         hybrid = HybridNet(network, network, (start, stop))
         state = {key: torch.from_numpy(value) for key, value in PRECISIONS[header["kind"]].unpack(arrays).items()}
-        hybrid.load_state_dict(state)
+        restore(hybrid, state, ARCHITECTURE)
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
         raise ValueError(f"{path} does not hold the network its header names: {str(error).splitlines()[0]}") from None
     return hybrid, classes

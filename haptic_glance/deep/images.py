@@ -34,7 +34,7 @@ def as_floats(images: np.ndarray | Sequence[np.ndarray], name: str) -> torch.Ten
     if len(sizes) > 1:
         raise ValueError(f"images of several sizes, {', '.join(map(str, sizes))}: resize them to one first")
     if isinstance(images, np.ndarray):
-        images = np.require(images, requirements="W")  # torch warns of an array that may only be read
+        images = np.require(images, requirements=["C", "W"])  # torch refuses reversed axes, warns of read-only ones
     tensor = torch.as_tensor(images)
     tensor = tensor.float() / 255 if tensor.dtype == torch.uint8 else tensor.float()
     if not bool(((tensor >= 0) & (tensor <= 1)).all()):

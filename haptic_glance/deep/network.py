@@ -118,8 +118,8 @@ def recalibrate(
 ) -> None:
     """Sets the statistics of the normalisation layers to those of the touches `ids` (n,) i8; inputs(ids): their images.
 
-    fixed: names of modules that keep their statistics. Uses no labels and changes no weights. Raises ValueError for
-    fewer than two touches.
+    fixed: names of modules that keep their statistics, with all modules inside. Uses no labels and changes no weights.
+    Raises ValueError for fewer than two touches.
 
     At the end of a training this replaces the running means, which lag behind the weights in a short training; Matlab's
     trainNetwork, which the thesis used, does the same. An untrained MobileNetV2 maps every image to features below 1e-8
@@ -129,7 +129,8 @@ def recalibrate(
     if len(ids) < 2:
         raise ValueError(f"statistics need two touches or more, got {len(ids)}")
     normalisations = {n: layer for n, layer in network.named_modules() if isinstance(layer, torch.nn.BatchNorm2d)}
-    layers = [layer for name, layer in normalisations.items() if name not in fixed]
+    kept = tuple(f"{name}." for name in fixed)
+    layers = [layer for name, layer in normalisations.items() if not f"{name}.".startswith(kept)]
     if not layers:
         network.eval()
         return

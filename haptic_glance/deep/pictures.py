@@ -9,7 +9,6 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
 
-from .hybrid import present
 from .images import as_floats, resized, to_images
 
 ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by a person who sits or stands, and never from below
@@ -67,7 +66,9 @@ def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
     sense: its switch would turn off the touch of a table top. So one corner pixel is raised by one grey step, and the
     variance is not zero. An imprint of ones, without contact, stays constant: absent.
     """
-    images = to_images(imprints, size)
-    flat = ~present(images) & (images[:, 0, 0, 0] < 1)
-    images[flat, 0, 0, 0] += STEP
+    images, grey = to_images(imprints, size), as_floats(imprints, "imprints").flatten(1)
+    flat = grey.amin(dim=1) == grey.amax(dim=1)
+    images[flat, 0] = grey[flat, :1, None]  # without the rounding errors of resizing, which would be a variance
+    touched = flat & (grey[:, 0] < 1)
+    images[touched, 0, 0, 0] = (images[touched, 0, 0, 0] + STEP).clamp(max=1)
     return images

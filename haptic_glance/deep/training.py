@@ -8,6 +8,7 @@ import copy
 import math
 import pickle
 import sys
+import zipfile
 import zlib
 from collections.abc import Sequence
 from pathlib import Path
@@ -42,6 +43,8 @@ class Learning:
     def __init__(self, validation: np.ndarray | torch.Tensor | None = None, patience: int = 1) -> None:
         if patience < 1:
             raise ValueError(f"patience must be 1 or more, got {patience}")
+        if validation is not None and not len(validation):
+            raise ValueError("there are no validation touches: give some, or None for all passes")
         self.validation, self.patience = validation, patience
         self.curve: list[dict[str, float]] = []
         self.best: dict[str, torch.Tensor] = {}
@@ -60,7 +63,8 @@ class Learning:
         self.curve.append(values)
         wrong = [name for name, value in values.items() if not math.isfinite(value)]
         if wrong:
-            raise Diverged(f"diverged: {wrong[0].replace('_', ' ')} is not finite in pass {len(self.curve)}")
+            cause = f"{wrong[0].replace('_', ' ')} is not finite in pass {len(self.curve)}"
+            raise Diverged(f"diverged: {cause}: take a lower learning rate")
         if self.validation is not None and (
             not self.best_pass or _rank(values) > _rank(self.curve[self.best_pass - 1])
         ):
@@ -121,7 +125,7 @@ def train_model(
 
     checkpoint: a path where the state is saved after every epoch and removed at the end. A training that finds one
     there continues from it and ends with the same weights, bit for bit on one CPU thread. Raises ValueError, with a
-    remedy, when there is too little memory.
+    remedy, when there is too little memory, and for no touches or a batch below 1.
 
     learning: collects the curve; with validation touches, `epochs` is the most that are made, and the copy has the best
     weights. Raises Diverged where the loss is not finite. Without it a diverged model is returned as it is.
@@ -133,6 +137,8 @@ def train_model(
     optimiser = torch.optim.SGD([p for p in model.parameters() if p.requires_grad], lr=rate, momentum=momentum)
     scaler = torch.amp.GradScaler(device.type, enabled=device.type == "cuda")
     labels, ids = torch.as_tensor(labels), torch.as_tensor(ids)
+    if min(batch, len(ids)) < 1:
+        raise ValueError(f"a training needs touches and a batch of 1 or more, got {len(ids)} touches, batch {batch}")
     batch = min(batch, len(ids))
     settings = {"rate": rate, "epochs": epochs, "batch": batch, "momentum": momentum, "touches": _digest(ids, labels)}
     settings |= {"seed": seed, "device": device.type}
@@ -195,7 +201,6 @@ def _validated(model, task, labels, validation):
     """{validation_accuracy, validation_loss} of the touches that decide which weights are best; empty without them."""
     if validation is None:
         return {}
-    model.eval()
     predicted, truth = predict_probabilities(model, task.inputs, validation), labels[torch.as_tensor(validation)]
     loss = torch.nn.functional.nll_loss(predicted.clamp_min(SMALLEST).log(), truth)
     return {"validation_accuracy": accuracy(predicted, truth), "validation_loss": float(loss)}
@@ -205,7 +210,8 @@ def _validated(model, task, labels, validation):
 def predict_probabilities(
     model: torch.nn.Module, inputs: Transform, ids: np.ndarray | torch.Tensor, batch: int = 64
 ) -> torch.Tensor:
-    """(n, classes) f4 on the CPU: the softmax of the model for inputs(ids), computed in batches."""
+    """(n, classes) f4 on the CPU: the softmax of the model, put in evaluation mode, for inputs(ids), in batches."""
+    model.eval()
     batches = []
     for part in torch.as_tensor(ids).split(batch):
         with explain_out_of_memory():
@@ -233,6 +239,8 @@ def search_rate(
 
     part, validation: ids of touches to train on and to validate on. training: the other arguments of train_model.
     """
+    if not rates:
+        raise ValueError("there is no learning rate to try")
     trials = []
     for rate in rates:
         model = train_model(task, labels, part, rate, **training)
@@ -267,13 +275,16 @@ def resume(path: Path, settings: dict[str, Any], **parts: Any) -> int:
     if not path.exists():
         return 0
     try:
+        with zipfile.ZipFile(path) as archive:
+            if archive.testzip():  # torch compares no checksums
+                raise ValueError("its checksum is wrong")
         state = torch.load(path, map_location="cpu", weights_only=True)
         reason = _mismatch(state, settings, parts["model"])
         if not reason:
             _restore(state, parts)
             return state["epoch"]
     except (OSError, RuntimeError, EOFError, LookupError, TypeError, AttributeError, ValueError,
-            pickle.UnpicklingError) as error:  # fmt: skip
+            pickle.UnpicklingError, zipfile.BadZipFile) as error:  # fmt: skip
         reason = f"it cannot be read ({' '.join(str(error).split())[:80]})"
     print(f"{path.name}: ignored, {reason}; the training starts again", file=sys.stderr)
     return 0

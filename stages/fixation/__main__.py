@@ -91,6 +91,8 @@ def run(workspace: Workspace) -> None:
             measures.setdefault(row["item"], {})[row["metric"]] = row["value"]
         source = workspace.settings(Meshes).source
         tasks, curves = assign_classes(measures, source, seed, workspace.root / SEMANTICS)
+        if not tasks:
+            raise ValueError("fixation: no task has two classes: give two objects or more")
         stage.rows += task_rows(tasks, curves)
         for method in methods:
             train(stage, method, common, objects, tasks)

@@ -22,7 +22,7 @@ from haptic_glance.deep.images import normalise
 from haptic_glance.deep.modes import Task
 from haptic_glance.deep.network import Network, build, recalibrate
 from haptic_glance.deep.repeatable import repeatable
-from haptic_glance.deep.training import search_rate, train_model
+from haptic_glance.deep.training import Learning, search_rate, train_model
 
 from . import Params
 from .backbone import (
@@ -85,7 +85,7 @@ def train_network(
 
     Returns rows of its accuracy on the test views. made: the folder of the pictures, of the trunk's maps and the
     learning rate; objects: all of them. The split of views is that of the frozen heads. The rate of mode `finetuned` is
-    fixed, so that the validation views are not used.
+    fixed, so that the validation views are not used. Raises Diverged where the loss is not finite.
     """
     labels = labels_of(objects, tasks[task], settings)
     part, _, test = divided(labels, seed)
@@ -94,7 +94,8 @@ def train_network(
     options["rate"] = float(rate_arrays.get("rate", settings.rate))
     with repeatable(seed), Stopwatch() as training:
         lesson, trunk, copies = lesson_of(made, method, settings, objects, labels.max() + 1, seed)
-        model = train_model(lesson, labels, part, **options, checkpoint=folder / "training.pt")
+        checkpoint = folder / "training.pt"
+        model = train_model(lesson, labels, part, **options, checkpoint=checkpoint, learning=Learning())
     with repeatable(seed), Stopwatch() as looking:
         cams, predicted = look(model, lesson, len(labels))
     seconds = (looking.seconds + trunk / len(tasks)) / len(objects)

@@ -41,9 +41,11 @@ def best_temperature(scores: np.ndarray, labels: np.ndarray) -> float:
 def calibration_error(distribution: np.ndarray, labels: np.ndarray) -> float:
     """The expected calibration error: the mean gap between confidence and accuracy in ten bins, weighted by their size.
 
-    distribution (n, k), labels (n,). Guo et al. 2017, eq. 3.
+    distribution (n, k), labels (n,); rows of NaN are left out. Guo et al. 2017, eq. 3.
     """
-    confidence, right = distribution.max(axis=1), distribution.argmax(axis=1) == np.asarray(labels)
+    answered = np.isfinite(distribution).all(axis=1)
+    distribution, labels = distribution[answered], np.asarray(labels)[answered]
+    confidence, right = distribution.max(axis=1), distribution.argmax(axis=1) == labels
     bins = np.minimum((confidence * BINS).astype(int), BINS - 1)
     gaps = np.bincount(bins, weights=right, minlength=BINS) - np.bincount(bins, weights=confidence, minlength=BINS)
     return float(np.abs(gaps).sum() / len(confidence))

@@ -22,7 +22,7 @@ from haptic_glance.deep.modes import finetuned_except, frozen_modules
 from haptic_glance.deep.network import Network, build, count_parameters
 from haptic_glance.deep.pictures import as_images
 from haptic_glance.deep.repeatable import repeatable
-from haptic_glance.deep.training import train_model
+from haptic_glance.deep.training import Learning, train_model
 from haptic_glance.deep.weights import available_weights
 from stages.engine.statistics import interval_metrics
 
@@ -155,7 +155,10 @@ def train_sense(
     random: np.random.Generator,
     checkpoint: Path,
 ) -> tuple[Network, float]:
-    """(network, seconds): a MobileNetV2 trained on one sense with the trial's layers frozen at ImageNet's weights."""
+    """(network, seconds): a MobileNetV2 trained on one sense with the trial's layers frozen at ImageNet's weights.
+
+    Raises Diverged where the loss is not finite.
+    """
     first_weights, seed = (int(number) for number in random.integers(2**31, size=2))
     device = choose_device(settings.device)
     with Stopwatch() as watch:
@@ -164,7 +167,7 @@ def train_sense(
         task = finetuned_except(network, sense.images.to(device), augment, tuple(frozen_modules(trial.layers, network)))
         model = train_model(
             task, sense.labels, sense.train, settings.hybrid_rate, settings.epochs, settings.batch, settings.momentum,
-            seed=seed, checkpoint=checkpoint,
+            seed=seed, checkpoint=checkpoint, learning=Learning(),
         )  # fmt: skip
     assert isinstance(model, Network)
     return model, watch.seconds

@@ -109,8 +109,10 @@ def collect(files: Mapping[str, Sequence[tuple[Path, str]]], size: int) -> Recor
 
 def read_picture(file: Path, size: int) -> np.ndarray:
     """(size, size, 3) u1: a picture file; raises ValueError, which names the file, where it is not a picture."""
-    image = open_picture(file.read_bytes(), file).convert("RGB")
-    return np.asarray(image.resize((size, size), Image.Resampling.BILINEAR))
+    image = open_picture(file.read_bytes(), file)
+    if image.mode.startswith("I"):  # 16 bits of grey, which convert would cut off at 255
+        image = Image.fromarray((np.asarray(image) >> 8).astype(np.uint8))
+    return np.asarray(image.convert("RGB").resize((size, size), Image.Resampling.BILINEAR))
 
 
 def existing_folder(path: str | Path, layout: str) -> Path:

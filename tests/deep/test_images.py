@@ -17,6 +17,11 @@ def test_grey_goes_to_red_and_the_rest_is_zero():
     assert to_images(IMPRINTS, 8)[:, 0].mean().item() == pytest.approx(IMPRINTS.mean(), abs=0.01)
 
 
+def test_reversed_imprints_are_taken_as_they_lie():
+    imprints = np.random.default_rng(0).random((2, 4, 6))[:, ::-1, ::-1]
+    assert torch.equal(to_images(imprints, 8), to_images(imprints.copy(), 8))
+
+
 @pytest.mark.filterwarnings("error")
 def test_imprints_that_may_only_be_read_are_taken_without_a_warning():
     kept = IMPRINTS.copy()

@@ -138,6 +138,8 @@ def test_unknown_passes_and_patience_are_refused():
         check_passes([], "some.passes")
     with pytest.raises(ValueError, match="patience must be 1"):
         Learning(VALIDATION, 0)
+    with pytest.raises(ValueError, match="no validation touches"):
+        Learning(VALIDATION[:0])
 
 
 IMPRINTS = np.random.default_rng(0).random((80, 16, 16)).astype(np.float32)
@@ -222,6 +224,11 @@ def test_what_cannot_be_read_or_put_back_leaves_all_as_it_was(tmp_path, capsys):
     del whole["random"]
     torch.save(whole, path)
     assert resume(path, {}, model=second) == 0 and "cannot be read" in capsys.readouterr().err
+    save(path, 3, {}, model=model)
+    damaged, value = bytearray(path.read_bytes()), model.head[1].weight.detach().numpy().tobytes()
+    damaged[damaged.index(value)] ^= 1  # one bit of one weight
+    path.write_bytes(damaged)
+    assert resume(path, {}, model=second) == 0 and "checksum is wrong" in capsys.readouterr().err
     path.write_bytes(b"PK\x03\x04 half a file")
     assert resume(path, {}, model=second) == 0 and "cannot be read" in capsys.readouterr().err
     assert all(torch.equal(value, before[key]) for key, value in second.state_dict().items())

@@ -8,7 +8,7 @@ import torch
 
 from haptic_glance.deep.device import choose_device
 from haptic_glance.deep.images import normalise, to_images
-from haptic_glance.deep.modes import MODES, frozen_modules, mode_named
+from haptic_glance.deep.modes import MODES, finetuned_except, frozen_modules, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
 from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
@@ -105,6 +105,33 @@ def test_two_visibly_different_classes_are_learned_from_augmented_inputs(imprint
         assert any(not torch.equal(augmented[0], other) for other in augmented[1:])
     unseen = np.arange(24, 32)
     assert accuracy(predict_probabilities(model, task.inputs, unseen), LABELS[unseen]) >= 0.8
+
+
+def test_the_layers_inside_a_fixed_module_keep_their_statistics(imprints):
+    network = small()
+    network.convolutions = torch.nn.Sequential(network.convolutions[:3], network.convolutions[3:])
+    before = {key: value.clone() for key, value in network.state_dict().items()}
+    task = finetuned_except(network, to_images(imprints, SIZE), torch.nn.Identity(), ("convolutions.0",))
+    after = train_model(task, LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9).state_dict()
+    statistics = [key for key in before if "running" in key]
+    unchanged = [key for key in statistics if torch.equal(before[key], after[key])]
+    assert unchanged == [key for key in statistics if key.startswith("convolutions.0.")]
+
+
+def test_a_model_in_training_mode_predicts_as_in_evaluation_mode(imprints):
+    images = normalise(to_images(imprints, SIZE))
+    network = small().train()
+    first = predict_probabilities(network, lambda ids: images[ids], np.arange(8))
+    assert torch.equal(first, network.eval()(images[:8]).softmax(dim=1).detach())
+
+
+@pytest.mark.parametrize(("ids", "batch"), [(np.arange(0), 8), (np.arange(24), 0)])
+def test_a_training_without_touches_or_a_batch_is_refused(imprints, ids, batch):
+    task = MODES["finetuned"](small(), imprints, SIZE, 1)
+    with pytest.raises(ValueError, match=f"got {len(ids)} touches, batch {batch}"):
+        train_model(task, LABELS, ids, 0.01, 1, batch=batch, momentum=0.9)
+    with pytest.raises(ValueError, match="no learning rate to try"):
+        search_rate(task, LABELS, ids, np.arange(8), [], epochs=1, batch=batch, momentum=0.9)
 
 
 def test_search_takes_the_rate_that_learns(imprints):

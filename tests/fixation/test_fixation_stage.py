@@ -29,10 +29,10 @@ MESHES = {"source": "folder", "folder": "", "up": "z", "unit": "", "objects": []
 def run(shapes, make_workspace):
     """A function that runs the stage with some settings changed and returns the workspace."""
 
-    def go(**changed):
+    def go(names=("ball", "egg", "torus", "tube"), **changed):
         workspace = make_workspace({"meshes": MESHES, "fixation": SETTINGS | changed})
         lines = ["dataset,object,living,category"]
-        for number, name in enumerate(("ball", "egg", "torus", "tube")):
+        for number, name in enumerate(names):
             mesh = shapes[name]
             write_mesh(workspace.data / f"meshes/{name}.npz", mesh)
             values = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
@@ -119,6 +119,18 @@ def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypat
     assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(trained["metric"])
     rates = trained.loc[trained["metric"] == "rate", "value"].tolist()
     assert rates in ([0.01], [0.03]) if mode == "last_block" else not rates
+
+
+@pytest.mark.slow
+def test_a_network_that_diverges_ends_the_run_and_looks_nowhere_in_no_row(run, monkeypatch):
+    monkeypatch.setitem(backbone.MODES, "finetuned", "random")
+    with pytest.raises(ValueError, match="diverged: loss is not finite in pass 1: take a lower learning rate"):
+        run(methods=["mobilenet_v2-finetuned"], rate=1e30)
+
+
+def test_one_object_alone_is_refused_with_the_remedy(run):
+    with pytest.raises(ValueError, match="give two objects or more"):
+        run(names=["ball"])
 
 
 @pytest.mark.parametrize("name", ["mobilenet_v2", "mobilenet_v2-thawed", "-frozen"])

@@ -75,6 +75,13 @@ def test_a_temperature_calibrates_and_changes_no_first_class(scored):
     assert np.array_equal(raw.argmax(axis=1), cool.argmax(axis=1))
 
 
+def test_items_without_a_prediction_have_no_part_in_the_calibration(scored):
+    logits, labels = scored
+    absent = np.full_like(logits[:3], np.nan)
+    mixed = calibration_error(probabilities(np.concatenate([absent, logits])), np.concatenate([labels[:3], labels]))
+    assert mixed == calibration_error(probabilities(logits), labels)
+
+
 def test_scores_of_nothing_stay_nothing_and_are_wrong():
     chance = probabilities(torch.tensor([[torch.nan] * 3, [0.0, 0, 5]]))
     assert np.isnan(chance[0]).all()

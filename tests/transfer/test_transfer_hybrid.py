@@ -111,6 +111,19 @@ def test_prediction_is_by_the_surer_sense_after_its_temperature(hybrid, images):
         assert answer.sense.tolist() == [sense] * 4 and answer.label.equal(scores.argmax(dim=1))
 
 
+def test_prediction_takes_doubles_and_refuses_a_temperature_that_is_none(hybrid, images):
+    network, joined = copy.deepcopy(hybrid), join_senses(images, None)
+    assert network.predict(joined.double()).label.equal(network.predict(joined).label)
+    for value in (0.0, -1.0, torch.nan, torch.inf):
+        network.temperature[1] = value
+        with pytest.raises(ValueError, match="temperatures must be finite and above 0"):
+            network.predict(joined)
+
+
+def test_the_network_stays_in_evaluation_mode(hybrid):
+    assert not any(module.training for module in copy.deepcopy(hybrid).train().modules())
+
+
 def test_constant_images_are_absent_and_one_pixel_is_enough_to_be_present():
     for level in (0.0, 0.3, 1.0):
         flat = torch.full((1, 3, 7, 5), level)
@@ -240,6 +253,11 @@ def test_files_of_other_networks_and_damaged_ones_are_refused(hybrid, tmp_path):
         write_arrays(path, header=np.array(json.dumps(header | change)), **arrays)
         with pytest.raises(ValueError, match=reason):
             load(path)
+    broken = copy.deepcopy(hybrid)
+    broken.late[1][-1][-1].bias[0] = torch.nan
+    save(path, broken, NAMES)
+    with pytest.raises(ValueError, match=r"late.1.3.1.bias holds values that are not finite"):
+        load(path)
     (tmp_path / "half.npz").write_bytes(whole[: len(whole) // 2])
     (tmp_path / "text.npz").write_text("no archive")
     write_arrays(tmp_path / "other.npz", a=np.zeros(3))

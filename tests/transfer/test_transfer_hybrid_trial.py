@@ -27,19 +27,23 @@ SETTINGS = {
 }  # fmt: skip
 
 
+def process(folder, **changed):
+    """Rows of the first repetition with whole objects left out, from untrained networks."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hybrid, "build", lambda name, classes, *_: build(name, classes, "random", 0))
+        return hybrid.process(NAME, folder, folder, MEMBERS, SimpleNamespace(**SETTINGS | changed), 0)
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """(folder, rows) of the first repetition with whole objects left out."""
+    """(folder, rows) of toy objects."""
     folder, random = tmp_path_factory.mktemp("transfer"), np.random.default_rng(0)
     for name in sum(CLASSES.values(), []):
         pictures = random.integers(0, 256, (8, 32, 32, 3)).astype(np.uint8)
         imprints = random.integers(0, 256, (8, 32, 32)).astype(np.uint8)
         write_arrays(folder / "hybrid" / "pictures" / f"{name}.npz", images=pictures, viewpoints=np.zeros((8, 2)))
         write_arrays(folder / "imprints" / f"{name}.npz", vertices=np.arange(8), imprints32=imprints)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(hybrid, "build", lambda name, classes, *_: build(name, classes, "random", 0))
-        rows = hybrid.process(NAME, folder, folder, MEMBERS, SimpleNamespace(**SETTINGS), 0)
-    return folder, rows
+    return folder, process(folder)
 
 
 def values(rows, **about):
@@ -55,6 +59,11 @@ def test_the_hybrid_answers_as_the_two_networks_it_was_made_of_in_less_room(run)
     names = ("hybrid", "hybrid_float16", "hybrid_int8")
     whole, half, eighth = (values(rows, method=name, metric="size_ratio")[0] for name in names)
     assert 1.4 < whole < half / 1.8 < eighth / 2.5
+
+
+def test_a_training_that_diverges_is_named_before_a_temperature_is_sought(run):
+    with pytest.raises(ValueError, match="diverged: loss is not finite in pass 1: take a lower learning rate"):
+        process(run[0], hybrid_rate=1e30)
 
 
 def test_every_condition_has_every_answer(run):

@@ -71,6 +71,12 @@ def test_a_flat_contact_is_a_touch_and_feeling_nothing_is_none():
     assert float(images[0].max()) == pytest.approx(1 / 255)
 
 
+def test_resizing_makes_no_touch_of_nothing_and_a_light_contact_stays_in_range():
+    flat = np.ones((2, 28, 50), dtype=np.float32) * [[[1]], [[0.999]]]
+    images = imprint_images(flat, 32)  # resizing alone leaves differences of 1e-7
+    assert present(images).tolist() == [False, True] and images.max() <= 1
+
+
 def test_every_touch_is_paired_with_its_own_object():
     seen, felt = np.repeat([0, 1, 2], 3), np.array([2, 0, 0, 0, 0, 1])
     pairs = pair_pictures(seen, felt, random())

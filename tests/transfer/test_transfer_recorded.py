@@ -20,6 +20,7 @@ from stages.transfer.recorded import (
     grasp_images,
     pressure_images,
     read_bigs,
+    read_picture,
     read_schunk,
     read_vitac,
     read_vt60,
@@ -53,6 +54,12 @@ def test_vt60_has_sixty_objects_of_ten_classes_and_touches_by_number(vt60):
     assert np.bincount(touches.labels).tolist() == [12] * 10
     assert len(set(touches.groups)) == 60 and touches.groups[0] == "class1/01"
     assert touches.images[:2, 0, 0, 0] == pytest.approx([20, 100], abs=5)  # img_2 before img_10
+
+
+def test_sixteen_bits_of_grey_keep_their_range(tmp_path):
+    grey = np.linspace(0, 65535, 64).astype(np.uint16).reshape(8, 8)
+    Image.fromarray(grey).save(tmp_path / "deep.png")
+    assert np.array_equal(read_picture(tmp_path / "deep.png", 8), np.repeat(grey[..., None] // 256, 3, axis=2))
 
 
 def test_vt60_names_a_picture_that_is_none_and_an_empty_folder(vt60):
