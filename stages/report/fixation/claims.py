@@ -16,7 +16,7 @@ from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
 from stages.report.results import GAZED
 
-from .people import MEDIAN, UPPER_QUARTILE
+from .people import LOWER_QUARTILE, MEDIAN, UPPER_QUARTILE
 from .rows import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, WHOLE, network_text, task_text, with_random_weights
 
 # The thesis's (T3.3.2), but that ResNet101's weights come with no package; then ours, with new heads alone.
@@ -194,6 +194,11 @@ CLAIMS = [
       for key, words, below in (("median_nearer", "median", MEDIAN),
                                 ("upper_quartile_nearer", "75th percentile", UPPER_QUARTILE))
       for method, name in SHORT.items()],
+    # T3.3.6 says that it is zero for these models; Lee's, Song's and Tasse's have an edge of the box above zero.
+    *[quartile(f"{key}_lower_quartile_nearer", f"The 25th percentile of the distances to fixations is lower by {name} "
+               "than by the models of Lee, Song and Tasse.", near, ("rival", lowest_of(*REST)), LOWER_QUARTILE)
+      for key, name, near in (("ewigc", "fused Grad-CAM of ResNet", NEAREST),
+                              ("leifman", "Leifman's regions of interest", ("rival", LEIFMAN)))],
     *nearer("leifman_nearer_than_rest", "Leifman's regions of interest lie nearer to fixations than those of Lee, Song "
             "and Tasse.", ("rival", LEIFMAN), ("rival", lowest_of(*REST))),
     *nearer("fused_nearer_than_narrowed", "The whole map's centres lie nearer than those of its highest levels.",

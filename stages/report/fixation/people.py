@@ -1,7 +1,7 @@
 """Comparison of detectors and tasks' maps with people, by correlation and by distance (T figures 3.32, 3.35, 3.36).
 
 The distance is between centres of fixation. The thesis compares distances by a box plot over all views (T figure 3.36),
-so the claims compare quantiles: `median_below` and `upper_quartile_below`.
+so the claims compare quantiles: `lower_quartile_below`, `median_below` and `upper_quartile_below`.
 """
 
 from collections.abc import Callable, Collection
@@ -165,7 +165,7 @@ def _box(axes: Axes, values: pd.Series, y: int, tint: str) -> None:
     axes.plot([middle] * 2, [y - 0.3, y + 0.3], color=INK, lw=1.3)
 
 
-MEDIAN, UPPER_QUARTILE = "median_below", "upper_quartile_below"  # names of statistics
+LOWER_QUARTILE, MEDIAN, UPPER_QUARTILE = "lower_quartile_below", "median_below", "upper_quartile_below"  # statistics
 
 
 def below(results: Results, claim: Claim, share: float) -> pd.Series:
@@ -183,6 +183,12 @@ def below(results: Results, claim: Claim, share: float) -> pd.Series:
     edge = side_values.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
     shares = (side_values < edge) + (side_values == edge) / 2
     return (shares["first"] - shares["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
+
+
+@statistic(LOWER_QUARTILE)
+def lower_quartile_below(results: Results, claim: Claim) -> pd.Series:
+    """The share of views below the 25th percentile of both."""
+    return below(results, claim, 0.25)
 
 
 @statistic(MEDIAN)
