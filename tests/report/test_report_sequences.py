@@ -73,6 +73,7 @@ def test_claims_that_hold_are_supported(measure):
         assert words.pop(key) == words.pop(f"{key}_more") == "contradicted"
     assert words.pop("contours_guided_gain") == "contradicted"  # eight points, in print 15.68
     assert words.pop("alike_confused") == words.pop("guided_confuses_less") == "open"  # these rows have no confusions
+    assert words.pop("contours_over_one_touch") == "open"  # no rows of single touches
     assert set(words.values()) == {"supported"}
     assert table.loc["contours_guided_unseen", ["pairs", "units"]].tolist() == [9, 3]  # as printed
     assert table.loc["contours_guided_unseen_more", ["pairs", "units"]].tolist() == [18, 6]  # of two sets
@@ -120,6 +121,20 @@ def test_claims_that_do_not_hold_are_contradicted_and_a_rival_without_the_map_is
                            "contradicted")  # fmt: skip
     wanted["contours_cnn_best_unseen"] = "depends on the reading"
     assert judged(everywhere(measure, frame), *wanted)["verdict"].to_dict() == wanted
+
+
+def test_sequences_stand_beside_the_best_classifier_of_one_touch_of_the_same_classes(measure):
+    common = {"split": "objects", "metric": "accuracy", "cells": 32, "pitch": 0.01}
+    touched = pd.DataFrame(
+        common | {"dataset": dataset, "classifier": name, "group": kind, "value": value}
+        for dataset in ("princeton_touched", "furniture")
+        for name, value in (("knn", 0.3), ("svm", 0.2))
+        for kind in CLASSES
+    )
+    results = measure("sensor_size", touched, results=everywhere(measure, rows()))
+    row = judged(results, "contours_over_one_touch").iloc[0]
+    assert row["verdict"] == "supported" and row["effect"] == pytest.approx(48, abs=1)
+    assert "; SVM: supported +28" in row["readings"]
 
 
 def test_an_untrained_network_spoils_no_other_training_of_its_objects(measure):

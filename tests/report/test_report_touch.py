@@ -9,11 +9,12 @@ import pandas as pd
 import pytest
 
 from stages.report import touch
+from stages.report.effects import differences
 from stages.report.results import SETS_4_2, NotRun
 from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, tables
-from stages.report.touch.rows import COMMON, PRINTED, accuracies, shared_objects
+from stages.report.touch.rows import COMMON, METHODS, PRINTED, accuracies, shared_objects
 from tests.report.frames import verdicts
 
 GLANCE = {
@@ -109,6 +110,20 @@ def test_the_mean_of_four_classifiers_is_read_beside_one_touch_with_the_map_too(
     (entry,) = (claim for claim in claims.CLAIMS if claim.key == "more_touches_all")
     (base,) = (base for base in entry.readings if base.name.startswith("without the SVM, beside one touch with"))
     assert base.of(entry).second == {"variant": "touches_1"} and "svm" not in base.of(entry).where["classifier"]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_methods_of_unlike_imprints_are_more_accurate_where_their_ranks_say_so(measure, sign):
+    common = {"dataset": SETS_4_2[0], "group": "six", "variant": "first_15"}
+    right = {"metric": "accuracy", "classifier": "knn", "split": "random", "scaling": "beforehand"}
+    frame = pd.DataFrame(
+        common | part | {"set": number, "method": method}
+        for number in range(1, 5)
+        for rank, method in enumerate(METHODS.values())
+        for part in ({"metric": "similar_share", "value": 0.1 * rank}, right | {"value": 0.5 - 0.01 * sign * rank**2})
+    )
+    claim = next(entry for entry in claims.CLAIMS if entry.key == "dissimilar_accurate")
+    assert differences(measure("classification", frame), claim.on(SETS_4_2[0])).tolist() == [pytest.approx(sign)] * 4
 
 
 @pytest.mark.slow

@@ -408,10 +408,11 @@ CLAIMS += [
           first=ERROR, second={"metric": SEEN}, **of_3_2, note=f"over the methods, {OF_EACH}"),
     seen("hks_seen", "HKS is better as seen than attention.", PRINTED, HKS),
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", SSIM),
-    metro("ssim_over_all_metro", "Weights by similarity beat equal weights (VisAttAll) by distance.", "VisAttAll",
-          SSIM),
-    metro("ed_over_all_metro", "Weights by Euclidean distance beat equal weights (VisAttAll) by distance.", "VisAttAll",
-          ED),
+    *(
+        lower("T3.2.9.2", METRO, f"{key}_over_all_metro", f"Weights by {words} beat equal weights (VisAttAll) by "
+              "distance.", "VisAttAll", learned, target=(LOW, HIGH), **of_3_2)
+        for key, words, learned in (("ssim", "similarity", SSIM), ("ed", "Euclidean distance", ED))
+    ),
     seen("ed_over_all", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.", "VisAttAll", ED),
     lower("T3.2.9.2", SEEN, "learned_weights", "Weights learned from ground truth beat equal weights.",
           "VisAttAll", WEIGHTED, of="ssim_over_all"),

@@ -12,7 +12,7 @@ import pandas as pd
 
 from haptic_glance.know.split import Split
 from stages.engine.statistics import interval
-from stages.report.claims import Claim, highest_of
+from stages.report.claims import Claim, highest_of, reading
 from stages.report.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.report.items import Figure, Table
 from stages.report.pareto import NORMAL, noise_by
@@ -182,14 +182,21 @@ PRINTED_CLAIMS = [
     ),
     larger(key="more_cells_help", where=UNSEEN | {"pitch": COARSE},
            sentence="At equal sensel size a larger sensor is better."),
-    larger(key="cells_matter_less_when_fine", contrast=({"pitch": COARSE}, {"pitch": FINE}),
+    claim(key="cells_hardly_matter_when_fine", where=UNSEEN | {"pitch": FINE}, first={"cells": SMALL},
+          sentence="With small sensels, more of them have no significant impact.", second={"cells": LARGE}, margin=5.0,
+          note=f"within five points, {ALL}", readings=(reading("within three points", margin=3.0),)),
+    larger(key="cells_matter_less_when_fine", of="cells_hardly_matter_when_fine",
+           contrast=({"pitch": COARSE}, {"pitch": FINE}),
            sentence="With small sensels, more of them change less than with large ones."),
     claim(key="knn_best_sensor", sentence="kNN is the best classifier of single touches of unseen objects.",
           where=UNSEEN | BEST, first={"classifier": "knn"}, second={"classifier": highest_of()}, note=""),
 ]  # fmt: skip
 CLAIMS = [
     *PRINTED_CLAIMS,
-    *(replace(entry, key=f"{entry.key}_more", of=entry.key, dataset=MORE, printed=0) for entry in PRINTED_CLAIMS),
+    *(
+        replace(entry, key=f"{entry.key}_more", of=entry.of or entry.key, dataset=MORE, printed=0)
+        for entry in PRINTED_CLAIMS
+    ),
     ours(key="more_cells_help_all", note=f"{ALL} and all distances of sensels", first={"cells": LARGE},
          second={"cells": SMALL}, sentence="At equal sensel size a larger sensor is better, whatever the size."),
     ours(key="finer_sensor_enough", first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST,

@@ -27,6 +27,7 @@ from stages.report.claims import (
     reading,
 )  # fmt: skip
 from stages.report.drawing import label
+from stages.report.effects import statistic
 from stages.report.items import Figure
 from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import SETS_4_2, Results
@@ -76,6 +77,7 @@ RATES = reading(  # which is the accuracy where all objects have equally many im
     "without the SVM, mean of the objects' rates", where={"classifier": ALIVE}, first={"metric": "recall"},
     second={"metric": "accuracy"},
 )  # fmt: skip
+EACH_ALONE = tuple(reading(f"{label(name)} alone", where={"classifier": name}, note="") for name in ("svm", *ALIVE))
 FIFTEEN = reading("15 imprints of each object", where=FEW)
 SIXTY = tuple(
     reading(", ".join(["60 imprints of each object", *([scaled.name] if scaled else [])]),
@@ -115,7 +117,16 @@ PHRASES = {
     },
 }  # fmt: skip
 
+OF_RANKS = {("method", tuple(METHODS.values())): "", ("metric", "accuracy"): "accuracy"}
 OF_FOUR = {("group", "four"): "the four least alike of six", ("group", "four_drawn"): "four of the six drawn"}
+
+
+@statistic("unlike_more_accurate")
+def unlike_more_accurate(results: Results, claim: Claim) -> pd.Series:
+    """Minus the rank correlation over the methods of the first side, shares of like imprints, and the second's."""
+    rows = (results.measured(STAGE, claim.sets[0], **claim.where, **part) for part in (claim.first, claim.other))
+    shares, accuracies = (part.pivot_table(index="set", columns="method", values="value") for part in rows)
+    return -shares.corrwith(accuracies, axis=1, method="spearman")
 
 
 def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
@@ -178,9 +189,9 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
                 readings=(*scalings, AS_MANY)),
         variant("selection_over_control", "Removing imprints that other objects have is better than as many at random.",
                 "selected", "selected_control", SIX | TRAINED, section="ours", readings=OURS[2]),
-        claim("selection_helps_all", "Selection enhances recognition over all classifiers.",
+        claim("selection_helps_all", "Selection enhances recognition by all classifiers.",
               EVERY, {"variant": "selected"}, PLAIN, note=ALL,
-              readings=(NO_SVM, *scalings, RATES, FIFTEEN_SELECTED, AS_MANY_ALL)),
+              readings=(NO_SVM, *scalings, RATES, FIFTEEN_SELECTED, AS_MANY_ALL, *EACH_ALONE)),
         variant("selection_helps_four", "Selection enhances recognition with four objects, too.", "selected",
                 where=FOUR, readings=scalings),
         variant("selection_helps_train", "Selection enhances recognition where the test part is whole.",
@@ -273,6 +284,13 @@ CLAIMS = [
              "the most dissimilar imprints of all methods"),
         )
     ),
+    Claim(key="dissimilar_accurate", section="T4.2.4", stage=STAGE, phrases=PHRASES | OF_RANKS, **SETS,
+          sentence="The more dissimilar the imprints of a method, the more accurate is the recognition.",
+          statistic="unlike_more_accurate", scale=1.0, unit="rank correlation",
+          where={"group": "six", "method": tuple(METHODS.values())} | FEW, first={"metric": "similar_share"},
+          second=KNN | SCALE, note="minus the rank correlation of both over the methods",
+          readings=(*(reading(scaled.name, second=scaled.changes["where"]) for scaled in SCALED),
+                    reading(SIXTY[0].name, where=PLAIN))),
     Claim(key="locations_best", section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS, first={"method": EQUAL},
           sentence="With the position of the touch, the thesis's attention is the most accurate.",
           second={"method": highest_of("random", "itti", "heat_kernel", "mesh_saliency", "salient_points")},
@@ -285,6 +303,19 @@ CLAIMS = [
           sentence="The similarity between objects degrades the performance.", first={"group": "four"},
           second={"group": "four_drawn"}, where=KNN | SCALE | {"method": EQUAL} | FEW,
           readings=(*SCALED, *SIXTY, reading("mean of all classifiers but the SVM", where={"classifier": ALIVE}))),
+    *(
+        Claim(key=key, section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS, sentence=sentence,
+              first={"classifier": first}, second={"classifier": second},
+              where=RIGHT | SCALE | {"method": EQUAL} | where, contrast=contrast, readings=readings)
+        for key, sentence, first, second, where, contrast, readings in (
+            ("knn_best_selected_four", "kNN is the best classifier of the selected imprints of four objects, too.",
+             "knn", highest_of(), {"group": "four", "variant": "selected"}, None, SCALED),
+            ("network_poor_svm", "The small network does worse than the SVM, too.", "svm", "deep_learning",
+             {"group": "six"} | FEW, None, (*SCALED, *SIXTY)),
+            ("network_catches_up", "The small network lacks data: with more imprints it falls behind kNN less.",
+             "knn", "deep_learning", {"group": "six"}, (FEW, PLAIN), SCALED),
+        )
+    ),
     *at(EQUAL, section="T4.2.4", **SETS),
     *at(MODEL, "_ours", section="ours"),
 ]  # fmt: skip
