@@ -65,7 +65,9 @@ MANY = reading("five times as many combinations", first={"variant": "touches_5_m
                second={"variant": "touches_1_many"}, where=TRAINED)  # fmt: skip
 ONE_MAPPED = reading("beside one touch with the map, in copies", second={"variant": "touches_1"}, where={})
 JOINED = tuple(  # of all classifiers
-    reading(f"without the SVM, {base.name}", **base.changes | {"where": base.changes["where"] | {"classifier": ALIVE}})
+    reading(
+        f"without the SVM, {base.name}", **{**base.changes, "where": {**base.changes["where"], "classifier": ALIVE}}
+    )
     for base in (ONE_MAPPED, *BEFORE_SPLIT, MANY)
 )
 MORE_THAN_KNN = reading("more than kNN does", contrast=({"classifier": "deep_learning"}, {"classifier": "knn"}))
