@@ -30,6 +30,7 @@ SETS_3_1_FOUR = tuple(f"{name}_four" for name in SETS_3_1)  # from the four prin
 MENDED_3_2 = "gaze_3_2_mended"  # T3.2 with mended formulas
 GREY_3_1 = "gaze_3_1"  # T3.1 on grey meshes with human gaze
 SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets", "catalogue_4_2_sets"  # random sets of six objects
+SUMS_4_2 = "household_4_2_sums", "princeton_4_2_sums"
 GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
@@ -45,7 +46,8 @@ DATASETS = {
     SECTION_3_2: "meshes with human gaze as in T3.2", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
     SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
     SETS_4_2[1]: "random sets of psb as in T4.2", SETS_4_2[2]: "random sets of furniture as in T4.2",
-    COLOURED: "furniture in colour",
+    SUMS_4_2[0]: "random sets of household shapes as in T4.2, sums of maps",
+    SUMS_4_2[1]: "random sets of psb as in T4.2, sums of maps", COLOURED: "furniture in colour",
     ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
     "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
     "princeton_touched": "psb, 8 classes of 6 objects", "princeton_hands": "psb, several arrays or touches",

@@ -30,7 +30,7 @@ from stages.report.drawing import label
 from stages.report.effects import statistic
 from stages.report.items import Figure
 from stages.report.pareto import attention_seconds, pareto_chart
-from stages.report.results import SETS_4_2, Results
+from stages.report.results import SETS_4_2, SUMS_4_2, Results
 from stages.report.tables import means
 
 from .rows import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
@@ -140,7 +140,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     if "_apart" in end or end == "_60":
         size, sizes = PLAIN, ()
     sets: dict[str, Any] = {} if end.endswith("_ours") else SETS | ({"printed": 0} if section == "ours" else {})
-    sums = in_sums(first["method"], second["method"])
+    sums = () if section == "ours" else in_sums(first["method"], second["method"], dataset=SUMS_4_2)
     readings = (*scalings, *((NO_SVM,) if end == "_all" else sizes), *sums)
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end] | scale | size, stage=STAGE,
