@@ -46,6 +46,8 @@ def test_a_file_stands_upright_in_a_scene(meshes, make_scene, tmp_path):
         assert (top - low).argmax() == 2
     with pytest.raises(ValueError, match="^options of hihg: there are high$"):
         budget({"high": high}, scene, {"hihg": {"weights": np.ones(len(high.vertices))}})
+    with pytest.raises(ValueError, match="^no levels of high: there are none$"):
+        budget({"high": high}, scene, chains={})
 
 
 @pytest.mark.parametrize("aside", [0.28, 0.34])

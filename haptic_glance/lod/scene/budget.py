@@ -67,6 +67,8 @@ def budget(
             raise ValueError(f"options of {', '.join(unknown)}: there are {', '.join(sorted(meshes))}")
         names = sorted({placed.name for placed in scene.objects})
         chains = {name: build_lod_chain(meshes[name], **(options or {}).get(name, {})) for name in names}
+    elif missing := sorted({placed.name for placed in scene.objects} - set(chains)):
+        raise ValueError(f"no levels of {', '.join(missing)}: there are {', '.join(sorted(chains)) or 'none'}")
     frames = frames or Frames(scene, meshes, finest_of_scene(scene, chains))
     search = _Search(scene, frames, tuple(chains[placed.name] for placed in scene.objects))
     return search.run()
