@@ -260,7 +260,7 @@ class Scene:
             raise ValueError(f"limit ({self.limit}) must be 0 or more, and hold ({self.hold}) a whole number from 1")
 
     def poses(self, meshes: Mapping[str, Mesh]) -> list[Pose]:
-        """One Pose per object; ValueError for an object without a mesh, or an eye inside one."""
+        """One Pose per object; ValueError for an object without a mesh, or an eye in the box of one."""
         missing = sorted({placed.name for placed in self.objects} - set(meshes))
         if missing:
             raise ValueError(f"no mesh of {', '.join(missing)}: there are {', '.join(sorted(meshes)) or 'none'}")
@@ -270,7 +270,7 @@ class Scene:
             inside = np.flatnonzero(((eyes >= pose.box[0]) & (eyes <= pose.box[1])).all(axis=1))
             if len(inside):
                 place = f"{placed.name} at {tuple(placed.position)}"
-                raise ValueError(f"the camera of frame {inside[0]} is inside {place}: move one of them")
+                raise ValueError(f"the camera of frame {inside[0]} is in the bounding box of {place}: move one of them")
         return poses
 
 
