@@ -90,7 +90,7 @@ def looking(**changes):
         (lambda all_of, _: Placed("one", (np.nan, 0, 0), 0, 1).pose(all_of["one"]), "one has position .*nan.*: give"),
         (lambda all_of, _: Placed("one", (0, 0, 0), np.nan, 1).pose(all_of["one"]), "one has position .*nan.*: give"),
         (lambda _, __: Placed("dot", (0, 0, 0), 0, 1).pose(Mesh(np.ones((3, 3)), [[0, 1, 2]])), "dot has no extent"),
-        (lambda all_of, make: make((Placed("one", (0, -4, 0.5), 0, 0.5),)).poses(all_of), "frame 0 is in the .* box of one"),
+        (lambda all_of, make: make((Placed("one", (0, -4, 0.5), 0, 0.5),)).poses(all_of), "0 is in the .* box of one"),
         (
             lambda all_of, make: make((Placed("no", (0, 0, 0), 0, 1),)).poses(all_of),
             "no mesh of no: there are one, two",

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from haptic_glance.mesh.files import MeshLike, with_known_up
+from haptic_glance.mesh.files import with_known_up
 from haptic_glance.mesh.repair import rotate_to_z_up
 
 from .camera import Scene
@@ -22,7 +22,7 @@ REJECTED = 1.001  # tolerances: the error noted for a level that a frame rejects
 
 
 def budget(
-    meshes: Mapping[str, MeshLike], scene: Scene, options: Mapping[str, Mapping[str, Any]] | None = None,
+    meshes: Mapping[str, Any], scene: Scene, options: Mapping[str, Mapping[str, Any]] | None = None,
     chains: Mapping[str, Sequence[Level]] | None = None, frames: Frames | None = None,
 ) -> Plan:  # fmt: skip
     """Plans the fewest faces of each object in each frame, with every frame within the scene's tolerance.
