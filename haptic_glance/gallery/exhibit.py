@@ -10,6 +10,7 @@ from scipy.spatial import KDTree
 
 from haptic_glance.base.files import write_arrays, write_text
 from haptic_glance.cli.saliency import as_csv, finely, nearest_vertices, points_of
+from haptic_glance.cli.simplify import dropped_from
 from haptic_glance.cli.touch import ARRAYS, TABLE, places_rows, saved_arrays
 from haptic_glance.cli.touch import as_csv as places_csv
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, vertex_errors
@@ -49,7 +50,7 @@ class Level:
 class Exhibit:
     """The findings on one mesh.
 
-    touched: the mesh, repaired; note: what is known of its up axis. saliency (n,). points: rows of
+    touched: the mesh, repaired; note: up axis, repairs, and what levels lack. saliency (n,). points: rows of
     haptic_glance.cli.saliency.COLUMNS, most salient first. levels: finest first; missing: {level: why there is none}.
     touches: rows of places.csv, in the order of the points; images (k, rows, cols) in 0..1, 0 pressed first. picture:
     (h, w, 3) u1, coloured by saliency with the points numbered. units: of its lengths and positions.
@@ -90,7 +91,7 @@ def exhibit(
     ladder, missing = simplified(mesh, values, levels, folder, file, name, original)
     user_mesh = UserMesh(mesh, name)
     touches, images = touch(user_mesh, points, folder)
-    text = "; ".join([note, *notes])
+    text = "; ".join(filter(None, [note, *notes, dropped_from(file, original)]))
     return Exhibit(name, file, folder, user_mesh, text, values, points, ladder, missing, touches, images, picture)
 
 

@@ -302,13 +302,17 @@ def _place_skins(tree, content):
                 place, joint = _matrix(nodes[joint]) @ place, parents.get(joint)
         places[number] = place
     for number, place in places.items():
-        if number in parents:
-            nodes[parents[number]]["children"].remove(number)
+        node, root = nodes[number], number
+        for _ in nodes:
+            root = parents.get(root, root)
+        if root != number or "children" in node:  # the mesh gets a node of its own: children stay at their place
+            nodes.append({key: node.pop(key) for key in ("name", "mesh") if key in node})
+            node = nodes[-1]
             for scene in tree.get("scenes", []):
-                scene["nodes"].append(number)
+                scene["nodes"] += [len(nodes) - 1] * (root in scene["nodes"])
         for key in PLACE:
-            nodes[number].pop(key, None)
-        nodes[number]["matrix"] = [round(value, 9) for value in place.T.ravel().tolist()]
+            node.pop(key, None)
+        node["matrix"] = [round(value, 9) for value in place.T.ravel().tolist()]
 
 
 def _matrix(node):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import re
 from contextlib import suppress
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from haptic_glance.base.lazy import trimesh
+from haptic_glance.base.text import text_of
 
 from .headers import MeshError
 from .materials import obj_vertices
@@ -24,12 +24,12 @@ OPTION = re.compile(
 
 
 def plain(content: bytes) -> bytes:
-    """An OBJ's bytes without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers.
+    """An OBJ's bytes in UTF-8, without a byte-order mark, tabs, blanks that begin a line, and comments behind numbers.
 
     Numbers of corners count from the first line. A concave polygon begins at another corner, or becomes triangles,
     where the parser's fan would fold it. One line names all material libraries. Raises MeshError for a vertex 0.
     """
-    content = content.removeprefix(codecs.BOM_UTF8)  # the parser would miss the first vertex
+    content = text_of(content).encode()  # the parser guesses an encoding, another one for the materials
     content = content.replace(b"\t", b" ") if b"\t" in content else content
     # a line that ends with a backslash goes on: its numbers would grow together
     content = (
@@ -133,7 +133,8 @@ class Beside:
         plain_name = OPTION.sub("", key).replace("\\", "/")
         for name in (key, plain_name):  # as it stands first: a file may be named so
             with suppress(OSError, ValueError, KeyError):
-                return self.folder.get(name)
+                data = self.folder.get(name)
+                return text_of(data).encode() if name.lower().endswith(".mtl") else data
         self.absent.append(plain_name)
         raise FileNotFoundError(plain_name)
 
@@ -158,7 +159,7 @@ NAMES = re.compile(rb"(?mi)^[ \t]*(mtllib|map_\w+|bump|disp|decal|norm|refl)[ \t
 def names_in(content: bytes) -> list[str]:
     """The names of the files that an OBJ file, or a material file, refers to; those of materials also word by word."""
     names = []
-    for kind, text in NAMES.findall(content):
+    for kind, text in NAMES.findall(text_of(content).encode()):
         name = text.decode(errors="replace")
         words = name.split() if kind.lower() == b"mtllib" else [OPTION.sub("", name)]
         names += [word.replace("\\", "/") for word in (name, *words)]
@@ -168,7 +169,7 @@ def names_in(content: bytes) -> list[str]:
 OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)\s")
 # Further statements that change how a material looks, and the values that change nothing.
 LOOKS = {"d": 1.0, "Tr": 0.0, "Ks": 0.0, "Ke": 0.0}
-PLACED = re.compile(r"(?mi)^\s*map_Kd\s+(?=\S)(?:.*?\s)??(-[ost])\s")
+COLOUR_MAP, PLACED = re.compile(r"(?mi)^\s*map_Kd(\s.*)$"), re.compile(r"(?i)\s(-[ost])(?=\s)")
 OTHER_ELEMENTS = {"lines": rb"(?m)^[ \t]*l[ \t]", "points": rb"(?m)^[ \t]*p[ \t]"}
 
 
@@ -192,7 +193,7 @@ def not_read(path: Path, has_colors: bool = False) -> list[str]:
     """
     if path.suffix.lower() != ".obj":
         return []
-    content = path.read_bytes()
+    content = text_of(path.read_bytes()).encode()
     beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
     libraries = [name.decode(errors="replace") for kind, name in NAMES.findall(content) if kind.lower() == b"mtllib"]
     text: str | bytes = b""
@@ -210,7 +211,8 @@ def not_read(path: Path, has_colors: bool = False) -> list[str]:
         with suppress(ValueError):
             names += [kind] * any(set(map(float, value.split())) - {usual} for value in values)
     names += ["Kd beside map_Kd"] * any(map(_tints, re.split(r"(?mi)^\s*newmtl\s", words)))
-    names += [f"map_Kd {option}" for option in dict.fromkeys(PLACED.findall(words))]
+    options = [option for line in COLOUR_MAP.findall(words) for option in PLACED.findall(line)]
+    names += [f"map_Kd {option}" for option in dict.fromkeys(options)]
     names += ["names of materials"] * (len(re.findall(r"(?mi)^\s*newmtl\s", words)) > 1)
     names += [kind for kind, form in OTHER_ELEMENTS.items() if re.search(form, content)]
     coloured = re.search(rb"(?m)^v(?:[ \t]+\S+){6,7}[ \t]*\r?$", content)

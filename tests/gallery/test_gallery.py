@@ -106,6 +106,14 @@ def test_the_same_comes_of_the_three_commands_that_it_names(scans, capsys):
         assert np.allclose(alone["images"][order], together["images"], atol=1e-5)
 
 
+def test_the_page_names_what_the_levels_lack(tmp_path):
+    pear(tmp_path / "pear.ply")
+    scene = trimesh.Scene([trimesh.load(tmp_path / "pear.ply"), trimesh.PointCloud(np.eye(3))])
+    scene.export(tmp_path / "pear.glb")
+    _, page, _, _ = gallery(tmp_path / "pear.glb", tmp_path / "out", "--count", "1", "--levels", "300")
+    assert "dropped from pear.glb, since they cannot be carried over: points" in page
+
+
 def test_what_turns_on_the_page_is_the_mesh_with_its_levels(whole):
     _, item = page_data(whole[2])["objects"]
     assert item["faces"] == item["full"]["faces"] == 1280 and item["points"]["glance"]["ids"][1] == 6

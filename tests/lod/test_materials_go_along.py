@@ -292,7 +292,9 @@ def test_the_copyright_of_a_file_is_said_to_be_dropped(tmp_path):
     assert not_read((tmp_path / "art.glb").read_bytes()) == ["asset.copyright"]
 
 
-@pytest.mark.parametrize("name", ["EXT_mesh_gpu_instancing", "KHR_materials_variants", "KHR_lights_punctual"])
+@pytest.mark.parametrize(
+    "name", ["EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_variants", "KHR_node_visibility"]
+)
 def test_an_extension_of_the_scene_is_said_to_be_dropped(tmp_path, name):
     (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
     rewritten(tmp_path / "art.glb", lambda tree: tree.update(extensionsUsed=[name]))

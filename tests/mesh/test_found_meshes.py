@@ -14,7 +14,7 @@ from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
 from haptic_glance.lod import colour_error
-from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.files import files_of, parse
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.obj import not_read
 from haptic_glance.mesh.polygons import refined
@@ -202,7 +202,7 @@ def test_a_flat_place_has_little_contrast_in_a_picture():
     assert shown[0].max() == pytest.approx(0.1) and shown[1].max() == 1
 
 
-@pytest.mark.parametrize("named", ["maps/wood 1.png", "maps\\wood 1.png", "-s 1 1.5 1 -clamp on maps/wood 1.png"])
+@pytest.mark.parametrize("named", ["maps/wood 1.png", "maps\\wood 1.png", "-o 0 -s 1 1.5 1 -clamp on maps/wood 1.png"])
 def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, named):
     (tmp_path / "maps").mkdir()
     Image.new("RGB", (2, 2), "red").save(tmp_path / "maps" / "wood 1.png")
@@ -210,13 +210,23 @@ def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, 
     path = tmp_path / "a.obj"
     path.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
     assert [image[0, 0].tolist() for image in load(path, up="z").texture.images] == [[255, 0, 0, 255]]
-    assert (
-        dropped_from(path, load(path)).endswith(": map_Kd -s") if "-s" in named else not dropped_from(path, load(path))
-    )
+    dropped = dropped_from(path, load(path))
+    assert dropped.endswith(": map_Kd -o, map_Kd -s") if "-s" in named else not dropped
     (tmp_path / "maps" / "wood 1.png").unlink()
     assert ": picture maps/wood 1.png, not beside it" in dropped_from(path, load(path))
     (tmp_path / "a.mtl").unlink()
     assert dropped_from(path, load(path)).endswith(": materials a.mtl, not beside it")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1"])
+def test_an_obj_and_its_materials_may_have_umlauts_in_any_encoding(tmp_path, encoding):
+    Image.new("RGB", (2, 2), "red").save(tmp_path / "grün.png")
+    (tmp_path / "ä.mtl").write_text("newmtl ö\nmap_Kd grün.png\n", encoding)
+    path = tmp_path / "a.obj"
+    lines = "mtllib ä.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl ö\nf 1/1 2/1 3/1\n"
+    path.write_text("#" * 1000 + "\n" + lines, encoding)  # the parser judges by so many characters
+    assert [image[0, 0].tolist() for image in load(path, up="z").texture.images] == [[255, 0, 0, 255]]
+    assert not dropped_from(path, load(path)) and len(files_of(path)) == 2
 
 
 @pytest.mark.parametrize(

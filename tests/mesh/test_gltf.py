@@ -304,6 +304,19 @@ def test_a_mesh_with_a_skin_stands_where_its_joints_put_it():
     assert np.ptp(mesh.vertices, axis=0) == pytest.approx([1, 2, 4]) and np.abs(mesh.vertices.mean(axis=0)).max() < 1e-6
 
 
+@pytest.mark.parametrize(("scene", "faces", "extents"), [(0, 12, [1, 1, 1]), (1, 24, [7, 3, 3])])
+def test_a_mesh_with_a_skin_leaves_its_children_and_its_scene_as_they_are(scene, faces, extents):
+    def rig(tree, _):
+        tree["nodes"] = [
+            {"translation": [5, 0, 0], "children": [1]}, {"mesh": 0, "skin": 0, "scale": [3] * 3, "children": [2]},
+            {"mesh": 0}, {}, {"mesh": 0},
+        ]  # fmt: skip
+        tree |= {"skins": [{"joints": [3]}], "scenes": [{"nodes": [4]}, {"nodes": [0, 3]}], "scene": scene}
+
+    mesh = parse(changed(trimesh.creation.box().export(file_type="glb"), rig), ".glb")
+    assert len(mesh.faces) == faces and np.ptp(mesh.vertices, axis=0) == pytest.approx(extents)
+
+
 def test_joints_in_a_ring_end(glb):
     def ring(tree, _):
         node = next(number for number, node in enumerate(tree["nodes"]) if "mesh" in node)

@@ -67,6 +67,9 @@ def test_the_price_decides_between_all_faces_and_the_fewest(alone):
     for price, level in ((1e9, 0), (1e-9, len(chains[0]) - 1)):
         assert (by_profiles(frames, chains, profiles, price).levels == level).all()
         assert (by_sums(frames, chains, sums, price).levels == level).all()
+    for price in (0, -1.0, np.nan):
+        with pytest.raises(ValueError, match=f"^the price is {price} faces"):
+            by_profiles(frames, chains, profiles, price)
 
 
 @pytest.mark.parametrize(("turn", "level"), [(-90.0, 0), (90.0, 1), (0.0, 1)])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from haptic_glance.lod import write_any
 from haptic_glance.lod.scene import Frames, Level, Placed, budget
 from haptic_glance.lod.scene.chain import ERRORS, finest
 from haptic_glance.lod.scene.pictures import picture_error
@@ -33,6 +34,20 @@ def test_every_rendered_frame_holds_the_tolerance_and_uses_it(plan, scene):
 def test_a_wider_tolerance_needs_no_more_faces(meshes, chains, make_scene, plan):
     wide = budget(meshes, make_scene(tolerance=2.0), chains=chains)
     assert wide.faces.sum() < plan.faces.sum() and wide.errors.max() <= 2.0
+
+
+def test_a_file_stands_upright_in_a_scene(meshes, make_scene, tmp_path):
+    """A glTF is y up, a scene z up."""
+    high = Mesh(meshes["two"].vertices * [0.5, 1, 0.5], meshes["two"].faces, up="y")
+    write_any(tmp_path / "high.glb", high)
+    scene = make_scene(objects=(Placed("high", (0.0, 0.0, 0.0), 0.0, 0.3),), frames=1)
+    for source in (high, tmp_path / "high.glb"):
+        low, top = budget({"high": source}, scene).chains[0][0].box
+        assert (top - low).argmax() == 2
+    with pytest.raises(ValueError, match="^options of hihg: there are high$"):
+        budget({"high": high}, scene, {"hihg": {"weights": np.ones(len(high.vertices))}})
+    with pytest.raises(ValueError, match="^no levels of high: there are none$"):
+        budget({"high": high}, scene, chains={})
 
 
 @pytest.mark.parametrize("aside", [0.28, 0.34])

@@ -95,7 +95,14 @@ def by_profiles(frames: Frames, chains: Sequence[Sequence[Level]], profiles: Seq
     -------
     Plan
         The level of each object in each frame.
+
+    Raises
+    ------
+    ValueError
+        For a price that is not above 0.
     """
+    if not price > 0:
+        raise ValueError(f"the price is {price} faces: give a number above 0")
     columns = []
     for item, (chain, record) in enumerate(zip(chains, profiles, strict=True)):
         pose = frames.poses[item]

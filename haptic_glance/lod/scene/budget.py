@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.files import with_known_up
+from haptic_glance.mesh.repair import rotate_to_z_up
 
 from .camera import Scene
 from .chain import Level, build_lod_chain
@@ -21,15 +22,15 @@ REJECTED = 1.001  # tolerances: the error noted for a level that a frame rejects
 
 
 def budget(
-    meshes: Mapping[str, Mesh], scene: Scene, options: Mapping[str, Mapping[str, Any]] | None = None,
+    meshes: Mapping[str, Any], scene: Scene, options: Mapping[str, Mapping[str, Any]] | None = None,
     chains: Mapping[str, Sequence[Level]] | None = None, frames: Frames | None = None,
 ) -> Plan:  # fmt: skip
     """Plans the fewest faces of each object in each frame, with every frame within the scene's tolerance.
 
     Parameters
     ----------
-    meshes : mapping of str to Mesh
-        The mesh of each name in the scene.
+    meshes : mapping of str to Mesh or any input of `as_mesh`
+        The mesh of each name in the scene. With `chains`, z up, as these are; else the function turns it z up.
     scene : Scene
         Objects, cameras and tolerance.
     options : mapping of str to mapping, optional
@@ -48,8 +49,8 @@ def budget(
     Raises
     ------
     ValueError
-        For a scene that does not fit the meshes, and for a limit below the smallest feasible one, which the message
-        names.
+        For a scene or options that do not fit the meshes, and for a limit below the smallest feasible one, which the
+        message names.
 
     Notes
     -----
@@ -60,9 +61,14 @@ def budget(
     objects whose error stays smallest are coarsened; such frames may exceed the tolerance.
     """
     if chains is None:
+        meshes = {name: rotate_to_z_up(with_known_up(mesh)) for name, mesh in meshes.items()}
         scene.poses(meshes)  # raises before the work begins
+        if unknown := sorted(set(options or ()) - set(meshes)):
+            raise ValueError(f"options of {', '.join(unknown)}: there are {', '.join(sorted(meshes))}")
         names = sorted({placed.name for placed in scene.objects})
         chains = {name: build_lod_chain(meshes[name], **(options or {}).get(name, {})) for name in names}
+    elif missing := sorted({placed.name for placed in scene.objects} - set(chains)):
+        raise ValueError(f"no levels of {', '.join(missing)}: there are {', '.join(sorted(chains)) or 'none'}")
     frames = frames or Frames(scene, meshes, finest_of_scene(scene, chains))
     search = _Search(scene, frames, tuple(chains[placed.name] for placed in scene.objects))
     return search.run()

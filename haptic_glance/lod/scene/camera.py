@@ -45,14 +45,16 @@ class Camera:
 
     def __post_init__(self) -> None:
         along = np.subtract(self.target, self.eye)
+        if along.shape != (3,):
+            raise ValueError(f"a camera at {self.eye} that looks at {self.target}: give x, y, z of both")
         if not np.isfinite(along).all():
             raise ValueError(f"a camera at {self.eye} that looks at {self.target} is nowhere: give finite numbers")
         if np.hypot(along[0], along[1]) <= 1e-6 * (1 + np.abs(along[2])):
             raise ValueError(f"a camera at {self.eye} cannot look at {self.target}: same place, or straight up or down")
         if not 1 <= self.angle <= 170:
             raise ValueError(f"the view angle is {self.angle} degrees: give the vertical one, from 1 to 170")
-        if min(self.size) < 1:
-            raise ValueError(f"a screen of {self.size[0]} x {self.size[1]} pixels shows nothing")
+        if len(self.size) != 2 or not all(isinstance(n, int | np.integer) and n >= 1 for n in self.size):
+            raise ValueError(f"a screen of {self.size} pixels: give rows and columns, whole numbers of 1 or more")
 
     @cached_property
     def axes(self) -> np.ndarray:
@@ -223,7 +225,7 @@ class Scene:
     limit : int
         Most faces of all objects of a frame together; 0 for no limit.
     hold : int
-        Fewest frames that a level stays.
+        Fewest frames that a level stays, but for the first and the last one of an object.
 
     Raises
     ------
@@ -254,11 +256,11 @@ class Scene:
             )
         if self.kind not in KINDS:
             raise ValueError(f"unknown kind of tolerance {self.kind!r}: choose one of {', '.join(KINDS)}")
-        if self.limit < 0 or self.hold < 1:
-            raise ValueError(f"limit ({self.limit}) must be 0 or more and hold ({self.hold}) 1 or more")
+        if not self.limit >= 0 or not isinstance(self.hold, int | np.integer) or self.hold < 1:
+            raise ValueError(f"limit ({self.limit}) must be 0 or more, and hold ({self.hold}) a whole number from 1")
 
     def poses(self, meshes: Mapping[str, Mesh]) -> list[Pose]:
-        """One Pose per object; ValueError for an object without a mesh, or an eye inside one."""
+        """One Pose per object; ValueError for an object without a mesh, or an eye in the box of one."""
         missing = sorted({placed.name for placed in self.objects} - set(meshes))
         if missing:
             raise ValueError(f"no mesh of {', '.join(missing)}: there are {', '.join(sorted(meshes)) or 'none'}")
@@ -268,7 +270,7 @@ class Scene:
             inside = np.flatnonzero(((eyes >= pose.box[0]) & (eyes <= pose.box[1])).all(axis=1))
             if len(inside):
                 place = f"{placed.name} at {tuple(placed.position)}"
-                raise ValueError(f"the camera of frame {inside[0]} is inside {place}: move one of them")
+                raise ValueError(f"the camera of frame {inside[0]} is in the bounding box of {place}: move one of them")
         return poses
 
 
