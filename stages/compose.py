@@ -31,6 +31,7 @@ from stages.engine.settings import (
     FILE,
     PUBLISHED,
     ParamsError,
+    begins_with,
     check_clone,
     check_common,
     check_names,
@@ -119,15 +120,6 @@ STARTS = (
 )  # they read files that no stage has made
 
 
-def begins_with(sections: dict[str, Any], stage: str, dataset: str) -> str:
-    """The path whose change makes a stage of STARTS run again: the set's files, or its settings where they are fetched.
-
-    The stage weights reads where people look, which an archive has beside its meshes.
-    """
-    folder = sections["meshes" if stage in ("meshes", "weights") else "recorded"].get("folder")
-    return str(Path(folder).expanduser()) if folder else f"conf/data/{dataset}.yaml"
-
-
 def absent(values: dict[str, Any]) -> dict[str, str]:
     """{set: where its files should be} of the switched-on sets whose files are not there."""
     places = {name: path for stage in STARTS for name, path in values["graph"].get(stage, {}).items()}
@@ -161,9 +153,9 @@ def _config(overrides: tuple[str, ...]) -> DictConfig:
 def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
     """The sections that the stages of one set read, each checked against its schema."""
     stages = config["stages"]
-    unknown = sorted(set(stages) - set(stage_names()))
-    if unknown or not stages:
-        raise ParamsError(f"{dataset}: stages={stages} must name stages: {', '.join(stage_names())}")
+    known = [name for name in stage_names() if name != "report"]  # the report is about all sets
+    if not stages or not set(stages) <= set(known):
+        raise ParamsError(f"{dataset}: stages={stages} must name stages: {', '.join(known)}")
     if config["obtain"] and not any(config.get(stage, {}).get("folder") for stage in (*STARTS, "recorded")):
         raise ParamsError(f"{dataset} needs its files: {config['obtain']}")
     names = dict.fromkeys(section for stage in stages for section in [stage, *READ_TOO.get(stage, [])])
@@ -194,7 +186,7 @@ def _check_run(values: dict[str, Any]) -> None:
     if not (isinstance(workers, int) and (workers == -1 or workers >= 1)):
         raise ParamsError(f"parallel.workers={workers} must be 1 or more, or -1 for one a core")
     out = Path(os.path.normpath(values["out"]))
-    if values["out"] and (out.is_file() or out == Path("/") or out.parts[0] in TREE):
+    if values["out"] and (out.is_file() or not out.name or out.parts[0] in TREE):
         raise ParamsError(f"out={out} is no folder for results: write out=runs/NAME")
     if backend not in BACKENDS:
         raise ParamsError(f"parallel.backend={backend} is none of {', '.join(BACKENDS)}")

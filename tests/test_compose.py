@@ -101,6 +101,17 @@ def test_a_stage_about_all_sets_takes_the_name_of_none(make_workspace, monkeypat
             assert workspace_of_arguments("", stage).dataset == "toys"
 
 
+def test_a_stage_that_would_read_a_folder_which_dvc_does_not_watch_is_refused(make_workspace, monkeypatch):
+    graph = {"meshes": {"toys": "old"}, "lod": ["toys"]}
+    root = make_workspace({"meshes": {"folder": "new"}, "lod": {}}, graph=graph).root
+    (root / "dvc.yaml").touch()
+    monkeypatch.setattr("sys.excepthook", sys.excepthook)
+    for stage, words in (("meshes", "would read new, but graph.meshes.toys is old"), ("lod", "")):
+        monkeypatch.setattr("sys.argv", [stage, "--root", str(root)])
+        with pytest.raises(ParamsError, match=words) if words else nullcontext():
+            workspace_of_arguments("", stage)
+
+
 @pytest.mark.slow
 def test_a_set_runs_only_its_stages_and_its_path_may_be_any():
     folder = 'x=y, my "scäns"'
@@ -203,6 +214,8 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("parallel.workers=0", "parallel.workers=0 must be 1 or more, or -1"),
         ("parallel.workers=many", "parallel.workers=many must be 1 or more, or -1"),
         ("out=/", "out=/ is no folder for results"),
+        ("out=.", "out=. is no folder for results"),
+        ("stages=[meshes,report]", "stages=['meshes', 'report'] must name stages: annotations, "),
         ("out=reports/../stages/new", "out=stages/new is no folder for results"),
         ("household.lod.targets=[50%,1500,1500]", "lod.targets names 1500 twice"),
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
@@ -225,9 +238,11 @@ def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
 
 
 def test_names_in_a_list_may_have_blanks_accents_and_brackets():
-    names = ["boule à vis", "cône (2)", "anneau#1", "caisse"]
+    names = ["boule à vis", "cône (2)", "anneau#1", "caisse", "0012"]
     values = compose(["sets=[folder]", "meshes.folder=scans", f"meshes.objects=[{','.join(names)}]", "lod.rings=2"])
     assert values["folder"]["meshes"]["objects"] == names
+    unquoted = values["folder"]["meshes"] | {"objects": [float("nan")]}  # as YAML reads a name without quotes
+    assert check_section(schema_of("meshes"), unquoted).objects == ["nan"]
     assert compose(["sets=[folder]", 'meshes.folder=a"b c'])["folder"]["meshes"]["folder"] == 'a"b c'
 
 
@@ -248,6 +263,7 @@ def params():
         ("salient_points.radius", "wide", "give a number"),
         ("lod.shrink", "perhaps", "write true or false"),
         ("lod.rings", -3, "lod.rings: -3 must be 0 or more"),
+        ("meshes.objects", ["cup", None], "write such a name in quotes"),
         ("views.size", [900, 0], "views.size: 0 must be 1 or more"),
         ("lod.targets", "25%", "is not a ListConfig, list or tuple: write a list in brackets"),
         ("views.size", [900], "views.size: [900] must be [rows, columns]"),

@@ -17,7 +17,7 @@ import shutil
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -163,15 +163,21 @@ def write_table(path: str | Path, frame: pd.DataFrame) -> None:
         part.write_bytes(content)
 
 
-def read_table(path: str | Path, dtype: Any = None) -> pd.DataFrame:
+NAMES = dict.fromkeys(("class", "file", "item", "left_out", "object"), str)  # columns of names
+
+
+def read_table(path: str | Path, dtype: Mapping[str, Any] | None = None) -> pd.DataFrame:
     """Reads a tidy CSV, compressed or not; ValueError that names it when it is not valid.
 
-    dtype: the types of columns that are not to be guessed.
+    Names stay texts: an object may be called `0012` or `nan`, so only an empty cell has no value. dtype: the types of
+    further columns that are not to be guessed.
     """
+    types, compression = {**NAMES, **(dtype or {})}, "gzip" if Path(path).suffix == ".gz" else None
     try:
         with open(path, "rb") as stream:
-            compression = "gzip" if Path(path).suffix == ".gz" else None
-            return pd.read_csv(stream, dtype=dtype, compression=compression, low_memory=False)  # one guess for a column
+            return pd.read_csv(  # low_memory=False: one guess for a column
+                stream, dtype=types, compression=compression, low_memory=False, keep_default_na=False, na_values=[""]
+            )
     except (ValueError, gzip.BadGzipFile, EOFError, zlib.error) as error:
         raise ValueError(f"{path} is not a valid table: {error}") from None
 

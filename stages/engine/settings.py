@@ -100,7 +100,7 @@ NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, o
     "weights": {"method": "stages.weights.training:CHOICES", "svm": "stages.weights.training:PIXELS"},
 }
 REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false",
-            "ListConfig": "write a list in brackets"}  # fmt: skip
+            "ListConfig": "write a list in brackets", "subclass of str": "write such a name in quotes"}  # fmt: skip
 Settings = TypeVar("Settings")
 
 
@@ -140,9 +140,10 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     typed = OmegaConf.structured(schema)
     defaults: Any = OmegaConf.to_container(typed, throw_on_missing=False)
     _check_keys(section, values, list(defaults))
-    _check_ranges(section, values)
     try:
-        return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
+        merged = OmegaConf.merge(typed, values)
+        _check_ranges(section, OmegaConf.to_container(merged))  # type: ignore[arg-type]  # a dict; `nan` may be a name
+        return OmegaConf.to_object(merged)  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
         reason = str(error).splitlines()[0].rstrip(".")
@@ -225,6 +226,27 @@ def _check_keys(where: str, values: dict[str, Any], keys: list[Any]) -> None:
         if key not in keys:
             prefix = f"{where}." if where else ""
             raise ParamsError(f"unknown setting {prefix}{key}: {nearest(key, keys, prefix)}")
+
+
+def begins_with(sections: dict[str, Any], stage: str, dataset: str) -> str:
+    """The path whose change makes a first stage run again: the set's files, or its settings where they are fetched.
+
+    The stage weights reads where people look, which an archive has beside its meshes.
+    """
+    folder = sections["meshes" if stage in ("meshes", "weights") else "recorded"].get("folder")
+    return str(Path(folder).expanduser()) if folder else f"conf/data/{dataset}.yaml"
+
+
+def _check_start(params: dict[str, Any], stage: str, dataset: str) -> None:
+    """Raises ParamsError where a stage reads another path than DVC watches: changes there would give old results."""
+    watched = params["graph"][stage]
+    if isinstance(watched, dict) and dataset in watched:
+        read = begins_with(params[dataset], stage, dataset)
+        if read != watched[dataset]:
+            raise ParamsError(
+                f"{stage} would read {read}, but graph.{stage}.{dataset} is {watched[dataset]}, which DVC watches: "
+                "run `python -m stages.compose` with your settings, or set both"
+            )
 
 
 def conf_folder() -> Path:
@@ -353,7 +375,9 @@ def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
         if options.dataset:
             raise ValueError(f"this stage is about all sets that params.yaml names: leave {options.dataset} out")
         return workspace
-    return workspace.on(options.dataset or _only_set(workspace, stage))
+    dataset = options.dataset or _only_set(workspace, stage)
+    _check_start(workspace.params, stage, dataset)
+    return workspace.on(dataset)
 
 
 def _only_set(workspace: Workspace, stage: str) -> str:

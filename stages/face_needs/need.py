@@ -32,7 +32,7 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     """
     mesh = read_mesh(data / f"meshes/{name}.npz")
     chain = read_chain(data / f"scene/levels/{name}", OURS, finest(mesh))
-    size = read_table(data / "meshes/manifest.csv", {"object": str}).set_index("object")["size"].to_dict()[name]
+    size = read_table(data / "meshes/manifest.csv").set_index("object")["size"].to_dict()[name]
     faces = np.array([level.faces for level in chain])
     rows = [row(name, "full", None, faces[0])]
     for distance in settings.distances:

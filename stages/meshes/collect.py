@@ -86,7 +86,7 @@ def read_classes(folder: str | Path) -> dict[str, list[str]]:
     path = Path(folder) / CLASSES
     if not path.exists():
         raise ValueError(f"{path} is not there: name the classes of this data set in meshes.classes")
-    table = read_table(path, dtype={"class": str, "object": str})
+    table = read_table(path)
     return {str(name): list(rows["object"]) for name, rows in table.groupby("class", sort=False)}
 
 

@@ -77,7 +77,7 @@ def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
 def _axis(results, name):
     """Which axis of the object's file was taken to point up. The manifest does not tell whether the shape decided."""
     manifest = results.folder("meshes") / "manifest.csv"
-    axes = read_table(there(manifest, "no manifest", "meshes"), dtype={"object": str}).set_index("object")["up"]
+    axes = read_table(there(manifest, "no manifest", "meshes")).set_index("object")["up"]
     return f"{axes[name]} is up in the file"
 
 

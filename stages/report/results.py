@@ -322,7 +322,7 @@ class Results:
 
     def table(self, stage: str, name: str, dataset: str | None = None) -> pd.DataFrame:
         """A side table of a stage, data/SET/STAGE/NAME."""
-        return pd.read_csv(there(self.folder(stage, dataset) / name, f"no {stage}/{name}", stage))
+        return read_table(there(self.folder(stage, dataset) / name, f"no {stage}/{name}", stage))
 
     @property
     def own_meshes(self) -> bool:

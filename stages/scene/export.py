@@ -36,7 +36,7 @@ def export(folder: Path, data: Path, scene: Scene, settings: Params) -> None:
 
     Raises ValueError that names the file where one does not load back unchanged.
     """
-    plan, rows = read_table(folder / "plan.csv", {"item": str}), []
+    plan, rows = read_table(folder / "plan.csv"), []
     plan = plan[plan["in_view"]]
     meshes = {name: read_mesh(data / MESH.format(name)) for name in sorted(set(plan["item"]))}
     chains = {name: read_chain(folder / "levels" / name, OURS, finest(mesh)) for name, mesh in meshes.items()}

@@ -218,7 +218,7 @@ def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> 
     if not settings.random:
         return [settings]
     boxes = {name: bounding_box(read_mesh(data / MESH.format(name))) for name in names}
-    table = read_table(data / SIZES, {"object": str})
+    table = read_table(data / SIZES)
     sizes = dict(zip(table["object"], table["size"].astype(float), strict=True))
     return [draw_scene(settings, number, boxes, sizes, seed) for number in range(settings.random)]
 
@@ -248,7 +248,7 @@ CURVE = "lod/{}/curve.csv"  # of an object, below data/SET
 def lod_rows(data: Path, objects: Sequence[str]) -> pd.DataFrame:
     """The rows of the lod stage for some objects. Raises ValueError where it has none."""
     paths = [data / CURVE.format(name) for name in objects]
-    tables = [read_table(path, {"item": str}) for path in paths if path.exists()]
+    tables = [read_table(path) for path in paths if path.exists()]
     if not tables:
         raise ValueError(f"no {data / CURVE.format('NAME')} to learn from: run `dvc repro lod@{data.name}`")
     return pd.concat(tables)

@@ -65,3 +65,12 @@ def test_a_column_that_is_empty_for_long_is_one_column_of_texts(tmp_path):
     (tmp_path / "long.csv").write_text("name,value\n" + ",1\n" * 400_000 + "kNN,1\n" * 400_000)
     column = files.read_table(tmp_path / "long.csv")["name"].dropna()
     assert set(column) == {"kNN"} and len(column) == 400_000
+
+
+def test_names_that_look_like_numbers_or_gaps_stay_names(tmp_path):
+    names = ["0012", "1e5", "nan", "null", "true"]
+    rows = "".join(f"{name},{name},{number}\n" for number, name in enumerate(names))
+    (tmp_path / "table.csv").write_text(f"object,item,value\n{rows},,\n")
+    table = files.read_table(tmp_path / "table.csv")
+    assert list(table["object"][:-1]) == list(table["item"][:-1]) == names
+    assert table.iloc[-1].isna().all() and table["value"].dtype == float
