@@ -156,7 +156,7 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
     other_svms = [_fit(*_joined_rows(other_arrays), seed)] if other_arrays else []
     models = {"object": [_fit(features, labels, seed, most)], "view": per_view, "without": other_svms}
     write_models(folder / "svm" / f"{name}.npz", models)
-    rows = gain_rows(name, record, seed)
+    rows = []
     for area, prefix in AREAS.items():
         features, labels, views = (record[f"{prefix}{key}"] for key in ("pixels", "labels", "views"))
         rows.append(_row(name, area, "one_per_object", "pixels", cross_validated, features, labels, seed))
@@ -166,7 +166,7 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
             rows.append(
                 _row(name, area, "one_per_viewpoint", "pixels", cross_validated, features[part], labels[part], seed)
             )
-    return [row for row in rows if row]
+    return [*gain_rows(name, record, seed), *filter(None, rows)]
 
 
 def gain_rows(name: str, record: dict[str, np.ndarray], seed: int) -> Rows:
