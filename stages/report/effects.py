@@ -372,13 +372,14 @@ def sets_of(claim: Claim, results: Results) -> list[str | None]:
     return [name for name in names if name or not datasets]
 
 
-def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
+def effects(claim: Claim, results: Results, judged_sets: bool = False) -> tuple[list[Effect], list[str]]:
     """(the effect on each set that was measured, the names of the others).
 
-    NotRun where none was: of a set that has rows of the stage, else of one that a run would measure.
+    judged_sets: only the sets whose rows give the verdict. NotRun where none was measured: of a set that has rows of
+    the stage, else of one that a run would measure.
     """
     set_effects, missing = [], {}
-    for name in sets_of(claim, results):
+    for name in sets_of(claim, results)[: claim.judging if judged_sets else None]:
         try:
             set_effects.append(_effect(claim.on(name), results, name or ""))
         except NotRun as error:

@@ -6,7 +6,7 @@ disagree make it depend on the reading. `holding` corrects for the claims of a c
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -94,6 +94,10 @@ def _row(claim: Claim, results: Results) -> Row:
         unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {reason}", "cause": CAUSES[0]}
         return row | unmeasured | {"verdict": "open"}, []
     judgement = next((entry for entry in judgements if entry.word != UNTESTABLE), judgements[0])
+    if judgement.claim is not claim:  # a reading, so far on the judged sets alone
+        complete = judgement.everywhere(results)
+        judgements = [complete if entry is judgement else entry for entry in judgements]
+        judgement = complete
     pairs = []
     for effect in judgement.set_effects:
         start = f"{effect.dataset}/" if len(claim.sets) > 1 else ""
@@ -107,7 +111,10 @@ def _row(claim: Claim, results: Results) -> Row:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A claim in one reading: its effects on all sets, on the sets that are judged, and the word."""
+    """A claim in one reading: its effects on all sets, on the sets that are judged, and the word.
+
+    A reading other than the claim as it is written has only the effects on the judged sets, which its word needs.
+    """
 
     name: str
     claim: Claim
@@ -126,6 +133,12 @@ class Judgement:
         rivals = picked_from(self.claim)
         return "open" if word == "contradicted" and effect_of(self.chosen).p_value * rivals > ALPHA else word
 
+    def everywhere(self, results: Results) -> "Judgement":
+        """The reading with its effects on all sets."""
+        set_effects, missing = effects(self.claim, results)
+        return replace(self, set_effects=set_effects, missing=missing,
+                       chosen=deciding(self.claim, set_effects, results, strict=True))  # fmt: skip
+
     @cached_property
     def used(self) -> Sequence[Effect]:
         """The effects of the judged sets that the numbers come from."""
@@ -141,7 +154,7 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
     judgements, errors, not_run = [], [], []
     for name, variant in [(WRITTEN, claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
         try:
-            set_effects, missing = effects(variant, results)
+            set_effects, missing = effects(variant, results, judged_sets=variant is not claim)
         except NotRun as error:
             errors.append(error)
             not_run.append(f"{name}: not run")

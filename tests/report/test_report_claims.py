@@ -406,6 +406,13 @@ def test_a_reading_on_sets_of_its_own_is_judged_by_their_rows_alone(sets_of_rows
     assert row["verdict"] == "supported" and "elsewhere: supported +2" in row["readings"]
 
 
+def test_a_reading_in_the_place_of_the_claim_shows_all_its_sets(sets_of_rows):
+    results = sets_of_rows(one=spread_about(2.0), two=spread_about(3.0))
+    row = pooled(results, "absent", section="T9", readings=(reading("elsewhere", dataset=("one", "two")),))
+    assert row["units"] == 12 and row["effect"] == pytest.approx(2.0, abs=1e-3)
+    assert row["by_set"].startswith("one +2") and "; two +3" in row["by_set"]
+
+
 def test_chance_calls_as_many_verdicts_as_is_said():
     noise = np.random.default_rng(0).normal(size=(800, 20))
     words = [verdict(*interval(values)[1:]) for values in noise]
