@@ -288,7 +288,7 @@ def test_a_value_that_a_setting_cannot_have_is_named(params, setting, value, hin
     [
         ("  views:\n", "  views: 3\n  other:\n", "views: 3 is not a section of settings"),
         ("seed: 0", "- a", "is not valid YAML"),
-        ("  views:\n", "  other:\n", "no section household.views"),
+        ("  views:\n", "  other:\n", "household.views: .* with views among the stages of conf/data/household.yaml"),
         ("parallel:", "paralel:", "did you mean parallel"),
         ("sets:", "data:", "lacks the section graph or sets: run `python -m stages.compose`"),
         ("    renderer: ", "    rendrer: ", "unknown setting views.rendrer: did you mean views.renderer"),

@@ -195,7 +195,7 @@ def check_names(section: str, values: dict[str, Any]) -> None:
 def nearest(name: str, options: list[str], where: str = "") -> str:
     """`did you mean NAME?`, or all options where none resembles the name; where: comes before the nearest one."""
     matches = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
-    return f"did you mean {where}{matches[0]}?" if matches else f"known: {', '.join(options)}"
+    return f"did you mean {where}{matches[0]}?" if matches else f"known: {', '.join(dict.fromkeys(options))}"
 
 
 def _check_ranges(where: str, values: dict[str, Any]) -> None:
@@ -343,8 +343,11 @@ class Workspace:
             raise ParamsError(f"{self.dataset} is not switched on; {FILE} names {', '.join(self.sets)}")
         values = self.params.get(self.dataset, {}) if self.dataset else self.params
         if section not in values:
-            where = f"{self.dataset}.{section}" if self.dataset else section
-            raise ParamsError(f"{self.root / FILE} has no section {where}: run `python -m stages.compose` anew")
+            where, remedy = section, "run `python -m stages.compose` anew"
+            if self.dataset:
+                where = f"{self.dataset}.{section}"
+                remedy += f", with {section} among the stages of conf/data/{self.dataset}.yaml"
+            raise ParamsError(f"{self.root / FILE} has no section {where}: {remedy}")
         settings = check_section(schema, values[section])
         check_names(section, values[section])
         return settings
