@@ -184,7 +184,7 @@ def gain_rows(name: str, record: dict[str, np.ndarray], seed: int) -> Rows:
 
 
 def shape_rows(name: str, mesh: Mesh) -> Rows:
-    """What the thesis holds responsible for the gains of channels: convexity, and how far the extremes are (T3.2.3).
+    """Measures of shape by which the thesis explains the gains of channels: convexity and the extremes (T3.2.3).
 
     `extremes` is the distance of the farthest vertex from the centre of mass of the surface over the mean distance,
     `distances_deviation` the deviation of the distances over their mean.

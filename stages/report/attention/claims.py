@@ -136,8 +136,8 @@ ON_OBJECT = {"area": "object"}
 MENDED_GAIN = reading("formulas mended", dataset=(MENDED_3_2, MARKED))
 
 
-def gain_of_symmetry(key: str, sentence: str, section: str = "T3.2.3", **more: Any) -> Claim:
-    """A claim on the information gain of channels about the pixels of an object, on objects with clicked marks, too."""
+def by_gain(key: str, sentence: str, section: str = "T3.2.3", **more: Any) -> Claim:
+    """A claim on the information gain of channels about the pixels of an object, by gaze and by marks."""
     options: dict[str, Any] = {"scale": 1, "unit": "rank correlation"} | more
     return learned(key=key, section=section, sentence=sentence, dataset=(SECTION_3_2, MARKED), **options)
 
@@ -219,19 +219,19 @@ CLAIMS = [
       for key, area, alone, joint, words, of in (
           ("svm_per_object", "image", "pixels", "pixels", "than one for all", ""),
           ("svm_per_object_unseen", "object", "views", "objects", "on what it has not seen, too", "svm_per_object"))),
-    gain_of_symmetry(
+    by_gain(
         "symmetry_gain_varies", "The weight of symmetry by information gain changes a lot from object to object.",
         statistic="varies_more", where=GAIN_OF_PICTURE, first={"channel": "symmetry"}, scale=100,
         unit="% of the mean gain", readings=(reading("pixels of the object alone", where=ON_OBJECT), MENDED_GAIN),
         note="distance of an object's gain from the mean gain, minus the same of the other channels"),
-    gain_of_symmetry(
+    by_gain(
         "symmetry_gain_extremes",
         "Symmetry contributes less where the extremes of an object deviate less from its centre of mass.",
         statistic="share_rises_with", first=GAIN_OF_PICTURE | {"channel": "symmetry"}, second={"metric": "extremes"},
         note="rank correlation over the objects, of the channel's share in the gain",
         readings=(reading("pixels of the object alone", first=ON_OBJECT), MENDED_GAIN,
                   reading("deviation of all distances", second={"metric": "distances_deviation"}))),
-    gain_of_symmetry(
+    by_gain(
         "gain_by_convexity", "The contribution of the channels depends on the level of convexity of an object.",
         section="T3.2.9.2", statistic="differs_with", first=GAIN_OF_PICTURE, second={"metric": "convexity"},
         note="rank correlation over pairs of objects: distance of the channels' shares in the gain, and of convexities",

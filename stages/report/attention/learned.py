@@ -141,9 +141,9 @@ def _over_other(results: Results, claim: Claim, extreme: Callable[[pd.Series], A
 
 @statistic("varies_more")
 def varies_more(results: Results, claim: Claim) -> pd.Series:
-    """How far the gain of the first side's channel is from its mean, as a share of the mean, by object.
+    """Distance of the gain of the first side's channel from its mean, as a share of the mean, by object.
 
-    Minus the same of the other channels, on average; a channel without gain on every object is left out.
+    The mean of the same distances of the other channels is subtracted. Channels without any gain are left out.
     """
     gains = _gains(results, claim, claim.where)
     shares = (gains / gains.mean() - 1).abs().dropna(axis=1)
@@ -155,7 +155,7 @@ def varies_more(results: Results, claim: Claim) -> pd.Series:
 def share_rises_with(results: Results, claim: Claim) -> pd.Series:
     """Rank correlation over the objects of a channel's share in the gain with the second side, as pseudo-values.
 
-    The share, since every channel gains more where an object fills less of the picture.
+    The share counts, since every channel gains more where an object fills less of the picture.
     """
     channel = claim.first["channel"]
     gains = _gains(results, claim, {key: value for key, value in claim.first.items() if key != "channel"})
@@ -166,9 +166,9 @@ def share_rises_with(results: Results, claim: Claim) -> pd.Series:
 
 @statistic("differs_with")
 def differs_with(results: Results, claim: Claim) -> pd.Series:
-    """Rank correlation over pairs of objects, as pseudo-values by object (the statistic of Mantel 1967).
+    """Rank correlation of two distances over pairs of objects, as pseudo-values by object (Mantel 1967).
 
-    Between the distance of the channels' shares in the gain, and the difference of the second side.
+    The distances are those of the channels' shares in the gain, and of the second side.
     """
     gains = _gains(results, claim, claim.first)
     shares = gains.div(gains.sum(axis=1), axis=0)
@@ -235,7 +235,7 @@ def section_3_2_3(results: Results) -> Table:
 
 
 def _spread_of_gains(rows: pd.DataFrame) -> list[str]:
-    """One sentence a data set on how much the information gain of symmetry differs between objects."""
+    """A sentence for each data set: the spread of the information gain of symmetry over the objects."""
     sentences = []
     for dataset, part in rows[rows["area"] == "image"].groupby("dataset", sort=False):
         gains = part.pivot(index="item", columns="channel", values="value")

@@ -158,7 +158,7 @@ ONE_TOUCH = {"cells": 32, "pitch": 0.01, "metric": "accuracy", "split": Split.OB
 
 @statistic("over_one_touch")
 def over_one_touch(results: Results, claim: Claim) -> pd.Series:
-    """What the first side gets right of a class minus the best classifier of single touches, of the same objects."""
+    """Accuracy of the first side minus that of the best classifier of single touches, by class of the same objects."""
     table = results.measured("sensor_size", claim.sets[0], **ONE_TOUCH)
     table = table.pivot_table(index="group", columns="classifier", values="value")
     return whole_sequences(results, replace(claim, second=0.0)) - table[table.mean().idxmax()]

@@ -125,7 +125,7 @@ OF_FOUR = {("group", "four"): "the four least alike of six", ("group", "four_dra
 
 @statistic("unlike_more_accurate")
 def unlike_more_accurate(results: Results, claim: Claim) -> pd.Series:
-    """Minus the rank correlation over the methods of the first side, shares of like imprints, and the second's."""
+    """Minus the rank correlation over the methods of shares of like imprints (first side) and accuracies (second)."""
     rows = (results.measured(STAGE, claim.sets[0], **claim.where, **part) for part in (claim.first, claim.other))
     shares, accuracies = (part.pivot_table(index="set", columns="method", values="value") for part in rows)
     return -shares.corrwith(accuracies, axis=1, method="spearman")
