@@ -22,7 +22,7 @@ from haptic_glance.deep.modes import finetuned_except, frozen_modules
 from haptic_glance.deep.network import Network, build, count_parameters
 from haptic_glance.deep.pictures import as_images
 from haptic_glance.deep.repeatable import repeatable
-from haptic_glance.deep.training import Learning, train_model
+from haptic_glance.deep.training import CONVERGED, Learning, accuracy, predict_probabilities, train_model
 from haptic_glance.deep.weights import available_weights
 from stages.engine.statistics import interval_metrics
 
@@ -87,13 +87,18 @@ def process(
             train_sense(sense, kind, trial, len(classes), settings, random, folder / f"{kind}.pt")
             for kind, sense in zip(SENSES, senses, strict=True)
         ]
-        networks, seconds = [pair[0] for pair in trained], [pair[1] for pair in trained]
+        networks, seconds = [training.network for training in trained], [training.seconds for training in trained]
         hybrid = HybridNet(networks[0], networks[1], middle_of(trial.layers))
         alone = [sense_scores(hybrid, sense.images[sense.validation], kind) for kind, sense in enumerate(senses)]
         pairs = zip(alone, senses, strict=True)
         temperatures = [fit_temperature(scores, sense.labels[sense.validation]) for scores, sense in pairs]
         hybrid.temperature.copy_(torch.tensor(temperatures))
         rows = [*comparison_rows(hybrid, networks, senses, seconds, name, folder, classes)]
+        rows += [
+            row(SENSES[kind], metric, getattr(training, metric), kind)
+            for kind, training in enumerate(trained)
+            for metric in ("train_accuracy", "epochs")
+        ]
         rows += confusion_rows(folder / "hybrid" / "predictions" / f"{name}.npz", classes)
         if first:
             rows += fused_rows(hybrid, senses, settings, rng(seed, f"pairs {trial.split} {trial.repetition}"), seed)
@@ -110,6 +115,7 @@ def process(
         "weights": "imagenet",
         "pretrained": available_weights("mobilenet_v2", settings.source),
         "mode": trial.layers,
+        "passes": settings.hybrid_passes,
     }
     return [columns | {"split": trial.split, "repetition": trial.repetition} | row for row in rows]
 
@@ -146,6 +152,15 @@ def split_sense(items: Touches, trial: HybridTrial, settings: Params, random: np
     return SenseData(items.images, images, items.labels, items.objects, *ids)
 
 
+class Training(NamedTuple):
+    """A network trained on one sense, with its accuracy on the items that it learned and the number of its passes."""
+
+    network: Network
+    seconds: float
+    train_accuracy: float
+    epochs: int
+
+
 def train_sense(
     sense: SenseData,
     kind: str,
@@ -154,23 +169,27 @@ def train_sense(
     settings: Params,
     random: np.random.Generator,
     checkpoint: Path,
-) -> tuple[Network, float]:
-    """(network, seconds): a MobileNetV2 trained on one sense with the trial's layers frozen at ImageNet's weights.
+) -> Training:
+    """A MobileNetV2 trained on one sense with the trial's layers frozen at ImageNet's weights.
 
-    Raises Diverged where the loss is not finite.
+    Where settings.hybrid_passes is `converged`, the validation items end the training and choose its weights, as T5.3
+    trains networks. Raises Diverged where the loss is not finite.
     """
     first_weights, seed = (int(number) for number in random.integers(2**31, size=2))
-    device = choose_device(settings.device)
+    device, converged = choose_device(settings.device), settings.hybrid_passes == CONVERGED
+    learning = Learning(sense.validation if converged else None, settings.patience)
+    most = settings.most_epochs if converged else settings.epochs
     with Stopwatch() as watch:
         network = build("mobilenet_v2", classes, "imagenet", first_weights, settings.source).to(device)
         augment = augmentation(upright=kind == "vision")
         task = finetuned_except(network, sense.images.to(device), augment, tuple(frozen_modules(trial.layers, network)))
         model = train_model(
-            task, sense.labels, sense.train, settings.hybrid_rate, settings.epochs, settings.batch, settings.momentum,
-            seed=seed, checkpoint=checkpoint, learning=Learning(),
+            task, sense.labels, sense.train, settings.hybrid_rate, most, settings.batch, settings.momentum,
+            seed=seed, checkpoint=checkpoint, learning=learning,
         )  # fmt: skip
     assert isinstance(model, Network)
-    return model, watch.seconds
+    learned = accuracy(predict_probabilities(model, task.inputs, sense.train), sense.labels[sense.train])
+    return Training(model, watch.seconds, learned, len(learning.curve))
 
 
 def summary(rows: list[dict], settings: Params, seed: int) -> dict[str, dict]:

@@ -80,6 +80,7 @@ def check(settings: Params) -> None:
     if min(max(settings.splits.values()), settings.touches - 1, settings.cells, *settings.coarse_cells) < 1:
         raise ValueError("transfer: of one split and of cells there must be 1 or more, of touches 2")
     check_passes(settings.passes, "transfer.passes", (*PASSES, PRINTED_RATE))
+    check_passes([settings.hybrid_passes], "transfer.hybrid_passes")
     if min(settings.patience, settings.most_epochs) < 1:
         raise ValueError("transfer: patience and most_epochs must be 1 or more")
     if settings.size < SMALLEST:

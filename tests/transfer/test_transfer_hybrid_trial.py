@@ -22,7 +22,8 @@ NAME = "hybrid.18-139.objects.0"
 SETTINGS = {
     "size": 32, "cells": 32, "coarse_cells": [], "splits": {"random": 2, "objects": 1}, "train_share": 0.75,
     "validation_share": 0.25, "epochs": 1, "batch": 4, "momentum": 0.9, "device": "cpu", "source": "package",
-    "hybrid_rate": 0.003, "hybrid_middles": ["18:139", "18:147"], "hybrid_onnx": False,
+    "patience": 1, "most_epochs": 1, "hybrid_rate": 0.003, "hybrid_passes": "printed",
+    "hybrid_middles": ["18:139", "18:147"], "hybrid_onnx": False,
     "hybrid_severities": {"picture_noise": [0.1], "imprint_dead_cells": [0.1]}, "new_object_touches": [1, 2],
 }  # fmt: skip
 
@@ -64,6 +65,22 @@ def test_the_hybrid_answers_as_the_two_networks_it_was_made_of_in_less_room(run)
 def test_a_training_that_diverges_is_named_before_a_temperature_is_sought(run):
     with pytest.raises(ValueError, match="diverged: loss is not finite in pass 1: take a lower learning rate"):
         process(run[0], hybrid_rate=1e30)
+
+
+def test_a_run_says_how_many_passes_its_trainings_made_and_how_much_they_learned(run):
+    assert {row["passes"] for row in run[1]} == {"printed"} and values(run[1], metric="epochs") == [1, 1]
+    learned = values(run[1], metric="train_accuracy")
+    assert len(learned) == 2 and all(0 <= share <= 1 for share in learned)
+
+
+def test_validation_items_end_a_training_until_nothing_improves(run, tmp_path, monkeypatch):
+    """A rate that learns nothing: the first pass is the best one, and two more are waited for."""
+    monkeypatch.setattr(hybrid, "build", lambda name, classes, *_: build(name, classes, "random", 0))
+    changed = {"hybrid_passes": "converged", "hybrid_rate": 1e-9, "patience": 2, "most_epochs": 9}
+    settings, trial = SimpleNamespace(**SETTINGS | changed), hybrid.HybridTrial.parse(NAME)
+    random = np.random.default_rng(0)
+    sense = hybrid.split_sense(hybrid.read_senses(run[0], CLASSES, settings)[1], trial, settings, random)
+    assert hybrid.train_sense(sense, "touch", trial, 2, settings, random, tmp_path / "touch.pt").epochs == 3
 
 
 def test_every_condition_has_every_answer(run):

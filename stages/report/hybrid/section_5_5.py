@@ -12,7 +12,18 @@ from stages.report.claims import POINTS, Claim, Side, reading
 from stages.report.drawing import plt
 from stages.report.effects import difference, statistic
 from stages.report.items import Figure, Table
-from stages.report.networks import SEEN, SETS, SPLITS, accuracy, both, draw_matrices, everywhere, mean, measured, seen
+from stages.report.networks import (
+    PASSES,
+    SEEN,
+    SETS,
+    SPLITS,
+    accuracy,
+    both,
+    draw_matrices,
+    everywhere,
+    mean,
+    seen,
+)
 from stages.report.results import NotRun, Results, dataset_text
 from stages.report.tables import Ranking, grid, grouped, number, percent, with_interval, within
 from stages.report.validity import UNMEASURED
@@ -35,7 +46,7 @@ def section_5_5_table(results: Results) -> Table:
     """Accuracy by each sense and size, by set, by the layers that are shared, and by what is stored."""
     thesis = results.thesis("section_5_5_hybrid").set_index("quantity")["value"]
     lines, notes = [], []
-    for dataset in everywhere(results, data="hybrid"):
+    for dataset in everywhere(results, *PASSES, data="hybrid"):
         trials = results.measured("transfer", dataset, data="hybrid", perturbation=None)
         trials = trials.assign(network=trials["method"].replace(dict.fromkeys(SENSES, "apart")))
         middles = [rows for _, rows in trials.groupby("mode", sort=False)]
@@ -216,7 +227,7 @@ WHOLE = "none"  # the perturbation of senses that are as they should be
 
 def hybrid_senses(results: Results) -> Table:
     """Accuracy of each way to join the senses under the harshest of each damage, on items at random."""
-    rows = measured(results, data="hybrid", mode=MIDDLE, split="random", sense="both")
+    rows = results.measured("transfer", metric="accuracy", data="hybrid", mode=MIDDLE, split="random", sense="both")
     rows = rows[rows["severity"] == rows.groupby("perturbation")["severity"].transform("max")]
     frame = pd.DataFrame(
         {"damage": damage, "severity": severity, "method": method} | accuracy(part[part["method"] == method], "random")
@@ -263,7 +274,7 @@ def claim(
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second,
         where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
-        dataset=SETS, note=note if section == "ours" else "at 80 pixels, in print at 224", **more,
+        dataset=SETS, note=note if section == "ours" else "at 128 pixels, in print at 224", **more,
     )  # fmt: skip
 
 
