@@ -28,9 +28,10 @@ from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.engine.statistics import Split as Parts
+from stages.engine.statistics import stratified_split
 from stages.meshes.collect import read_classes
 from stages.salient_points.measure import read_points
-from stages.transfer.plan import by_touches, stratified_split
+from stages.transfer.plan import by_touches
 from stages.transfer.touches import Touches, choose_vertices, read_touches
 
 from . import COLUMNS, Params

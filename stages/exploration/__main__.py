@@ -32,7 +32,7 @@ from haptic_glance.know.trial import SPLITS, Trial, split_touches
 from stages.classification import Params as Classification
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
-from stages.engine.statistics import interval_metrics
+from stages.engine.statistics import interval_tree
 from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
@@ -148,15 +148,12 @@ def _row(stop_rule, level, metric, right, touches, belief, decided):
 
 def summary(rows: Rows, seed: int) -> dict[str, Any]:
     """{group: {method: {way: {accuracy, touches, belief: {mean, low, high}}}}} at the headline confidence."""
-    tree, values = {}, defaultdict(list)
+    values = defaultdict(list)
     for row in rows:
         if row["metric"] == "accuracy" and all(row.get(key) == setting for key, setting in HEADLINE.items()):
-            for key in ("value", "touches", "belief"):
-                values[row["group"], row["method"], row["way"], key].append(row[key])
-    for (name, method, way, key), numbers in values.items():
-        branch = tree.setdefault(name, {}).setdefault(method, {}).setdefault(way, {})
-        branch["accuracy" if key == "value" else key] = interval_metrics(numbers, seed)
-    return tree
+            for name, key in (("accuracy", "value"), ("touches", "touches"), ("belief", "belief")):
+                values[row["group"], row["method"], row["way"], name].append(row[key])
+    return interval_tree(values, seed)
 
 
 def check(settings: Params, sets: Mapping[str, list[str]]) -> None:
