@@ -73,7 +73,7 @@ NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, o
         "classifiers": "stages.sensor_size.protocol:CLASSIFIERS",
         "extents": "stages.sensor_size.protocol:EXTENTS",
     },
-    "simulated_to_real": {"simulations": "stages.simulated_to_real.trial:SIMULATIONS"},
+    "simulated_to_real": {"simulations": "stages.simulated_to_real.__main__:SIMULATIONS"},
     "stability": {
         "methods": "haptic_glance.look.points.methods:method_named",
         "perturbations": "haptic_glance.disturb.objects:PERTURBATIONS",
