@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 COLUMNS = {
-    "views": "set of viewpoints: a name of stages.attention_checks.checks.VIEWS",
+    "views": "set of viewpoints: a name of VIEWS in stages/attention_checks/__main__.py",
     "chosen": "the features that the glance has, of methods `_once` and `_nested`",
 }
 

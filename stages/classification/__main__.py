@@ -28,7 +28,7 @@ from haptic_glance.know.protocol import check_counts, evaluate_prepared, prepare
 from haptic_glance.know.split import Split
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
-from stages.engine.statistics import interval_metrics
+from stages.engine.statistics import interval_tree
 from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
@@ -145,11 +145,7 @@ def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> di
             values[row["group"], row["method"], row["classifier"], metric].append(row["value"])
         elif (row["method"], row["classifier"]) == closest:
             values["variants", row["group"], row["variant"], metric].append(row["value"])
-    tree = {}
-    for (first, second, third, metric), numbers in values.items():
-        branch = tree.setdefault(first, {}).setdefault(second, {}).setdefault(third, {})
-        branch[metric] = interval_metrics(numbers, seed)
-    return tree
+    return interval_tree(values, seed)
 
 
 def metric_name(row: Mapping[str, Any]) -> str:

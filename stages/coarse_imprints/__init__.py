@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 COLUMNS = {
-    "setting": "what differs from `plain`: a name of stages.coarse_imprints.trial.VARIANTS",
+    "setting": "what differs from `plain`: a name of VARIANTS in stages/coarse_imprints/__main__.py",
     "cells": "sensels a side of the array",
     "weights": "what the network starts from: imagenet or random",
     "size": "pixels a side that the network sees",

@@ -22,7 +22,7 @@ from haptic_glance.base.files import files_below, object_files, replace_folder, 
 
 from .code import stage_digest
 from .objects import ItemRows, KeptRows, Objects, archive, item_key, key_of
-from .parallel import Task, finished, parallel_map, progress
+from .parallel import Task, finished, parallel_map
 from .rows import SUFFIX, write_rows
 from .settings import Workspace
 
@@ -127,10 +127,6 @@ class StageRun:
     def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
         """[function(item) for item in items], side by side as params.yaml says, in the order of the items."""
         return parallel_map(function, items, f"{self.stage} {self.dataset}", **self.workspace.parallel)
-
-    def progress(self, items: Iterable[Item]) -> Iterable[Item]:
-        """The items, with a progress bar; silent when stderr is not a terminal."""
-        return progress(items, f"{self.stage} {self.dataset}")
 
     def _taken(self, task: Task, objects: Objects, rows: ItemRows) -> bool:
         """Whether an item's files and rows are kept; then they are taken from there."""

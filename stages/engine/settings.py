@@ -40,9 +40,9 @@ RANGES = {  # the last part of a setting's name: the least and the greatest of i
 }  # fmt: skip
 
 NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, or of a function that refuses others}
-    "attention_checks": {"views": "stages.attention_checks.checks:VIEWS"},
+    "attention_checks": {"views": "stages.attention_checks.__main__:VIEWS"},
     "classification": {"classifiers": "haptic_glance.know.classifiers:CLASSIFIERS"},
-    "coarse_imprints": {"variants": "stages.coarse_imprints.trial:VARIANTS"},
+    "coarse_imprints": {"variants": "stages.coarse_imprints.__main__:VARIANTS"},
     "conspicuity": {
         "background": "haptic_glance.look.channels.cropped_view:BACKGROUNDS",
         "channels": "haptic_glance.look.channels.channels:MAPS",
@@ -73,7 +73,7 @@ NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, o
         "classifiers": "stages.sensor_size.protocol:CLASSIFIERS",
         "extents": "stages.sensor_size.protocol:EXTENTS",
     },
-    "simulated_to_real": {"simulations": "stages.simulated_to_real.trial:SIMULATIONS"},
+    "simulated_to_real": {"simulations": "stages.simulated_to_real.__main__:SIMULATIONS"},
     "stability": {
         "methods": "haptic_glance.look.points.methods:method_named",
         "perturbations": "haptic_glance.disturb.objects:PERTURBATIONS",

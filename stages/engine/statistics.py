@@ -1,9 +1,9 @@
-"""Statistics: intervals, power, pooled differences of several data sets, breaking points, and splits of items.
+"""Statistics: intervals, power, pooled differences of several data sets, breaking points, and random splits of items.
 
 A breaking point is the severity of a disturbance at which half of a score's lead is lost. Pooling is by random effects.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
@@ -96,8 +96,8 @@ def p_value(values: ArrayLike, shared: float = 0.0) -> float:
     return float(1 - levels.mean())
 
 
-def discoveries(p_values: ArrayLike, rate: float = 0.05) -> np.ndarray:
-    """(k,) bool: which of the p-values (k,) hold with a false discovery rate; NaN never does.
+def discoveries(p_values: ArrayLike) -> np.ndarray:
+    """(k,) bool: which of the p-values (k,) hold with a false discovery rate of 5 %; NaN never does.
 
     Benjamini and Hochberg, Controlling the false discovery rate, 1995, by scipy.
     """
@@ -105,7 +105,7 @@ def discoveries(p_values: ArrayLike, rate: float = 0.05) -> np.ndarray:
     finite = np.isfinite(p_values)
     holds = np.zeros(len(p_values), dtype=bool)
     if finite.any():
-        holds[finite] = scipy.stats.false_discovery_control(p_values[finite]) <= rate
+        holds[finite] = scipy.stats.false_discovery_control(p_values[finite]) <= 0.05
     return holds
 
 
@@ -113,6 +113,17 @@ def interval_metrics(values: ArrayLike, seed: int = 0) -> dict[str, float]:
     """{mean, low, high} of `interval`, rounded for a metric file; what is not finite is left out."""
     ends = zip(("mean", "low", "high"), interval(values, seed=seed), strict=True)
     return {key: round(value, 6) for key, value in ends if np.isfinite(value)}
+
+
+def interval_tree(values: Mapping[tuple[str, ...], ArrayLike], seed: int = 0) -> dict[str, Any]:
+    """Nested dicts for a metric file: the `interval_metrics` of each list of values, below the parts of its key."""
+    tree: dict[str, Any] = {}
+    for (*names, last), numbers in values.items():
+        branch = tree
+        for name in names:
+            branch = branch.setdefault(name, {})
+        branch[last] = interval_metrics(numbers, seed)
+    return tree
 
 
 MOST = 10_000  # units; what needs more is hardly an effect
@@ -292,3 +303,25 @@ class Split(NamedTuple):
     def fit(self) -> np.ndarray:
         """The part of `train` that is not in `validation`."""
         return np.setdiff1d(self.train, self.validation)
+
+
+def stratified_split(labels: np.ndarray, share: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """(first, second): sorted ids of two disjoint parts that together hold all; first holds `share` of each label.
+
+    labels: (k,) integers. Each label has at least one item in both parts. Raises ValueError for a share outside
+    (0, 1) or a label with fewer than two items.
+    """
+    labels = np.asarray(labels)
+    if labels.ndim != 1 or not np.issubdtype(labels.dtype, np.integer):
+        raise ValueError(f"labels must be integers of shape (k,), got {labels.dtype} {labels.shape}")
+    if not 0 < share < 1:
+        raise ValueError(f"share must lie between 0 and 1, got {share}")
+    first = []
+    for label in np.unique(labels):
+        ids = np.flatnonzero(labels == label)
+        if len(ids) < 2:
+            raise ValueError(f"class {label} has one touch alone: it cannot be split")
+        count = min(max(round(share * len(ids)), 1), len(ids) - 1)
+        first.append(rng.permutation(ids)[:count])
+    first = np.sort(np.concatenate(first))
+    return first, np.setdiff1d(np.arange(len(labels)), first)

@@ -18,7 +18,7 @@ import torch
 from haptic_glance.base.files import read_arrays
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
-from stages.engine.statistics import interval_metrics
+from stages.engine.statistics import interval_tree
 from stages.meshes.collect import read_classes
 
 from . import COLUMNS, Params
@@ -61,15 +61,12 @@ def layer_rows(trials: list[Trial], classes: int) -> Rows:
 
 def summary(rows: Rows, seed: int) -> dict[str, Any]:
     """{strategy: {split: {classifier: {mean, low, high}}}} of the accuracy with whole sequences, and chance."""
-    values, tree = defaultdict(list), {}
+    values, chance = defaultdict(list), {}
     for row in rows:
         if row["metric"] == "accuracy" and (row["frames"], row["cells"]) == (rows[0]["frames"], rows[0]["cells"]):
-            values[row["method"], row["split"], row["classifier"]].append(row["value"])
-            tree["chance"] = round(1 / row["classes"], 6)
-    for (method, split, classifier), accuracies in values.items():
-        branch = tree.setdefault(method, {}).setdefault(SPLITS[split], {})
-        branch[classifier] = interval_metrics(accuracies, seed)
-    return tree
+            values[row["method"], SPLITS[row["split"]], row["classifier"]].append(row["value"])
+            chance = {"chance": round(1 / row["classes"], 6)}
+    return chance | interval_tree(values, seed)
 
 
 def run(workspace: Workspace) -> None:

@@ -20,6 +20,7 @@ from haptic_glance.know.split import Split
 from stages.contours.contours import read_sequences
 from stages.engine.run import Rows
 from stages.engine.statistics import Split as Parts
+from stages.engine.statistics import stratified_split
 
 from . import Params
 from .classifiers import CONVENTIONAL, Reduced, choose_dimensions
@@ -51,12 +52,8 @@ def split_by_objects(
 
 
 def _draw_share(labels, ids, share, generator):
-    """Sorted indices: a share of every class, at least one of each class that has two."""
-    labels, draws = np.asarray(labels), []
-    for label in np.unique(labels[ids]):
-        members = generator.permutation(ids[labels[ids] == label])
-        draws.append(members[: min(max(round(share * len(members)), 1), len(members) - 1)])
-    return np.sort(np.concatenate(draws))
+    """Sorted indices: a share of every class."""
+    return ids[stratified_split(labels[ids], share, generator)[0]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 COLUMNS = {
     "training": "what was trained on: simulated, real or both",
-    "simulation": "a name of stages.simulated_to_real.trial.SIMULATIONS",
+    "simulation": "a name of SIMULATIONS in stages/simulated_to_real/__main__.py",
     "aligned": "whether simulated and real features were each scaled by their own mean and deviation",
     "touches": "real touches of each class trained on",
     "repetition": "number of the split",

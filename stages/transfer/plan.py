@@ -17,7 +17,7 @@ from haptic_glance.deep.modes import MODES, frozen_modules, is_range, parse_rang
 from haptic_glance.deep.network import SMALLEST, UNNORMALISED, build
 from haptic_glance.deep.training import PASSES, PRINTED, check_passes
 from haptic_glance.deep.weights import available_weights, imagenet_state
-from stages.engine.statistics import Split, interval_metrics
+from stages.engine.statistics import Split, interval_tree, stratified_split
 
 from . import Params
 from .touches import sensor_arrays
@@ -233,28 +233,6 @@ def by_objects(
     return Split(train, train[validation], test)
 
 
-def stratified_split(labels: np.ndarray, share: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """(first, second): sorted ids of two disjoint parts that together hold all; first holds `share` of each label.
-
-    labels: (k,) integers. Each label has at least one item in both parts. Raises ValueError for a share outside
-    (0, 1) or a label with fewer than two items.
-    """
-    labels = np.asarray(labels)
-    if labels.ndim != 1 or not np.issubdtype(labels.dtype, np.integer):
-        raise ValueError(f"labels must be integers of shape (k,), got {labels.dtype} {labels.shape}")
-    if not 0 < share < 1:
-        raise ValueError(f"share must lie between 0 and 1, got {share}")
-    first = []
-    for label in np.unique(labels):
-        ids = np.flatnonzero(labels == label)
-        if len(ids) < 2:
-            raise ValueError(f"class {label} has one touch alone: it cannot be split")
-        count = min(max(round(share * len(ids)), 1), len(ids) - 1)
-        first.append(rng.permutation(ids)[:count])
-    first = np.sort(np.concatenate(first))
-    return first, np.setdiff1d(np.arange(len(labels)), first)
-
-
 def middle_of(layers: str) -> tuple[int, int]:
     """(start, stop) of the parts of torchvision's `features` that a range of Matlab's layers such as `18:139` covers.
 
@@ -308,7 +286,4 @@ def summary(rows: list[dict], seed: int) -> dict[str, dict]:
             values[key].append(row["value"])
         if row["metric"] == "chance":
             tree.setdefault("chance", {})[row["split"]] = round(row["value"], 6)
-    for (data, split, network, kind), numbers in values.items():
-        branch = tree.setdefault(data, {}).setdefault(split, {}).setdefault(network, {})
-        branch[kind] = interval_metrics(numbers, seed)
-    return tree
+    return tree | interval_tree(values, seed)

@@ -17,9 +17,9 @@ from . import Params
 
 @dataclass(frozen=True, eq=False)
 class Touches:
-    """Imprints of classes of objects: images (k, r, c) u1, labels (k,) i8 into classes, vertices (k,) i8.
+    """Imprints of classes of objects: images (k, r, c) u1, of coarse_imprints f4; labels (k,) i8 into classes.
 
-    ranks (k,) i8: the index in its class of each touch's object.
+    vertices (k,) i8; ranks (k,) i8: the index in its class of each touch's object.
     """
 
     images: np.ndarray

@@ -25,11 +25,11 @@ from haptic_glance.deep.training import (
     train_model,
 )
 from haptic_glance.disturb.imprint import FEW_TOUCHES, PERTURBATIONS, disturb
-from stages.engine.statistics import Split
+from stages.engine.statistics import Split, stratified_split
 
 from . import Params
 from .export import network_parts, weight_changes
-from .plan import PRINTED_RATE, Trial, by_objects, by_touches, main_data, printed_rate, stratified_split
+from .plan import PRINTED_RATE, Trial, by_objects, by_touches, main_data, printed_rate
 from .touches import Touches, read_touches
 
 

@@ -19,11 +19,11 @@ from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes import Params as MeshesParams
 
 from . import COLUMNS, Params
+from .gain import shape_rows
 from .ground_truth import Files, digest, ground_truth_amounts, ground_truth_files
 from .training import (
     collect_training_data,
     read_training_data,
-    shape_rows,
     train_all,
     train_object,
     weight_rows,

@@ -23,14 +23,12 @@ from haptic_glance.look.agreement import gaze_peaks
 from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.glance import samples_of_mesh, standardised
 from haptic_glance.look.weights.attention import view_distances, view_similarities
-from haptic_glance.look.weights.convexity import convexity
 from haptic_glance.look.weights.svm import (
     MAX_ROWS,
     balanced_rows,
     checked_rows,
     fit_rows,
     fit_svm,
-    information_gains,
     pixel_samples,
 )
 from haptic_glance.look.weights.weights import ALL, GLANCES, METHODS, learned_weight_rows, weights, write_models
@@ -38,6 +36,7 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.measure import read_maps
 from stages.engine.run import Rows
 
+from .gain import AREAS, gain_rows
 from .ground_truth import gts_map, spread_on_surface, visible_points
 
 SPREAD = 0.025  # of the diagonal: deviation of the Gaussian that spreads gaze and marks over the surface
@@ -135,8 +134,6 @@ def _view(name, mesh, viewpoint, maps, mask, points, seed):
     return tables, pixel_samples(maps, gts, seed, name), pixel_samples(maps, gts, seed, name, mask, share=1)
 
 
-GAIN = "information_gain"
-AREAS = {"image": "image_", "object": ""}  # area that the pixels were drawn from -> prefix of their arrays
 PIXELS = {"object": "", "picture": "image_"}  # what an object's own SVMs are trained on -> prefix of their arrays
 MIN_ROWS = 40  # per model, so that each of ten folds has two of either class
 
@@ -167,39 +164,6 @@ def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str
                 _row(name, area, "one_per_viewpoint", "pixels", cross_validated, features[part], labels[part], seed)
             )
     return [*gain_rows(name, record, seed), *filter(None, rows)]
-
-
-def gain_rows(name: str, record: dict[str, np.ndarray], seed: int) -> Rows:
-    """The information gain in bits of each channel about the pixels of an object, classes balanced (T3.2.3)."""
-    rows = []
-    for area, prefix in AREAS.items():
-        pixels, labels = record[f"{prefix}pixels"], record[f"{prefix}labels"]
-        if not 0 < labels.sum() < len(labels):
-            continue
-        drawn = balanced_rows(labels, rng(seed, "svm"), len(labels))
-        gains = dict(zip(record["channels"], information_gains(pixels[drawn], labels[drawn]), strict=True))
-        shared = {"item": name, "method": "svm", "area": area, "training": "one_per_object", "metric": GAIN}
-        rows += [shared | {"channel": str(channel), "value": gain} for channel, gain in gains.items()]
-    return rows
-
-
-def shape_rows(name: str, mesh: Mesh) -> Rows:
-    """Measures of shape by which the thesis explains the gains of channels: convexity and the extremes (T3.2.3).
-
-    `extremes` is the distance of the farthest vertex from the centre of mass of the surface over the mean distance,
-    `distances_deviation` the deviation of the distances over their mean.
-    """
-    areas, middles = mesh.face_areas, mesh.vertices[mesh.faces].mean(axis=1)
-    centre = np.average(middles, axis=0, weights=areas)
-    distances = np.linalg.norm(middles - centre, axis=1)
-    mean = np.average(distances, weights=areas)
-    corners = mesh.vertices[np.unique(mesh.faces[areas > 0])]
-    values = {
-        "convexity": convexity(mesh),
-        "extremes": np.linalg.norm(corners - centre, axis=1).max() / mean,
-        "distances_deviation": np.sqrt(np.average((distances - mean) ** 2, weights=areas)) / mean,
-    }
-    return [{"item": name, "metric": metric, "value": float(value)} for metric, value in values.items()]
 
 
 def train_all(folder: Path, training_data: dict[str, dict[str, np.ndarray]], seed: int) -> Rows:
@@ -240,17 +204,15 @@ def _row(name, area, training, validation, validate, features, labels, *rest):
 FOLDS = 10  # T3.2.3
 
 
-def cross_validated(
-    features: np.ndarray, labels: np.ndarray, seed: int, max_rows: int = MAX_ROWS
-) -> tuple[float, float]:
+def cross_validated(features: np.ndarray, labels: np.ndarray, seed: int) -> tuple[float, float]:
     """(mean, deviation) of the accuracy over ten random folds of rows, as in the thesis (T3.2.3).
 
-    Rows are balanced and cut to `max_rows` first; the information gain is learned in each training part. Raises
+    Rows are balanced and cut to MAX_ROWS first; the information gain is learned in each training part. Raises
     ValueError as fit_svm, and with fewer than two rows per class.
     """
-    features, labels = checked_rows(features, labels, max_rows)
+    features, labels = checked_rows(features, labels, MAX_ROWS)
     generator = rng(seed, "svm folds")
-    row_ids = balanced_rows(labels, generator, max_rows)
+    row_ids = balanced_rows(labels, generator, MAX_ROWS)
     fold = np.zeros(len(labels), dtype=np.int64)
     for value in (True, False):
         ids = generator.permutation(row_ids[labels[row_ids] == value])
@@ -258,16 +220,14 @@ def cross_validated(
     return _validated(features[row_ids], labels[row_ids], fold[row_ids])
 
 
-def grouped_validated(
-    features: np.ndarray, labels: np.ndarray, groups: np.ndarray, seed: int, max_rows: int = MAX_ROWS
-) -> tuple[float, float]:
+def grouped_validated(features: np.ndarray, labels: np.ndarray, groups: np.ndarray, seed: int) -> tuple[float, float]:
     """(mean, deviation) of the accuracy on groups that are left out of the training: views or objects.
 
-    groups (k,): the group of each row. Each group is balanced by itself, to at most an equal part of `max_rows`, so
+    groups (k,): the group of each row. Each group is balanced by itself, to at most an equal part of MAX_ROWS, so
     that guessing has an accuracy of 0.5 in each. Groups with a single class are left out. Up to ten groups are tested
     one by one, more in ten parts. Raises ValueError as fit_svm, and when fewer than two groups remain.
     """
-    features, labels = checked_rows(features, labels, max_rows)
+    features, labels = checked_rows(features, labels, MAX_ROWS)
     groups = np.asarray(groups)
     if groups.shape != labels.shape:
         raise ValueError(f"groups must have one group per row: shape {labels.shape}, got {groups.shape}")
@@ -276,7 +236,7 @@ def grouped_validated(
     members = [ids for ids in members if 0 < labels[ids].sum() < len(ids)]
     if len(members) < 2:
         raise ValueError(f"only {len(members)} groups hold both salient and other rows: at least 2 are needed")
-    share = max(max_rows // len(members), 2)
+    share = max(MAX_ROWS // len(members), 2)
     group_rows = [ids[balanced_rows(labels[ids], generator, share)] for ids in members]
     part = generator.permutation(len(members)) % FOLDS
     rows = np.concatenate(group_rows)

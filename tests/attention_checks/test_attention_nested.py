@@ -6,8 +6,8 @@ import pytest
 
 from haptic_glance.base.files import write_arrays
 from haptic_glance.look.weights import fit_fixations, fixation_density
-from stages.attention_checks import checks
-from stages.attention_checks.checks import Seen, choose
+from stages.attention_checks import __main__ as checks
+from stages.attention_checks.__main__ import Seen, choose
 
 
 def objects(count=8):

@@ -9,8 +9,7 @@ import trimesh
 from haptic_glance.base.files import read_arrays, write_arrays, write_mesh, write_table
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Skin
-from stages.coarse_imprints.__main__ import run
-from stages.coarse_imprints.trial import VARIANTS
+from stages.coarse_imprints.__main__ import VARIANTS, run
 from stages.compose import compose
 from stages.engine.rows import read_rows
 
@@ -63,7 +62,7 @@ def test_a_run_trains_each_variant_on_every_split_and_refuses_a_detector_without
     rows = read_rows(workspace.measurements / "coarse_imprints.csv.gz")
     assert rows["repetition"].tolist() == [0, 1] and set(rows["split"]) == {"random"} and set(rows["chance"]) == {0.5}
     assert rows["value"].between(0, 1).all() and set(rows["weights"]) == {"random"}
-    pressed = read_arrays(workspace.data / "coarse_imprints/ball1.npz")
-    assert {cells: images.shape for cells, images in pressed.items()} == {"16": (8, 16, 16)}
+    pressed = read_arrays(workspace.data / "coarse_imprints/imprints/ball1.npz")
+    assert {cells: images.shape for cells, images in pressed.items()} == {"16": (8, 16, 16), "vertices": (8,)}
     with pytest.raises(ValueError, match="detector=glance is not one of thesis_ssim"):
         run(make_workspace({"coarse_imprints": SETTINGS | {"detector": "glance"}}))

@@ -18,9 +18,8 @@ from haptic_glance.base.files import write_arrays, write_mesh, write_text
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.parallel import Task, finished, parallel_map
 from stages.engine.rows import read_rows
-from stages.engine.settings import Workspace, check_section
-from stages.lod import Params
-from stages.lod.data_set import simplify_all
+from stages.engine.settings import Workspace
+from stages.lod import __main__ as lod
 
 pytest.importorskip("distributed", reason="the cluster extra is not installed")
 from stages.engine import cluster  # needs that extra
@@ -48,13 +47,14 @@ sys.addaudithook(look)
 """
 LOD = {"methods": ["qem", "glance"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
        "viewpoints": "four", "size": [48, 64], "shrink": True}  # fmt: skip
+MESHES = {"source": "household", "folder": "", "up": "z", "unit": "m", "objects": [], "classes": {}, "strict": False}
 SHAPES = {"ball": trimesh.creation.icosphere(2), "brick": trimesh.creation.box([1, 1, 0.5]).subdivide().subdivide()}
 
 
 def run(root, backend):
     """Runs the stage lod on two objects below `root`; returns ({file: bytes}, its rows without seconds)."""
     values = {"seed": 0, "profile": "test", "parallel": {"backend": backend, "workers": -1}, "sets": ["toys"]}
-    values |= {"graph": {"lod": ["toys"]}, "toys": {"lod": LOD}}
+    values |= {"graph": {"lod": ["toys"]}, "toys": {"lod": LOD, "meshes": MESHES}}
     write_text(root / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
     workspace = Workspace(root, "toys")
     for name, shape in SHAPES.items():
@@ -64,7 +64,7 @@ def run(root, backend):
         arrays = {"points": np.arange(4), "strong": np.int64(4), "saliency": saliency}
         write_arrays(workspace.data / f"salient_points/{name}.npz", **{f"glance.{key}": x for key, x in arrays.items()})
     write_text(workspace.data / "weights/weights.csv", "none")
-    simplify_all(workspace, check_section(Params, LOD), "household")
+    lod.run(workspace)
     folder = workspace.data / "lod"
     files = {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     return files, read_rows(workspace.measurements / "lod.csv.gz").drop(columns="seconds").to_csv()

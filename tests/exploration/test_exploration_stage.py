@@ -6,7 +6,6 @@ import pytest
 from stages.engine.rows import read_rows
 from stages.exploration import Params
 from stages.exploration import __main__ as stage
-from stages.exploration.one_sampling import EXPERIMENTS
 from stages.imprints.imprints import Imprints, write_imprints
 
 SETTINGS = {"sets": ["pair"], "methods": ["glance"], "confidences": [0.8], "most": 3, "repetitions": 2}
@@ -36,7 +35,7 @@ def run(tmp_path, make_workspace):
 @pytest.mark.slow
 def test_a_run_writes_every_experiment_and_tells_objects_apart_that_have_nothing_in_common(run):
     rows = run()
-    assert set(zip(rows["split"], rows["likelihood"], strict=True)) == set(EXPERIMENTS)
+    assert set(zip(rows["split"], rows["likelihood"], strict=True)) == set(stage.EXPERIMENTS)
     assert set(rows["stop"]) == {"fixed", "confidence"} and set(rows["repetition"]) == {0, 1}
     fixed = rows[rows["stop"] == "fixed"]
     assert set(fixed["level"]) == {1, 2, 3} and (fixed["touches"] == fixed["level"]).all()

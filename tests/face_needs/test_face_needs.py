@@ -9,8 +9,7 @@ from haptic_glance.lod.scene import build_lod_chain
 from haptic_glance.lod.scene.chain import finest
 from stages.engine.rows import read_rows
 from stages.face_needs import Params
-from stages.face_needs.__main__ import run, summary
-from stages.face_needs.need import accuracies, coarsest, differences, felt, seen
+from stages.face_needs.__main__ import accuracies, coarsest, differences, felt, run, seen, summary
 from stages.scene.compare import write_chain
 from tests.scene.conftest import bumpy
 

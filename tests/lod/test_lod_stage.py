@@ -17,9 +17,9 @@ from haptic_glance.look.points.options import Detection
 from haptic_glance.look.views import viewpoint_set
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
-from stages.lod import Params, __main__, data_set
+from stages.lod import Params
+from stages.lod import __main__ as stage
 from stages.lod.cell import ObjectInputs, measure_cells, measure_errors
-from stages.lod.data_set import summarise
 from stages.salient_points.measure import write_points
 from stages.weights.ground_truth import spread_on_surface
 
@@ -152,17 +152,17 @@ def workspace(make_workspace):
 @pytest.mark.parametrize(("source", "measured"), [("gaze", True), ("gaze_clouds", True), ("household", False)])
 def test_only_recorded_gaze_is_human_gaze(workspace, source, measured):
     workspace = workspace(source)
-    __main__.run(workspace)
+    stage.run(workspace)
     rows = read_rows(workspace.measurements / "lod.csv.gz")
     assert "salient_error" in set(rows["metric"]) and ("gaze_error" in set(rows["metric"])) == measured
     assert set(rows["item"]) == {"ball"} and rows["split"].isna().all()
-    assert data_set.human_gaze(workspace.data / "cube.npz") is None
+    assert stage.human_gaze(workspace.data / "cube.npz") is None
 
 
 @pytest.mark.slow
 def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
     workspace = workspace("household")
-    work = functools.partial(data_set.process, data=workspace.data, settings=FEW, seed=0, gaze=False)
+    work = functools.partial(stage.process, data=workspace.data, settings=FEW, seed=0, gaze=False)
     folder = workspace.root
     rows = [work("ball", folder / turn) for turn in ("one", "two")][0]
     curves = [(folder / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]
@@ -211,7 +211,7 @@ def test_summary_compares_only_cells_that_all_methods_reach():
             rows.append(row(method, target, "faces", value and 100, value is None))
             if value is not None:
                 rows += [row(method, target, "metro_mean", value), row(method, target, "ssim_error", value / 10)]
-    summary = summarise(rows)
+    summary = stage.summarise(rows)
     assert (summary["metro_mean_qem"], summary["metro_mean_itti"], summary["paired_cells"]) == (1.0, 2.0, 1)
     assert summary["metro_mean_svm"] is None  # no mesh at all: it leaves the others their pairs
     assert (summary["share_infeasible"], summary["infeasible_itti"], summary["meshes"]) == (0.25, 0.5, 3)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.scene.counts import cases, evaluate
+from stages.scene.counts import evaluate
 from stages.scene.counts.cases import power_law
 from stages.scene.counts.evaluate import evaluate_counts
 from stages.scene.counts.models import FOCAL, Curve, fit_counts, read_curves
@@ -106,7 +106,7 @@ def ball_curves():
 def evaluated():
     """The rows of a small evaluation, by (method, condition, metric)."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cases, "BUILT", 1)
+        patch.setattr(evaluate, "BUILT", 1)
         patch.setattr(evaluate, "RESAMPLES", 20)  # of the ends of intervals, which no test here reads
         frame = pd.DataFrame(evaluate_counts(*ball_curves()))
     return frame.set_index(["method", "condition", "metric"]).sort_index()

@@ -9,9 +9,8 @@ from PIL import Image
 from haptic_glance.base.files import read_arrays, write_mesh, write_table
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
-from stages.simulated_to_real import trial
-from stages.simulated_to_real.__main__ import run, shares
-from stages.simulated_to_real.trial import LARGE_PITCH, PITCH, SIMULATIONS, simulate
+from stages.simulated_to_real import __main__ as stage
+from stages.simulated_to_real.__main__ import LARGE_PITCH, PITCH, SIMULATIONS, run, shares, simulate
 
 SOLIDS = {"sphere": trimesh.creation.icosphere(2, radius=0.5), "cube": trimesh.creation.box((0.5, 0.5, 0.5))}
 MEMBERS = {"ball": "sphere", "box": "cube"}
@@ -69,7 +68,7 @@ def test_the_objects_of_a_class_share_its_imprints():
 
 def test_an_object_lies_on_the_array_at_its_true_size(monkeypatch):
     brick = mesh_of(trimesh.creation.box((0.8, 0.4, 0.05)))  # 38 x 19 mm, flat: lies on its large sides
-    monkeypatch.setattr(trial, "ASIDE", 0.0)
+    monkeypatch.setattr(stage, "ASIDE", 0.0)
     touches = simulate("resting", brick, 48, CELLS, 0.038, np.random.default_rng(0))
     assert touches.shape == (48, *CELLS)
     cells = 38 * 19 / PITCH**2

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from haptic_glance.base.files import read_arrays, write_mesh, write_table
+from haptic_glance.base.files import read_arrays, read_json, write_mesh, write_table
 from haptic_glance.base.rng import rng
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.disturb.perturbed import Conditions
@@ -139,6 +139,8 @@ def test_points_are_used_on_the_object_as_it_is_and_a_pair_has_no_severity(whole
     assert again["severity"].isna().tolist() == [False, False, False, True]
     alone, paired = (again.loc[again["perturbation"] == name, "value"].iloc[0] for name in ("noise", "noise+light"))
     assert paired == pytest.approx(alone, abs=0.3)  # no light for who does not look; one draw beside the mean of two
+    metrics = read_json(workspace.metrics / "stability.json")
+    assert metrics["repeatability"]["light.harris"] == 1 and metrics["simplified"] == {}
 
 
 @pytest.mark.slow

@@ -5,11 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from haptic_glance.base.files import read_arrays, read_json, sha256, write_mesh, write_table
-from stages.engine.rows import read_rows
-from stages.stability.__main__ import check, chosen, process, run
+from haptic_glance.base.files import read_arrays, sha256
+from stages.stability.__main__ import check, chosen, process
 from stages.stability.simplification import summarise
-from stages.weights.training import weight_table
 
 
 def value(rows, method, perturbation, severity, metric):
@@ -94,19 +92,3 @@ def test_objects_are_the_wanted_ones_or_else_the_first(settings):
     settings = dataclasses.replace(settings, objects=["cup", "hand"], most=2)
     assert chosen(settings, ["ant", "cup", "hand"]) == ["cup", "hand"]
     assert chosen(settings, ["ant", "bee", "cat"]) == ["ant", "bee"]
-
-
-@pytest.mark.slow
-def test_the_whole_stage_writes_rows_metrics_and_one_file_per_object(make_workspace, pear, settings):
-    short = dataclasses.replace(settings, methods=["harris"], perturbations=["vertex_order"], broken=["pear"])
-    workspace = make_workspace({"stability": dataclasses.asdict(short)})
-    write_mesh(workspace.data / "meshes/pear.npz", pear)
-    write_table(workspace.data / "weights/weights.csv", weight_table({}, "gaze"))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("stages.stability.__main__.simplification_rows", lambda *_: [])
-        run(workspace)
-    rows = read_rows(workspace.measurements / "stability.csv.gz")
-    assert set(rows["item"]) == {"pear"} and set(rows["perturbation"]) == {"none", "vertex_order"}
-    assert set(read_arrays(workspace.data / "stability/pear.npz"))
-    metrics = read_json(workspace.metrics / "stability.json")
-    assert metrics["repeatability"] == {"vertex_order.harris": 1.0} and metrics["simplified"] == {}

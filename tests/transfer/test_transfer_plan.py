@@ -6,8 +6,9 @@ import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
+from stages.engine.statistics import stratified_split
 from stages.transfer import plan as planning
-from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate, stratified_split
+from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate
 from stages.transfer.touches import choose_vertices
 from tests.shapes import flat_grid
 

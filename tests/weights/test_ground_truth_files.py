@@ -16,7 +16,7 @@ from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
 from stages.meshes.sources import FIXATION_MAPS, SOURCES, collection_files, match_files
 from stages.weights.gaze import fixation_files, fixations_on_vertices, gaze_on_vertices, match_rows, read_gaze
-from stages.weights.ground_truth import ground_truth_amounts, published_files, read_interest_points, spread_on_surface
+from stages.weights.ground_truth import ground_truth_amounts, published_files, read_interest_points
 
 ARCHIVE = Path(__file__).parents[2] / "../shared/data/gaze.zip"
 BALL = trimesh.creation.icosphere(2)
@@ -130,8 +130,6 @@ def test_made_up_rows_are_left_out_and_rounded_ones_are_taken_in_by_tolerance():
         (lambda: read_gaze(b"x y z nx ny nz s l\n0 0 0 0 0 1 nan 0\n"), "the first in line 2: remove them, or write 0"),
         (lambda: gaze_on_vertices(MESH, MESH.vertices * 1000, np.ones(162)), "The rows are 1000 times as large as the"),
         (lambda: gaze_on_vertices(MESH, MESH.vertices, np.full(162, np.nan)), "positions must be finite, and sec"),
-        (lambda: spread_on_surface(MESH, np.full(162, np.nan), 0.1), "amounts must be finite and not negative"),
-        (lambda: spread_on_surface(MESH, np.ones(163), 0.1), r"amounts must have shape \(162,\), one per vertex, got"),
     ],
 )
 def test_wrong_arguments_are_named_with_what_is_right(call, words):

@@ -103,6 +103,8 @@ def test_classes_are_balanced_and_capped_by_the_seed():
         rows = balanced_rows(labels, rng(0, "x"), max_rows)
         assert labels[rows].sum() == count and len(np.unique(rows)) == 2 * count
     assert len(fit_svm(draw(1000), labels, seed=0, max_rows=40).support) <= 40
+    with pytest.raises(ValueError, match="max_rows must be at least 2"):
+        fit_svm(draw(1000), labels, seed=0, max_rows=1)
     features = draw(1000)
     first, other, again = (
         fit_svm(features, band(features), seed=seed, max_rows=100).predict(features) for seed in (3, 4, 3)
@@ -181,20 +183,19 @@ def test_far_points_are_the_corners_and_then_the_middle():
 
 
 @pytest.mark.parametrize(
-    ("features", "labels", "max_rows", "message"),
+    ("features", "labels", "message"),
     [
-        (draw(), np.zeros(400, dtype=bool), 100, "0 of 400 rows are salient"),
-        (draw(), np.ones(400, dtype=bool), 100, "400 of 400 rows are salient"),
-        (draw(), np.ones(3, dtype=bool), 100, "400 booleans"),
-        (draw(), np.ones(400), 100, "400 booleans"),
-        (draw() * np.nan, np.ones(400, dtype=bool), 100, "finite"),
-        (draw(), np.ones(400, dtype=bool), 1, "max_rows"),
+        (draw(), np.zeros(400, dtype=bool), "0 of 400 rows are salient"),
+        (draw(), np.ones(400, dtype=bool), "400 of 400 rows are salient"),
+        (draw(), np.ones(3, dtype=bool), "400 booleans"),
+        (draw(), np.ones(400), "400 booleans"),
+        (draw() * np.nan, np.ones(400, dtype=bool), "finite"),
     ],
 )
-def test_bad_rows_are_named(features, labels, max_rows, message):
+def test_bad_rows_are_named(features, labels, message):
     for train in (fit_svm, cross_validated):
         with pytest.raises(ValueError, match=message):
-            train(features, labels, seed=0, max_rows=max_rows)
+            train(features, labels, seed=0)
 
 
 @pytest.mark.parametrize(

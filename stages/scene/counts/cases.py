@@ -1,24 +1,16 @@
-"""Test cases for models of the fewest faces, the count from one simplified mesh, and tests of predicted counts.
+"""Test cases for models of the fewest faces, and the common power law by which one mesh is extrapolated.
 
-A case is a measured point of a curve, whose right count is therefore known. One mesh is extrapolated by a common power
-law. A predicted count is tested by a mesh of as many faces.
+A case is a measured point of a curve, whose right count is therefore known.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from haptic_glance.base.rng import rng
-from haptic_glance.base.timing import Stopwatch
-from haptic_glance.lod import metro, simplify
 
 from .models import DISTANCES, FLOOR, FOCAL, Curve
-
-if TYPE_CHECKING:
-    from .evaluate import Fold  # which imports this module
 
 HALF = 0.5  # share of the object's own faces: from there on a mesh is fine
 
@@ -121,33 +113,3 @@ def power_law(curves: Sequence[Curve]) -> float:
     if variance == 0:
         raise ValueError(f"a power law needs a curve with two points above an error of {FLOOR:g}")
     return float(-covariance / variance)
-
-
-BUILT = 4  # objects per fold, one case each: all folds and models together take half a minute on one core
-
-
-def build_some(fold: "Fold", cases: Sequence[Case], counts: np.ndarray) -> pd.DataFrame:
-    """Frame like that of `score_counts`, but measured on meshes, for one case of each of BUILT objects, with `seconds`.
-
-    The same cases for equal folds, whatever the model. Neighbourhoods shrink where the count needs it, as in the lod
-    stage. A case without a sound mesh has no row.
-    """
-    names = np.array([case.curve.object for case in cases])
-    draw = rng(fold.seed, "cases to build")
-    places = [draw.choice(np.flatnonzero(names == name)) for name in draw.permutation(np.unique(names))[:BUILT]]
-    rows = [_built(cases[place], int(counts[place]), fold) for place in places]
-    columns = ["object", "ratio", "error", "within", "seconds"]
-    return pd.DataFrame([row for row in rows if row is not None], columns=columns).astype({"within": bool})
-
-
-def _built(case, count, fold):
-    name, method = case.curve.object, case.curve.method
-    mesh, keep = fold.meshes[name], fold.points[name][method]
-    with Stopwatch() as watch:
-        try:
-            simplified = simplify(mesh, count, keep, shrink=True)
-        except ValueError:
-            return None
-        error = metro(mesh, simplified, seed=fold.seed)["mean"] / case.error
-    ratio = len(simplified.faces) / case.needed
-    return {"object": name, "ratio": ratio, "error": error, "within": error <= 1, "seconds": watch.seconds}
