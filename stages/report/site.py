@@ -19,14 +19,13 @@ from haptic_glance.gallery.page import as_script
 from .cells import CLAIMS, PREFIXES, filled
 from .claims_page import claims_main
 from .drawing import CYCLE, INK, SETTINGS, plt
-from .items import Figure, Table
+from .items import Figure, Table, findings
 from .marks import vector
 from .page import box, folded, image, lacks_cells, part, prose
 from .results import dataset_text
 from .tables import with_interval
 from .topics import name_of
 from .verdict import DEPENDS, UNTESTABLE, counts, of_thesis
-from .words import findings
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
 

@@ -29,7 +29,7 @@ def test_equal_inputs_have_equal_keys(small, root):
         ("page/site.css", {"scene", "touch"}),
         ("attention/prose.md", set()),
         ("touch/findings.md", set()),
-        ("hybrid/section_5_5.py", set()),
+        ("hybrid/__init__.py", set()),
     ],
 )
 def test_code_and_prose_change_the_keys_of_the_topics_that_read_them(file, changed, small, root, monkeypatch):

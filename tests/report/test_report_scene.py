@@ -5,7 +5,8 @@ import pandas as pd
 import pytest
 
 from stages.report import scene as topic
-from stages.report.scene.random import CLAIMS, planning
+from stages.report.scene import CLAIMS
+from stages.report.scene.scene import planning
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 

@@ -7,7 +7,7 @@ import pytest
 
 from stages.engine.settings import check_section, conf_folder, load_params
 from stages.report.recorded.claims import RECORDED_CLASSES, shared_classes
-from stages.report.scene.random import COMMON
+from stages.report.scene.scene import COMMON
 from stages.scene import Params, online
 
 

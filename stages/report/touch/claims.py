@@ -33,7 +33,7 @@ from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import SETS_4_2, SUMS_4_2, Results
 from stages.report.tables import means
 
-from .rows import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
+from .tables import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
 
 RIGHT: dict[str, Any] = {"metric": "accuracy", "split": Split.RANDOM}
 EVERY, KNN = {"group": "six"} | RIGHT, {"classifier": "knn"} | RIGHT  # EVERY: the mean of all classifiers
