@@ -3,7 +3,7 @@
 `build` is the table of T figures 3.35 and 3.36, `chart` sets agreement against seconds. T figure 3.28 shows the number
 of classes of objects by shape, T figure 3.31 the correlation between the tasks' maps. The distance is between centres
 of fixation. The thesis compares distances by a box plot over all views (T figure 3.36), so the claims compare
-quantiles: `median_below` and `upper_quartile_below`.
+quantiles by `below`.
 """
 
 from collections.abc import Callable, Collection, Iterator
@@ -381,13 +381,5 @@ def below(results: Results, claim: Claim, share: float) -> pd.Series:
     return (shares["first"] - shares["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
 
 
-@statistic(MEDIAN)
-def median_below(results: Results, claim: Claim) -> pd.Series:
-    """The share of views below the median of both."""
-    return below(results, claim, 0.5)
-
-
-@statistic(UPPER_QUARTILE)
-def upper_quartile_below(results: Results, claim: Claim) -> pd.Series:
-    """The share of views below the 75th percentile of both."""
-    return below(results, claim, 0.75)
+statistic(MEDIAN)(partial(below, share=0.5))
+statistic(UPPER_QUARTILE)(partial(below, share=0.75))
