@@ -25,12 +25,11 @@ from stages.engine.settings import workspace_of_arguments
 from . import Params
 from .claims_page import claims_shown
 from .items import Built
-from .own_page import write_own_page
-from .page import viewer_or_reason
+from .page import part, viewer_or_reason
 from .records import HEADLINES_FILE, PROVENANCE_FILE, write_headlines, write_records
 from .results import NotRun, Results
 from .reuse import VIEWER, built, keep, key_of, taken_again
-from .site import write_site
+from .site import write_own_page, write_site
 from .tables import as_text, markdown_table
 from .topics import CLAIMS, KINDS, TOPICS, build_all, files_of, name_of
 from .verdict import by_claim, counted, counts, open_by_cause, tabled
@@ -39,44 +38,6 @@ OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "clai
            PROVENANCE_FILE)  # fmt: skip
 CLAIMED = "claims"  # the kind of a part that is none of KINDS
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
-CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
-interval. The words:
-
-- *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other side.
-- *no difference*: the interval covers zero and nothing that would matter (3 points of accuracy, 3 % of an error,
-  0.03 PCC, 0.05 NSS, 0.01 AUC).
-- *mixed*: the data sets disagree. Each side of zero has a set whose own interval excludes it, or sets of both signs
-  differ by Cochran's Q (p below 0.05).
-- *depends on the reading*: another reasonable reading of the protocol decides the claim differently, or its data sets
-  disagree; or one reading supports an open claim, and another contradicts it. The column *readings* has the word and
-  the effect in each reading.
-- *not testable*: more than a fifth of the pairs is invalid. The column *invalid* counts the causes. Otherwise invalid
-  pairs are left out. A pair is invalid where a method found no point, kept less than one ring of a neighbourhood, gave
-  one answer for nearly all samples, was less accurate than guessing or, by the least distance to fixations, farther
-  than noise, left nothing out, started from random layers that the thesis has trained, was tuned by a training that
-  stopped while it still improved, or of which nobody measured whether it did; or where both sides are the same mesh,
-  unless the sentence is about when that happens.
-- *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
-
-The set that follows the printed protocol judges a sentence of the thesis, or the first set where none follows it to the
-end (T3.2.4, T3.3). The column *carries over* has the word that
-all sets together come to. A later claim in the same words, or with another set, split, metric or model, is secondary:
-it asks whether the sentence carries over, and does not count as a sentence. So are objects that were never touched,
-where the thesis draws touches at random. Where the thesis names no set (T6.3), all sets judge. Section *ours*:
-sentences of this project about its own model, judged by all their sets.
-
-An interval is a bootstrap over the outermost units: classes with their objects, objects with their draws. Copies of a
-shape are one unit. An interval over objects carries to other objects of this kind. An interval over repetitions is a
-bootstrap over repeated splits of the same imprints, widened for the imprints that the splits share (Nadeau and Bengio
-2003): it is about these few objects alone. Random sets that share objects are widened alike. Several sets are pooled by
-random effects; three sets or more that differ have the interval of Hartung and Knapp, which carries to other sets. A
-set of two units is left out beside others. *In each set* says that the interval of each set excludes zero on the same
-side while the pooled interval does not.
-
-The column *holds* says whether a decided verdict holds among all claims of its chapter, at a false discovery rate of
-5 % (Benjamini and Hochberg 1995), by p, which follows from the interval. The column *open* says why an open claim is
-open, and how many units would decide it at its present effect and spread, by Student's interval; where sets differ,
-the units are sets. `python -m stages.claim KEY`, with a key of the last column, judges a claim again."""
 
 
 def main() -> None:
@@ -167,9 +128,9 @@ def side_by_side(
     if where.get("backend") == "dask":  # the files that a topic reads are here alone
         where["backend"] = "loky"
     work = [partial(built, jobs[job], results) for job in anew]
-    for job, (part, file_digests) in zip(anew, parallel_map(call, work, "report", **where), strict=True):
-        parts[job] = part
-        keep("-".join(job), keys[job], part, file_digests, results)
+    for job, (content, file_digests) in zip(anew, parallel_map(call, work, "report", **where), strict=True):
+        parts[job] = content
+        keep("-".join(job), keys[job], content, file_digests, results)
     if len(anew) < len(jobs):
         print(f"report: {len(jobs) - len(anew)} of {len(jobs)} parts are those of the last run")
     items = {kind: Built() for kind in KINDS}
@@ -194,7 +155,13 @@ def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> 
     write_table(out / "claims.csv", claims)
     write_table(out / "claims/differences.csv.gz", differences)
     table = markdown_table(as_text(claims_shown(claims)))
-    parts = ("# Claims of the thesis, tested", CLAIMS_NOTE, counted(claims), open_by_cause(claims), table)
+    parts = (
+        "# Claims of the thesis, tested",
+        part("claims_note.md").strip(),
+        counted(claims),
+        open_by_cause(claims),
+        table,
+    )
     write_text(out / "claims.md", "\n\n".join(parts))
 
 

@@ -27,7 +27,7 @@ from .results import Results
 
 FOLDER = "report"  # below build/
 HERE = Path(__file__).parent
-COMMON = ("items.py", "page.py", "records.py", "verdict.py", "words.py")  # run for each topic, with all they import
+COMMON = ("items.py", "page.py", "records.py", "verdict.py")  # run for each topic, with all they import
 BESIDE = ("topics.py", "reuse.py")  # run, too; what they import does not count: all topics
 VIEWER = (HERE / "page.py",)
 

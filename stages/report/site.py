@@ -1,7 +1,13 @@
-"""The pages: a front page with findings and questions, and a page a topic below reports/site. All work offline."""
+"""The pages: a front page with findings and questions, and a page a topic below reports/site. All work offline.
+
+The front page of a run on a person's own folder is that of `haptic-glance gallery`, from the pipeline's data.
+"""
 
 import re
+import shlex
+import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -13,20 +19,28 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
-from haptic_glance.base.files import write_text
-from haptic_glance.gallery.page import as_script
+from haptic_glance.base.files import read_table, write_text
+from haptic_glance.cli.saliency import as_csv, points_of
+from haptic_glance.gallery.exhibit import Exhibit, Level
+from haptic_glance.gallery.page import as_script, build_page
+from haptic_glance.lod import vertex_errors
+from haptic_glance.lod.export import write_any
+from haptic_glance.lod.pictures import coloured, look
+from haptic_glance.look.points import Detection
+from haptic_glance.look.points.find import scores_of
+from haptic_glance.touch.places import UserMesh
+from stages.imprints.imprints import read_imprints
 
 from .cells import CLAIMS, PREFIXES, filled
 from .claims_page import claims_main
 from .drawing import CYCLE, INK, SETTINGS, plt
-from .items import Figure, Table
+from .items import Figure, Table, findings
 from .marks import vector
 from .page import box, folded, image, lacks_cells, part, prose
-from .results import dataset_text
+from .results import NotRun, Results, dataset_text, there
 from .tables import with_interval
 from .topics import name_of
 from .verdict import DEPENDS, UNTESTABLE, counts, of_thesis
-from .words import findings
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
 
@@ -293,3 +307,69 @@ def chart_html(chart: Figure) -> str:
 def anchor(item: Table | Figure) -> str:
     """The id of an item's section on the page of its topic."""
     return f"{item.paths[0].parent.name}-{item.name}"
+
+
+MODEL, COUNT = "glance", 6  # whose places and levels are shown, else those of the first method; and how many places
+UNITS = "units of the object's diameter"
+
+
+def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
+    """Writes OUT/index.html and a folder of files a mesh below OUT/site; pages: the names of the site's other pages."""
+    for path in filter(Path.is_dir, (out / "site").iterdir()):
+        shutil.rmtree(path)
+    exhibits, missing = [], dict(_refused(results))
+    for name in results.objects:
+        try:
+            exhibits.append(exhibit_of(results, name, out / "site" / name))
+        except NotRun as error:
+            missing[name] = str(error)
+    links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
+    section = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
+    folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
+    text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {shlex.quote(folder)}"], out, section)
+    write_text(out / "index.html", text)
+
+
+def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
+    """The findings of the pipeline on one object; its files are written into a folder. NotRun where it has no places.
+
+    Levels and imprints that were not made are named among the missing.
+    """
+    mesh, by_method = results.mesh(name), results.saliency(name)
+    model = MODEL if MODEL in by_method else by_method.those_of(list(by_method))[0]
+    saliency, vertices = by_method[model], results.points(name)[model][:COUNT]
+    points = points_of(mesh, Detection(vertices, None, saliency, scores_of(mesh, vertices, saliency)))
+    folder.mkdir(parents=True)
+    write_any(folder / "saliency.ply", coloured(mesh, saliency))
+    write_text(folder / "points.csv", as_csv(points, mesh))
+    levels, touches, images, missing = [], [], [], {}
+    try:
+        for target, level in results.lods(name, f"{model}-soft"):
+            path = folder / f"{name}_{target.replace('%', 'pct')}.ply"
+            write_any(path, level)
+            levels.append(Level(level, 100 * vertex_errors(level, mesh) / mesh.diagonal, path))
+    except NotRun as error:
+        missing["levels"] = str(error)
+    with suppress(NotRun, KeyError):
+        touched = read_imprints(results.folder("imprints") / f"{name}.npz")[model]
+        images_by_vertex = dict(zip(touched.vertices.tolist(), touched.images, strict=True))
+        ranks = [rank for rank, vertex in enumerate(vertices.tolist(), 1) if vertex in images_by_vertex]
+        touches, images = [{"index": rank} for rank in ranks], [images_by_vertex[vertices[rank - 1]] for rank in ranks]
+    return Exhibit(
+        name, folder, folder, UserMesh(mesh, name), _axis(results, name), saliency, points, levels, missing, touches,
+        np.array(images), look(mesh, saliency, vertices), UNITS,
+    )  # fmt: skip
+
+
+def _axis(results, name):
+    """Which axis of the object's file was taken to point up. The manifest does not tell whether the shape decided."""
+    manifest = results.folder("meshes") / "manifest.csv"
+    axes = read_table(there(manifest, "no manifest", "meshes")).set_index("object")["up"]
+    return f"{axes[name]} is up in the file"
+
+
+def _refused(results):
+    """(file, why) of each file that the stage meshes refused."""
+    with suppress(NotRun):
+        for row in results.table("meshes", "refused.csv").itertuples():
+            yield str(row.file), str(row.reason)

@@ -23,11 +23,10 @@ from . import (
     transfer,
 )
 from .drawing import SETTINGS, plt
-from .items import Built, Figure, Table
+from .items import Built, Figure, Table, add_words
 from .page import item_html
 from .records import record_of
 from .results import NotRun, Results
-from .words import add_words
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,

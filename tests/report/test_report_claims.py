@@ -422,16 +422,10 @@ def test_chance_calls_as_many_verdicts_as_is_said():
     assert (holding(frame) == "yes").sum() <= 2  # not one of them is an effect
 
 
-def test_scale_comes_before_margin(values):
-    results = values(item=list("ab"), value=[0.01, 0.02])
-    assert differences(results, claim(second=0, scale=100, margin=1)).tolist() == pytest.approx([2, 3])
-
-
 def test_a_set_without_rows_is_named_and_the_others_decide(sets_of_rows):
     results = sets_of_rows(one=spread_about(2.0), two=spread_about(2.0, 1))
     row = pooled(results, "absent", "one", "two")
     assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
-    assert pooled(results, "absent", "one")["by_set"] == ""
 
 
 def test_a_reading_in_sums_names_each_combination_anew_and_leaves_the_other_methods():

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from stages.report import hybrid, stability
-from stages.report.hybrid.section_5_5 import JOINED, NEW_OBJECTS
+from stages.report.hybrid import JOINED, NEW_OBJECTS
 from stages.report.topics import build_one
 from tests.report import frames
 

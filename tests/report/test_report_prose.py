@@ -11,10 +11,9 @@ from matplotlib.figure import Figure as Drawing
 from haptic_glance.base.files import read_json, write_table
 from stages.report import topics
 from stages.report.cells import CLAIMS, PLACE, filled
-from stages.report.items import Figure, Table
+from stages.report.items import Figure, Table, add_words, findings
 from stages.report.records import write_headlines
 from stages.report.site import topic_main
-from stages.report.words import add_words, findings
 
 REPORTS = Path(__file__).parents[2] / "reports"
 LONGEST = 200  # letters of a table's sentence

@@ -1,14 +1,14 @@
 """Real touches in the report: the readings of table 4.4, grasps counted one by one, and the claims."""
 
 from functools import partial
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from stages.report import recorded as topic
-from stages.report.recorded.claims import SERIES
+from stages.report.recorded.claims import RECORDED_CLASSES, SERIES, shared_classes
 from stages.report.recorded.claims import TOUCHES as CLAIMS
 from stages.report.recorded.tables import CLASSES
 from stages.report.topics import build_one
@@ -135,3 +135,9 @@ def test_claims_on_events_turn_with_the_rows(every, measure):
     worse = measure("recorded", event_rows(dict.fromkeys(EVENTS, 0.5)))
     words = verdicts(events, worse, "events_discriminant_over_network_objects")["verdict"]
     assert words.tolist() == ["contradicted"]
+
+
+def test_drawn_sets_of_classes_are_as_much_alike_as_their_number_says():
+    drawn = [set(np.random.default_rng(k).permutation(RECORDED_CLASSES)[:6].tolist()) for k in range(200)]
+    common = np.mean([len(first & second) / 6 for first, second in combinations(drawn, 2)])
+    assert shared_classes("six_drawn") == pytest.approx(common / (1 - common), rel=0.02)

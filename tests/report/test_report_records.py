@@ -15,12 +15,11 @@ from haptic_glance.base.timing import WALL, clock
 from stages.engine.rows import RECHECKED
 from stages.report import records
 from stages.report.drawing import plt
-from stages.report.items import Built, Figure, Table
+from stages.report.items import Built, Figure, Table, as_printed
 from stages.report.page import item_html
 from stages.report.records import DIGITS, FILE, PROVENANCE_FILE, record_of, write_records
 from stages.report.results import NotRun
 from stages.report.topics import KINDS
-from stages.report.words import as_printed
 
 ROOT = Path(__file__).parents[2]
 ROWS = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")

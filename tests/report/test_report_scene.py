@@ -1,13 +1,18 @@
 """The tables of scenes, of scenes drawn at random, and of the faces that an object needs by task."""
 
+from itertools import combinations
+
 import numpy as np
 import pandas as pd
 import pytest
 
+from stages.engine.settings import check_section, conf_folder, load_params
 from stages.report import scene as topic
-from stages.report.scene.random import CLAIMS, planning
+from stages.report.scene import CLAIMS
+from stages.report.scene.scene import COMMON, planning
 from stages.report.topics import build_one
 from stages.report.verdict import judge
+from stages.scene import Params, online
 
 VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000, "online": 1040}
 
@@ -147,3 +152,14 @@ def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
     assert build_one(topic, "tables", "faces_by_task", needs).frame["median"].tolist() == [104, 204, 1004, 3004, 304]
     judged = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
     assert judged["verdict"].tolist() == ["supported", "supported"] and (judged["pairs"] == 9).all()
+
+
+def test_random_scenes_share_objects_as_is_said():
+    params = load_params(conf_folder() / "data/household_scenes.yaml")
+    names = params["meshes"]["objects"]
+    shared, random = (load_params(conf_folder() / path)["scene"] for path in ("config.yaml", "scene/random.yaml"))
+    scene = check_section(Params, shared | random)
+    boxes, sizes = {name: (-np.ones(3), np.ones(3)) for name in names}, dict.fromkeys(names, 0.2)
+    scenes = [{item.name for item in online.draw_scene(scene, k, boxes, sizes, 0).objects} for k in range(30)]
+    shares = [len(first & second) / np.sqrt(len(first) * len(second)) for first, second in combinations(scenes, 2)]
+    assert np.mean(shares) == pytest.approx(COMMON, abs=5e-4)

@@ -6,7 +6,6 @@ import pytest
 
 from stages.engine.statistics import interval
 from stages.report import sensor
-from stages.report.sensor import arrays
 from stages.report.topics import build_one
 from tests.report.frames import verdicts
 
@@ -42,7 +41,7 @@ def test_a_cost_has_the_interval_of_its_objects(measure):
 
 def test_claims_know_the_truth_of_the_rows(measure):
     results = measure("sensor_size", pd.concat([pressed(), pressed().assign(dataset="princeton_eight")]))
-    judged = verdicts(arrays.CLAIMS, results)
+    judged = verdicts(sensor.CLAIMS, results)
     words = judged["verdict"]
     better = ["more_cells_help_all", "more_cells_help_more", "larger_pitch_helps_16", "larger_pitch_helps_32",
               "more_cells_help", "knn_best_sensor", "known_objects_easier"]  # fmt: skip

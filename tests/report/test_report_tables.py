@@ -26,7 +26,7 @@ from stages.report.tables import (
     with_interval,
 )
 from stages.report.topics import build_all, build_one
-from stages.report.touch.rows import METHODS, SSIM
+from stages.report.touch.tables import METHODS, SSIM
 
 table_4_1 = partial(build_one, touch, "tables", "table_4_1")
 

@@ -14,7 +14,7 @@ from stages.report.results import SETS_4_2, NotRun
 from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, tables
-from stages.report.touch.rows import COMMON, METHODS, PRINTED, accuracies, shared_objects
+from stages.report.touch.tables import COMMON, METHODS, PRINTED, accuracies, shared_objects
 from tests.report.frames import verdicts
 
 GLANCE = {

@@ -14,7 +14,7 @@ from stages.report import recorded as recorded_topic
 from stages.report import transfer
 from stages.report.effects import differences
 from stages.report.topics import build_one
-from stages.report.transfer import figure_5_3
+from stages.report.transfer.figures import gains as gains_of
 from tests.report.frames import has_ink, only, verdicts
 
 FINE, COARSE = "imprints128", "imprints16"
@@ -77,7 +77,7 @@ words = partial(verdicts, transfer.CLAIMS)
 
 
 def test_passes_are_not_mixed_in_gains_and_claims(run):
-    gains = figure_5_3.gains(_transfer.everywhere(run, *_transfer.PASSES)["furniture"])
+    gains = gains_of(_transfer.everywhere(run, *_transfer.PASSES)["furniture"])
     gain = only(gains, split="random", data=FINE, passes="printed")
     assert gain["mean"] == pytest.approx(30, abs=1) and gain["low"] < gain["mean"] < gain["high"]
     assert only(gains, split="random", data=FINE, passes="converged")["mean"] == pytest.approx(25)
@@ -121,7 +121,7 @@ def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure)
     assert set(judged.loc[~changed, "verdict"]) == {"supported"}
     assert judged.loc["earlier_change_more", "effect"] == 1 and (judged.loc[~changed, "by_set"] == "").all()
     gain = judged.loc["tuned_over_frozen_objects"]
-    drawn = figure_5_3.gains(_transfer.everywhere(results)["princeton_six"])
+    drawn = gains_of(_transfer.everywhere(results)["princeton_six"])
     drawn = only(drawn, network="mobilenet_v2", split="objects", data=FINE)
     assert list(drawn[["mean", "low", "high"]]) == pytest.approx([gain["effect"], gain["low"], gain["high"]])
 

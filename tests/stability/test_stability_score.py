@@ -9,7 +9,7 @@ import pytest
 from stages.engine.statistics import breaking_interval
 from stages.report import stability
 from stages.report.results import NotRun
-from stages.report.stability.panels import cell
+from stages.report.stability.breaking import cell
 from stages.report.stability.people import compared, verdict
 from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores
 from stages.report.topics import build_one

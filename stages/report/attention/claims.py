@@ -16,7 +16,7 @@ from stages.bench import PER_OBJECT, has_seen
 from stages.engine.statistics import BROKEN, interval
 from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
 from stages.report.drawing import label
-from stages.report.items import Table
+from stages.report.items import Table, shared_notes
 from stages.report.pareto import attention_seconds
 from stages.report.results import (
     COLOURED,
@@ -30,7 +30,6 @@ from stages.report.results import (
     some,
 )
 from stages.report.tables import Ranking, interval_columns, number, records, signed, with_interval
-from stages.report.words import shared_notes
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from . import agreement, claims, maps, people
+from . import agreement, claims, maps
 
 TABLES = {"fixation": agreement.build}
 FIGURES = {
@@ -12,11 +12,11 @@ FIGURES = {
     "figure_3_30": maps.figure_3_30,
     "figure_3_30_gaze": partial(maps.on_gaze, maps.figure_3_30),
     "figure_3_31": agreement.figure_3_31,
-    "figure_3_32": people.figure_3_32,
+    "figure_3_32": agreement.figure_3_32,
     "figure_3_34": maps.figure_3_34,
     "figure_3_34_gaze": partial(maps.on_gaze, maps.figure_3_34),
-    "figure_3_35": people.figure_3_35,
-    "figure_3_36": people.figure_3_36,
+    "figure_3_35": agreement.figure_3_35,
+    "figure_3_36": agreement.figure_3_36,
 }
 CHARTS = {"fixation": agreement.chart}
 CLAIMS = claims.CLAIMS

@@ -16,7 +16,7 @@ from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
 from stages.report.results import GAZED
 
-from .people import MEDIAN, UPPER_QUARTILE
+from .agreement import MEDIAN, UPPER_QUARTILE
 from .rows import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, WHOLE, network_text, task_text, with_random_weights
 
 # The thesis's (T3.3.2), but that ResNet101's weights come with no package; then ours, with new heads alone.

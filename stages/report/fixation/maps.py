@@ -16,9 +16,8 @@ from stages.fixation.fusion import fuse
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.drawing import colour_bar, colour_map, label, name_panels, picture, square_grid, squared, vivid
-from stages.report.items import Figure
+from stages.report.items import Figure, Kept, add_words, last_drawn
 from stages.report.results import NotRun, Results, some
-from stages.report.words import Kept, add_words, last_drawn
 
 from .rows import LEE, NARROWED, OURS, RIVALS, TASKS, VIEWPOINTS, network_text, stored, task_text
 

@@ -15,11 +15,10 @@ from matplotlib.ticker import NullFormatter
 
 from stages.engine.statistics import interval
 from stages.report.drawing import GREY, INK, Spot, colours, label, place_names, plain_logarithm, plt
-from stages.report.items import Figure, Table
+from stages.report.items import Figure, Table, shared_notes
 from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
 from stages.report.tables import interval_columns, percent, with_interval
-from stages.report.words import shared_notes
 
 REFERENCE, OURS = "pymeshlab", "fast"
 CELL, TASK = ["mesh", "full", "target", "with_points"], ["backend", "with_points"]

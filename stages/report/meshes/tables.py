@@ -16,7 +16,7 @@ from haptic_glance.look.points.methods import METHODS, SUMMED
 from haptic_glance.look.weights.weights import GLANCE
 from stages.engine.statistics import interval
 from stages.report.drawing import WAYS, label
-from stages.report.items import Table
+from stages.report.items import Table, shared_notes
 from stages.report.results import (
     ON_GREY,
     ON_WHITE,
@@ -31,7 +31,6 @@ from stages.report.results import (
 )
 from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.report.validity import UNIT, as_plain
-from stages.report.words import shared_notes
 
 SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
 

@@ -44,7 +44,7 @@ RECORDED_CLASSES = 22  # of which sets are drawn
 
 
 def shared_classes(group: str) -> float:
-    """The test over training share of splits that are as much alike as drawn sets of classes (touch.rows)."""
+    """The test over training share of splits that are as much alike as drawn sets of classes (touch.tables)."""
     count = NUMBERS[group.partition("_")[0]]
     return count / (RECORDED_CLASSES - count)
 

@@ -9,7 +9,7 @@ from haptic_glance.know.split import Split
 from stages.report.claims import Claim, reading
 from stages.stability.uses import PLAIN as NOTHING_KEPT
 
-from . import costs, people, points, score, simplification, touch, transfer
+from . import breaking, costs, people, score, simplification, touch
 from .score import BENCHMARK, KINDS
 
 TABLES = {
@@ -17,21 +17,21 @@ TABLES = {
     "stability_breaking": score.breaking,
     "stability_pairs": people.pairs_table,
     "stability_uses": people.uses,
-    "stability": points.table,
+    "stability": breaking.points_table,
     "stability_people": people.people_table,
     "stability_simplification": simplification.table,
     "touch_stability": touch.table,
     "touch_denoised": touch.denoised,
-    "transfer_stability": transfer.table,
+    "transfer_stability": breaking.networks_table,
     "time_spent": costs.time_spent,
 }
 FIGURES = {
-    "stability": points.figure,
-    "stability_failures": points.failures,
+    "stability": breaking.points_figure,
+    "stability_failures": breaking.failures,
     "stability_simplification": simplification.figure,
     "touch_stability": touch.figure,
     "touch_stability_imprints": touch.build,
-    "transfer_stability": transfer.figure,
+    "transfer_stability": breaking.networks_figure,
     "kernels": costs.kernels,
 }
 CHARTS = {"stability": score.chart}

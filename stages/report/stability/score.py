@@ -22,7 +22,7 @@ from stages.report.tables import interval_columns, interval_text, number, percen
 from stages.stability.simplification import breaking_points
 from stages.stability.subject import UNPERTURBED
 
-from .panels import cell
+from .breaking import cell
 
 STAGE = "stability"
 BENCHMARK = "household_stability"

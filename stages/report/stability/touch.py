@@ -19,7 +19,7 @@ from stages.report.results import Results
 from stages.report.tables import grouped, interval_columns, records, signed
 from stages.touch_stability.trial import CLEAN
 
-from .panels import ACCURACY, Curves, broken, degradation
+from .breaking import ACCURACY, Curves, broken, degradation
 
 STAGE = "touch_stability"
 DENOISED = "household_denoised"  # the set whose touches are also denoised

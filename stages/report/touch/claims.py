@@ -33,7 +33,7 @@ from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import SETS_4_2, SUMS_4_2, Results
 from stages.report.tables import means
 
-from .rows import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
+from .tables import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
 
 RIGHT: dict[str, Any] = {"metric": "accuracy", "split": Split.RANDOM}
 EVERY, KNN = {"group": "six"} | RIGHT, {"classifier": "knn"} | RIGHT  # EVERY: the mean of all classifiers
@@ -235,6 +235,7 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
     ]  # fmt: skip
 
 
+printed = partial(Claim, section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS)
 CLAIMS = [
     by_points("equal_over_itti", "Touch guided by the thesis's attention is better than by the classical one."),
     by_points("itti_over_blind", "Touch guided by the classical model is better than blind touch."),
@@ -275,10 +276,10 @@ CLAIMS = [
     by_points("glance_over_ssim", "Touch guided by our glance is better than by the thesis's SSIM weights.", "_ours"),
     by_points("ssim_over_blind", "Touch guided by the thesis's SSIM weights is better than blind touch.", "_ours"),
     *(
-        Claim(key=f"dissimilar_{rival}", section="T4.2.4", stage=STAGE, phrases=PHRASES, within=("item",), **SETS,
-              sentence=f"The thesis's attention gives {words}.", first={"method": others}, second={"method": EQUAL},
-              where={"group": "six", "metric": "similar_share"} | FEW, unit="points of the share",
-              readings=(reading(SIXTY[0].name, where=PLAIN),))
+        printed(key=f"dissimilar_{rival}", sentence=f"The thesis's attention gives {words}.", within=("item",),
+                first={"method": others}, second={"method": EQUAL}, unit="points of the share",
+                where={"group": "six", "metric": "similar_share"} | FEW,
+                readings=(reading(SIXTY[0].name, where=PLAIN),))
         for rival, others, words in (
             ("itti", "itti", "fewer imprints that others have than the classical model"),
             ("random", BLIND, "fewer imprints that others have than blind touch"),
@@ -286,29 +287,26 @@ CLAIMS = [
              "the most dissimilar imprints of all methods"),
         )
     ),
-    Claim(key="dissimilar_accurate", section="T4.2.4", stage=STAGE, phrases=PHRASES | OF_RANKS, **SETS,
-          sentence="The more dissimilar the imprints of a method, the more accurate is the recognition.",
-          statistic="unlike_more_accurate", scale=1.0, unit="rank correlation",
-          where={"group": "six", "method": tuple(METHODS.values())} | FEW, first={"metric": "similar_share"},
-          second=KNN | SCALE, note="minus the rank correlation of both over the methods",
-          readings=(*(reading(scaled.name, second=scaled.changes["where"]) for scaled in SCALED),
-                    reading(SIXTY[0].name, where=PLAIN))),
-    Claim(key="locations_best", section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS, first={"method": EQUAL},
-          sentence="With the position of the touch, the thesis's attention is the most accurate.",
-          second={"method": highest_of("random", "itti", "heat_kernel", "mesh_saliency", "salient_points")},
-          where=SIX | TRAINED | {"variant": "locations"}),  # other scalings have no rows of the rivals
-    Claim(key="locations_knn_best", section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS,
-          sentence="With the position of the touch, kNN is the most accurate.", first={"classifier": "knn"},
-          second={"classifier": highest_of()}, where=EVERY | SCALE | {"variant": "locations", "method": EQUAL},
-          readings=SCALED),
-    Claim(key="alike_harder", section="T4.2.4", stage=STAGE, phrases=PHRASES | OF_FOUR, **SETS,
-          sentence="The similarity between objects degrades the performance.", first={"group": "four"},
-          second={"group": "four_drawn"}, where=KNN | SCALE | {"method": EQUAL} | FEW,
-          readings=(*SCALED, *SIXTY, reading("mean of all classifiers but the SVM", where={"classifier": ALIVE}))),
+    printed(key="dissimilar_accurate", phrases=PHRASES | OF_RANKS, statistic="unlike_more_accurate", scale=1.0,
+            sentence="The more dissimilar the imprints of a method, the more accurate is the recognition.",
+            where={"group": "six", "method": tuple(METHODS.values())} | FEW, first={"metric": "similar_share"},
+            second=KNN | SCALE, unit="rank correlation", note="minus the rank correlation of both over the methods",
+            readings=(*(reading(scaled.name, second=scaled.changes["where"]) for scaled in SCALED),
+                      reading(SIXTY[0].name, where=PLAIN))),
+    printed(key="locations_best", first={"method": EQUAL},
+            sentence="With the position of the touch, the thesis's attention is the most accurate.",
+            second={"method": highest_of("random", "itti", "heat_kernel", "mesh_saliency", "salient_points")},
+            where=SIX | TRAINED | {"variant": "locations"}),  # other scalings have no rows of the rivals
+    printed(key="locations_knn_best", sentence="With the position of the touch, kNN is the most accurate.",
+            first={"classifier": "knn"}, second={"classifier": highest_of()}, readings=SCALED,
+            where=EVERY | SCALE | {"variant": "locations", "method": EQUAL}),
+    printed(key="alike_harder", sentence="The similarity between objects degrades the performance.",
+            phrases=PHRASES | OF_FOUR, first={"group": "four"}, second={"group": "four_drawn"},
+            where=KNN | SCALE | {"method": EQUAL} | FEW,
+            readings=(*SCALED, *SIXTY, reading("mean of all classifiers but the SVM", where={"classifier": ALIVE}))),
     *(
-        Claim(key=key, section="T4.2.4", stage=STAGE, phrases=PHRASES, **SETS, sentence=sentence,
-              first={"classifier": first}, second={"classifier": second},
-              where=RIGHT | SCALE | {"method": EQUAL} | where, contrast=contrast, readings=readings)
+        printed(key=key, sentence=sentence, first={"classifier": first}, second={"classifier": second},
+                where=RIGHT | SCALE | {"method": EQUAL} | where, contrast=contrast, readings=readings)
         for key, sentence, first, second, where, contrast, readings in (
             ("knn_best_selected_four", "kNN is the best classifier of the selected imprints of four objects, too.",
              "knn", highest_of(), {"group": "four", "variant": "selected"}, None, SCALED),

@@ -15,8 +15,7 @@ from stages.report.items import Figure
 from stages.report.results import OWN_FOLDER, NotRun, Results, dataset_text, some
 from stages.report.tables import CLASSIFIERS
 
-from .rows import EQUAL, MODEL, PRINTED, SSIM, STAGE
-from .tables import added, table_4_1, table_4_2
+from .tables import EQUAL, MODEL, PRINTED, SSIM, STAGE, added, table_4_1, table_4_2
 
 STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]
 NEEDED = ["random", MODEL]  # bars

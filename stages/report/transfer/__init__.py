@@ -4,7 +4,7 @@ from functools import partial
 
 from stages.report.networks import COARSE, FINE
 
-from . import figure_5_3, figures, tables
+from . import figures, tables
 
 TABLES = {
     "table_5_3": partial(tables.networks, data=COARSE),
@@ -13,7 +13,7 @@ TABLES = {
     "coarse_imprints": tables.build,
 }
 FIGURES = {
-    "figure_5_3": figure_5_3.build,
+    "figure_5_3": figures.figure_5_3,
     "figure_5_4": figures.figure_5_4,
     "training_curves": figures.training_curves,
 }

@@ -19,7 +19,7 @@ from stages.engine.statistics import interval
 from stages.report.claims import Claim, Pick, Reading, highest_of, lowest_of, reading
 from stages.report.drawing import label
 from stages.report.effects import statistic
-from stages.report.items import Table
+from stages.report.items import Table, shared_notes
 from stages.report.networks import (
     COARSE,
     FINE,
@@ -44,7 +44,6 @@ from stages.report.networks import (
 )  # fmt: skip
 from stages.report.results import NotRun, Results, dataset_text
 from stages.report.tables import Ranking, cell_texts, grid, grouped, percent, signed
-from stages.report.words import shared_notes
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 OTHERS = list(PASSES)[1:]

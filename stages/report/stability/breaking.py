@@ -1,0 +1,248 @@
+"""Breaking points of salient points and of networks: tables, charts against severity, and the worst cases.
+
+A panel stands for each perturbation, and one more for the legend. `degradation` and `broken` serve touches, too.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from haptic_glance.base.files import read_arrays
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.statistics import BROKEN, breaking_point, lead_left
+from stages.report.drawing import GREY, INK, MARKERS, colours, label, name_panels, plt, show, square_grid, start
+from stages.report.items import Figure, Table
+from stages.report.networks import FINE, MODES, NETWORK, STARTS, mean, measured
+from stages.report.results import Results, some
+from stages.report.tables import grouped, interval_columns, number, percent, records, within
+from stages.stability.simplification import breaking_points, mean_repeatability, middle_severity
+
+ACROSS = 4
+ENDS = ("breaking_point", "low", "high")
+CLEAN, ACCURACY = ([name, f"{name}_low", f"{name}_high"] for name in ("clean", "accuracy"))
+# {perturbation: {line: frame of severity, from mild to harsh, ACCURACY and CLEAN, of which intervals may be absent}}
+Curves = dict[str, dict[tuple[str, ...], pd.DataFrame]]
+
+
+def panels(names: Sequence[str], words: str, width: float, height: float) -> tuple[Drawing, dict[str, Axes], Axes]:
+    """(figure, {name: axes}, axes of the legend): words say what all panels measure."""
+    down = -(-(len(names) + 1) // ACROSS)
+    figure, grid = plt.subplots(down, ACROSS, figsize=(width, height * down), squeeze=False, sharey=True)
+    for axes in grid[:, 0]:
+        axes.set_ylabel(words)
+    for axes in grid.flat[len(names) :]:
+        axes.set_axis_off()
+    return figure, dict(zip(names, grid.flat, strict=False)), grid.flat[len(names)]
+
+
+def finish(axes: Axes, name: str, unit: str, severities: Sequence[float]) -> None:
+    """Axes of a panel: no change on the left, then the severities at equal distances."""
+    axes.set_xticks(range(len(severities) + 1), ["none", *(f"{severity:g}" for severity in severities)], fontsize=8)
+    axes.set_ylim(0, 100)
+    axes.set_xlabel(unit, fontsize=8)
+    axes.set_title(label(name), fontsize=10)
+    axes.grid(axis="y")
+
+
+def degradation(
+    curves: Curves, units: Mapping[str, str], looks: Mapping[Any, Mapping[str, Any]], chance: float, height: float
+) -> tuple[Drawing, dict[str, Axes]]:
+    """(figure, {perturbation: axes}): accuracies against severity as lines with upright bars, cut to 0..100 %.
+
+    units: {perturbation: words}; looks: {line: matplotlib's properties}, also of what else the legend explains.
+    """
+    figure, grid, legend = panels(list(curves), "accuracy, %", 10.2, height)
+    for name, axes in grid.items():
+        for line, points in curves[name].items():
+            values = np.vstack([points.reindex(columns=CLEAN)[:1], points.reindex(columns=ACCURACY)])
+            axes.plot(100 * values[:, 0], **looks[line], ms=3.5, lw=1.4)
+            for place, ends in enumerate(values[:, 1:]):
+                axes.plot([place, place], 100 * np.clip(ends, 0, 1), color=looks[line]["color"], lw=0.9, alpha=0.4)
+        axes.axhline(100 * chance, color=GREY, lw=1.2, ls=":")
+        finish(axes, name, units[name], list(max(curves[name].values(), key=len)["severity"]))
+    for look in [*looks.values(), {"label": "guessing", "ls": ":", "color": GREY, "lw": 1.2}]:
+        legend.plot([], [], **{"ms": 4, "lw": 1.4, **look})
+    legend.legend(loc="center left", fontsize=9)
+    figure.tight_layout(h_pad=1.2, w_pad=0.6)
+    return figure, grid
+
+
+def cell(row: Any, unharmed: float) -> str:
+    """A breaking point with its interval, `0.2 [0.1, > 0.3]`; alone where nothing broke, or where both ends are it."""
+    beyond = f"{'<' if row.harshest < unharmed else '>'} {row.harshest:g}"
+    point, *interval = (beyond if np.isnan(getattr(row, end)) else number(getattr(row, end), 2) for end in ENDS)
+    return f"{point} [{', '.join(interval)}]" if {*interval} != {point} else point
+
+
+def broken(frame: pd.DataFrame, heads: Iterable[str], unharmed: Mapping[str, float]) -> pd.DataFrame:
+    """A line a perturbation for a reader, with the columns `heads`, one for each row of `frame`: `0.2 [0.1, > 0.3]`.
+
+    frame: perturbation, unit, the harshest severity and those where it breaks, with the interval: the columns `ends`,
+    where NaN is beyond the harshest: `> 0.3`. unharmed: {perturbation: severity without a change}.
+    """
+    lines = {}
+    for head, row in zip(heads, records(frame), strict=True):
+        line = lines.setdefault(row.perturbation, {"perturbation": label(row.perturbation), "unit": row.unit})
+        line[head] = cell(row, unharmed[row.perturbation])
+    return pd.DataFrame(list(lines.values())).fillna("–")
+
+
+STAGE = "stability"
+CHANCE = "random"  # it looks at nothing, so that it cannot break; its level is a column
+
+
+def points_table(results: Results) -> Table:
+    """The severity of each perturbation at which half of a method's points are lost."""
+    rows = results.measured(STAGE, metric=["repeatability", "chance", "drift"])
+    points = rows.loc[(rows["metric"] == "repeatability") & (rows["method"] != CHANCE)]
+    lines = []
+    for (perturbation, method), ends in breaking_points(points).items():
+        group = rows.loc[rows["perturbation"] == perturbation]
+        severities = list(group["severity"].unique())
+        middle = middle_severity(severities)
+        trials = group.loc[(group["method"] == method) & (group["severity"] == middle)]
+        lines.append({
+            "perturbation": perturbation, "unit": PERTURBATIONS[perturbation].unit, "method": method,
+            "severity": middle,
+            **interval_columns("repeatability", within(trials.loc[trials["metric"] == "repeatability", "value"])),
+            "drift": trials.loc[trials["metric"] == "drift", "value"].mean(),
+            "chance": group.loc[group["metric"] == "chance", "value"].mean(), "harshest": severities[-1],
+            **interval_columns("breaking_point", ends, prefix=""),
+        })  # fmt: skip
+    frame = pd.DataFrame(lines)
+    unharmed = {name: entry.unharmed for name, entry in PERTURBATIONS.items()}
+    text_table = broken(frame, frame["method"].map(label), unharmed)
+    text_table["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
+    names = list(dict.fromkeys(points["item"]))
+    words = {"objects": ", ".join(names), "count": len(names), "not_run": results.left_out(STAGE)}
+    return Table(frame, text_table, words)
+
+
+def points_figure(results: Results) -> Figure:
+    """Repeatability against severity: a panel a perturbation, a line a method."""
+    rows = results.measured(STAGE, metric=["repeatability", "chance"])
+    means = mean_repeatability(rows.loc[rows["method"] != CHANCE])
+    chance = 100 * rows.loc[rows["metric"] == "chance"].groupby(["perturbation", "severity"])["value"].mean()
+    methods, perturbations = (list(dict.fromkeys(means[key])) for key in ("method", "perturbation"))
+    drawing, grid, legend = panels(perturbations, "points found again, %", 9.6, 2.25)
+    for perturbation, axes in grid.items():
+        panel = means.loc[means["perturbation"] == perturbation]
+        severities = list(dict.fromkeys(panel["severity"]))
+        wide = panel.pivot(index="severity", columns="method", values="value").reindex(severities, columns=methods)
+        for k, (method, tint) in enumerate(colours(methods).items()):
+            axes.plot(
+                [100, *(100 * wide[method])], color=tint, marker=MARKERS[k % len(MARKERS)], ms=4, lw=1.4,
+                label=label(method), clip_on=False,
+            )  # fmt: skip
+        guessed = [np.nan, *chance[perturbation].reindex(severities)]
+        axes.plot(guessed, ":", color=INK, marker=".", ms=3, lw=1.2, label="chance")
+        axes.axhline(100 * BROKEN, color=GREY, lw=0.6)
+        axes.set_xlim(-0.15, len(severities) + 0.15)
+        finish(axes, perturbation, PERTURBATIONS[perturbation].unit, severities)
+    legend.legend(*grid[perturbations[0]].get_legend_handles_labels(), loc="center left", fontsize=9)
+    drawing.tight_layout(h_pad=1.2, w_pad=0.6)
+    words = {"perturbations": len(perturbations), "methods": ", ".join(map(label, methods))}
+    return Figure(drawing, words | {"objects": ", ".join(dict.fromkeys(rows["item"]))})
+
+
+def failures(results: Results) -> Figure:
+    """Each method's worst case: before and after."""
+    worst = _worst(results)
+    drawing, grid = square_grid(2, len(worst), side=1.9, right=0.2, gap=0.5)
+    for (before, after), (method, case) in zip(grid.T, worst.items(), strict=True):
+        show(before, results.mesh(case["item"]), case["before_saliency"], points=case["before_points"])
+        show(after, Mesh(case["vertices"], case["faces"]), case["after_saliency"], points=case["after_points"])
+        damage = f"{label(case['perturbation'])} {float(case['severity']):g}"
+        share_text = f"{100 * float(case['repeatability']):.0f} % found again"
+        for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{damage}\n{share_text}")):
+            axes.set_title(title, fontsize=9, fontweight="normal", loc="center")
+    name_panels(grid, beside=("before", "after"))
+    names = dict.fromkeys(str(case["perturbation"]) for case in worst.values())
+    units = "; ".join(f"{label(name)}: {PERTURBATIONS[name].unit}" for name in names)
+    return Figure(drawing, {"methods": ", ".join(map(label, worst)), "units": units})
+
+
+def _worst(results: Results) -> dict[str, dict[str, Any]]:
+    """{method: its arrays on the object where the fewest points were found again}."""
+    cases: dict[str, dict[str, dict[str, Any]]] = {}
+    for path in sorted(results.folder(STAGE).glob("*.npz")):
+        for key, values in read_arrays(path).items():
+            method, _, name = key.rpartition(".")
+            cases.setdefault(method, {}).setdefault(path.stem, {"item": path.stem})[name] = values
+    return {
+        method: min(objects.values(), key=lambda case: np.nan_to_num(case["repeatability"]))
+        for method, objects in some(cases, "no data/stability", STAGE).items()
+    }
+
+
+NETWORK_TINTS = dict(zip(product(STARTS[:2], MODES), ("#0072B2", "#56B4E9", "#767676", "#c4c4c4"), strict=True))
+NETWORK_UNITS = {
+    "noise": "sigma, share of full scale",
+    "blur": "sigma in cells of 128",
+    "dead_cells": "share of the cells",
+    "occlusion": "share of the area",
+    "rotation": "degrees",
+    "resolution": "cells a side",
+    "few_touches": "share of the touches trained on",
+}
+NETWORK_UNHARMED = dict.fromkeys(NETWORK_UNITS, 0.0) | {"resolution": 128.0, "few_touches": 1.0}
+OF_NETWORKS = [
+    "perturbation",
+    "unit",
+    "weights",
+    "mode",
+    "clean",
+    "breaking_point",
+    "low",
+    "high",
+    "harshest",
+    "accuracy",
+]
+
+
+def networks_table(results: Results) -> Table:
+    """Breaking points; of networks that were measured and have a lead to lose."""
+    (curves, chance), entries = _network_curves(results), []
+    for name, lines in curves.items():
+        for kind, points in lines.items():
+            whole, severities = points["clean"].iloc[0], list(points["severity"])
+            if whole > chance:
+                left = lead_left(points[ACCURACY].to_numpy().T, whole, chance)
+                ends = [breaking_point(severities, list(end), NETWORK_UNHARMED[name]) for end in left]
+                entries.append(
+                    (name, NETWORK_UNITS[name], *kind, whole, *ends, severities[-1], points["accuracy"].iloc[-1])
+                )
+    frame = pd.DataFrame(some(entries, "no disturbed imprints", "transfer"), columns=OF_NETWORKS)
+    heads = [f"{start(row.weights)}, {label(row.mode)} ({100 * row.clean:.0f} % clean)" for row in records(frame)]
+    return Table(frame, broken(frame, heads, NETWORK_UNHARMED))
+
+
+def networks_figure(results: Results) -> Figure:
+    """Accuracy of MobileNetV2 on disturbed imprints, against severity: a panel a perturbation."""
+    curves, chance = _network_curves(results)
+    looks = {
+        kind: {"label": f"{start(kind[0])}, {label(kind[1])}", "color": tint, "marker": "o"}
+        for kind, tint in NETWORK_TINTS.items()
+    }
+    return Figure(degradation(curves, NETWORK_UNITS, looks, chance, 2.4)[0], {"perturbations": len(curves)})
+
+
+def _network_curves(results: Results) -> tuple[Curves, float]:
+    """(curves by weights and mode, accuracy of guessing)."""
+    rows = results.measured("transfer", method=NETWORK, metric="disturbed_accuracy", perturbation=list(NETWORK_UNITS))
+    undisturbed = grouped(measured(results, method=NETWORK, data=FINE, split="random"), ["weights", "mode"])
+    clean = {kind: mean(group["value"], "random") for kind, group in undisturbed}
+    groups, curves = dict(grouped(rows, ["perturbation", "weights", "mode"])), {}
+    for name, kind in product(NETWORK_UNITS, NETWORK_TINTS):
+        if (name, *kind) in groups:
+            severities = grouped(groups[name, *kind], ["severity"])
+            points = [(severity, *mean(group["value"], "random"), *clean[kind]) for (severity,), group in severities]
+            points.sort(key=lambda point: abs(point[0] - NETWORK_UNHARMED[name]))
+            curves.setdefault(name, {})[kind] = pd.DataFrame(points, columns=["severity", *ACCURACY, *CLEAN])
+    return curves, results.measured("transfer", metric="chance", data=FINE, split="random")["value"].mean()
