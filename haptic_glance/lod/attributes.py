@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from haptic_glance.mesh.mesh import Mesh, Texture
-from haptic_glance.mesh.nearest import SurfaceIndex, closest
+from haptic_glance.mesh.nearest import SurfaceIndex, closest, same_place
 from haptic_glance.mesh.rays import barycentric
 
 from .seams import SAME, Corners, charts, explained, joined, own_sides
@@ -54,12 +54,8 @@ def carry_colors(reference: Mesh, points: np.ndarray) -> np.ndarray:
     _, face, weights = closest(reference, points)
     assert reference.colors is not None
     colors = np.einsum("ij,ijk->ik", weights, reference.colors[reference.faces[face]].astype(np.float64))
-    vertex_ids = reference.used
-    ids = np.unique(np.concatenate([reference.vertices[vertex_ids], points]), axis=0, return_inverse=True)[1].ravel()
-    owner = np.full(ids.max() + 1, -1)
-    owner[ids[: len(vertex_ids)]] = vertex_ids
-    vertex = owner[ids[len(vertex_ids) :]]
-    colors[vertex >= 0] = reference.colors[vertex[vertex >= 0]]
+    vertex = same_place(reference.vertices[reference.used], points)
+    colors[vertex >= 0] = reference.colors[reference.used[vertex[vertex >= 0]]]
     return np.rint(colors).astype(np.uint8)
 
 

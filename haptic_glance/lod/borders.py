@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import connected_components
 
 from haptic_glance.mesh.materials import merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh, next_half_edge
+from haptic_glance.mesh.nearest import same_place
 
 from .kernels.mesh import HalfEdgeMesh
 from .kernels.quadrics import vertex_quadrics
@@ -121,12 +122,8 @@ def cut_borders(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
 def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
     """The simplified `mesh` with the vertices that `cut_borders` doubled merged again; unused ones are removed."""
     doubled = np.bincount(ids)[ids] > 1
-    rows, place = np.unique(np.concatenate([cut.vertices[doubled], mesh.vertices]), axis=0, return_inverse=True)
-    place = place.ravel()
-    at_border = np.zeros(len(rows), dtype=bool)
-    at_border[place[: doubled.sum()]] = True
-    row = place[doubled.sum() :]
-    name = np.where(at_border[row], row, len(rows) + np.arange(len(row)))
+    at_border = same_place(cut.vertices[doubled], mesh.vertices)
+    name = np.where(at_border >= 0, at_border, doubled.sum() + np.arange(len(at_border)))
     first, ids = merge_equal_rows(name[mesh.faces].ravel())
     sources = mesh.faces.ravel()[first]
     colors = None if mesh.colors is None else mesh.colors[sources]
