@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from haptic_glance.mesh.mesh import Mesh, Texture
-from haptic_glance.mesh.nearest import SurfaceIndex
+from haptic_glance.mesh.nearest import SurfaceIndex, closest, same_place
 from haptic_glance.mesh.rays import barycentric
 
 from .seams import SAME, Corners, charts, explained, joined, own_sides
@@ -51,24 +51,12 @@ def carry(reference: Mesh, mesh: Mesh) -> Mesh:
 
 def carry_colors(reference: Mesh, points: np.ndarray) -> np.ndarray:
     """(k, 3) u1: the reference's vertex colours at the closest points of its surface to points (k, 3)."""
-    face, weights = closest(reference, points)
+    _, face, weights = closest(reference, points)
     assert reference.colors is not None
     colors = np.einsum("ij,ijk->ik", weights, reference.colors[reference.faces[face]].astype(np.float64))
-    vertex_ids = np.unique(reference.faces)
-    ids = np.unique(np.concatenate([reference.vertices[vertex_ids], points]), axis=0, return_inverse=True)[1].ravel()
-    owner = np.full(ids.max() + 1, -1)
-    owner[ids[: len(vertex_ids)]] = vertex_ids
-    vertex = owner[ids[len(vertex_ids) :]]
-    colors[vertex >= 0] = reference.colors[vertex[vertex >= 0]]
+    vertex = same_place(reference.vertices[reference.used], points)
+    colors[vertex >= 0] = reference.colors[reference.used[vertex[vertex >= 0]]]
     return np.rint(colors).astype(np.uint8)
-
-
-def closest(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(faces (k,), barycentric weights (k, 3)): the closest points on a mesh to points (k, 3)."""
-    points = np.ascontiguousarray(points, dtype=np.float64)
-    index = SurfaceIndex(mesh)
-    face = index.nearest(points)[1].astype(np.int64)
-    return face, index.weights(points, face)
 
 
 def faces_under(index: SurfaceIndex, mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
@@ -78,7 +66,7 @@ def faces_under(index: SurfaceIndex, mesh: Mesh) -> tuple[np.ndarray, np.ndarray
     """
     centres = mesh.vertices[mesh.faces].mean(axis=1)
     distances, found = index.nearest(centres)
-    found, normals, original = found.astype(np.int64), mesh.face_normals, index.mesh.face_normals
+    normals, original = mesh.face_normals, index.mesh.face_normals
     against = np.flatnonzero(np.einsum("ij,ij->i", normals, original[found]) < 0)
     side = np.abs(normals[against]).argmax(axis=1)
     side = 2 * side + (normals[against, side] < 0)
@@ -105,14 +93,14 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     pairs, number = np.unique(mesh.faces * size + chart[under][:, None], return_inverse=True)
     vertex_ids, wanted = np.divmod(pairs, size)
     number, vertices = number.reshape(-1, 3), mesh.vertices[vertex_ids]
-    closest = search.closest(vertices, wanted)
-    uv = closest.uv[number]
+    nearest = search.closest(vertices, wanted)
+    uv = nearest.uv[number]
     in_seamed = np.isin(chart[under], seams.chart)
     if in_seamed.any():
-        centre = Centres(centres[in_seamed], under[in_seamed], weights[in_seamed])
-        uv[in_seamed] = _on_own_sides(search, seams, vertices, closest, number[in_seamed], centre)
-    fixed = (closest.points == vertices).all(axis=1) | _at_ends(seams, closest)
-    steps = uv - closest.uv[number]
+        places = centres[in_seamed], under[in_seamed], weights[in_seamed]
+        uv[in_seamed] = _on_own_sides(search, seams, vertices, nearest, number[in_seamed], *places)
+    fixed = (nearest.points == vertices).all(axis=1) | _at_ends(seams, nearest)
+    steps = uv - nearest.uv[number]
     off_line = np.abs(steps - np.rint(steps)).max(axis=2) > SAME  # on another side, where the picture does not repeat
     uv = _fitted(mesh.face_areas, uv, _uv_at(reference, under, weights), number, fixed[number] | off_line)
     return replace(reference.texture, uv=uv, image=reference.texture.image[under])
@@ -128,15 +116,6 @@ class Closest:
     uv: np.ndarray
 
 
-@dataclass(frozen=True)
-class Centres:
-    """Centres (k, 3) of coarse faces, and the reference's faces (k,) under them, at barycentric weights (k, 3)."""
-
-    points: np.ndarray
-    faces: np.ndarray
-    weights: np.ndarray
-
-
 class ChartSearch:
     """The closest points of a textured mesh within its charts (m,)."""
 
@@ -146,7 +125,7 @@ class ChartSearch:
 
     def nearest(self, points: np.ndarray, wanted: np.ndarray) -> np.ndarray:
         """(k,) faces closest to points (k, 3), of the charts `wanted` (k,)."""
-        nearest = self.index.nearest(points)[1].astype(np.int64)
+        nearest = self.index.nearest(points)[1]
         foreign = np.flatnonzero(self.chart[nearest] != wanted)  # few: only their charts are searched apart
         for number, places in _by_value(wanted[foreign]).items():
             source, rows = self.faces_of[number], foreign[places]
@@ -170,18 +149,19 @@ class ChartSearch:
         return Closest(places, faces, weights, _uv_at(self.mesh, faces, weights))
 
 
-def _on_own_sides(search, seams, vertices, closest, number, centre):
+def _on_own_sides(search, seams, vertices, closest, number, centres, under, weights):
     """(k, 3, 2) texture coordinates of the corners of faces, on the sides of the seams where their centres lie.
 
-    vertices (n, 3) and the Closest to them; number (k, 3): which of them the corners are. centre: Centres of the faces.
+    vertices (n, 3) and the Closest to them; number (k, 3): which of them the corners are. centres (k, 3) of the faces,
+    and the reference's faces (k,) under them, at barycentric weights (k, 3).
     """
-    number, faces = number.ravel(), np.repeat(centre.faces, 3)
+    number, faces = number.ravel(), np.repeat(under, 3)
     base, corners, wanted = closest.uv[number], vertices[number], search.chart[faces]
-    ahead = _extrapolated(search.mesh, faces, np.repeat(centre.weights, 3, axis=0), corners)
+    ahead = _extrapolated(search.mesh, faces, np.repeat(weights, 3, axis=0), corners)
     uv, points = base.copy(), closest.points[number]
     # A point on a seam is on both sides: a place a little inwards decides.
     ids = np.flatnonzero(_at_ends(seams, closest)[number])
-    inside = corners[ids] + INWARDS * (centre.points[ids // 3] - corners[ids])
+    inside = corners[ids] + INWARDS * (centres[ids // 3] - corners[ids])
     side = search.within(corners[ids], search.nearest(inside, wanted[ids]))
     uv[ids], points[ids] = side.uv, side.points
     uv, points = own_sides(seams, Corners(number, wanted, points, uv, ahead))

@@ -15,7 +15,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.materials import merge_equal_rows
+from haptic_glance.mesh.mesh import Mesh, next_half_edge
+from haptic_glance.mesh.nearest import same_place
 
 from .kernels.mesh import HalfEdgeMesh
 from .kernels.quadrics import vertex_quadrics
@@ -32,7 +34,7 @@ def closed(surface: HalfEdgeMesh, free: np.ndarray, factor: np.ndarray) -> HalfE
     free (n,) boolean: which vertices of the boundary may move; factor (n,): of each vertex's quadric.
     """
     edges = np.flatnonzero((surface.opposite < 0) & (surface.corner >= 0))
-    tail, head = surface.corner[edges], surface.corner[_after(edges)]
+    tail, head = surface.corner[edges], surface.corner[next_half_edge(edges)]
     count, label = connected_components(coo_array((np.ones(len(edges)), (tail, head)), shape=2 * [len(surface.start)]))
     loops, loop = np.unique(label[tail], return_inverse=True)
     apex = len(surface.start) + loop
@@ -83,14 +85,11 @@ def without_hidden(surface: HalfEdgeMesh) -> np.ndarray:
     return corner.ravel()
 
 
-def _after(edges):
-    return np.where(edges % 3 == 2, edges - 2, edges + 1)
-
-
 def _upright(surface, edges, factor):
     """(n, 10) quadrics of the planes through the boundary's edges, as of triangles as long and as high as the edge."""
     corner = surface.corner
-    i, j, k = corner[edges], corner[_after(edges)], corner[_after(_after(edges))]
+    heads = next_half_edge(edges)
+    i, j, k = corner[edges], corner[heads], corner[next_half_edge(heads)]
     p = surface.position
     along = p[j] - p[i]
     normal = np.cross(along, p[k] - p[i])
@@ -123,16 +122,9 @@ def cut_borders(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
 def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
     """The simplified `mesh` with the vertices that `cut_borders` doubled merged again; unused ones are removed."""
     doubled = np.bincount(ids)[ids] > 1
-    rows, place = np.unique(np.concatenate([cut.vertices[doubled], mesh.vertices]), axis=0, return_inverse=True)
-    place = place.ravel()
-    at_border = np.zeros(len(rows), dtype=bool)
-    at_border[place[: doubled.sum()]] = True
-    row = place[doubled.sum() :]
-    name = np.where(at_border[row], row, len(rows) + np.arange(len(row)))
-    _, first, inverse = np.unique(name[mesh.faces], return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    sources = mesh.faces.ravel()[first[order]]
+    at_border = same_place(cut.vertices[doubled], mesh.vertices)
+    name = np.where(at_border >= 0, at_border, doubled.sum() + np.arange(len(at_border)))
+    first, ids = merge_equal_rows(name[mesh.faces].ravel())
+    sources = mesh.faces.ravel()[first]
     colors = None if mesh.colors is None else mesh.colors[sources]
-    return Mesh(mesh.vertices[sources], rank[inverse.ravel()].reshape(-1, 3), colors, mesh.texture, mesh.up)
+    return Mesh(mesh.vertices[sources], ids.reshape(-1, 3), colors, mesh.texture, mesh.up)

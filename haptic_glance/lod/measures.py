@@ -1,6 +1,7 @@
 """The errors of a simplified mesh beside plain quadric edge collapse, and the fewest faces within an error."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -98,7 +99,10 @@ def fewest_faces(
     best, low, high = reference, max(int(lowest), 1), len(reference.faces)
     count = low
     while count < high:
-        mesh, value = _measured(reference, simplified, count, seed)
+        mesh, value = None, np.inf
+        with suppress(SimplifyError, InfeasibleTarget):
+            mesh = simplified(count)
+            value = metro(reference, mesh, seed=seed)["mean"]
         report(f"{count:,} faces: " + ("no sound mesh" if mesh is None else f"{100 * value:.4f} %"))
         if mesh is not None and value <= tolerance:
             best, high = mesh, count
@@ -110,11 +114,3 @@ def fewest_faces(
         if count in (low, high):
             break
     return best
-
-
-def _measured(reference, simplified, faces, seed):
-    try:
-        mesh = simplified(faces)
-    except (SimplifyError, InfeasibleTarget):
-        return None, np.inf
-    return mesh, metro(reference, mesh, seed=seed)["mean"]

@@ -220,7 +220,7 @@ def within_frame(meshes: Sequence[Mesh]) -> tuple[list[Mesh], float]:
     With few faces the vertices lie far outside a round surface, since the facets cut through it. At a scale of 1 the
     meshes are returned unchanged; vertices in no face do not count.
     """
-    radius = max(np.linalg.norm(mesh.vertices[np.unique(mesh.faces)], axis=1).max(initial=0.0) for mesh in meshes)
+    radius = max(np.linalg.norm(mesh.vertices[mesh.used], axis=1).max(initial=0.0) for mesh in meshes)
     if radius <= FITS:
         return list(meshes), 1.0
     scale = float(FITS / radius)

@@ -5,7 +5,8 @@ is one chart, whose two ends meet at a seam: a point near it has two pairs of co
 which of them a face takes.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -38,8 +39,7 @@ class Seams:
     scale: np.ndarray
 
 
-@dataclass(frozen=True)
-class Corners:
+class Corners(NamedTuple):
     """Corners (k,) of faces: a number for each vertex within a chart, chart, points (k, 3) of the surface, and uv.
 
     uv (k, 2): the coordinates at the points. ahead (k, 2): where the map under the centre of their faces puts them.
@@ -105,7 +105,7 @@ def own_sides(seams: Seams, corners: Corners) -> tuple[np.ndarray, np.ndarray]:
     near = np.flatnonzero(search.within(corners, CLOSER * off))
     if not len(near):
         return uv, points
-    corners = Corners(*(getattr(corners, field.name)[near] for field in fields(Corners)))
+    corners = Corners(*(values[near] for values in corners))
     distance, edge, place = search.edges(corners)
     seam_uv = _between(seams.uv[edge], place)
     gap, away = seam_uv - corners.uv, _between(seams.ends[edge], place) - corners.points

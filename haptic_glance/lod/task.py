@@ -15,6 +15,7 @@ from haptic_glance.look.points.methods import meant
 from haptic_glance.mesh import clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.materials import bake_texture, flat_texture, merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.nearest import same_place
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius
 
 from .attributes import carry
@@ -123,12 +124,7 @@ class SimplificationTask:
         """A mesh in the frame of `mesh` in the units of `source`; unmoved vertices have their original coordinates."""
         centre, radius = centre_and_radius(self.source)
         vertices = mesh.vertices * (radius / RADIUS) + centre
-        n = len(self.mesh.vertices)
-        _, place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)
-        place = place.ravel()
-        owner = np.full(place.max() + 1, -1)
-        owner[place[:n]] = np.arange(n)
-        vertex = owner[place[n:]]
+        vertex = same_place(self.mesh.vertices, mesh.vertices)
         vertices[vertex >= 0] = self.source.vertices[vertex[vertex >= 0]]
         return replace(mesh, vertices=vertices)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.mesh.gltf import SUFFIXES, as_glb
-from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.mesh import Mesh, next_half_edge, unit
 from haptic_glance.mesh.nearest import SurfaceIndex
 
 from .attributes import faces_under
@@ -75,8 +75,7 @@ def topology(faces: np.ndarray) -> Topology:
     component, count = face_components(opposite)
     boundary = np.flatnonzero(opposite < 0)
     open_components = len(np.unique(component[boundary // 3]))
-    heads = np.where(boundary % 3 == 2, boundary - 2, boundary + 1)
-    loops = face_components(_joined_ends(fan[np.stack([boundary, heads], axis=1)]))[1]
+    loops = face_components(_joined_ends(fan[np.stack([boundary, next_half_edge(boundary)], axis=1)]))[1]
     euler = n - (len(ids) + len(boundary)) // 2 + len(faces)
     genus = max((2 * count - loops - euler) // 2, 0)
     return Topology(len(boundary), loops, count, count - open_components, genus)

@@ -27,6 +27,7 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 TRIANGLES, FAN = 4, 6  # modes of primitives
 GLOSS, TRANSFORM = "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform"
 PLACE = ("matrix", "translation", "rotation", "scale")  # of a node
+MALFORMED = ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError  # of a damaged file
 
 
 def as_glb(path: Path) -> bytes:
@@ -39,18 +40,16 @@ def as_glb(path: Path) -> bytes:
 
 def with_pictures(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
     """The bytes of a GLB with the pictures that lie beside it; one that is not there gets a mark. Else as `packed`."""
-    start = 20 + int.from_bytes(content[12:16], "little")
     try:
-        tree = json.loads(content[20:start])
+        tree, binary = opened(content)
         if not any("uri" in image for image in tree.get("images", [])):
             return content
         if any("uri" in buffer for buffer in tree["buffers"]):
             return content
-        binary = bytearray(content[start + 8 :])
         _pack_pictures(tree, binary, resolver)
         tree["buffers"][0]["byteLength"] = len(binary)
         return joined(tree, binary)
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):  # the parser refuses it
+    except MALFORMED:  # the parser refuses it
         return content
 
 
@@ -65,7 +64,7 @@ def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -
         binary = _pack(tree, resolver)
     except MeshError:
         raise
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+    except MALFORMED as error:
         raise MeshError(f"unreadable as GLTF ({type(error).__name__} in its JSON)") from None
     return joined(tree, binary)
 
@@ -82,8 +81,7 @@ def ready(content: bytes) -> bytes:
     """
     content = _morphed(content) if b'"sparse"' in content or b'"weights"' in content else content
     try:
-        start = 20 + int.from_bytes(content[12:16], "little")
-        tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+        tree, binary = opened(content)
         before = json.dumps(tree)
         _as_srgb(tree, binary, content)
         _place_pictures(tree, binary, content)
@@ -96,20 +94,19 @@ def ready(content: bytes) -> bytes:
             return content
         tree["buffers"][0]["byteLength"] = len(binary)
         return joined(tree, binary)
-    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError):
+    except MALFORMED:
         return content
 
 
 def _morphed(content):
     """The bytes of a GLB with full accessors, whose nodes show the shape of their morph weights (section 3.7.2.2)."""
     try:
-        start = 20 + int.from_bytes(content[12:16], "little")
-        tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+        tree, binary = opened(content)
         _show_weights(tree, binary, content)
         _fill(tree, binary, content)
         tree["buffers"][0]["byteLength"] = len(binary)
         return joined(tree, binary)
-    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+    except MALFORMED as error:
         where = "its morph targets or sparse accessors"
         raise MeshError(f"unreadable as GLB ({type(error).__name__} in {where})") from None
 
@@ -158,7 +155,7 @@ def _floats(tree, entry, content):
 def _as_srgb(tree, binary, content):
     """Encodes the linear colours of vertices and materials (sections 3.7.2.1 and 5.22.1), but not their alpha."""
     made = {}
-    for primitive in (primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]):
+    for primitive in _primitives(tree):
         number = primitive["attributes"].get("COLOR_0")
         if number is None or "bufferView" not in tree["accessors"][number]:  # none, or all are zero
             continue
@@ -187,7 +184,6 @@ def _place_pictures(tree, binary, content):
     The parser reads the first set alone, and no KHR_texture_transform. Pictures of a material that differ, and those
     that are turned, stay as they are: `materials.not_read` names them.
     """
-    primitives = [primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]]
     for number, material in enumerate(tree.get("materials", [])):
         properties = material | material.get("pbrMetallicRoughness", {})
         uses = [use for use in properties.values() if isinstance(use, dict) and "index" in use]
@@ -196,7 +192,7 @@ def _place_pictures(tree, binary, content):
             continue
         place, offset, scale = shared[0]
         own, name = f"TEXCOORD_{place}", "TEXCOORD_0"
-        users = [primitive["attributes"] for primitive in primitives if primitive.get("material") == number]
+        users = [primitive["attributes"] for primitive in _primitives(tree) if primitive.get("material") == number]
         if not all(own in attributes for attributes in users):
             continue
         for attributes in users:
@@ -228,10 +224,8 @@ def with_linear_colours(content: bytes) -> bytes:
 
     Colours of vertices become floats: eight bits would lose dark ones, and the parser takes 16 bits for plain integers.
     """
-    start = 20 + int.from_bytes(content[12:16], "little")
-    tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
-    primitives = [primitive for mesh in tree["meshes"] for primitive in mesh["primitives"]]
-    for number in {primitive["attributes"].get("COLOR_0") for primitive in primitives} - {None}:
+    tree, binary = opened(content)
+    for number in {primitive["attributes"].get("COLOR_0") for primitive in _primitives(tree)} - {None}:
         entry = tree["accessors"][number]
         values = _colours(tree, entry, content)
         values[:, :3] = decoded(values[:, :3])
@@ -264,7 +258,7 @@ def _as_floats(tree, binary, content):
 
 def _as_triangles(tree, binary, content):
     """Makes triangles of fans, which the parser leaves out."""
-    for primitive in (primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]):
+    for primitive in _primitives(tree):
         if primitive.get("mode") != FAN:
             continue
         count = tree["accessors"][primitive["attributes"]["POSITION"]]["count"]
@@ -355,6 +349,16 @@ def numbers_of(tree: dict[str, Any], accessor: dict[str, Any], content: bytes) -
     return np.ndarray((accessor["count"], width), kind, content, first, strides)
 
 
+def _primitives(tree):
+    return [primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]]
+
+
+def opened(content: bytes) -> tuple[dict[str, Any], bytearray]:
+    """(tree, buffer) of the bytes of a GLB; ValueError for other bytes."""
+    start = 20 + int.from_bytes(content[12:16], "little")
+    return json.loads(content[20:start]), bytearray(content[start + 8 :])
+
+
 def joined(tree: dict[str, Any], binary: bytearray) -> bytes:
     """The bytes of a GLB of a tree and its one buffer."""
     text = json.dumps(tree).encode()
@@ -415,8 +419,7 @@ def _read(uri: str, resolver: trimesh.resolvers.Resolver | None) -> bytes | None
 def names_in(content: bytes) -> list[str]:
     """The names of the files that a .gltf file or a GLB refers to; none of what is no glTF."""
     try:
-        glb = content[:4] == b"glTF"
-        tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")] if glb else content)
+        tree = opened(content)[0] if content[:4] == b"glTF" else json.loads(content)
         uris = [entry["uri"] for key in ("buffers", "images") for entry in tree.get(key, []) if "uri" in entry]
         return [unquote(uri) for uri in uris if uri[: len(DATA)].lower() != DATA]
     except (ValueError, TypeError, AttributeError):

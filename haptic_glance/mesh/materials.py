@@ -7,7 +7,6 @@ properties of a glTF material are carried along, and their pictures stay undecod
 from __future__ import annotations
 
 import io
-import json
 import zlib
 from contextlib import suppress
 from dataclasses import replace
@@ -18,7 +17,7 @@ from PIL import Image
 
 from haptic_glance.base.lazy import trimesh
 
-from .gltf import GLOSS, joined, numbers_of
+from .gltf import GLOSS, MALFORMED, joined, numbers_of, opened
 from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import MOST_UV, Mesh, Texture, content_of
 from .srgb import decoded, multiplied
@@ -104,12 +103,12 @@ def numbered(content: bytes) -> bytes:
 
     Names may be equal, or absent: `set_apart` tells the materials apart by the numbers, and gives the names back.
     """
-    tree = _header(content)
-    if not _stated_in(tree, "materials"):
+    if not _stated_in(_header(content), "materials"):
         return content
+    tree, binary = opened(content)
     for number, material in enumerate(_stated_in(tree, "materials")):
         material["name"] = str(number)
-    return joined(tree, bytearray(content[28 + int.from_bytes(content[12:16], "little") :]))
+    return joined(tree, binary)
 
 
 def _exact_factor(material):
@@ -217,13 +216,10 @@ def _is_white(tree, accessor, content):
     return False
 
 
-MALFORMED = AttributeError, LookupError, TypeError, ValueError
-
-
 def _header(content):
     """The JSON part of a GLB's bytes; empty for others."""
     try:
-        return json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")]) if content[:4] == b"glTF" else {}
+        return opened(content)[0] if content[:4] == b"glTF" else {}
     except ValueError:
         return {}
 
@@ -395,7 +391,7 @@ def obj_vertices(content: bytes) -> np.ndarray:
 
 
 def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Merges bit-equal rows (n, d) in the order of first appearance: first (k,) and ids (n,)."""
+    """Merges bit-equal rows (n, d), or numbers (n,), in the order of first appearance: first (k,) and ids (n,)."""
     _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     rank = np.empty_like(order)

@@ -311,6 +311,11 @@ def edge_pairs(faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     return order[pairs], order[pairs + 1]
 
 
+def next_half_edge(half_edges: np.ndarray) -> np.ndarray:
+    """The next half-edge of the face, of each of the half-edges, which are numbered as in `edge_pairs`."""
+    return np.where(half_edges % 3 == 2, half_edges - 2, half_edges + 1)
+
+
 def corner_sum(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """Sums values (m, 3) or (m, 3, d), one per face corner, onto the vertices: (n,) or (n, d)."""
     n = len(mesh.vertices)

@@ -113,3 +113,11 @@ def closest(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.
     index = surface_index(mesh)
     distances, faces = index.nearest(points)
     return distances, faces, index.weights(points, faces)
+
+
+def same_place(vertices: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(k,) i8: the last one of vertices (n, 3) that has exactly the place of each of points (k, 3), -1 for none."""
+    place = np.unique(np.concatenate([vertices, points]), axis=0, return_inverse=True)[1].ravel()
+    owner = np.full(len(place), -1)
+    owner[place[: len(vertices)]] = np.arange(len(vertices))
+    return owner[place[len(vertices) :]]

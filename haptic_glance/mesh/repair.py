@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from .axes import Axis, axis_named, to_z_up
 from .headers import MeshError
-from .mesh import Mesh, edge_pairs
+from .mesh import Mesh, bounding_box, edge_pairs
 from .upright import settled
 
 MIN_AREA = 1e-12  # share of the squared diagonal; below it, rays in single precision find no surface
@@ -242,13 +242,13 @@ def normalise(mesh: Mesh) -> Mesh:
 
 def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     """(centre (3,) of the bounding box, radius of the bounding sphere about it), in the units of the mesh."""
-    vertices = mesh.vertices[mesh.used]
-    if len(vertices) == 0:
+    if len(mesh.faces) == 0:
         raise ValueError("the mesh has no faces, so that it cannot be normalised")
-    centre = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    radius = np.linalg.norm(vertices - centre, axis=1).max()
+    low, high = bounding_box(mesh)
+    centre = (low + high) / 2
+    radius = np.linalg.norm(mesh.vertices[mesh.used] - centre, axis=1).max()
     if radius == 0:
-        extent = np.ptp(vertices, axis=0).max()
+        extent = (high - low).max()
         reason = f"its extent is {extent:.3g}: scale it" if extent else "all vertices coincide"
         raise ValueError(f"the mesh has no extent that could be measured: {reason}")
     return centre, radius

@@ -6,9 +6,9 @@ import trimesh
 
 from haptic_glance.lod import InfeasibleTarget, colour_error, fast, metro, simplify
 from haptic_glance.lod.attribute_quadrics import attribute_quadrics
-from haptic_glance.lod.attributes import closest
 from haptic_glance.lod.kernels.collapse import decimate
 from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.nearest import closest
 
 from .conftest import GREY, ball, centres, grey, sheet, tube
 
@@ -99,7 +99,7 @@ def wrong_area(mesh, simplified):
     share = np.random.default_rng(0).dirichlet([1, 1, 1], 20_000)
     face = np.random.default_rng(1).integers(len(mesh.faces), size=len(share))
     points = np.einsum("ij,ijk->ik", share, mesh.vertices[mesh.faces[face]])
-    nearest = closest(simplified, points)[0]
+    nearest = closest(simplified, points)[1]
     return (
         np.abs(mesh.texture.uv[face].mean(axis=1) - simplified.texture.uv[nearest].mean(axis=1)).max(axis=1) > 1.5
     ).mean()
@@ -136,7 +136,7 @@ def test_normals_of_an_edged_solid_come_out_closer():
     mesh = Mesh(made.vertices + 0.05 * np.sin(9 * made.vertices[:, [1, 2, 0]]), made.faces)
 
     def off(simplified):
-        face, share = closest(simplified, centres(mesh))
+        _, face, share = closest(simplified, centres(mesh))
         normals = np.einsum("ij,ijk->ik", share, simplified.vertex_normals[simplified.faces[face]])
         expected = mesh.vertex_normals[mesh.faces].mean(axis=1)
         return np.sqrt(((expected - normals) ** 2).sum(axis=1).mean())

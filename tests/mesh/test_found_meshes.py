@@ -230,23 +230,21 @@ def test_an_obj_and_its_materials_may_have_umlauts_in_any_encoding(tmp_path, enc
 
 
 @pytest.mark.parametrize(
-    ("statement", "named"),
+    ("material", "lines", "named"),
     [
-        ("d 0.5", ["d"]), ("d 1.0", []), ("Tr 0.5", ["Tr"]), ("Ks 0 0.2 0", ["Ks"]), ("Ks 0 0 0", []),
-        ("Ke 1 1 0", ["Ke"]), ("map_Ks a.png", ["map_Ks"]), ("newmtl n", ["names of materials"]),
+        ("d 0.5", "", ["d"]), ("d 1.0", "", []), ("Tr 0.5", "", ["Tr"]), ("Ks 0 0.2 0", "", ["Ks"]),
+        ("Ks 0 0 0", "", []), ("Ke 1 1 0", "", ["Ke"]), ("map_Ks a.png", "", ["map_Ks"]),
+        ("Kd 1 0 0\nmap_Kd a.png", "", ["Kd beside map_Kd"]),
+        ("Kd 1 0 0\nnewmtl n\nmap_Kd a.png", "", ["names of materials"]),
+        ("Kd 0.8 0.8 0.8\nmap_Kd a.png", "", []), ("Kd 1 1 1\nmap_Kd a.png", "", []),
+        ("", "l 1 2", ["lines"]), ("", "p 1", ["points"]), ("", "v 0 0 1 1 0 0", ["colours of vertices"]),
     ],
 )  # fmt: skip
-def test_statements_of_an_obj_material_that_a_mesh_cannot_hold_are_named(tmp_path, statement, named):
-    (tmp_path / "a.mtl").write_text(f"newmtl m\nKd 1 0 0\n{statement}\n")
-    (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")
-    assert not_read(tmp_path / "a.obj") == named
-
-
-@pytest.mark.parametrize(
-    ("lines", "named"), [("l 1 2", ["lines"]), ("p 1", ["points"]), ("v 0 0 1 1 0 0", ["colours of vertices"])]
-)
-def test_elements_of_an_obj_that_a_mesh_cannot_hold_are_named(tmp_path, lines, named):
-    (tmp_path / "a.obj").write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\n{lines}\nf 1 2 3\n")
+def test_all_of_an_obj_and_its_materials_that_a_mesh_cannot_hold_is_named(tmp_path, material, lines, named):
+    Image.new("RGB", (2, 2), (200, 100, 50)).save(tmp_path / "a.png")
+    (tmp_path / "a.mtl").write_text(f"newmtl m\n{material}\n")
+    rows = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n"
+    (tmp_path / "a.obj").write_text(f"mtllib a.mtl\n{lines}\n{rows}")
     assert not_read(tmp_path / "a.obj") == named
 
 
@@ -285,16 +283,6 @@ def test_a_picture_that_many_nodes_share_is_decoded_once(ball, monkeypatch):
     monkeypatch.setattr(Image.Image, "convert", lambda self, *mode: decoded.append(self) or plain(self, *mode))
     mesh = as_mesh(scene)
     assert len(decoded) == 1 and len(mesh.faces) == 960 and [i.shape for i in mesh.texture.images] == [(4, 4, 4)]
-
-
-@pytest.mark.parametrize(("kd", "named"), [("0.8 0.8 0.8", False), ("1 1 1", False), ("1 0 0", True)])
-def test_a_colour_beside_the_picture_of_an_obj_is_named(tmp_path, kd, named):
-    Image.new("RGB", (2, 2), (200, 100, 50)).save(tmp_path / "a.png")
-    (tmp_path / "a.mtl").write_text(f"newmtl other\nKd 0 1 0\nnewmtl m\nKd {kd}\nmap_Kd a.png\n")
-    rows = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n"
-    (tmp_path / "a.obj").write_text(f"mtllib a.mtl\n{rows}")
-    dropped = dropped_from(tmp_path / "a.obj", load(tmp_path / "a.obj"))
-    assert ("Kd beside map_Kd" in dropped) == named
 
 
 def test_a_baked_picture_is_multiplied_by_the_factor_beside_it(ball):

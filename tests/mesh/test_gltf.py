@@ -17,7 +17,7 @@ from haptic_glance.cli.simplify import run
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import MeshError, load
 from haptic_glance.mesh.files import parse
-from haptic_glance.mesh.gltf import as_glb, joined, ready
+from haptic_glance.mesh.gltf import as_glb, joined, opened, ready
 from haptic_glance.mesh.materials import not_read
 from haptic_glance.mesh.srgb import encoded
 from stages.meshes.furniture import files_beside
@@ -40,11 +40,9 @@ def glb():
 @pytest.fixture
 def write(glb, tmp_path):
     """write(place) -> the path of the same scene as a .gltf; place(name, bytes) gives the URI of a part."""
-    size = int.from_bytes(glb[12:16], "little")
-    binary = glb[28 + size :]
 
     def written(place):
-        tree = json.loads(glb[20 : 20 + size])
+        tree, binary = opened(glb)
         image = tree["images"][0]
         view = tree["bufferViews"][image.pop("bufferView")]
         start = view.get("byteOffset", 0)
@@ -93,10 +91,7 @@ def test_it_is_read_as_the_glb_of_the_same_scene(glb, write, beside, where):
     for image, other in zip(mesh.texture.images, wanted.texture.images, strict=True):
         assert np.array_equal(np.asarray(image), np.asarray(other))
     made = as_glb(path)
-    starts = [
-        view["byteOffset"] % 4
-        for view in json.loads(made[20 : 20 + int.from_bytes(made[12:16], "little")])["bufferViews"]
-    ]
+    starts = [view["byteOffset"] % 4 for view in opened(made)[0]["bufferViews"]]
     assert not_read(made) == [] and len(made) % 4 == 0 and starts[-2:] == [0, 0]  # glTF 2.0, section 3.6.2.4
 
 
@@ -263,8 +258,7 @@ def test_a_glb_shows_the_picture_beside_it_also_by_an_encoded_name(uri, name, gl
 
 def changed(content, change):
     """The bytes of a GLB whose tree a function has changed, which may return bytes for the end of the buffer."""
-    start = 20 + int.from_bytes(content[12:16], "little")
-    tree, binary = json.loads(content[20:start]), bytearray(content[start + 8 :])
+    tree, binary = opened(content)
     binary += change(tree, len(binary)) or b""
     tree["buffers"][0]["byteLength"] = len(binary)
     return joined(tree, binary)
@@ -332,15 +326,6 @@ def test_a_file_without_a_scene_shows_all_nodes(glb):
     assert len(parse(content, ".glb").faces) == len(parse(glb, ".glb").faces)
 
 
-def test_points_and_lines_beside_the_surface_are_named(write):
-    path = write(embedded)
-    tree = json.loads(path.read_text())
-    attributes = tree["meshes"][0]["primitives"][0]["attributes"]
-    tree["meshes"][0]["primitives"] += [{"mode": mode, "attributes": attributes} for mode in (0, 3)]
-    path.write_text(json.dumps(tree))
-    assert not_read(as_glb(path)) == ["points", "lines"]
-
-
 @pytest.mark.parametrize("second_set", [False, True])
 def test_a_picture_stands_where_its_transform_puts_it(glb, second_set):
     """KHR_texture_transform, as compressors of GLB files write it, on the first set of coordinates and on another."""
@@ -369,29 +354,29 @@ def test_a_picture_stands_where_its_transform_puts_it(glb, second_set):
     assert np.allclose(moved.uv[of_ball], expected, atol=1e-6) and not_read(ready(content)) == []
 
 
-def test_a_turned_picture_is_named(glb):
-    def turn(tree, _):
-        use = tree["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
-        use["extensions"] = {"KHR_texture_transform": {"rotation": 0.5}}
+LOST = [  # a change of the tree, and the names of all that is not read since
+    (lambda tree: None, []),
+    (lambda tree: tree["meshes"][0]["primitives"].extend({"mode": mode, "attributes": {}} for mode in (0, 3)),
+     ["points", "lines"]),
+    (lambda tree: tree["meshes"][0]["primitives"][0].update(targets=[{"POSITION": 0}]), ["morph targets"]),
+    (lambda tree: tree["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].update(
+        extensions={"KHR_texture_transform": {"rotation": 0.5}}), ["baseColorTexture.KHR_texture_transform"]),
+    (lambda tree: tree["scenes"].append({"nodes": [0]}), ["further scenes"]),
+    (lambda tree: tree["nodes"][0].update(extras={"price": 3}), ["extras"]),
+    (lambda tree: tree["asset"].update(copyright="CC BY"), ["asset.copyright"]),
+    *((lambda tree, name=name: tree.update(extensionsUsed=[name]), [name]) for name in (
+        "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_variants", "KHR_node_visibility")),
+]  # fmt: skip
 
-    assert not_read(ready(changed(glb, turn))) == ["baseColorTexture.KHR_texture_transform"]
+
+@pytest.mark.parametrize(("change", "names"), LOST)
+def test_all_that_a_mesh_cannot_hold_is_named(glb, change, names):
+    assert not_read(ready(changed(glb, lambda tree, _: change(tree)))) == names
 
 
-def test_further_scenes_and_extras_are_named(glb):
-    def add(tree, _):
-        tree["scenes"].append({"nodes": [0]})
-        tree["nodes"][0]["extras"] = {"price": 3}
-
-    assert not_read(changed(glb, add)) == ["further scenes", "extras"] and not_read(glb) == []
-
-
-def test_morph_targets_and_lights_are_named(write):
-    path = write(embedded)
-    tree = json.loads(path.read_text())
-    tree["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": 0}]
-    tree["extensionsUsed"] = ["KHR_lights_punctual"]
-    path.write_text(json.dumps(tree))
-    assert not_read(as_glb(path)) == ["KHR_lights_punctual", "morph targets"]
+@pytest.mark.parametrize("wrong", [3, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
+def test_malformed_materials_name_nothing(glb, wrong):
+    assert not_read(changed(glb, lambda tree, _: tree.update(materials=wrong))) == []
 
 
 def test_a_node_shows_the_shape_of_its_morph_weights_in_sparse_accessors():

@@ -4,42 +4,25 @@ A call of a vector function is compiled in less time than the operators that it 
 """
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 
-from haptic_glance.base import jit
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import UntilCompiledBeside, helper, kernel_of
 from haptic_glance.base.kept import kept_in
 
 Id = int | np.integer  # of a vertex, half-edge, face or bucket
-Result = TypeVar("Result")
 
 # Inlined throughout: a call passes seven words for each array, which took as long as the work.
-_compiled = kernel_of(__file__, forceinline=True, _nrt=False)
-_allocating = kernel_of(__file__, forceinline=True)
+kernel = kernel_of(__file__, forceinline=True, _nrt=False)  # for arguments of any numeric type; makes no array
+allocating_kernel = kernel_of(__file__, forceinline=True)  # to count references to arrays takes longer to compile
 FOLDER = kept_in(__file__)
 SMALL = 30_000  # half-edges, or vertices
 
 
-def kernel(function: Callable[..., Result]) -> Callable[..., Result]:
-    """The function compiled, for arguments of any numeric type; it makes no array."""
-    return _compiled(function)
-
-
-def light_kernel(function: Callable[..., Result]) -> Callable[..., Result]:
+def light_kernel(function: Callable[..., Any]) -> Any:
     """Makes a kernel of a function whose interpretation takes less time on a small mesh than its compilation."""
-    return jit.UntilCompiledBeside(_compiled(function), SMALL)
-
-
-def allocating_kernel(function: Callable[..., Result]) -> Callable[..., Result]:
-    """The same for one that makes arrays: to count references to them takes longer to compile."""
-    return _allocating(function)
-
-
-def helper(function: Callable[..., Result]) -> Callable[..., Result]:
-    """The function compiled as a part of the kernels that call it."""
-    return jit.helper(function)
+    return UntilCompiledBeside(kernel(function), SMALL)
 
 
 Vector = tuple[float, float, float]

@@ -39,15 +39,13 @@ class Profile:
     points: np.ndarray
 
 
-def profile(chain: Sequence[Level], directions: int = DIRECTIONS, rows: int = ROWS) -> Profile:
+def profile(chain: Sequence[Level], rows: int = ROWS) -> Profile:
     """Renders the errors of an object's levels once, without perspective, from directions all around.
 
     Parameters
     ----------
     chain : sequence of Level
         The levels, finest first, from `build_lod_chain`.
-    directions : int
-        Number of directions.
     rows : int
         Pixels a side of each picture.
 
@@ -58,7 +56,7 @@ def profile(chain: Sequence[Level], directions: int = DIRECTIONS, rows: int = RO
     """
     low, high = chain[0].box
     middle, radius = (low + high) / 2, np.linalg.norm(high - low) / 2
-    views = _spread(directions)
+    views = _spread(DIRECTIONS)
     places = (np.arange(rows) + 0.5) / rows * 2 - 1
     across, up = (radius * grid.ravel()[:, None] for grid in np.meshgrid(places, places))
     starts, along = [], []
@@ -69,11 +67,11 @@ def profile(chain: Sequence[Level], directions: int = DIRECTIONS, rows: int = RO
     origins, rays = np.concatenate(starts), np.concatenate(along)
     area = (2 * radius / rows) ** 2
     hits = [_hits(level, origins, rays) for level in chain]
-    sums = np.zeros((directions, len(chain)))
+    sums = np.zeros((DIRECTIONS, len(chain)))
     for k, level in enumerate(chain[1:], start=1):
         for (ray, points), target in ((hits[0], level), (hits[k], chain[0])):
             distances = target.surface.nearest(points)[0]
-            sums[:, k] += area * np.bincount(ray // rows**2, distances, directions)
+            sums[:, k] += area * np.bincount(ray // rows**2, distances, DIRECTIONS)
     return Profile(views, sums, chain[0].surface.sample(POINTS, rng(0, "profile"))[0])
 
 

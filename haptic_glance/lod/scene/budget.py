@@ -69,14 +69,9 @@ def budget(
         chains = {name: build_lod_chain(meshes[name], **(options or {}).get(name, {})) for name in names}
     elif missing := sorted({placed.name for placed in scene.objects} - set(chains)):
         raise ValueError(f"no levels of {', '.join(missing)}: there are {', '.join(sorted(chains)) or 'none'}")
-    frames = frames or Frames(scene, meshes, finest_of_scene(scene, chains))
-    search = _Search(scene, frames, tuple(chains[placed.name] for placed in scene.objects))
-    return search.run()
-
-
-def finest_of_scene(scene: Scene, chains: Mapping[str, Sequence[Level]]) -> list[Level]:
-    """The finest Level of each object: the unsimplified mesh."""
-    return [chains[placed.name][0] for placed in scene.objects]
+    of_objects = tuple(chains[placed.name] for placed in scene.objects)
+    frames = frames or Frames(scene, meshes, [chain[0] for chain in of_objects])
+    return _Search(scene, frames, of_objects).run()
 
 
 class _Search:

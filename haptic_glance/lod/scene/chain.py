@@ -114,14 +114,11 @@ def level_errors(level_mesh: Mesh, base: SurfaceIndex, seed: int = 0) -> dict[st
     forth, back = _distances(base, coarse, rng(seed, "own")), _distances(coarse, base, rng(seed, "level"))
     distances = {"rms": np.sqrt([(forth**2).mean(), (back**2).mean()])}
     distances |= {f"q{share}": [np.quantile(side, share / 100) for side in (forth, back)] for share in (95, 99)}
-    corners = [base.nearest(_corners(level_mesh))[0].max(), coarse.nearest(_corners(base.mesh))[0].max()]
+    ways = (level_mesh, base), (base.mesh, coarse)
+    corners = [surface.nearest(mesh.vertices[mesh.used])[0].max() for mesh, surface in ways]
     distances["max"] = [forth.max(), back.max(), *corners]
     return {name: float(max(distances[name])) for name in ERRORS}
 
 
 def _distances(surface, target, generator):
     return target.nearest(surface.sample(SAMPLES, generator)[0])[0]
-
-
-def _corners(mesh):
-    return mesh.vertices[np.unique(mesh.faces)]

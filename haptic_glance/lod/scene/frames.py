@@ -17,7 +17,6 @@ from .camera import Scene
 from .chain import Level
 from .pictures import (
     Rendering,
-    nearest,
     nearest_two,
     pixel_box,
     rays_of,
@@ -98,16 +97,12 @@ class Frames:
     @cached_property
     def _others(self):
         """[frame] -> depths of the nearest two objects at full detail, and the index of the nearest."""
-        return [
-            nearest_two(self._renderings_of(frame, self.full), self._pixels(frame)) for frame in range(self.shape[0])
-        ]
+        return [self._nearest_two(frame, self.full) for frame in range(self.shape[0])]
 
-    def _renderings_of(self, frame, levels):
-        """The Renderings of a frame with one level per object."""
-        return [self.rendering(frame, item, level) for item, level in enumerate(levels)]
-
-    def _pixels(self, frame):
-        return int(np.prod(self.scene.cameras[frame].size))
+    def _nearest_two(self, frame, levels):
+        """`nearest_two` of the Renderings of a frame with one level per object."""
+        renderings = [self.rendering(frame, item, level) for item, level in enumerate(levels)]
+        return nearest_two(renderings, int(np.prod(self.scene.cameras[frame].size)))
 
     def visible(self, frame: int, item: int, level: Level) -> np.ndarray:
         """(k,) boolean: the pixels of a Rendering that no other object, at full detail, hides."""
@@ -127,23 +122,14 @@ class Frames:
             groups.setdefault((source, target), []).append((frame, item))
         for (source, target), places in groups.items():
             renderings = [self.rendering(frame, item, source) for frame, item in places]
-            points = np.concatenate(
-                [
-                    self._points(frame, item, rendering)
-                    for (frame, item), rendering in zip(places, renderings, strict=True)
-                ]
-            )
+            cameras = [(self.scene.cameras[frame], self.poses[item]) for frame, item in places]
+            rays = [rays_of(rendering, *pair) for rendering, pair in zip(renderings, cameras, strict=True)]
+            points = np.concatenate([positions for positions, _ in rays])
             distances = target.surface.nearest(points)[0] if source is not target else np.zeros(len(points))
             ends = np.cumsum([len(rendering.pixels) for rendering in renderings])[:-1]
             for (frame, item), rendering, part in zip(places, renderings, np.split(distances, ends), strict=True):
-                pixels = self._pixels_per_unit(frame, item, rendering)
+                pixels = self.poses[item].scale * self.scene.cameras[frame].focal / rendering.depth
                 self._displacements[frame, item, source, target] = (part * pixels).astype(np.float32)
-
-    def _points(self, frame, item, rendering):
-        return rays_of(rendering, self.scene.cameras[frame], self.poses[item])[0]
-
-    def _pixels_per_unit(self, frame, item, rendering):
-        return self.poses[item].scale * self.scene.cameras[frame].focal / rendering.depth
 
     def between(self, frame: int, item: int, first: Level, second: Level) -> float:
         """Error on the screen of one level of an object against another, with the other objects at full detail."""
@@ -206,7 +192,7 @@ class Frames:
 
     def owners(self, frame: int, levels: Sequence[Level]) -> np.ndarray:
         """(h * w,) the object that each pixel shows, -1 for none."""
-        return nearest(self._renderings_of(frame, levels), self._pixels(frame))
+        return self._nearest_two(frame, levels)[2]
 
 
 def _quantile(values):

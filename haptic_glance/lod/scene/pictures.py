@@ -87,15 +87,6 @@ def shade(level: Level, rendering: Rendering, camera: Camera, pose: Pose) -> np.
     return np.einsum("ij,ijk->ik", weights, mesh.colors[mesh.faces[rendering.faces]].astype(np.float64)) * light
 
 
-def nearest(renderings: Sequence[Rendering], pixels: int) -> np.ndarray:
-    """(pixels,) the index of the nearest Rendering, -1 where there is none."""
-    depth, owner = np.full(pixels, np.inf), np.full(pixels, -1)
-    for item, rendering in enumerate(renderings):
-        nearer = rendering.depth < depth[rendering.pixels]
-        depth[rendering.pixels[nearer]], owner[rendering.pixels[nearer]] = rendering.depth[nearer], item
-    return owner
-
-
 def nearest_two(renderings: Sequence[Rendering], pixels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(first, second, owner), each (pixels,): depth of the nearest Rendering and of the next, inf where there is none,
     and the index of the nearest, -1 for none.

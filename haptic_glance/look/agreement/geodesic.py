@@ -35,10 +35,7 @@ class Geodesics:
         return lengths[:, self.place]
 
 
-@lru_cache(maxsize=2)  # many methods are evaluated on one mesh, then on the next
-def geodesics(mesh: Mesh) -> Geodesics:
-    """The Geodesics of a mesh, cached."""
-    return Geodesics(mesh)
+geodesics = lru_cache(maxsize=2)(Geodesics)  # many methods are evaluated on one mesh, then on the next
 
 
 def _across(places, edges, opposite):

@@ -25,14 +25,13 @@ from .operators import CENTRES, DELTAS, expand, mean_of_maxima, mean_of_other_ma
 from .texture import (
     ANGLES,
     EDGE_SIGMA,
-    GABOR_SIGMA,
     MEDIAN,
-    RADIUS,
     SIDE,
-    WAVELENGTH,
     WINDOW,
+    gabor_grid,
     laplacian_of_gaussian,
     local_variance,
+    magnitude,
 )
 
 kernel = kernel_of(__file__)
@@ -118,13 +117,9 @@ def edge(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
 
 def gabor(image: np.ndarray, angle: float) -> np.ndarray:
     """(h, w) f4: magnitude of the plain even and odd Gabor responses of an image at an angle in degrees."""
-    x, y = np.meshgrid(np.arange(-RADIUS, RADIUS + 1), np.arange(RADIUS, -RADIUS - 1, -1))
-    across = y * np.cos(np.radians(angle)) - x * np.sin(np.radians(angle))
-    envelope = np.exp(-(x**2 + y**2) / (2 * GABOR_SIGMA**2))
-    wave = (envelope * np.exp(2j * np.pi * across / WAVELENGTH) / envelope.sum()).astype(np.complex64)
-    parts = wave.real.copy(), wave.imag.copy()
-    even, odd = (cv2.filter2D(image, cv2.CV_32F, part, borderType=cv2.BORDER_REPLICATE) for part in parts)
-    return np.sqrt(even * even + odd * odd)
+    _, envelope, wave = gabor_grid(angle)
+    wave = (envelope * wave / envelope.sum()).astype(np.complex64)
+    return magnitude(image, (wave.real.copy(), wave.imag.copy()))
 
 
 @kernel

@@ -5,6 +5,7 @@ Smoothing fills the surface that no view sees.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -93,8 +94,16 @@ def smoother(mesh: Mesh, confidence: np.ndarray, length: float = SMOOTHING) -> C
     area = np.maximum(mesh.vertex_areas, MIN_AREA)
     fill_weight = np.where(confidence > MIN_CONFIDENCE, 0, max(length / FILL_DISTANCE, MIN_FILL) ** 2)
     system = sparse.diags((confidence + fill_weight) * area) + length**2 * laplacian(mesh)
-    solver = splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
-    return lambda values: solver.solve(((confidence * area) * np.asarray(values).T).T)
+    solve = solver_of(system)
+    return lambda values: solve(((confidence * area) * np.asarray(values).T).T)
+
+
+def solver_of(system: Any) -> Callable[[np.ndarray], np.ndarray]:
+    """The function that solves a sparse, symmetric and positive definite system (n, n) for right sides (n,) or (n, d).
+
+    The factors need no pivots.
+    """
+    return splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True}).solve
 
 
 def laplacian(mesh: Mesh) -> sparse.csr_matrix:

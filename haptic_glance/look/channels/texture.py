@@ -124,16 +124,23 @@ def orientation(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     levels = {s: image.intensity_pyramid[s] for s in range(CENTRES[0], CENTRES[-1] + DELTAS[-1] + 1)}
     total = np.zeros(image.cover[OUTPUT_SCALE].shape, dtype=np.float32)
     for angle in ANGLES:
-        energies = {scale: energy(level, angle) * GAIN ** (scale - CENTRES[0]) for scale, level in levels.items()}
+        energies = {s: magnitude(level, gabor(angle)) * GAIN ** (s - CENTRES[0]) for s, level in levels.items()}
         total = total + normalise(centre_surround(energies, image.cover), image.cover[OUTPUT_SCALE])
     return image.place_in_view(normalise(total, image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
 
 
-def energy(image: np.ndarray, angle: float) -> np.ndarray:
-    """(h, w) f4: magnitude of the even and odd Gabor responses of an image (h, w) f4, at an angle in degrees."""
-    even, odd = (cv2.filter2D(image, cv2.CV_32F, k, borderType=cv2.BORDER_REPLICATE) for k in gabor(angle))
+def magnitude(image: np.ndarray, kernels: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """(h, w) f4: magnitude of the responses of an image (h, w) f4 to an even and an odd kernel."""
+    even, odd = (cv2.filter2D(image, cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE) for kernel in kernels)
     # Not cv2.magnitude, whose last bit depends on memory alignment.
     return np.sqrt(even * even + odd * odd)
+
+
+def gabor_grid(angle: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(distance across the bar, Gaussian envelope, plain wave) at the pixels of the Gabor kernels of an angle."""
+    x, y = np.meshgrid(np.arange(-RADIUS, RADIUS + 1), np.arange(RADIUS, -RADIUS - 1, -1))
+    across = y * np.cos(np.radians(angle)) - x * np.sin(np.radians(angle))
+    return across, np.exp(-(x**2 + y**2) / (2 * GABOR_SIGMA**2)), np.exp(2j * np.pi * across / WAVELENGTH)
 
 
 @cache
@@ -142,10 +149,8 @@ def gabor(angle: float) -> tuple[np.ndarray, np.ndarray]:
 
     A plain Gabor kernel responds slightly to both, and at coarse scales smooth shading would mask every bar.
     """
-    x, y = np.meshgrid(np.arange(-RADIUS, RADIUS + 1), np.arange(RADIUS, -RADIUS - 1, -1))
-    across = y * np.cos(np.radians(angle)) - x * np.sin(np.radians(angle))
-    envelope = np.exp(-(x**2 + y**2) / (2 * GABOR_SIGMA**2))
-    wave = np.exp(2j * np.pi * across / WAVELENGTH) * envelope
+    across, envelope, wave = gabor_grid(angle)
+    wave = wave * envelope
     wave -= envelope * (wave.sum() / envelope.sum())
     slope = envelope * across
     wave -= slope * ((wave * across).sum() / (slope * across).sum())

@@ -70,7 +70,7 @@ class SummedDetector(FusedDetector):
 
 
 class WeightedDetector(FusedDetector):
-    """All nine channels with the weights of that name (T eq. 3.9), published or learned."""
+    """The channels with the weights of that name (T eq. 3.9), published or learned."""
 
     def __init__(self, name: str, channels: Iterable[str]) -> None:
         super().__init__(channels)
@@ -80,16 +80,12 @@ class WeightedDetector(FusedDetector):
         return fuse(self.maps(sight), options.learned.weights[self._name])
 
 
-class SvmDetector(FusedDetector):
+class SvmDetector(WeightedDetector):
     """The SVM of that name on the channels of each pixel (T3.2.3).
 
     It predicts for each pixel of the stored maps, where the thesis shrinks the maps to 200 x 200, predicts and enlarges
     the prediction: the same function, without the blur of two resizings.
     """
-
-    def __init__(self, name: str, channels: Iterable[str]) -> None:
-        super().__init__(channels)
-        self.required_weights, self._name = name, name
 
     def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
         models = options.learned.svms[self._name]

@@ -5,12 +5,11 @@ J. Novatnack, K. Nishino: Scale-dependent 3D geometric features, IEEE Internatio
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
-from ..channels.surface import laplacian
+from ..channels.surface import laplacian, solver_of
 from .maxima import check_values, ring_maxima
 
 SCALES = 0.01 * 2 ** (np.arange(6) / 2)  # standard deviations, of the square root of the area: from 1 % to 5.7 %
@@ -74,12 +73,11 @@ def _smoother(mesh, variance):
     """A function that smooths values (n, d) along the surface by a Gaussian of this variance."""
     areas = _sum_around(mesh, mesh.face_areas / 3)
     areas = np.maximum(areas, LEAST_SHARE * areas.mean())
-    system = (sparse.diags(areas) + variance / (2 * STEPS) * laplacian(mesh)).tocsc()
-    solver = splu(system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
+    solve = solver_of(sparse.diags(areas) + variance / (2 * STEPS) * laplacian(mesh))
 
     def smooth(values):
         for _ in range(STEPS):
-            values = solver.solve(areas[:, None] * values)
+            values = solve(areas[:, None] * values)
         return values
 
     return smooth

@@ -113,4 +113,4 @@ def _size(mesh):
     if not area > 0:
         return 0.0
     centroid = mesh.face_areas @ mesh.vertices[mesh.faces].mean(axis=1) / area
-    return 2 * float(np.linalg.norm(mesh.vertices[np.unique(mesh.faces)] - centroid, axis=1).max())
+    return 2 * float(np.linalg.norm(mesh.vertices[mesh.used] - centroid, axis=1).max())

@@ -7,12 +7,12 @@ Computer Graphics Forum 28(5), 2009. Heat leaves the tip of a limb slowly, so k_
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh.mesh import Mesh
 
-from ..channels.surface import laplacian
+from ..channels.surface import laplacian, solver_of
 from .maxima import ring_maxima
 
 TIME = 0.1  # of the surface area: limbs and ears stand out, folds are gone; 0.05 to 0.5 give the same peaks on animals
@@ -65,9 +65,8 @@ def _lowest(stiffness, areas):
     if n <= DENSE:
         values, vectors = np.linalg.eigh(matrix.toarray())
         return values, scale @ vectors
-    shifted = (matrix - SHIFT * sparse.identity(n)).tocsc()
-    solver = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
-    inverse = LinearOperator((n, n), solver.solve, dtype=np.float64)  # pyright: ignore[reportCallIssue] (no stub)
+    solve = solver_of(matrix - SHIFT * sparse.identity(n))
+    inverse = LinearOperator((n, n), solve, dtype=np.float64)  # pyright: ignore[reportCallIssue] (no stub)
     start = rng(0, "heat kernel").normal(size=n)  # eigsh would draw another one each time
     values, vectors = eigsh(matrix, PAIRS, sigma=SHIFT, OPinv=inverse, v0=start, tol=TOLERANCE)  # pyright: ignore[reportArgumentType]
     return values, scale @ vectors

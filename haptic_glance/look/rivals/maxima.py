@@ -50,18 +50,19 @@ def local_maxima(mesh: Mesh, values: np.ndarray, radius: float, among: np.ndarra
     return peaks[np.argsort(ranks[peaks])]
 
 
-def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
-    """(k,) i8 vertex ids, largest value first: the local maxima within SPACING that are above the mean of them all.
+def high_maxima(mesh: Mesh, values: np.ndarray, radius: float | None = None) -> np.ndarray:
+    """(k,) i8 vertex ids, largest value first: the local maxima within a radius that are above the mean of them all.
 
-    So Dutagaci 2012 selects for mesh saliency. The size is twice the distance of the farthest vertex from the middle of
-    the used ones, which no turn changes.
+    So Dutagaci 2012 selects for mesh saliency. radius: None for SPACING of the size, which is twice the distance of the
+    farthest vertex from the middle of the used ones, which no turn changes.
     """
     values = np.asarray(values, dtype=np.float64)
     if not (len(mesh.faces) and values.any()):
         return local_maxima(mesh, values, 1.0)
-    vertices = mesh.vertices[mesh.used]
-    size = 2 * np.linalg.norm(vertices - vertices.mean(axis=0), axis=1).max()
-    maxima = local_maxima(mesh, values, SPACING * size)
+    if radius is None:
+        vertices = mesh.vertices[mesh.used]
+        radius = 2 * SPACING * float(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1).max())
+    maxima = local_maxima(mesh, values, radius)
     return maxima[values[maxima] >= values[maxima].mean()] if len(maxima) else maxima
 
 

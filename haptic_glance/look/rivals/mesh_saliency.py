@@ -13,7 +13,7 @@ import numpy as np
 from haptic_glance.mesh.mesh import Mesh
 
 from ..channels.curvature import mean_curvature
-from .maxima import local_maxima
+from .maxima import high_maxima, local_maxima
 from .samples import gaussian_average, surface_elements
 
 EPSILON = 0.003  # of the bounding-box diagonal (section 3.2)
@@ -36,10 +36,7 @@ def saliency(mesh: Mesh) -> np.ndarray:
 
 def points(mesh: Mesh, values: np.ndarray) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first: the local maxima of saliency above the mean of all of them."""
-    if not values.any():
-        return np.zeros(0, dtype=np.int64)
-    peaks = local_maxima(mesh, values, RADIUS * EPSILON * mesh.diagonal)
-    return peaks[values[peaks] >= values[peaks].mean()] if len(peaks) else peaks
+    return high_maxima(mesh, values, RADIUS * EPSILON * mesh.diagonal)
 
 
 def _contrasts(mesh):

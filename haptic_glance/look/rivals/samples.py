@@ -109,7 +109,7 @@ class SurfaceElements:
 def surface_elements(mesh: Mesh, values: np.ndarray) -> SurfaceElements:
     """The SurfaceElements of a mesh, with values (n, d) interpolated from the vertices."""
     corners = subdivide(mesh, values)
-    areas = np.linalg.norm(np.cross(*_sides(corners)), axis=1) / 2
+    areas = area_vectors(corners[..., :3])[1]
     centres = corners.mean(axis=1)
     return SurfaceElements(centres[:, :3], areas, centres[:, 3:])
 
@@ -139,9 +139,10 @@ def gaussian_average(mesh: Mesh, elements: SurfaceElements, sigma: float) -> np.
     return np.divide(totals[:, 1:], totals[:, :1], out=np.full_like(totals[:, 1:], np.nan), where=totals[:, :1] > 0)
 
 
-def _sides(corners):
-    """Two edges (s, 3) of each element."""
-    return corners[:, 1, :3] - corners[:, 0, :3], corners[:, 2, :3] - corners[:, 0, :3]
+def area_vectors(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(normals times areas (s, 3), areas (s,)) of triangles (s, 3, 3)."""
+    vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    return vectors, np.linalg.norm(vectors, axis=1)
 
 
 def _halves(corners, longest):

@@ -19,7 +19,7 @@ from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 
 from .maxima import check_values
-from .samples import subdivide
+from .samples import area_vectors, subdivide
 
 kernel = kernel_of(__file__)
 VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
@@ -93,33 +93,22 @@ def _keypoints(mesh):
 
 def _scale_space(corners):
     """Of triangles (s, 3, 3): (position of voxel 0, size of a voxel, list of differences of Gaussians (a, b, c) f4)."""
-    centre = np.average(corners.mean(axis=1), axis=0, weights=_area_vectors(corners)[1])
+    centre = np.average(corners.mean(axis=1), axis=0, weights=area_vectors(corners)[1])
     step = 2 * np.linalg.norm(corners - centre, axis=2).max() / VOXELS
     origin = corners.min(axis=(0, 1)) - PADDING * step
     shape = [fft.next_fast_len(int(n) + 2 * PADDING + 2, real=True) for n in np.ptp(corners, axis=(0, 1)) / step]
     inside = (corners - origin) / step
-    field = splat(inside.mean(axis=1), _area_vectors(inside)[0], tuple(shape)).astype(np.float32)
+    field = splat(inside.mean(axis=1), area_vectors(inside)[0], tuple(shape)).astype(np.float32)
     axes = [fft.fftfreq(n) for n in shape[:2]] + [fft.rfftfreq(shape[2])]
     waves = [2 * np.pi * w.astype(np.float32) for w in np.meshgrid(*axes, indexing="ij", sparse=True)]
     square = np.asarray(sum(wave**2 for wave in waves))
     square[0, 0, 0] = 1  # the mean, which no difference has
-    solid = (
-        np.asarray(sum(1j * wave * np.asarray(fft.rfftn(part)) for wave, part in zip(waves, field, strict=True)))
-        / square
-    )
+    gradient = [1j * wave * np.asarray(fft.rfftn(part)) for wave, part in zip(waves, field, strict=True)]
+    solid = np.asarray(sum(gradient)) / square
     sigmas = SIGMA * 2 ** (np.arange(OCTAVES * INTERVALS + 3) / INTERVALS)
     blurs = [np.exp(square * np.float32(-(sigma**2) / 2)) for sigma in sigmas]
-    return (
-        origin,
-        step,
-        [np.asarray(fft.irfftn(solid * (b - a), shape)) for a, b in zip(blurs, blurs[1:], strict=False)],
-    )
-
-
-def _area_vectors(corners):
-    """(normals times areas (s, 3), areas (s,)) of triangles (s, 3, 3)."""
-    vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-    return vectors, np.linalg.norm(vectors, axis=1)
+    dogs = [np.asarray(fft.irfftn(solid * (b - a), shape)) for a, b in zip(blurs, blurs[1:], strict=False)]
+    return origin, step, dogs
 
 
 @kernel

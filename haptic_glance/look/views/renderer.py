@@ -18,6 +18,7 @@ from .shading import GREY, corner_groups
 from .view import BACKGROUNDS, LAMBERT, Material, View, empty_view, pixel_box, round_depth
 
 NO_COLORS = np.zeros((0, 3), dtype=np.uint8)
+_normals = lru_cache(maxsize=2)(corner_groups)  # all views of a mesh share them; two, for a mesh and its simplified one
 
 
 def render_raster(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str, material: Material) -> View:
@@ -35,12 +36,6 @@ def render_raster(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], backg
         corners, mesh.faces, mesh.face_crosses, *_normals(mesh), colors, *light, top, left, face, view.rgb[box]
     )
     return view
-
-
-@lru_cache(maxsize=2)  # views of one mesh are rendered in turn; two, for a mesh and its simplified version
-def _normals(mesh):
-    """corner_groups, which all views of a mesh share."""
-    return corner_groups(mesh)
 
 
 RENDERERS = {"raster": render_raster, "pyrender": gl.render_pyrender}

@@ -8,7 +8,7 @@ were reversed, since objects that are scanned or modelled as thin sheets are see
 import numpy as np
 
 from haptic_glance.mesh.components import graph_components
-from haptic_glance.mesh.mesh import Mesh, edge_pairs, unit
+from haptic_glance.mesh.mesh import Mesh, edge_pairs, next_half_edge, unit
 
 GREY = 204  # of 255, the brightness of the material facing the light; uses most of the 8 bits
 CREASE = 40.0  # degrees between two faces: a prism of nine sides (40) is smooth, the edges of a box are not
@@ -24,15 +24,11 @@ def corner_groups(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     m = len(mesh.faces)
     first, second = _smooth_pairs(mesh)
     # Half-edge h runs from corner h to the next corner of its face; the opposite half-edge runs back.
-    links = np.r_[first, _next_corner(first)], np.r_[_next_corner(second), second]
+    links = np.r_[first, next_half_edge(first)], np.r_[next_half_edge(second), second]
     groups, count = graph_components(*links, 3 * m)
     crosses = np.repeat(mesh.face_crosses, 3, axis=0)
     sums = [np.bincount(groups, weights=column, minlength=count) for column in crosses.T]
     return groups.reshape(m, 3).astype(np.int64), unit(np.stack(sums, axis=1))
-
-
-def _next_corner(corners):
-    return np.where(corners % 3 == 2, corners - 2, corners + 1)
 
 
 def _smooth_pairs(mesh):

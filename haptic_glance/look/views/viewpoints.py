@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, bounding_box
 
 from ..camera import Viewpoint
 
@@ -42,10 +42,9 @@ def scaled_to_unit_diagonal(mesh: Mesh) -> Mesh:
 
     Vertices in no face do not count. Raises ValueError for a mesh without area.
     """
-    vertices = mesh.vertices[np.unique(mesh.faces)]
-    size = np.linalg.norm(np.ptp(vertices, axis=0)) if len(vertices) else 0.0
-    if size > 0:
-        surface = Mesh((mesh.vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2) / size, mesh.faces)
+    if len(mesh.faces) and mesh.diagonal > 0:
+        low, high = bounding_box(mesh)
+        surface = Mesh((mesh.vertices - (low + high) / 2) / mesh.diagonal, mesh.faces)
         if surface.face_areas.sum() > 0:
             return surface
     raise ValueError("the mesh has no visible surface: it needs at least one face with an area")
