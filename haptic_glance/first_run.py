@@ -13,6 +13,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from .base.kept import beside, cache_folder, claim, fcntl, is_kept, kept_in, marker
 
@@ -131,10 +132,11 @@ def compile_all(command: str) -> None:
     import numba
     from numba.core.registry import cpu_target
 
+    target: Any = cpu_target
     gc.disable()  # this process ends soon: to free what numba leaves behind takes a tenth of the time
     # numba would look for BLAS there, which no kernel needs, and the import takes as long as a kernel.
     sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
-    cpu_target.target_context.refresh()
+    target.target_context.refresh()
     del sys.modules["scipy.linalg"]  # the file of a kernel may import it, through scipy.spatial
     kernels = COMMANDS[command]
     for package in {str(Path(file).parent) for file, _, _ in kernels}:

@@ -33,7 +33,7 @@ class FewerPasses(CompilerBase):
 
 
 class NoMachineCode(FewerPasses):
-    """The same for a function that is inlined into kernels, which are optimised and become machine code as a whole."""
+    """The same for a function that is inlined into kernels: those alone become machine code."""
 
     def define_pipelines(self) -> list[PassManager]:
         """The passes, for code that is only linked."""
@@ -42,13 +42,10 @@ class NoMachineCode(FewerPasses):
 
 
 class LinkedCode(JITCodeLibrary):
-    """The code of a function that is inlined wherever it is called: neither optimised nor made executable by itself."""
+    """The code of a function that is inlined wherever it is called: optimised, but not executable by itself.
 
-    def _optimize_functions(self, ll_module: Any) -> None:
-        ll_module.data_layout = self._codegen._data_layout
-
-    def _optimize_final_module(self) -> None:
-        pass
+    Without its own optimisation a first run would take less time still, and simplification a few per cent more.
+    """
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()
