@@ -5,6 +5,7 @@ from its end. While one process compiles a kernel, the others skip it or wait: s
 """
 
 import atexit
+import gc
 import os
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from .base.kept import beside, cache_folder, claim, fcntl, is_kept, kept_in, marker
 
@@ -105,8 +107,9 @@ def start(command: str) -> None:
         return
     print(f"{command}: compiling {missing} of {len(kernels)} kernels, once", file=sys.stderr, flush=True)
     path = os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
-    # Without colours: numba words the errors of each overload that it tries, and colours them.
-    environment = os.environ | {"PYTHONPATH": path, "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
+    # Without colours, here and in the helpers: numba words the errors of each overload that it tries, and colours them.
+    os.environ["NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"] = "1"
+    environment = os.environ | {"PYTHONPATH": path}
     quiet = subprocess.DEVNULL
     line = [sys.executable, "-P", "-c", f"from {__name__} import compile_all; compile_all({command!r})"]
     for _ in range(min(_cores() - 1, MOST) if fcntl else 0):  # without locks they would compile everything twice
@@ -127,9 +130,14 @@ def compile_all(command: str) -> None:
     Leaves out those that another process compiles or has kept.
     """
     import numba
+    from numba.core.registry import cpu_target
 
+    target: Any = cpu_target
+    gc.disable()  # this process ends soon: to free what numba leaves behind takes a tenth of the time
     # numba would look for BLAS there, which no kernel needs, and the import takes as long as a kernel.
     sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
+    target.target_context.refresh()
+    del sys.modules["scipy.linalg"]  # the file of a kernel may import it, through scipy.spatial
     kernels = COMMANDS[command]
     for package in {str(Path(file).parent) for file, _, _ in kernels}:
         _without_imports(package)

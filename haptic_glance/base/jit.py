@@ -15,6 +15,7 @@ from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
 
 from .kept import beside, claim, is_kept, kept_in, marker
+from .passes import FewerPasses, NoMachineCode
 
 # Where a kernel is kept: by what its folder holds, or, if that is not writable, where numba itself would.
 LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
@@ -26,8 +27,21 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrap
 # the kernels that call it are.
 HELPER: dict[str, Any] = {
     "forceinline": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False,
+    "pipeline_class": NoMachineCode,
 }  # fmt: skip
 helper = numba.njit(**HELPER)
+
+
+@helper
+def lesser(a: Any, b: Any) -> Any:
+    """min(a, b), which numba would compile with wrappers, anew for each pair of types and each literal."""
+    return b if b < a else a
+
+
+@helper
+def greater(a: Any, b: Any) -> Any:
+    """max(a, b), compiled in less time than numba's."""
+    return b if b > a else a
 
 
 call_type_of_numba = numba.types.Function.get_call_type
@@ -72,6 +86,8 @@ class FasterCompilation(event.Listener):
         """Puts both back."""
         enabled, numba.types.Function.get_call_type = self._before.pop()
         if enabled:
+            if beside.is_set():  # a first run of a command: to free the graphs would take as long as a kernel
+                gc.freeze()
             gc.enable()
 
 
@@ -93,6 +109,8 @@ def kernel_of(file: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     put back.
     """
     folder = str(kept_in(file))
+    if not options.get("_nrt", True):
+        options["pipeline_class"] = FewerPasses
 
     def kernel(function: Callable[..., Any]) -> Any:
         config: Any = getattr(numba, "config")  # noqa: B009  # numba does not declare it

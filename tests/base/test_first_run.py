@@ -108,6 +108,15 @@ class Dead:
     kill = wait = staticmethod(lambda: None)
 
 
+def test_a_kernel_compiles_beside_a_command_though_its_file_imports_scipy(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
+    only = "first_run.COMMANDS['demo'] = [kernel for kernel in first_run.LOOK if kernel[1] == '_average']"
+    code = f"from haptic_glance import first_run; {only}; first_run.compile_all('demo')"
+    environment = os.environ | {"PYTHONPATH": str(first_run.PACKAGE.parent)}
+    subprocess.run([sys.executable, "-c", code], env=environment, check=True, timeout=300)
+    assert is_kept(first_run.PACKAGE / "look/glance/samples.py", "_average")
+
+
 def test_a_cache_that_cannot_be_written_to_is_named_with_the_remedy(kernels, monkeypatch, capsys):
     cache = kernels.parent / "cache"
     cache.write_text("no folder")

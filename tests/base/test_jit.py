@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.base import jit, kept
-from haptic_glance.base.jit import UntilCompiledBeside, UntilWorthCompiling
+from haptic_glance.base.jit import UntilCompiledBeside, UntilWorthCompiling, greater, helper, interpreted, lesser
 
 SOURCE = """from haptic_glance.base.jit import kernel_of
 
@@ -113,3 +113,40 @@ def test_signatures_are_remembered_for_kernels_of_this_package_alone():
         assert numba.njit(total)(np.float32(2), 3j) == 2 + 3j  # a pair of types that no other kernel adds
         assert (len(jit.signatures) > before) == (package == "haptic_glance")
         assert numba.types.Function.get_call_type is original
+
+
+@helper
+def clipped(x):
+    return lesser(greater(x, 0.0), 1.0)
+
+
+def add_clipped(x, total):
+    for i in range(len(x)):
+        total[i % 2] += clipped(x[i]) ** 2
+
+
+def test_a_helper_becomes_machine_code_only_inside_its_kernels(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
+    x, compiled, plain = np.linspace(-1, 2, 99), np.zeros(2), np.zeros(2)
+    kernel = jit.kernel_of(__file__, forceinline=True, _nrt=False)(add_clipped)
+    kernel(x, compiled)
+    interpreted(kernel)(x, plain)
+    np.testing.assert_array_equal(compiled, plain)
+    (kernel_code,), (helper_code,) = kernel.overloads.values(), clipped.overloads.values()
+    is_executable = [
+        code.library.get_pointer_to_function(code.fndesc.llvm_func_name) != 0 for code in (kernel_code, helper_code)
+    ]
+    assert is_executable == [True, False]
+
+
+def test_lesser_and_greater_are_min_and_max_bit_for_bit():
+    @numba.njit
+    def both(a, b):
+        return lesser(a, b), greater(a, b)
+
+    numbers = [0.0, -0.0, 1.5, -1.5, np.inf, -np.inf, np.nan, 3, -3]
+    for a in numbers:
+        for b in numbers:
+            kind = float if isinstance(a, float) or isinstance(b, float) else int
+            expected = kind(min(a, b)), kind(max(a, b))
+            assert np.array(both(a, b)).tobytes() == np.array(expected).tobytes(), (a, b)

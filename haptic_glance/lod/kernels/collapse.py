@@ -8,6 +8,8 @@ half-edge is in none; lowest (1,): all buckets below it are empty.
 
 import numpy as np
 
+from haptic_glance.base.jit import greater, lesser
+
 from .jit import Id, cross, dot, helper, kernel, point
 from .mesh import HalfEdgeMesh, after, before, collapse_edge
 from .quadrics import Wedges, attribute_cost, best_place, error_at, merge_wedges
@@ -231,7 +233,7 @@ def bucket_of(cost: float) -> Id:
     """The bucket of a cost of 0 or more: the leading bits of the number itself, which grow with it."""
     if not cost < HIGHEST:  # infinity and NaN of either sign, too
         return BUCKETS - 1
-    return min(max((np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS), 0), BUCKETS - 1)
+    return lesser(greater((np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS), 0), BUCKETS - 1)
 
 
 @helper
@@ -313,7 +315,7 @@ def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn,
             push(head, following, lowest, h, now)
             continue
         refused = (bucket - now) / LATER
-        level = max(level, cost * GROWN**refused)
+        level = greater(level, cost * GROWN**refused)
         cut, least = np.sqrt(level * count / area), shape * 0.1**refused
         limits = turn, least, fold, cut
         if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):

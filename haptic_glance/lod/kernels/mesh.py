@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from haptic_glance.base.jit import greater, lesser
+
 from .jit import Id, allocating_kernel, between, cross, dot, helper, kernel, light_kernel, point
 
 MAX_EDGES = 64  # at a vertex, to vertices of higher ids: with more of them the linear search takes too long
@@ -78,7 +80,7 @@ def _closed(faces, opposite, first, up, high):
     for f in range(0, len(faces), 3):
         for k in range(3):
             tail, head = faces[f + k], faces[f + (k + 1) % 3]
-            first[min(tail, head)] += tail < head
+            first[lesser(tail, head)] += tail < head
     total, count = 0, len(first) - 1
     for low in range(count):
         if first[low] > MAX_EDGES:
@@ -119,13 +121,13 @@ def _match(first, up, high, opposite, tail, head, h):
 def _by_lower_end(faces, count):
     first = np.zeros(count + 1, dtype=np.int32)
     for h in range(len(faces)):
-        first[min(faces[h], faces[after(h)]) + 1] += 1
+        first[lesser(faces[h], faces[after(h)]) + 1] += 1
     for low in range(count):
         first[low + 1] += first[low]
     place = first[:-1].copy()
     order = np.empty(len(faces), dtype=np.int32)
     for h in range(len(faces)):
-        low = min(faces[h], faces[after(h)])
+        low = lesser(faces[h], faces[after(h)])
         order[place[low]] = h
         place[low] += 1
     return first, order
@@ -364,7 +366,8 @@ def _count(vertices, faces, opposite, thin, fold, normal):
         wx, wy, wz = vx - ux, vy - uy, vz - uz
         x, y, z = cross(ux, uy, uz, vx, vy, vz)
         double = np.sqrt(dot(x, y, z, x, y, z))
-        sides = max(dot(ux, uy, uz, ux, uy, uz), dot(vx, vy, vz, vx, vy, vz), dot(wx, wy, wz, wx, wy, wz))
+        sides = greater(dot(ux, uy, uz, ux, uy, uz), dot(vx, vy, vz, vx, vy, vz))
+        sides = greater(sides, dot(wx, wy, wz, wx, wy, wz))
         degenerate += double <= thin * np.sqrt(sides)
         if double > 0.0:
             normal[f, 0], normal[f, 1], normal[f, 2] = x / double, y / double, z / double

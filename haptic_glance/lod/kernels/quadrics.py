@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from haptic_glance.base.jit import greater
+
 from .jit import Id, between, cross, dot, helper, kernel, point
 from .mesh import after
 
@@ -71,7 +73,7 @@ def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float
     gx = (q[i, 0] + q[j, 0]) * x + 2 * ((q[i, 1] + q[j, 1]) * y + (q[i, 2] + q[j, 2]) * z + q[i, 6] + q[j, 6])
     gy = (q[i, 3] + q[j, 3]) * y + 2 * ((q[i, 4] + q[j, 4]) * z + q[i, 7] + q[j, 7])
     gz = (q[i, 5] + q[j, 5]) * z + 2 * (q[i, 8] + q[j, 8])
-    return max(x * gx + y * gy + z * gz + q[i, 9] + q[j, 9], 0.0)
+    return greater(x * gx + y * gy + z * gz + q[i, 9] + q[j, 9], 0.0)
 
 
 @helper
@@ -93,7 +95,7 @@ def best_place(q: np.ndarray, p: np.ndarray, i: Id, j: Id) -> tuple[float, float
     ux, uy, uz = sx - tx, sy - ty, sz - tz
     if dot(dx, dy, dz, dx, dy, dz) <= MAX_SHIFT * MAX_SHIFT * dot(ux, uy, uz, ux, uy, uz):  # False for NaN: A is flat
         error, x, y, z = error + gx * dx + gy * dy + gz * dz, x + dx, y + dy, z + dz
-    return max(error, 0.0), x, y, z
+    return greater(error, 0.0), x, y, z
 
 
 class Wedges(NamedTuple):

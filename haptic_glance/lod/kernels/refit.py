@@ -7,6 +7,8 @@ merged into it (least squares, as in Hoppe et al. 1993, "Mesh optimization", sec
 
 import numpy as np
 
+from haptic_glance.base.jit import greater, lesser
+
 from .collapse import NOBODY, check_move
 from .jit import between, cross, dot, helper, kernel, point
 from .mesh import HalfEdgeMesh, after, before
@@ -34,7 +36,7 @@ def _refit(surface, points, faces, weight, samples, fold, pull, mark):
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
     limits = TURN, SHAPE, fold, np.inf
     count = len(points) + len(faces) // 3
-    for at in range(0, count, max(count // max(samples, 1), 1)):
+    for at in range(0, count, greater(count // greater(samples, 1), 1)):
         owner, x, y, z, share = _target(points, faces, weight, at)
         _pull(corner, opposite, start, position, _root(parent, owner), x, y, z, share, pull)
     for v in range(len(position)):
@@ -135,7 +137,7 @@ def _nearest(p, a, b, c, x, y, z):
         s, t = 0.0, 0.0
     else:
         along = uu - 2 * uv + vv
-        t = min(max((uu - uv - uw + vw) / along, 0.0), 1.0) if along > 0.0 else 0.0
+        t = lesser(greater((uu - uv - uw + vw) / along, 0.0), 1.0) if along > 0.0 else 0.0
         s = 1 - t
     dx, dy, dz = wx - s * ux - t * vx, wy - s * uy - t * vy, wz - s * uz - t * vz
     return dot(dx, dy, dz, dx, dy, dz), s, t

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from haptic_glance.base.jit import helper, kernel_of
+from haptic_glance.base.jit import greater, helper, kernel_of, lesser
 
 if TYPE_CHECKING:
     from .samples import Samples
@@ -48,7 +48,7 @@ def _cut(corners, face, rows, filled, stack, counts, cell):
             for k in range(3):
                 low, high = stack[top, 0, k], stack[top, 0, k]
                 for i in range(1, count):
-                    low, high = min(low, stack[top, i, k]), max(high, stack[top, i, k])
+                    low, high = lesser(low, stack[top, i, k]), greater(high, stack[top, i, k])
                 cell[k] = math.floor(low + ROUNDING)
                 last = math.ceil(high - ROUNDING) - 1
                 if last > cell[k]:
@@ -169,15 +169,15 @@ def _seen(places, normals, pictures, group, sums, depth, pixels, near):
                 pixels[i, k] = half + math.floor(at / PIXEL + 0.5)
             near[i] = ex * x + ey * y + ez * z
             row, column = pixels[i, 0], pixels[i, 1]
-            depth[row, column] = max(depth[row, column], near[i])
+            depth[row, column] = greater(depth[row, column], near[i])
         for i in range(count):
             cosine = ex * normals[i, 0] + ey * normals[i, 1] + ez * normals[i, 2]
             if cosine > EDGE_ON:
                 front = near[i]
                 for row in range(pixels[i, 0] - 1, pixels[i, 0] + 2):
                     for column in range(pixels[i, 1] - 1, pixels[i, 1] + 2):
-                        front = max(front, depth[row, column])
-                share = (FAR - (front - near[i]) * max(cosine, STEEP)) / (FAR - NEAR)
-                share = min(max(share, 0.0), 1.0)
+                        front = greater(front, depth[row, column])
+                share = (FAR - (front - near[i]) * greater(cosine, STEEP)) / (FAR - NEAR)
+                share = lesser(greater(share, 0.0), 1.0)
                 sums[group[d], i] += share * cosine
                 sums[3, i] += share

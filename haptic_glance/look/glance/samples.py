@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import KDTree
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import greater, kernel_of, lesser
 
 NEAREST = 10  # points that a value on the surface is interpolated from
 SHARP = 0.75  # width of the Gaussian of that interpolation, in units of the spacing
@@ -167,7 +167,7 @@ def _average(
                     step = points[i, axis] - near_points[k, axis]
                     square += step * step
                     cosine += normals[i, axis] * near_normals[k, axis]
-                share = 1.0 if near_ids[k] == i else min(max((cosine - low) / (high - low), 0.0), 1.0)
+                share = 1.0 if near_ids[k] == i else lesser(greater((cosine - low) / (high - low), 0.0), 1.0)
                 if square <= reach * reach and share > 0:
                     if filled == len(ids):
                         return i

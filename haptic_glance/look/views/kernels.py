@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from haptic_glance.base.jit import helper, kernel_of
+from haptic_glance.base.jit import greater, helper, kernel_of, lesser
 
 kernel = kernel_of(__file__, _nrt=False)
 allocating_kernel = kernel_of(__file__)  # counts references to the arrays that it makes
@@ -25,8 +25,8 @@ def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face:
         r1, c1, z1 = corners[j, 0], corners[j, 1], corners[j, 2]
         r2, c2, z2 = corners[k, 0], corners[k, 1], corners[k, 2]
         area = (r1 - r0) * (c2 - c0) - (c1 - c0) * (r2 - r0)
-        above = max(int(np.ceil(min(r0, r1, r2) - SLACK)), top)
-        below = min(int(np.floor(max(r0, r1, r2) + SLACK)), top + height - 1)
+        above = greater(int(np.ceil(lesser(lesser(r0, r1), r2) - SLACK)), top)
+        below = lesser(int(np.floor(greater(greater(r0, r1), r2) + SLACK)), top + height - 1)
         if above > below or abs(area) <= FLAT:
             continue
         # The weights of the second and the third corner grow by these along a row and along a column.
@@ -55,9 +55,9 @@ def _columns(start, slope, over, low, high):
     """The columns, between low and high, at which a weight start + column * slope is not below 0; over is 1 / slope."""
     end = (-SLACK - start) * over
     if slope > 0:
-        low = max(low, end)
+        low = greater(low, end)
     elif slope < 0:
-        high = min(high, end)
+        high = lesser(high, end)
     elif start < -SLACK:
         high = -1.0
     return low, high
@@ -88,8 +88,8 @@ def shade_pixels(
             over = 1 / (br * dc - bc * dr)
             p, q = (top + i - r0) * over, (left + j - c0) * over
             # On an edge rounding may lead out of the face: clipped.
-            second = min(max(dc * p - dr * q, 0.0), 1.0)
-            third = min(max(br * q - bc * p, 0.0), 1.0 - second)
+            second = lesser(greater(dc * p - dr * q, 0.0), 1.0)
+            third = lesser(greater(br * q - bc * p, 0.0), 1.0 - second)
             first = 1 - second - third
             u, v, w = groups[f, 0], groups[f, 1], groups[f, 2]
             x = first * normals[u, 0] + second * normals[v, 0] + third * normals[w, 0]
@@ -97,14 +97,14 @@ def shade_pixels(
             z = first * normals[u, 2] + second * normals[v, 2] + third * normals[w, 2]
             towards = crosses[f, 0] * back[0] + crosses[f, 1] * back[1] + crosses[f, 2] * back[2]
             cosine = (x * back[0] + y * back[1] + z * back[2]) * (-1.0 if towards < 0 else 1.0)
-            brightness = min(max(cosine / max(np.sqrt(x * x + y * y + z * z), 1e-300), 0.0), 1.0)
+            brightness = lesser(greater(cosine / greater(np.sqrt(x * x + y * y + z * z), 1e-300), 0.0), 1.0)
             light = ambient + diffuse * brightness
             highlight = 255 * specular * brightness**shininess if specular > 0 else 0.0
-            shade = int(np.rint(min(grey * light + highlight, 255.0)))
+            shade = int(np.rint(lesser(grey * light + highlight, 255.0)))
             for channel in range(3):
                 if len(colors):
                     value = first * colors[a, channel] + second * colors[b, channel] + third * colors[c, channel]
-                    shade = int(np.rint(min(value * light + highlight, 255.0)))
+                    shade = int(np.rint(lesser(value * light + highlight, 255.0)))
                 rgb[i, j, channel] = shade
 
 

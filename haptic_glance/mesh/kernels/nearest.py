@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from haptic_glance.base.jit import helper
+from haptic_glance.base.jit import greater, helper, lesser
 
 from .planes import NUMBERS, bound_to, kernel, set_planes, square_to
 
@@ -71,14 +71,14 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
     sure = (sure and gz - needed >= z0 and gz + needed < z0 + 1) or best <= enough
     limit = 1.0
     while not sure and limit <= far:
-        radius = min(needed, limit)
+        radius = lesser(needed, limit)
         x0, x1 = _clipped(gx - radius, shape[0]), _clipped(gx + radius, shape[0])
         y0, y1 = _clipped(gy - radius, shape[1]), _clipped(gy + radius, shape[1])
         z0, z1 = _clipped(gz - radius, shape[2]), _clipped(gz + radius, shape[2])
         for layer in range(z0, z1 + 1):
-            up = max(layer - gz, gz - layer - 1, 0.0)
+            up = greater(greater(layer - gz, gz - layer - 1), 0.0)
             for column in range(y0, y1 + 1):
-                aside = max(column - gy, gy - column - 1, 0.0)
+                aside = greater(greater(column - gy, gy - column - 1), 0.0)
                 if (up * up + aside * aside) * cell * cell > best:
                     continue
                 row = layer * shape[1] + column
@@ -90,7 +90,7 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
                             best, face = square, candidate
                             if best <= enough:
                                 return best, face, True
-        sure = needed <= limit or best * per_unit**2 <= radius**2
+        sure = needed <= limit or best * (per_unit * per_unit) <= radius * radius
         needed = math.sqrt(best) * per_unit
         limit *= 2
     return best, face, sure
@@ -184,8 +184,8 @@ def _fill_boxes(vertices, faces, low, per_unit, shape, boxes):
         cells = 1
         for axis in range(3):
             p, q, r = vertices[a, axis], vertices[b, axis], vertices[c, axis]
-            first = _clipped((min(p, q, r) - low[axis]) * per_unit, shape[axis])
-            last = max(_clipped((max(p, q, r) - low[axis]) * per_unit, shape[axis]), first)
+            first = _clipped((lesser(lesser(p, q), r) - low[axis]) * per_unit, shape[axis])
+            last = greater(_clipped((greater(greater(p, q), r) - low[axis]) * per_unit, shape[axis]), first)
             boxes[f, axis], boxes[f, axis + 3] = first, last
             cells *= last - first + 1
         total += cells

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from haptic_glance.base.jit import UntilCompiledBeside, helper, kernel_of
+from haptic_glance.base.jit import UntilCompiledBeside, greater, helper, kernel_of, lesser
 
 Id = int | np.integer
 kernel = kernel_of(__file__, forceinline=True, _nrt=False)  # makes no array
@@ -47,7 +47,7 @@ def _frame_of(vertices, a, b, c):
         size = math.sqrt(wx * wx + wy * wy + wz * wz)
     over = 1 / size
     wx, wy, wz = wx * over, wy * over, wz * over
-    return (ux, uy, uz), (wx, wy, wz), length, cx, max(vx * wx + vy * wy + vz * wz, 0.0)
+    return (ux, uy, uz), (wx, wy, wz), length, cx, greater(vx * wx + vy * wy + vz * wz, 0.0)
 
 
 @helper
@@ -111,8 +111,8 @@ def square_to(
     if side_a < 0.0 and side_b < 0.0 and side_c < 0.0:
         return w * w
     best = _square_to_side(ax, ay, az, ax - bx, ay - by, az - bz)
-    best = min(best, _square_to_side(bx, by, bz, bx - cx, by - cy, bz - cz))
-    return min(best, _square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
+    best = lesser(best, _square_to_side(bx, by, bz, bx - cx, by - cy, bz - cz))
+    return lesser(best, _square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
 
 
 def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -143,7 +143,7 @@ def _weigh(points, owners, vertices, faces, weights):
             dx, dy = (length if k == 0 else (cx if k == 1 else 0.0)) - px, (cy if k == 1 else 0.0) - py
             square = dx * dx + dy * dy
             t = ((u - px) * dx + (v - py) * dy) / square if square > 0 else 0.0
-            t = min(max(t, 0.0), 1.0)
+            t = lesser(greater(t, 0.0), 1.0)
             square_distance = (u - px - t * dx) ** 2 + (v - py - t * dy) ** 2
             if square_distance < best:
                 best = square_distance
