@@ -15,7 +15,7 @@ from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
 
 from .kept import beside, claim, is_kept, kept_in, marker
-from .passes import FewerPasses, NoMachineCode
+from .passes import FewerPasses
 
 # Where a kernel is kept: by what its folder holds, or, if that is not writable, where numba itself would.
 LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
@@ -27,7 +27,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrap
 # the kernels that call it are.
 HELPER: dict[str, Any] = {
     "forceinline": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False,
-    "pipeline_class": NoMachineCode,
+    "pipeline_class": FewerPasses,
 }  # fmt: skip
 helper = numba.njit(**HELPER)
 

@@ -125,18 +125,13 @@ def add_clipped(x, total):
         total[i % 2] += clipped(x[i]) ** 2
 
 
-def test_a_helper_becomes_machine_code_only_inside_its_kernels(tmp_path, monkeypatch):
+def test_a_kernel_with_fewer_passes_of_numba_computes_what_python_does(tmp_path, monkeypatch):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     x, compiled, plain = np.linspace(-1, 2, 99), np.zeros(2), np.zeros(2)
     kernel = jit.kernel_of(__file__, forceinline=True, _nrt=False)(add_clipped)
     kernel(x, compiled)
     interpreted(kernel)(x, plain)
     np.testing.assert_array_equal(compiled, plain)
-    (kernel_code,), (helper_code,) = kernel.overloads.values(), clipped.overloads.values()
-    is_executable = [
-        code.library.get_pointer_to_function(code.fndesc.llvm_func_name) != 0 for code in (kernel_code, helper_code)
-    ]
-    assert is_executable == [True, False]
 
 
 def test_lesser_and_greater_are_min_and_max_bit_for_bit():
