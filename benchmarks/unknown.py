@@ -4,7 +4,7 @@ Learns one or three objects of each of seven classes of psb.zip. Touches each le
 of each of these classes (`sibling`), and the objects of the other classes (`stranger`). The planner touches until an
 answer has a belief of 95 %, at most 30 times, at places that were drawn for the exploration. The objects stand as they
 were learned, or, with `pose` unknown, are turned at random, and each array about its normal. No constant of
-haptic_glance.know.unknown was chosen by the ten classes; five draws of classes and objects.
+haptic_glance.know.unknown was chosen by the ten classes; three draws of classes and objects.
 
 Writes reports/bench/unknown.csv: pose, learned (objects), unknown (whether an object may be none of these), touched
 (known, sibling or stranger), explorations, the shares of them that end with the right name, a wrong name, the answer
@@ -29,7 +29,7 @@ from stages.meshes.sources import SOURCES
 
 OUT = Path("reports/bench/unknown.csv")
 CLASSES = ("Airplane", "Armadillo", "Bird", "Bust", "Chair", "Fish", "Glasses", "Human", "Octopus", "Table")
-KNOWN, DRAWS = 7, 5  # classes that are learned; draws
+KNOWN, DRAWS = 7, 3  # classes that are learned; draws
 EACH = (1, 3)  # learned objects of each class
 ANSWERS = ("right", "wrong", "none", "undecided")
 COLUMNS = ["pose", "learned", "unknown", "touched", "explorations", *ANSWERS, "touches"]

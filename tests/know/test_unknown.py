@@ -99,6 +99,14 @@ def test_touches_of_an_object_are_verified_and_touches_between_objects_are_not()
     assert probability(of_first[:1]) == 0.5
 
 
+def test_the_excess_is_relative_to_the_own_touches_of_the_likeliest_object():
+    components, evidence, _ = clusters(5, spread=1.0)
+    verifier = Verifier(evidence, components, Calibration(1.0, 0.0), 0.95, np.random.default_rng(1))
+    verifier.verification = Verification(0, 1, 0, 0)  # the log odds are the excess
+    for own, scores in zip(components, evidence, strict=True):
+        assert verifier.probability(scores.sum(axis=0), log_pooled(scores).sum(), own) == pytest.approx(0.5)
+
+
 def test_touches_that_are_likely_but_all_alike_are_another_object():
     """Each touch is like one of the object; together they are not, which only their discrepancy shows."""
     components, evidence, _ = clusters(8, spread=1.0)
