@@ -109,8 +109,8 @@ def check_unknown(objects: int, touches: int) -> None:
     """Raises ValueError unless there are enough objects, and touches of each, to tell unknown objects."""
     if objects < FEWEST or touches < LEAST:
         raise ValueError(
-            f"unknown=True needs {FEWEST} objects or more, with {LEAST} touches or more of each, got {objects} with "
-            f"{touches}: each object is left out in turn, as an example of an unknown one"
+            f"the answer {NONE!r} (unknown=True) needs {FEWEST} objects or more, with {LEAST} touches or more of each, "
+            f"got {objects} with {touches}: each object is left out in turn, as an example of an unknown one"
         )
 
 
