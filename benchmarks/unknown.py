@@ -1,4 +1,4 @@
-"""Objects that were never learned, recognised by touch: `python -m benchmarks.unknown [PSB.zip]`, 10 minutes
+"""Objects that were never learned, recognised by touch: `python -m benchmarks.unknown [PSB.zip]`, 3 minutes
 
 Learns one or three objects of each of seven classes of psb.zip. Touches each learned object (`known`), another object
 of each of these classes (`sibling`), and the objects of the other classes (`stranger`). The planner touches until an
