@@ -4,7 +4,7 @@ Two properties of the touches are compared with those of the likeliest object. T
 objects alone: each of them is left out in turn, and is then an unknown object among the others.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -77,7 +77,7 @@ def fit_verification(sequences: Sequences, sure: float) -> Verification:
 
     bounds = [(-3, 3), (0, 20), (0, 500), (0, 1.5)]
     fitted = scipy.optimize.minimize(loss, [0.1, 0.3, 1.0, 0.7], bounds=bounds, method="L-BFGS-B").x
-    choices = [Verification(*fitted.tolist(), scale) for scale in SCALES]
+    choices = [replace(Verification(*fitted.tolist()), scale=scale) for scale in SCALES]
     return next((choice for choice in choices if _may_stop(sequences, choice, sure)), choices[-1])
 
 
@@ -150,7 +150,8 @@ class Verifier:
         excess = (log_likelihoods[best] - pooled) / touches - self._typical[best]
         across = similarity(components, self._components[best]).mean()
         within = _mean_of_pairs(similarity(components, components)) + self._within[best]
-        return float(self.verification.probability(excess, (within - 2 * across) / within, np.float64(touches)))
+        parts = (np.asarray(part, dtype=float) for part in (excess, (within - 2 * across) / within, touches))
+        return float(self.verification.probability(*parts))
 
     def _sequences(self, own, orders, random):
         """Sequences of the learned touches: each order once with its object known, and once with it left out."""
