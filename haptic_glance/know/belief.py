@@ -111,12 +111,12 @@ def feature_kernel(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     Exponential rather than normal, so that a touch unlike all training touches does not decide alone. By the likelihood
     of single held-out touches it is better than a normal kernel, naive Bayes and linear discriminants.
     """
-    return np.exp(-_distances(first, second) / FEATURE_WIDTH)
+    return np.exp(-distances(first, second) / FEATURE_WIDTH)
 
 
 def place_kernel(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(k, n): the proximity of places (k, 3) and (n, 3), exp(-distance / width)."""
-    return np.exp(-_distances(first, second) / PLACE_WIDTH)
+    return np.exp(-distances(first, second) / PLACE_WIDTH)
 
 
 def log_likelihood(kernel: np.ndarray, truth: np.ndarray, counts: np.ndarray | None = None) -> np.ndarray:
@@ -131,8 +131,8 @@ def log_likelihood(kernel: np.ndarray, truth: np.ndarray, counts: np.ndarray | N
     return np.log(np.maximum(kernel @ one_hot / counts, FLOOR))
 
 
-def _distances(first, second):
-    """(k, n) Euclidean distances."""
+def distances(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(k, n) Euclidean distances of points (k, d) and (n, d)."""
     squares = (first**2).sum(axis=1)[:, None] + (second**2).sum(axis=1)[None] - 2 * first @ second.T
     return np.sqrt(np.maximum(squares, 0))
 

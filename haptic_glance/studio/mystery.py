@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.rng import rng
-from haptic_glance.know import Exploration, Library, known_objects, learn, primitives, touched
+from haptic_glance.know import NONE, Exploration, Library, known_objects, learn, primitives, touched
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch.surface import as_surface
 
@@ -72,21 +72,30 @@ def gather(
     return meshes, notes
 
 
-def study(meshes: Mapping[str, Mesh], placed: bool) -> tuple[Library, float]:
-    """(the Library, seconds that it took)."""
+def without_stranger(meshes: Mapping[str, Mesh], table: Specimen | None, seed: int | None = None) -> dict[str, Mesh]:
+    """The meshes that are learned if an object may be unknown: all but that on the table, or with None one by lot."""
+    stranger = str(np.random.default_rng(seed).choice(sorted(meshes))) if table is None else table.name
+    return {name: mesh for name, mesh in meshes.items() if name != stranger}
+
+
+def study(meshes: Mapping[str, Mesh], placed: bool, unknown: bool = False) -> tuple[Library, float]:
+    """(the Library, seconds that it took). unknown: whether an object may be none of these."""
     start = time.perf_counter()
-    library = learn(meshes, placed, turned=not placed)
+    library = learn(meshes, placed, turned=not placed, unknown=unknown)
     return library, time.perf_counter() - start
 
 
 def guess(library: Library, meshes: Mapping[str, Mesh], table: Specimen | None, seed: int | None = None) -> Guess:
     """A Guess at the mesh on the table, or, with None, at one of the known objects, drawn by lot and hidden.
 
-    A hidden object lies in a random pose, unless the library's objects stand as they were learned.
+    A hidden object lies in a random pose, unless the library's objects stand as they were learned. If the library
+    lacks some of the meshes, such a stranger hides in half of the games.
     seed: of the lot, None for another one each time.
     """
     random = np.random.default_rng(seed)
-    name = str(random.choice(library.names)) if table is None else table.name
+    strangers = [name for name in meshes if name not in library.names]
+    drawn_from = strangers if table is None and strangers and random.random() < 0.5 else library.names
+    name = str(random.choice(drawn_from)) if table is None else table.name
     specimen = table or Specimen(meshes[name], name)
     if table is None and not library.placed:
         turn = Rotation.random(None, random)
@@ -105,14 +114,16 @@ def by_planner(game: Guess) -> tuple[int, str]:
 
 def verdict(game: Guess, planner: tuple[int, str], escaped: Callable[[str], str] = str) -> str:
     """Who knew it, in Markdown, once it is shown. escaped: of names, so that nothing of them is Markdown."""
+    is_known = game.name in game.exploration.library.names
+    right, about = (game.name, "") if is_known else (NONE, ", none of the known objects")
     theirs = f"the planner alone knew it after {planner[0]}"
-    if planner[1] != game.name:
+    if planner[1] != right:
         theirs = f"took it for {escaped(planner[1])}" if planner[1] else "gave up"
         theirs = f"the planner alone {theirs} after {planner[0]}"
     answer = game.person_answer or game.exploration.belief.known
-    yours = "You knew it" if answer == game.name else f"You took it for {escaped(answer)}" if answer else "You gave up"
+    yours = "You knew it" if answer == right else f"You took it for {escaped(answer)}" if answer else "You gave up"
     helped = f", {game.helped} of them the planner's" if game.helped else ""
-    return f"**It is {escaped(game.name)}.** {yours} after {count(game.touches)}{helped}; {theirs}."
+    return f"**It is {escaped(game.name)}{about}.** {yours} after {count(game.touches)}{helped}; {theirs}."
 
 
 def count(touches: int) -> str:

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from haptic_glance.know import learn, primitives
+from haptic_glance.know import NONE, learn, primitives
 from haptic_glance.lod import write_any
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.studio.mystery import by_planner, gather, guess, study, verdict
+from haptic_glance.studio.mystery import by_planner, gather, guess, study, verdict, without_stranger
 from haptic_glance.studio.panels.know import KnowPanel
 from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen
@@ -79,6 +79,30 @@ def test_the_verdict_names_who_knew_it(library, shapes, person_answer, planner, 
     game = guess(library, shapes, Specimen(shapes["cone"], "cone"))
     game.person_answer = person_answer
     assert verdict(game, planner) == f"**It is cone.** {expected}"
+
+
+def test_a_stranger_hides_in_half_of_the_games_and_the_mesh_on_the_table_is_not_learned(shapes):
+    assert set(without_stranger(shapes, Specimen(shapes["cone"], "cone"))) == {*shapes} - {"cone"}
+    known = without_stranger(shapes, None, seed=0)
+    (stranger,) = {*shapes} - {*known}
+    assert known == {name: shapes[name] for name in known}
+    library, _ = study(known, placed=True, unknown=True)
+    hidden = [guess(library, shapes, None, seed).name for seed in range(40)]
+    assert 10 <= hidden.count(stranger) <= 30 and len(set(hidden)) > 3
+
+
+@pytest.mark.parametrize(
+    ("person_answer", "planner", "expected"),
+    [
+        (NONE, (4, NONE), "You knew it after 0 touches; the planner alone knew it after 4."),
+        ("box", (2, "ball"), "You took it for box after 0 touches; the planner alone took it for ball after 2."),
+    ],
+)
+def test_a_stranger_is_known_as_none_of_the_known_objects(shapes, person_answer, planner, expected):
+    library, _ = study(without_stranger(shapes, Specimen(shapes["cone"], "cone")), placed=True, unknown=True)
+    game = guess(library, shapes, Specimen(shapes["cone"], "cone"))
+    game.person_answer = person_answer
+    assert verdict(game, planner) == f"**It is cone, none of the known objects.** {expected}"
 
 
 def test_the_verdict_counts_the_planners_help(library, shapes):

@@ -2,14 +2,14 @@
 
 import viser
 
-from haptic_glance.know import Library
+from haptic_glance.know import NONE, Library
 from haptic_glance.know.library import CELLS, PITCH
 from haptic_glance.touch.places import Places
 
 from ..drawing import bars_html, draw_cells, grid_html
 from ..feeling import Felt, Sensor, feel_in_pose, place_of
 from ..jobs import Report
-from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict
+from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict, without_stranger
 from ..panel import Panel
 from ..scene import BLUE, MESH, escaped
 from ..specimen import Hit, Specimen
@@ -41,6 +41,8 @@ class KnowPanel(Panel):
             self.basic = gui.add_checkbox("Basic shapes", True)
             self.household = gui.add_checkbox("Household", HOUSEHOLD.is_dir(), visible=HOUSEHOLD.is_dir())
             self.placed = gui.add_checkbox("It stands as it was learned", True, hint="or else it may lie anywhere")
+        hint = "the mesh on the table is not learned, and neither is one of the objects that may hide"
+        self.unknown = gui.add_checkbox("It may be none of these", False, hint=hint)
         on = self.window.on
         on(self.next.on_click, self.touch_next)
         on(self.until.on_click, self.touch_on)
@@ -48,7 +50,7 @@ class KnowPanel(Panel):
         on(self.name.on_update, self.take_answer)
         on(self.reveal.on_click, self.show_it)
         on(self.again.on_click, self.learn)
-        for control in (self.basic, self.household, self.placed):
+        for control in (self.basic, self.household, self.placed, self.unknown):
             on(control.on_update, self.learn)
 
     @property
@@ -85,13 +87,14 @@ class KnowPanel(Panel):
         """Learns the objects in the background, then begins with the mesh on the table, or with a hidden one."""
         table, settings = self.window.session.specimen, self.window.settings
         household = HOUSEHOLD if self.household.value else None
-        basic, placed = self.basic.value, self.placed.value
+        basic, placed, unknown = self.basic.value, self.placed.value, self.unknown.value
 
         def work(report: Report) -> tuple[list[str], Library, float, Guess | None]:
             report(0.1, "reading the known objects")
             meshes, notes = gather(settings.files, settings.up, table, basic, household)
-            report(0.5, f"{len(meshes)} objects")
-            library, seconds = study(meshes, placed)
+            known = without_stranger(meshes, None if hidden else table) if unknown else meshes
+            report(0.5, f"{len(known)} objects")
+            library, seconds = study(known, placed, unknown)
             begun = guess(library, meshes, None if hidden else table) if hidden or table is not None else None
             return notes, library, seconds, begun
 
@@ -243,7 +246,8 @@ class KnowPanel(Panel):
         if game is None:
             return
         if hides:
-            self.name.options = (GUESS, *game.exploration.library.names)
+            library = game.exploration.library
+            self.name.options = (GUESS, *library.names, *([NONE] if library.verifier else []))
             scene.api.add_icosphere(ROOM, 0.5, (150, 160, 190), subdivisions=5, opacity=0.12, cast_shadow=False)
         elif game.hidden:
             scene.mesh(SHOWN, game.specimen.mesh, None)
