@@ -14,6 +14,8 @@ except ImportError:  # Windows: each process compiles for itself
 
 beside = threading.Event()  # set where other processes compile for this one
 PATIENCE = 60.0  # seconds: no kernel takes a tenth of that, so a process that holds one for longer hangs
+# Files of this folder that decide the machine code of all kernels: helpers that kernels inline, and numba's passes.
+SHARED = tuple(Path(__file__).with_name(name) for name in ("jit.py", "passes.py"))
 
 
 def cache_folder() -> Path:
@@ -26,9 +28,9 @@ def kept_in(file: str | Path) -> Path:
     """The folder in which the kernels of the folder of a file (`__file__`) are kept.
 
     numba renews a kept kernel when its own file changes, not when a kernel of another file that it calls does: so all
-    kernels of a folder are kept under one digest of all its files.
+    kernels of a folder are kept under one digest of all its files, and of the files in SHARED.
     """
-    sources = sorted(Path(file).parent.glob("*.py"))
+    sources = [*sorted(Path(file).parent.glob("*.py")), *SHARED]
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:12]
     return cache_folder() / "kernels" / digest
 

@@ -57,6 +57,18 @@ def test_a_copy_finds_what_equal_sources_elsewhere_compiled(tmp_path, monkeypatc
     assert hits_of(tmp_path / "copy", "2 * x") == 1 and hits_of(tmp_path / "other", "x + x") == 0
 
 
+def test_a_change_of_the_shared_helpers_renews_the_kernels_of_all_folders(tmp_path, monkeypatch):
+    shared, file = [tmp_path / path.name for path in kept.SHARED], tmp_path / "one" / "kernels.py"
+    for path in shared:
+        path.touch()
+    monkeypatch.setattr(kept, "SHARED", shared)
+    folders = [kept.kept_in(file)]
+    for path in shared:
+        path.write_text("# another choice of passes, or another helper")
+        folders.append(kept.kept_in(file))
+    assert len(set(folders)) == 3
+
+
 def test_a_cache_that_cannot_be_written_to_is_done_without(tmp_path, monkeypatch):
     (tmp_path / "cache").write_text("no folder")
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
