@@ -74,7 +74,10 @@ def gather(
 
 def without_stranger(meshes: Mapping[str, Mesh], table: Specimen | None, seed: int | None = None) -> dict[str, Mesh]:
     """The meshes that are learned if an object may be unknown: all but that on the table, or with None one by lot."""
-    stranger = str(np.random.default_rng(seed).choice(sorted(meshes))) if table is None else table.name
+    if table is not None:
+        stranger = table.name
+    else:
+        stranger = str(np.random.default_rng(seed).choice(sorted(meshes))) if meshes else ""
     return {name: mesh for name, mesh in meshes.items() if name != stranger}
 
 

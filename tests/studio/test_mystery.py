@@ -83,6 +83,7 @@ def test_the_verdict_names_who_knew_it(library, shapes, person_answer, planner, 
 
 def test_a_stranger_hides_in_half_of_the_games_and_the_mesh_on_the_table_is_not_learned(shapes):
     assert set(without_stranger(shapes, Specimen(shapes["cone"], "cone"))) == {*shapes} - {"cone"}
+    assert without_stranger({}, None) == {}  # `learn` then says how many objects it needs
     known = without_stranger(shapes, None, seed=0)
     (stranger,) = {*shapes} - {*known}
     assert known == {name: shapes[name] for name in known}
