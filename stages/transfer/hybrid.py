@@ -24,13 +24,13 @@ from haptic_glance.deep.pictures import as_images
 from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import CONVERGED, Learning, accuracy, predict_probabilities, train_model
 from haptic_glance.deep.weights import available_weights
-from stages.engine.statistics import interval_metrics
+from stages.engine.statistics import interval_metrics, stratified_split
 
 from . import Params, fusion
 from .export import export_onnx, onnx_scores
 from .hybrid_data import SenseData, fused_rows, in_batches, read_pictures, row, sense_scores, single_sense
 from .new_object import TOUCH, new_object_rows
-from .plan import by_objects, by_touches, middle_of, stratified_split
+from .plan import by_objects, by_touches, middle_of
 from .touches import Touches, read_touches, sensor_arrays
 
 PAIR_METRICS = ("max_difference", "size_ratio")  # metrics of the summary of both senses together

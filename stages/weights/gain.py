@@ -21,13 +21,7 @@ def gain_rows(name: str, record: dict[str, np.ndarray], seed: int) -> Rows:
             continue
         drawn = balanced_rows(labels, rng(seed, "svm"), len(labels))
         gains = dict(zip(record["channels"], information_gains(pixels[drawn], labels[drawn]), strict=True))
-        shared = {
-            "item": name,
-            "method": "svm",
-            "area": area,
-            "training": "one_per_object",
-            "metric": "information_gain",
-        }
+        shared = {"item": name, "method": "svm", "area": area, "training": "one_per_object", "metric": GAIN}
         rows += [shared | {"channel": str(channel), "value": gain} for channel, gain in gains.items()]
     return rows
 
