@@ -227,6 +227,15 @@ def learn(
     >>> library = learn({name: shapes[name] for name in ("box", "cylinder")}, placed=False)
     >>> Exploration(library, shapes["cylinder"], np.random.default_rng(0)).finish()
     'cylinder'
+
+    A torus that was never learned, with its probability to be none of five other shapes:
+
+    >>> others = {name: shape for name, shape in shapes.items() if name != "torus"}
+    >>> exploration = Exploration(learn(others, unknown=True), shapes["torus"], np.random.default_rng(0))
+    >>> exploration.finish()
+    'none of these'
+    >>> round(exploration.belief.none, 2)
+    0.97
     """
     check_names(meshes)
     if len(meshes) < 2:
