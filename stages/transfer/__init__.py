@@ -58,6 +58,7 @@ class Params:
     hybrid_colour: bool
     hybrid_rate: float
     hybrid_passes: str
+    hybrid_size: int
     hybrid_onnx: bool
     new_object_touches: list[int]
     hybrid_severities: dict[str, list[float]]

@@ -32,8 +32,14 @@ def train(
     name: str, folder: Path, made: Path, members: Mapping[str, Mapping[str, Sequence[str]]], settings: Params, seed: int
 ) -> Rows:
     """Rows of one training, or of one hybrid network."""
-    kind = hybrid if name.startswith("hybrid.") else trial
-    return kind.process(name, folder, made, members, settings, seed)
+    if name.startswith("hybrid."):
+        return hybrid.process(name, folder, made, members, of_hybrids(settings), seed)
+    return trial.process(name, folder, made, members, settings, seed)
+
+
+def of_hybrids(settings: Params) -> Params:
+    """The settings of hybrid networks, which see images of another size."""
+    return dataclasses.replace(settings, size=settings.hybrid_size)
 
 
 def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dict]:
@@ -47,12 +53,12 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     hybrids = hybrid.trials(settings, members)
     if hybrids:
         imagenet_state("mobilenet_v2", settings.source)  # before the work starts, not in each worker
-        take = functools.partial(hybrid_data.process, data=data, settings=common, seed=stage.seed)
+        take = functools.partial(hybrid_data.process, data=data, settings=of_hybrids(common), seed=stage.seed)
         stage.each(take, objects, reads=("meshes/{}.npz",))
     work = functools.partial(train, made=stage.folder, members=members, settings=common, seed=stage.seed)
     rows = stage.each(work, [*(training.name for training in planned.trials), *hybrids], reads=MADE)
     trained = [trial_row(row, planned.pretrained, settings) for row in rows if "trial" in row]
-    stitched = [row | seen(settings) for row in rows if "trial" not in row]
+    stitched = [row | seen(of_hybrids(settings)) for row in rows if "trial" not in row]
     stage.rows = KeptRows(trained, stitched)
     metrics = summary(trained, stage.seed)
     if hybrids:

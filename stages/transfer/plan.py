@@ -83,8 +83,9 @@ def check(settings: Params) -> None:
     check_passes([settings.hybrid_passes], "transfer.hybrid_passes")
     if min(settings.patience, settings.most_epochs) < 1:
         raise ValueError("transfer: patience and most_epochs must be 1 or more")
-    if settings.size < SMALLEST:
-        raise ValueError(f"transfer.size: {settings.size} is too small, networks see {SMALLEST} pixels a side or more")
+    for name, size in (("size", settings.size), ("hybrid_size", settings.hybrid_size)):
+        if size < SMALLEST:
+            raise ValueError(f"transfer.{name}: {size} is too small, networks see {SMALLEST} pixels a side or more")
     counts = settings.new_object_touches or [0]
     if min(counts) < 1 or max(counts) >= settings.touches:
         raise ValueError(f"transfer.new_object_touches: {settings.new_object_touches} must be 1 or more and less than "

@@ -7,6 +7,7 @@ import torch
 
 from haptic_glance.base.fetch import FetchError
 from stages.engine.statistics import stratified_split
+from stages.transfer import __main__ as stage
 from stages.transfer import plan as planning
 from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate
 from stages.transfer.touches import choose_vertices
@@ -132,6 +133,7 @@ def test_what_is_left_out_is_named(small, weights):
         ({"splits": {"random": 0, "objects": 0}}, "must be 1 or more"),
         ({"touches": 1}, "touches 2"),
         ({"size": 16}, "transfer.size: 16 is too small"),
+        ({"hybrid_size": 16}, "transfer.hybrid_size: 16 is too small"),
         ({"device": "abacus"}, "unknown device"),
         ({"new_object_touches": [1, 8]}, "less than transfer.touches"),
         ({"new_object_touches": []}, "less than transfer.touches"),
@@ -205,3 +207,11 @@ def test_salient_points_come_first_and_blind_ones_fill_up():
     assert chosen[:2].tolist() == [7, 3] and len(set(chosen.tolist())) == 20
     with pytest.raises(ValueError, match="only 36 vertices"):
         choose_vertices(grid, np.array([7, 3]), 37, rng())
+
+
+def test_only_hybrid_networks_see_images_of_their_own_size(small, monkeypatch):
+    for module in (stage.hybrid, stage.trial):
+        monkeypatch.setattr(module, "process", lambda name, folder, made, members, settings, seed: [settings.size])
+    settings = small.settings(size=64, hybrid_size=96)
+    sizes = [stage.train(name, None, None, {}, settings, 0) for name in ("hybrid.18-139.random.0", "imprints.x")]
+    assert sizes == [[96], [64]]
