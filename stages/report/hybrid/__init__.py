@@ -119,10 +119,12 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
 def _note(rows: pd.DataFrame, theirs: float) -> str:
     """Sentences on one middle; every network holds what they say, so that all values stand for an interval."""
     ratios, losses = _values(rows, "hybrid", "size_ratio"), 100 * abs(_values(rows, "apart") - _values(rows, "hybrid"))
+    differences, counts = _values(rows, "hybrid", "max_difference"), rows.groupby("split")["repetition"].nunique()
+    trained = " and ".join(f"{counts[split]} on {words}" for split, words in ITEMS.items() if split in counts)
     note = (
-        f"{dataset_text(rows['dataset'].iloc[0])}, layers {rows['mode'].iloc[0]} shared: in every network, scores of "
-        f"the hybrid differ from those of the two networks by {number(_values(rows, 'hybrid', 'max_difference').max())}"
-        f" at most, accuracy by {losses.max():.2f} points at most. Size ratio {ratios.mean():.4f}; the thesis's is "
+        f"{dataset_text(rows['dataset'].iloc[0])}, layers {rows['mode'].iloc[0]} shared: {trained}. In every network, "
+        f"scores of the hybrid differ from those of the two networks by {number(differences.max())} at most, "
+        f"accuracy by {losses.max():.2f} points at most. Size ratio {ratios.mean():.4f}; the thesis's is "
         f"{theirs:.4f}."
     )
     onnx = rows[rows["network"] == "hybrid_onnx"].groupby("metric")["value"].max()
