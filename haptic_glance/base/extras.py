@@ -16,6 +16,7 @@ MODULES = {
     "studio": ("viser",),
     "front": ("optuna",),
     "agents": ("gymnasium",),
+    "robots": ("collada",),
 }  # fmt: skip
 EXTRAS = {module: extra for extra, modules in MODULES.items() for module in modules}
 

@@ -1,4 +1,4 @@
-"""Reads files of meshes, one or a folder: STL, OBJ, PLY, glTF by trimesh, OFF by our own reader, scans by `clouds`."""
+"""Reads files of meshes, one or a folder: STL, OBJ, PLY, glTF and DAE by trimesh, OFF by us, scans by `clouds`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from haptic_glance.base.extras import MissingExtra, about
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.warner import warn_caller
 
-from . import clouds, gltf, obj, ply
+from . import clouds, collada, gltf, obj, ply
 from .axes import AUTO
 from .clouds import Cloud
 from .headers import MeshError, check_header, stated_faces
@@ -42,7 +42,7 @@ WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
 READY = {".glb": gltf.ready, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
-FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", *clouds.FORMATS, clouds.DEPTH)
+FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".dae", *clouds.FORMATS, clouds.DEPTH)
 
 
 def load(path: str | Path) -> Mesh:
@@ -57,8 +57,8 @@ def load(path: str | Path) -> Mesh:
     (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
     haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
     camera. A warning names a cloud whose normals have wrong sides, and pictures that are unreadable. A GLB is y up, a
-    .depth file z up. The other formats do not say, but in a comment of ours: `up` is then y or z, whichever the shape
-    suggests (haptic_glance.mesh.upright).
+    .depth file z up, a .dae file as it states. The other formats do not say, but in a comment of ours: `up` is then y
+    or z, whichever the shape suggests (haptic_glance.mesh.upright).
     Raises MeshError with the file and the reason when it holds no usable mesh.
     """
     return settled(load_as_stated(path))
@@ -210,7 +210,8 @@ def parse(
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)
             mesh = _parsed(content, suffix, resolver, every_colour, name)
-        return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated_up(content) or AUTO)
+        stated = collada.up_of(content) if suffix == ".dae" else stated_up(content)
+        return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated or AUTO)
     except (MeshError, MissingExtra):
         raise
     except MemoryError:
@@ -233,6 +234,8 @@ def _parsed(content, suffix, resolver, every_colour, name):
         return clouds.surface_of(clouds.read_depth(content, resolver and resolver.get))
     if suffix in clouds.FORMATS:
         return _surface(clouds.read_cloud(content, suffix), name)
+    if suffix == ".dae":
+        return collada.read_collada(content, resolver) or _to_mesh(None, False, every_colour)
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
         beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
@@ -358,6 +361,7 @@ NAMES_IN = {  # of the formats that refer to other files
     ".gltf": gltf.names_in,
     ".glb": gltf.names_in,
     ".ply": ply.names_in,
+    ".dae": collada.names_in,
     clouds.DEPTH: clouds.names_in,
 }
 
