@@ -30,7 +30,7 @@ Vector = tuple[float, float, float]
 
 @helper
 def point(p: np.ndarray, v: Id) -> Vector:
-    """Row v of p (n, 3)."""
+    """Row v of p (n, 3). numba checks whether an index is negative, unless its type is unsigned."""
     v = np.uint32(v)
     return p[v, 0], p[v, 1], p[v, 2]
 
