@@ -64,11 +64,10 @@ def closed(surface: HalfEdgeMesh, free: np.ndarray, factor: np.ndarray) -> HalfE
 
 def hidden(surface: HalfEdgeMesh) -> np.ndarray:
     """(m,) boolean: the hidden faces that are left."""
-    nowhere = np.isnan(surface.position[:, 0])
     corner = surface.corner.reshape(-1, 3)
-    if not nowhere[-1:].any():  # they stand last, where there are any
+    if not np.isnan(surface.position[-1:, 0]).any():  # they stand last, where there are any
         return np.zeros(len(corner), dtype=bool)
-    return nowhere[corner].any(axis=1) & (corner[:, 0] >= 0)
+    return np.isnan(surface.position[:, 0])[corner].any(axis=1) & (corner[:, 0] >= 0)
 
 
 def held(surface: HalfEdgeMesh) -> HalfEdgeMesh:

@@ -138,7 +138,8 @@ def check_arrays(
 
 
 def _check_cells(cells):
-    if (
+    plain = type(cells) is tuple and [*map(type, cells)] == [int, int] and min(cells) >= 1  # nearly always
+    if not plain and (
         np.shape(cells) != (2,)
         or np.asarray(cells).dtype.kind not in "iuf"
         or any(not number >= 1 or number % 1 for number in cells)

@@ -239,12 +239,13 @@ def bucket_of(cost: float) -> Id:
 @helper
 def is_queued(following: np.ndarray, h: Id) -> bool:
     """Whether a half-edge is in the queue."""
-    return following[h] != NOT_QUEUED
+    return following[np.uint32(h)] != NOT_QUEUED
 
 
 @helper
 def push(head: np.ndarray, following: np.ndarray, lowest: np.ndarray, h: Id, bucket: Id) -> None:
     """Puts a half-edge that is not queued into a bucket."""
+    h, bucket = np.uint32(h), np.uint32(bucket)
     following[h] = head[bucket]
     head[bucket] = h
     if bucket < lowest[0]:
@@ -255,10 +256,10 @@ def push(head: np.ndarray, following: np.ndarray, lowest: np.ndarray, h: Id, buc
 def pop(head: np.ndarray, following: np.ndarray, lowest: np.ndarray) -> tuple[Id, Id]:
     """(half-edge, its bucket) of least cost; (-1, -1) when the queue is empty."""
     for at in range(lowest[0], BUCKETS):
-        h = np.int64(head[at])
+        h = np.int64(head[np.uint32(at)])
         if h >= 0:
-            head[at] = following[h]
-            following[h] = NOT_QUEUED
+            head[np.uint32(at)] = following[np.uint32(h)]
+            following[np.uint32(h)] = NOT_QUEUED
             lowest[0] = at
             return h, at
     lowest[0] = BUCKETS
@@ -314,9 +315,12 @@ def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn,
         if now > bucket:
             push(head, following, lowest, h, now)
             continue
-        refused = (bucket - now) / LATER
-        level = greater(level, cost * GROWN**refused)
-        cut, least = np.sqrt(level * count / area), shape * 0.1**refused
+        least = shape
+        if bucket > now:
+            refused = (bucket - now) / LATER
+            cost, least = cost * GROWN**refused, shape * 0.1**refused
+        level = greater(level, cost)
+        cut = np.sqrt(level * count / area)
         limits = turn, least, fold, cut
         if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):
             if wedges is not None:
@@ -343,12 +347,11 @@ def _offer(corner, opposite, locked, position, quadric, wedges, head, following,
 
 @helper
 def _cost(corner, opposite, locked, position, quadric, wedges, h):
-    i, j = corner[h], corner[after(h)]
+    i, j = corner[np.uint32(h)], corner[after(h)]
     if wedges is not None:
         held = i if locked[i] else j if locked[j] else np.int32(-1)
         return attribute_cost(opposite, position, quadric, wedges, h, i, j, held)
-    if locked[i] or locked[j]:
-        v = i if locked[i] else j
-        x, y, z = position[v, 0], position[v, 1], position[v, 2]
+    if locked[np.uint32(i)] or locked[np.uint32(j)]:
+        x, y, z = point(position, i if locked[np.uint32(i)] else j)
         return error_at(quadric, i, j, x, y, z), x, y, z
     return best_place(quadric, position, i, j)

@@ -30,13 +30,15 @@ Vector = tuple[float, float, float]
 
 @helper
 def point(p: np.ndarray, v: Id) -> Vector:
-    """Row v of p (n, 3)."""
+    """Row v of p (n, 3). numba checks whether an index is negative, unless its type is unsigned."""
+    v = np.uint32(v)
     return p[v, 0], p[v, 1], p[v, 2]
 
 
 @helper
 def between(p: np.ndarray, a: Id, b: Id) -> Vector:
     """From row a of p (n, 3) to row b."""
+    a, b = np.uint32(a), np.uint32(b)
     return p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
 
 

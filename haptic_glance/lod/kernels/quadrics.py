@@ -50,7 +50,7 @@ def _add_planes(position, corner, weight, quadrics):
 @helper
 def _add(q, v, s, x, y, z, d, px, py, pz):
     """Adds s times the squared distance to the plane x, y, z, d and, `PULL` times weaker, to the point px, py, pz."""
-    w = s * PULL
+    w, v = s * PULL, np.uint32(v)
     q[v, 0] += s * x * x + w
     q[v, 1] += s * x * y
     q[v, 2] += s * x * z
@@ -70,6 +70,7 @@ def _add(q, v, s, x, y, z, d, px, py, pz):
 @helper
 def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float:
     """The error at a point of the sum of the quadrics of two vertices."""
+    i, j = np.uint32(i), np.uint32(j)
     gx = (q[i, 0] + q[j, 0]) * x + 2 * ((q[i, 1] + q[j, 1]) * y + (q[i, 2] + q[j, 2]) * z + q[i, 6] + q[j, 6])
     gy = (q[i, 3] + q[j, 3]) * y + 2 * ((q[i, 4] + q[j, 4]) * z + q[i, 7] + q[j, 7])
     gz = (q[i, 5] + q[j, 5]) * z + 2 * (q[i, 8] + q[j, 8])
@@ -79,6 +80,7 @@ def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float
 @helper
 def best_place(q: np.ndarray, p: np.ndarray, i: Id, j: Id) -> tuple[float, float, float, float]:
     """(error, x, y, z): the minimum of the quadrics of two vertices at p (n, 3), near their midpoint."""
+    i, j = np.uint32(i), np.uint32(j)
     sx, sy, sz = point(p, i)
     tx, ty, tz = point(p, j)
     x, y, z = (sx + tx) / 2, (sy + ty) / 2, (sz + tz) / 2

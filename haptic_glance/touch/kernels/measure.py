@@ -246,7 +246,7 @@ def search(
     size, stack[0], highest = min(1, len(children)), 0, -np.inf
     while size > 0:
         size -= 1
-        node = stack[size]
+        node = np.uint32(stack[size])
         x, y, z = from_centre(boxes, node, frame)
         wx, wy, wz = boxes[node, 3], boxes[node, 4], boxes[node, 5]
         height, extent = along(frame.normal, x, y, z), half_width(frame.normal, wx, wy, wz) + frame.slack
@@ -291,6 +291,7 @@ def search(
 @helper
 def from_centre(boxes: np.ndarray, node: np.integer | np.ndarray, frame: Frame) -> tuple[float, float, float]:
     """The centre of a node's box, relative to the array's centre."""
+    node = np.uint32(node)
     return boxes[node, 0] - frame.centre[0], boxes[node, 1] - frame.centre[1], boxes[node, 2] - frame.centre[2]
 
 
