@@ -20,6 +20,7 @@ import pandas as pd
 
 from benchmarks import arguments
 from benchmarks._simplify_peers import LOCK, PRIORITY, peers
+from benchmarks.errors import fresh
 from haptic_glance.base.files import write_table
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, salient_error, simplify
 from haptic_glance.mesh import normalise
@@ -67,9 +68,9 @@ def cell(mesh, faces, gaze, works):
     rows = {}
     for _ in range(ROUNDS):
         for name, work in works.items():
-            fresh, start = Mesh(mesh.vertices, mesh.faces), time.process_time()
+            unseen, start = fresh(mesh), time.process_time()
             try:
-                simple = work(fresh, faces)
+                simple = work(unseen, faces)
             except (InfeasibleTarget, SimplifyError) as refusal:
                 rows[name] = {"method": name, "outcome": "refused", "note": str(refusal)}
                 continue

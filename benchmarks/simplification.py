@@ -32,6 +32,7 @@ import trimesh
 
 from benchmarks import arguments
 from benchmarks._simplify_peers import UNABLE, peers
+from benchmarks.errors import fresh
 from haptic_glance.base.files import write_table
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, perceptual, simplify
 from haptic_glance.lod.fast import collapse as fast
@@ -118,7 +119,7 @@ def cell(mesh, faces, keep, rings):
     able = [name for name in BACKENDS if name not in UNABLE or not len(keep)]
     if faces < smallest_with(mesh, frozen):
         return [row | {"backend": name, "outcome": "infeasible"} for name in able]
-    works = {name: lambda work=BACKENDS[name]: work(Mesh(mesh.vertices, mesh.faces), faces, frozen) for name in able}
+    works = {name: lambda work=BACKENDS[name]: work(fresh(mesh), faces, frozen) for name in able}
     tints = np.rint(255 * np.clip(mesh.vertices + 0.5, 0, 1)).astype(np.uint8)
     for column, colours in (("whole", None), ("colours", tints)):
         for name in WHOLE:
@@ -129,7 +130,7 @@ def cell(mesh, faces, keep, rings):
 
 def unseen(mesh, colours, *task):
     """All of simplify, on a mesh of its own."""
-    return simplify(Mesh(mesh.vertices, mesh.faces, colours), *task)
+    return simplify(fresh(mesh, colours), *task)
 
 
 def with_ratios(rows):

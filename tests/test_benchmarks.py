@@ -110,3 +110,11 @@ def test_the_last_commit_of_this_machine_counts_and_others_only_without_it():
     assert _history.limits(known, "here")["press"] == pytest.approx(1.3 * 1.05 * 0.4)
     known = history(("a", 1, "press", 0.4, "one"), ("a", 1, "press", 0.8, "another"), ("b", 2, "press", 0.5, "another"))
     assert _history.limits(known, "here")["press"] == pytest.approx(2 * 1.3 * 1.05 * 0.5)
+
+
+def test_a_timed_call_finds_nothing_that_the_library_knows_of_an_equal_mesh(monkeypatch):
+    seen = []
+    monkeypatch.setattr(simplification, "BACKENDS", {"pymeshlab": lambda mesh, *_: seen.append(mesh) or part(200)})
+    monkeypatch.setattr(simplification, "WHOLE", ())
+    simplification.cell(BALL, 200, np.zeros(0, dtype=np.int64), 0)
+    assert len(seen) == simplification.ROUNDS == len({BALL, *seen}) - 1
