@@ -184,7 +184,7 @@ def test_the_gain_of_a_channel_that_tells_the_classes_is_one_bit_and_of_noise_no
 
 
 def test_a_mesh_with_one_face_has_no_distances_to_compare():
-    rows = shape_rows("mug", Mesh(0.1 + np.array([[0, 0, 0], [0.7, 0, 0], [0, 0.3, 0]]), np.array([[0, 1, 2]])))
+    rows = shape_rows("mug", Mesh(0.1 + np.array([[0, 0, 0], [2.2, 0, 0], [0, 0.3, 0]]), np.array([[0, 1, 2]])))
     assert [row["metric"] for row in rows] == ["convexity"] and rows[0]["value"] == pytest.approx(1)
 
 
