@@ -264,6 +264,8 @@ def params():
         ("lod.shrink", "perhaps", "write true or false"),
         ("lod.rings", -3, "lod.rings: -3 must be 0 or more"),
         ("meshes.objects", ["cup", None], "write such a name in quotes"),
+        ("meshes.objects", ["cup", 1e5], "meshes.objects: 100000.0 is how YAML reads a name: write such a name in q"),
+        ("meshes.objects", [True], "meshes.objects: True is how YAML reads a name: write such a name in quotes"),
         ("views.size", [900, 0], "views.size: 0 must be 1 or more"),
         ("lod.targets", "25%", "is not a ListConfig, list or tuple: write a list in brackets"),
         ("views.size", [900], "views.size: [900] must be [rows, columns]"),

@@ -104,16 +104,19 @@ class HybridNet(torch.nn.Module):
         return super().train(False)
 
     def forward(self, images: torch.Tensor) -> Scores:
-        """Scores of images (b, 6, h, w) in 0..1."""
+        """Scores of images (b, 6, h, w) in 0..1. Raises ValueError for another shape; `predict` checks values, too."""
+        _check_shape(images)
         shared = self.shared(self._stream(images, 0) + self._stream(images, 1))
         return Scores(*(self._head(images, shared, sense) for sense in range(2)))
 
     def separate_scores(self, images: torch.Tensor) -> Scores:
         """Scores like those of forward, but each head gets its own stream alone, even where both senses are present."""
+        _check_shape(images)
         return Scores(*(self._head(images, self.shared(self._stream(images, sense)), sense) for sense in range(2)))
 
     def features(self, images: torch.Tensor, sense: int) -> torch.Tensor:
         """(b, width): what the head of one sense, an index of SENSES, gets of images (b, 6, h, w) in 0..1."""
+        _check_shape(images)
         # the items of a ModuleList are typed as Module
         return self.late[sense][:-1](self.shared(self._stream(images, sense)))  # pyright: ignore
 
@@ -158,7 +161,13 @@ class HybridNet(torch.nn.Module):
 
 
 def join_senses(pictures: torch.Tensor | None, imprints: torch.Tensor | None) -> torch.Tensor:
-    """(b, 6, h, w) f4: the input of a HybridNet from images (b, 3, h, w) of each sense; None for an absent sense."""
+    """(b, 6, h, w) f4: the input of a HybridNet from images (b, 3, h, w) of each sense; None for an absent sense.
+
+    Raises ValueError where both are absent, and for images of another shape or of two shapes.
+    """
+    for name, images in (("pictures", pictures), ("imprints", imprints)):
+        if images is not None:
+            _check_shape(images, name, channels=3)
     present_sense = imprints if pictures is None else pictures
     if present_sense is None:
         raise ValueError("one of the two senses must be given")
@@ -171,10 +180,14 @@ def join_senses(pictures: torch.Tensor | None, imprints: torch.Tensor | None) ->
 
 def check_images(images: torch.Tensor) -> None:
     """Raises ValueError unless images are (b, 6, h, w) with finite values in 0..1."""
-    if images.ndim != 4 or images.shape[1] != 6 or 0 in images.shape:
-        raise ValueError(f"images must have shape (b, 6, h, w) and not be empty, got {tuple(images.shape)}")
+    _check_shape(images)
     if not bool(((images >= 0) & (images <= 1)).all()):
         raise ValueError("images must hold values in 0..1, and neither NaN nor infinity")
+
+
+def _check_shape(images, name="images", channels=6):
+    if images.ndim != 4 or images.shape[1] != channels or 0 in images.shape:
+        raise ValueError(f"{name} must have shape (b, {channels}, h, w) and not be empty, got {tuple(images.shape)}")
 
 
 def _check(vision, touch, middle):

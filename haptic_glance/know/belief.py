@@ -103,6 +103,9 @@ def _checked(sequences, truth):
 FEATURE_WIDTH = 0.6  # of twelve standardised components; 0.3 to 1 give the same single-touch likelihood within 6 %
 PLACE_WIDTH = 0.05  # units: a third of the array, within which neighbouring touches are similar
 FLOOR = 1e-30  # of a density that rounds to 0
+ORDERS = 5  # random orders of each object's touches, at least, for a calibration
+STOPS, LAST = 400, 30  # orders of all objects together, and touches of each, where touching ends by a calibration
+BLOCK = 256  # touches compared at once, in the processor's cache
 
 
 def feature_kernel(first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -30,7 +30,11 @@ from haptic_glance.touch.skin import as_shares
 from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals, turned
 
 from .belief import (
+    BLOCK,
     FLOOR,
+    LAST,
+    ORDERS,
+    STOPS,
     Calibration,
     calibrate,
     calibrate_to_stop,
@@ -164,9 +168,7 @@ def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:
 
 TOUCHES = 128  # a learned object; twice as many know no more of the household objects
 CELLS, PITCH = (16, 16), 0.01  # of the array, T4.3
-ORDERS, LONGEST = 5, 20  # random orders of each object's touches, and touches of each, for the calibration
-STOPS, LAST = 400, 30  # orders of all objects together, and touches of each, for the belief at which touching ends
-BLOCK = 256  # touches compared at once, in the processor's cache
+LONGEST = 20  # touches of each order, for the calibration of the belief
 AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three widths of `place_kernel` away
 FAR = 1.0  # units, a normalised object's size: a place farther from all learned touches is in another unit
 

@@ -10,14 +10,12 @@ import numpy as np
 import scipy
 from scipy.special import expit, log_expit
 
-from .belief import FLOOR, Calibration, distances
+from .belief import BLOCK, FLOOR, LAST, ORDERS, STOPS, Calibration, distances
 
 NONE = "none of these"  # the answer where the object is not among the known ones
 FEWEST, LEAST = 3, 4  # known objects: two remain where one is left out; touches of each
-ORDERS, STOPS, LAST = 5, 400, 30  # orders of each object's touches, at least and in all; touches of each
 WIDTH = 2.0  # of `similarity`; 0.6 tells unknown objects in unknown poses less well, 5 no better
 SCALES = np.geomspace(1.0, 0.1, 24).tolist()  # of the log odds, where sure answers are wrong too often
-BLOCK = 256  # touches compared at once, in the processor's cache
 
 
 @dataclass(frozen=True)

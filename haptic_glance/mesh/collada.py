@@ -15,6 +15,7 @@ from .obj import Beside
 
 UP = re.compile(rb"<(?:\w+:)?up_axis>\s*([XYZ])_UP\s*<")
 NAN = re.compile(rb"(?i)<(?:\w+:)?float_array[^>]*>[^<]*\bnan\b")
+OTHER_PARTS = {"lines": rb"<(?:\w+:)?line(?:s|strips)[\s>]", "skins": rb"<(?:\w+:)?instance_controller[\s>]"}
 PICTURE = re.compile(rb"<(?:\w+:)?init_from>\s*(?:file://)?([^<]*?)\s*<")
 
 
@@ -40,6 +41,11 @@ def up_of(content: bytes) -> str:
     """The axis that points up; y where a file does not say, as COLLADA 1.4 has it."""
     match = UP.search(content)
     return match[1].decode().lower() if match else "y"
+
+
+def left_out(content: bytes) -> dict[str, int]:
+    """{kind: count} of the parts of a file that the mesh does not get."""
+    return {kind: len(re.findall(form, content)) for kind, form in OTHER_PARTS.items()}
 
 
 def names_in(content: bytes) -> list[str]:

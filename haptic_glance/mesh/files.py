@@ -42,6 +42,7 @@ WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
 READY = {".glb": gltf.ready, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
+LEFT_OUT = {".glb": gltf.left_out, ".obj": obj.left_out, ".ply": ply.left_out, ".dae": collada.left_out}
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".dae", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -56,9 +57,11 @@ def load(path: str | Path) -> Mesh:
     meet at one place: they would open the surface. Of a point cloud
     (PLY or OFF without faces, XYZ, PTS, PCD, LAS), with or without normals, the vertices are those of the surface that
     haptic_glance.mesh.clouds makes of it; so they are of a depth image, which a .depth file names together with its
-    camera. A warning names a cloud whose normals have wrong sides, and pictures that are unreadable. A GLB is y up, a
-    .depth file z up, a .dae file as it states. The other formats do not say, but in a comment of ours: `up` is then y
-    or z, whichever the shape suggests (haptic_glance.mesh.upright).
+    camera. A warning names a cloud whose normals have wrong sides, pictures that are unreadable, and what the mesh
+    leaves out of the shape: lines and points beside faces, instances, further scenes and poses of skins, with counts.
+    Morph targets show the shape of their weights. A GLB is y up, a .depth file z up, a .dae file as it states. The
+    other formats do not say, but in a comment of ours: `up` is then y or z, whichever the shape suggests
+    (haptic_glance.mesh.upright).
     Raises MeshError with the file and the reason when it holds no usable mesh.
     """
     return settled(load_as_stated(path))
@@ -206,10 +209,14 @@ def parse(
         content = gltf.with_pictures(content, resolver)
     check_header(content, suffix)
     try:
+        counts = LEFT_OUT[suffix](content) if suffix in LEFT_OUT else {}
         content = READY[suffix](content) if suffix in READY else content
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)
             mesh = _parsed(content, suffix, resolver, every_colour, name)
+        if any(counts.values()):
+            texts = (f"{kind} ({count:,})" for kind, count in counts.items() if count)
+            warn_caller(f"{name}: left out: {', '.join(texts)}")
         stated = collada.up_of(content) if suffix == ".dae" else stated_up(content)
         return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated or AUTO)
     except (MeshError, MissingExtra):

@@ -25,6 +25,9 @@ IDS = 5125  # the kind of the vertices of faces
 KINDS_OF_NUMBERS = INTEGERS | {IDS: "<u4", FLOAT: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 TRIANGLES, FAN = 4, 6  # modes of primitives
+NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines"}  # modes that are not read
+INSTANCES = "EXT_mesh_gpu_instancing"
+BENT = 1e-3  # of the entries of a joint's matrix: the joints of a file in its bind pose differ by rounding
 GLOSS, TRANSFORM = "KHR_materials_pbrSpecularGlossiness", "KHR_texture_transform"
 PLACE = ("matrix", "translation", "rotation", "scale")  # of a node
 MALFORMED = ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError  # of a damaged file
@@ -284,17 +287,8 @@ def _place_skins(tree, content):
     """Gives each node with a skin the place that the first joint of its skin has: its own place says nothing."""
     nodes = tree.get("nodes", [])
     skinned = [number for number, node in enumerate(nodes) if "skin" in node and "mesh" in node]
-    parents = {child: number for number, node in enumerate(nodes) for child in node.get("children", [])}
-    places = {}
-    for number in skinned:
-        skin = tree["skins"][nodes[number]["skin"]]
-        joint, place = skin["joints"][0], np.eye(4)
-        if "inverseBindMatrices" in skin:
-            place = numbers_of(tree, tree["accessors"][skin["inverseBindMatrices"]], content)[0].reshape(4, 4).T
-        for _ in nodes:  # nodes of a damaged file may form a ring
-            if joint is not None:
-                place, joint = _matrix(nodes[joint]) @ place, parents.get(joint)
-        places[number] = place
+    parents = _parents(tree)
+    places = {number: _joint_place(tree, tree["skins"][nodes[number]["skin"]], 0, content) for number in skinned}
     for number, place in places.items():
         node, root = nodes[number], number
         for _ in nodes:
@@ -307,6 +301,62 @@ def _place_skins(tree, content):
         for key in PLACE:
             node.pop(key, None)
         node["matrix"] = [round(value, 9) for value in place.T.ravel().tolist()]
+
+
+def _parents(tree):
+    return {child: number for number, node in enumerate(tree.get("nodes", [])) for child in node.get("children", [])}
+
+
+def _joint_place(tree, skin, order, content):
+    """(4, 4): the place to which a joint of a skin, by its order, moves the mesh."""
+    nodes, parents, joint, place = tree["nodes"], _parents(tree), skin["joints"][order], np.eye(4)
+    if "inverseBindMatrices" in skin:
+        place = numbers_of(tree, tree["accessors"][skin["inverseBindMatrices"]], content)[order].reshape(4, 4).T
+    for _ in nodes:  # nodes of a damaged file may form a ring
+        if joint is not None:
+            place, joint = _matrix(nodes[joint]) @ place, parents.get(joint)
+    return place
+
+
+def left_out(content: bytes) -> dict[str, int]:
+    """{kind: count} of the parts of a GLB that change its shape and that the parser leaves out; empty where malformed.
+
+    Primitives of points and of lines, meshes of the scenes that are not shown, instances, and skins whose joints stand
+    apart in the pose of the file: `ready` moves the mesh of such a skin by the first joint alone.
+    """
+    try:
+        tree, _ = opened(content)
+        nodes, shown = tree.get("nodes", []), _shown(tree)
+        drawn = [nodes[number] for number in sorted(shown) if "mesh" in nodes[number]]
+        modes = [part.get("mode") for node in drawn for part in tree["meshes"][node["mesh"]]["primitives"]]
+        kinds = [NO_SURFACE[mode] for mode in modes if mode in NO_SURFACE]
+        instances = [node.get("extensions", {}).get(INSTANCES, {}).get("attributes", {}) for node in drawn]
+        accessors = [next(iter(attributes.values())) for attributes in instances if attributes]
+        skins = [tree["skins"][number] for number in {node["skin"] for node in drawn if "skin" in node}]
+        return {kind: kinds.count(kind) for kind in sorted(set(kinds))} | {
+            "meshes of further scenes": sum("mesh" in node for node in nodes) - len(drawn),
+            "instances": sum(tree["accessors"][number]["count"] for number in accessors),
+            "poses of skins": sum(_bends(tree, skin, content) for skin in skins),
+        }
+    except MALFORMED:
+        return {}
+
+
+def _shown(tree):
+    """The nodes of the scene that the parser reads, with all nodes below."""
+    scenes = tree.get("scenes")
+    waiting, shown = list(scenes[tree.get("scene", 0)].get("nodes", []) if scenes else _roots(tree)), set()
+    while waiting:
+        number = waiting.pop()
+        waiting += [] if number in shown else tree["nodes"][number].get("children", [])
+        shown.add(number)
+    return shown
+
+
+def _bends(tree, skin, content):
+    """Whether the joints of a skin put a mesh at places that differ."""
+    places = np.stack([_joint_place(tree, skin, order, content) for order in range(len(skin["joints"]))])
+    return bool(np.abs(places - places[0]).max() > BENT * (1 + np.abs(places[0]).max()))
 
 
 def _matrix(node):

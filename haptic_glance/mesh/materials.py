@@ -17,7 +17,7 @@ from PIL import Image
 
 from haptic_glance.base.lazy import trimesh
 
-from .gltf import GLOSS, MALFORMED, joined, numbers_of, opened
+from .gltf import GLOSS, INSTANCES, MALFORMED, NO_SURFACE, joined, numbers_of, opened
 from .headers import ABSENT, MAX_TEXTURE, MeshError
 from .mesh import MOST_UV, Mesh, Texture, content_of
 from .srgb import decoded, multiplied
@@ -161,8 +161,7 @@ def pixels_of(image: Image.Image) -> np.ndarray:
 USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
 USUAL_SAMPLER = {"wrapS": 10497, "wrapT": 10497, "magFilter": 9729}  # repeated; interpolated between pixels
 READ = (GLOSS, "EXT_texture_webp")  # extensions that trimesh reads
-OF_THE_SCENE = ("KHR_lights_", "KHR_node_", "KHR_xmp", "KHR_materials_variants", "EXT_mesh_gpu_instancing", "MSFT_lod")
-NO_SURFACE = {0: "points", 1: "lines", 2: "lines", 3: "lines"}  # modes that are not read
+OF_THE_SCENE = ("KHR_lights_", "KHR_node_", "KHR_xmp", "KHR_materials_variants", INSTANCES, "MSFT_lod")
 KEPT_BESIDE_COLOURS = ("baseColorFactor", "pbrMetallicRoughness", "extensions", "extras")
 WITH_EXTRAS = ("nodes", "materials")  # trimesh writes them for each mesh
 DERIVED = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0")  # attributes of vertices that are kept, or follow from others

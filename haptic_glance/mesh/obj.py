@@ -170,7 +170,12 @@ OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)
 # Further statements that change how a material looks, and the values that change nothing.
 LOOKS = {"d": 1.0, "Tr": 0.0, "Ks": 0.0, "Ke": 0.0}
 COLOUR_MAP, PLACED = re.compile(r"(?mi)^\s*map_Kd(\s.*)$"), re.compile(r"(?i)\s(-[ost])(?=\s)")
-OTHER_ELEMENTS = {"lines": rb"(?m)^[ \t]*l[ \t]", "points": rb"(?m)^[ \t]*p[ \t]"}
+OTHER_ELEMENTS = {"lines": rb"\n[ \t]*l[ \t]", "points": rb"\n[ \t]*p[ \t]"}
+
+
+def left_out(content: bytes) -> dict[str, int]:
+    """{kind: count} of the elements of an OBJ, by statements, that are no faces."""
+    return {kind: len(re.findall(form, content)) for kind, form in OTHER_ELEMENTS.items()}
 
 
 USUAL_KD = {(0.0,) * 3, (0.8,) * 3, (1.0,) * 3}  # exporters write them beside a picture by habit
@@ -214,6 +219,6 @@ def not_read(path: Path, has_colors: bool = False) -> list[str]:
     options = [option for line in COLOUR_MAP.findall(words) for option in PLACED.findall(line)]
     names += [f"map_Kd {option}" for option in dict.fromkeys(options)]
     names += ["names of materials"] * (len(re.findall(r"(?mi)^\s*newmtl\s", words)) > 1)
-    names += [kind for kind, form in OTHER_ELEMENTS.items() if re.search(form, content)]
+    names += [kind for kind, count in left_out(content).items() if count]
     coloured = re.search(rb"(?m)^v(?:[ \t]+\S+){6,7}[ \t]*\r?$", content)
     return [*names, *(["colours of vertices"] * bool(coloured and not has_colors))]

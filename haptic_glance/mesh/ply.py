@@ -29,6 +29,12 @@ def names_in(content: bytes) -> list[str]:
     return [name.decode(errors="replace") for name in re.findall(rb"(?m)^comment TextureFile (.*?)\s*$", header)]
 
 
+def left_out(content: bytes) -> dict[str, int]:
+    """{kind: count} of the elements of a PLY that connect vertices without a face."""
+    header = content.partition(b"end_header")[0]
+    return {"edges": sum(map(int, re.findall(rb"(?m)^element edge (\d+)", header)))}
+
+
 def triangulated(content: bytes) -> bytes:
     """A PLY's bytes; each polygon of a binary one becomes a fan of triangles about its first vertex, in their order.
 

@@ -96,9 +96,9 @@ def _entries(folder):
 
 
 def _images_by_number(folder):
-    """The .jpg files of a folder in the order of the numbers at the end of their names."""
-    files = [file for file in _entries(folder) if file.name.endswith(".jpg")]
-    return sorted(files, key=lambda file: (int("0" + re.findall(r"(\d*)\.jpg$", file.name)[0]), file.name))
+    """The .jpg and .JPG files of a folder in the order of the numbers at the end of their names."""
+    files = [file for file in _entries(folder) if file.name.lower().endswith(".jpg")]
+    return sorted(files, key=lambda file: (int("0" + re.findall(r"(?i)(\d*)\.jpg$", file.name)[0]), file.name))
 
 
 def _image(file):

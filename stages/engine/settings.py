@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_type_hints
 
 import numpy as np
 from omegaconf import OmegaConf
@@ -140,6 +140,7 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     typed = OmegaConf.structured(schema)
     defaults: Any = OmegaConf.to_container(typed, throw_on_missing=False)
     _check_keys(section, values, list(defaults))
+    _check_texts(schema, values)
     try:
         merged = OmegaConf.merge(typed, values)
         _check_ranges(section, OmegaConf.to_container(merged))  # type: ignore[arg-type]  # a dict; `nan` may be a name
@@ -151,6 +152,16 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
         raise ParamsError(f"{key}: {reason}{remedy}") from None
     except ValueError as error:  # a schema's own check
         raise ParamsError(f"{section}: {error}") from None
+
+
+def _check_texts(schema: type, values: dict[str, Any]) -> None:
+    """ParamsError for a name in a list that YAML reads as another text: 1e5 as 100000.0, true as True."""
+    for key, kind in get_type_hints(schema).items():
+        parts = values.get(key) if kind == list[str] else None
+        for part in parts if isinstance(parts, list) else ():
+            if isinstance(part, bool) or (isinstance(part, float) and np.isfinite(part)):  # nan stays the name nan
+                remedy = REMEDIES["subclass of str"]
+                raise ParamsError(f"{section_of(schema)}.{key}: {part} is how YAML reads a name: {remedy}")
 
 
 def check_common(values: dict[str, Any]) -> None:

@@ -320,7 +320,7 @@ def stratified_split(labels: np.ndarray, share: float, rng: np.random.Generator)
     for label in np.unique(labels):
         ids = np.flatnonzero(labels == label)
         if len(ids) < 2:
-            raise ValueError(f"class {label} has one touch alone: it cannot be split")
+            raise ValueError(f"class {label} has one item alone: it cannot be split")
         count = min(max(round(share * len(ids)), 1), len(ids) - 1)
         first.append(rng.permutation(ids)[:count])
     first = np.sort(np.concatenate(first))

@@ -66,7 +66,8 @@ def train(
         stage.each(prepare, [method.name], [ALL_PICTURES])
     reads = [PICTURES, NETWORK.format(method.name)]  # only a random method has one
     stage.each(functools.partial(backbone.compute_maps, **common), objects, reads)
-    stage.each(functools.partial(finetune.train_head, tasks=tasks, **common), tasks.keys(), [f"{POOLED}/{method.name}"])
+    fit = functools.partial(finetune.train_head, objects=objects, tasks=tasks, **common)
+    stage.each(fit, tasks.keys(), [f"{POOLED}/{method.name}"])
 
 
 def made_by(method: Method) -> list[str]:

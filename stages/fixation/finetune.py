@@ -116,9 +116,12 @@ def labels_of(objects: Sequence[str], classes: Mapping[str, str], settings: Para
 
 
 def divided(labels: np.ndarray, seed: int) -> list[np.ndarray]:
-    """[train, validation, test]: ids of the pictures with a class."""
-    labelled = np.flatnonzero(labels >= 0)
-    return [labelled[ids] for ids in random_views(len(labelled), rng(seed, "fixation views"))]
+    """[train, validation, test]: ids of the pictures with a class.
+
+    A picture is in the same part for every task, whichever objects the tasks name. One task chooses the learning rate
+    for all tasks: no picture that chooses is one that tests.
+    """
+    return [ids[labels[ids] >= 0] for ids in random_views(len(labels), rng(seed, "fixation views"))]
 
 
 def lesson_of(
@@ -206,17 +209,20 @@ def train_head(
     made: Path,
     method: Method,
     settings: Params,
-    tasks: Mapping[str, Mapping[str, str]],
+    objects: Sequence[str],
+    tasks: Tasks,
     seed: int,
 ) -> list[dict]:
     """Trains the head of one task and writes heads/METHOD/TASK.npz; returns rows of its accuracy.
 
-    made: the folder of the pooled maps. The penalty is the one with the best validation accuracy, the strongest of
-    equals. The maps come from the head of the random split of views, as in the thesis.
+    made: the folder of the pooled maps; objects: all of them. The penalty is the one with the best validation accuracy,
+    the strongest of equals. The maps come from the head of the random split of views, as in the thesis.
     """
     classes, ids, features = read_features(made, method.name, tasks[task])
+    labels = labels_of(objects, tasks[task], settings)
     with threadpool_limits(1), Stopwatch() as watch:
-        train, validation, test = random_views(len(ids), rng(seed, "fixation views"))
+        parts = divided(labels, seed)
+        train, validation, test = (np.searchsorted(np.flatnonzero(labels >= 0), part) for part in parts)
         accuracies = [
             head_accuracy(features, ids, classes, train, validation, penalty) for penalty in settings.penalties
         ]

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 COLUMNS = {
     "data": "what is recognised: a name of stages.recorded_networks.data.SOURCES",
-    "weights": "what the network starts from: imagenet; random: its normalisation has the images' statistics; "
-    "random_initial: those it begins with",
+    "weights": "what the network starts from: imagenet; random: its normalisation has the statistics of the "
+    "images that train; random_initial: those it begins with",
     "pretrained": "which of ImageNet's weights there are: complete, convolutions, converted or none",
     "mode": "frozen (the new head alone learns) or finetuned (all layers learn)",
     "size": "pixels a side that the network sees",

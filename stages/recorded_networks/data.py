@@ -136,11 +136,13 @@ def finetuned(
 
 
 @torch.no_grad()
-def frozen_features(recording: Recording, method: str, weights: str, draw: int, settings: Params) -> torch.Tensor:
+def frozen_features(
+    recording: Recording, method: str, weights: str, draw: int, settings: Params, sample: np.ndarray
+) -> torch.Tensor:
     """(1 + copies, k, width) f4: the frozen network's features of all images, plain first, then augmented.
 
-    They are the same for every split. An untrained network is drawn by the method's name and the number of the draw;
-    its normalisation has the statistics of some images of all parts, without their labels.
+    An untrained network is drawn by the method's name and the number of the draw. If sample (n,), ids of images that
+    train, is not empty, the normalisation of a `random` network has the statistics of some of these images.
     """
     device, augment = choose_device(settings.device), augmentation()
     network = build(method, 2, weights, zlib.crc32(f"{method} {draw}".encode()), settings.source).to(device)
@@ -149,8 +151,8 @@ def frozen_features(recording: Recording, method: str, weights: str, draw: int, 
         return normalise(change(as_images(recording.touches.images[ids.numpy()], settings.size).to(device)))
 
     ids = torch.arange(len(recording.touches.images))
-    if weights == "random":
-        recalibrate(network, inputs, ids[:: max(1, len(ids) // SOME)])
+    if weights == "random" and len(sample):
+        recalibrate(network, inputs, sample[:: max(1, len(sample) // SOME)])
     changes = [{}] + [{"change": augment}] * (settings.copies if recording.augmented else 0)
     return torch.stack(
         [torch.cat([network.features(inputs(part, **options)).cpu() for part in ids.split(32)]) for options in changes]

@@ -47,7 +47,7 @@ class Run(NamedTuple):
 class Trial:
     """Trainings of a network that are made together: those that share frozen features, or one that is fine-tuned.
 
-    ImageNet's features are shared by all runs, those of an untrained network by the runs of one repetition: each
+    ImageNet's features are shared by all runs. An untrained network is shared by the runs of one repetition: each
     repetition draws its own, so that an interval over repetitions covers the draw of the weights, too.
     """
 
@@ -91,12 +91,12 @@ def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
 @explain_out_of_memory()
 def process(trial: Trial, folder: Path, recordings: dict[str, Recording], settings: Params, seed: int) -> Rows:
     """Makes the trainings of a trial and tests each network; returns the rows."""
-    cached = frozen_features_by_data(trial, recordings, settings, seed) if trial.mode == "frozen" else {}
+    cached = frozen_features_by_run(trial, recordings, settings, seed) if trial.mode == "frozen" else {}
     common = {"method": trial.method, "weights": trial.weights, "mode": trial.mode, "size": settings.size}
     common["pretrained"] = available_weights(trial.method, settings.source) if trial.weights == "imagenet" else "none"
     rows = []
     for run in trial.runs:
-        features, seconds = cached.get(run.data, (torch.empty(0), 0.0))
+        features, seconds = cached.get(run, (torch.empty(0), 0.0))
         run_rows = _train(trial, run, recordings[run.data], features, settings, seed)
         if "seconds" in run_rows[0]:
             run_rows[0]["seconds"] += seconds  # of the features, shared by several runs and counted in each
@@ -104,31 +104,45 @@ def process(trial: Trial, folder: Path, recordings: dict[str, Recording], settin
     return rows
 
 
-def frozen_features_by_data(
+def frozen_features_by_run(
     trial: Trial, recordings: dict[str, Recording], settings: Params, seed: int
-) -> dict[str, tuple[torch.Tensor, float]]:
-    """{data: (features, seconds that they took)}; what has the same images has the same features."""
-    cached: dict[str, tuple[torch.Tensor, float]] = {}
-    for data in dict.fromkeys(run.data for run in trial.runs):
-        images = recordings[data].touches.images
-        twins = [name for name in cached if np.array_equal(recordings[name].touches.images, images)]
+) -> dict[Run, tuple[torch.Tensor, float]]:
+    """{run: (features, seconds that they took)}; runs on the same images share their features.
+
+    The normalisation of a `random` network has the statistics of the images that the run learns from: runs share its
+    features only where they also learn from the same images.
+    """
+    by_run: dict[Run, tuple[torch.Tensor, float]] = {}
+    made: list[tuple[np.ndarray, np.ndarray, Run]] = []
+    for run in trial.runs:
+        recording = recordings[run.data]
+        images, sample = recording.touches.images, np.arange(0)
+        if trial.weights == "random" and trial.method not in UNNORMALISED:
+            sample = _sides(recording, run, seed)[0]
+        twins = [other for *arrays, other in made if all(map(np.array_equal, arrays, (images, sample)))]
         if twins:
-            cached[data] = cached[twins[0]]
+            by_run[run] = by_run[twins[0]]
             continue
         with repeatable(seed), Stopwatch() as watch:
-            features = frozen_features(
-                recordings[data], trial.method, trial.weights, trial.runs[0].repetition, settings
-            )
-        cached[data] = features, watch.seconds
-    return cached
+            features = frozen_features(recording, trial.method, trial.weights, run.repetition, settings, sample)
+        by_run[run] = features, watch.seconds
+        made.append((images, sample, run))
+    return by_run
+
+
+def _sides(recording: Recording, run: Run, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """(learned, fit, validation, test): ids; learned is `fit` of a training to convergence, else the first two."""
+    fit, validation, test = parts(recording, run.split, split_number(seed, run.repetition))
+    learned = fit if run.passes == CONVERGED else np.sort(np.concatenate([fit, validation]))
+    return learned, fit, validation, test
 
 
 def _train(trial: Trial, run: Run, recording: Recording, features: torch.Tensor, settings: Params, seed: int) -> Rows:
     """Rows of one training, the accuracy first; of one that diverged a row with a note."""
     mode, labels, classes = trial.mode, recording.touches.labels, len(recording.touches.classes)
-    fit, validation, test = parts(recording, run.split, split_number(seed, run.repetition))
+    learned, fit, validation, test = _sides(recording, run, seed)
     train, converged = np.sort(np.concatenate([fit, validation])), run.passes == CONVERGED
-    learned, learning = fit if converged else train, Learning(validation if converged else None, settings.patience)
+    learning = Learning(validation if converged else None, settings.patience)
     head, order = (int(value) for value in rng(seed, f"{run.data} {run.repetition}").integers(2**31, size=2))
     with repeatable(order), Stopwatch() as watch:
         if mode == "frozen":

@@ -81,7 +81,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     """Writes the report below `out`; returns its metrics."""
     own_meshes = results.own_meshes
     items, (claims, differences), meshes = side_by_side(results)
-    remove_older(items, out)
+    left = remove_older(items, out)
     write_records(items, results, out)
     not_run = {f"{kind}/{name}": reason for kind, batch in items.items() for name, reason in batch.not_run.items()}
     if own_meshes:  # what would need other data sets is left out
@@ -101,7 +101,11 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     totals = {kind: len(batch.items) for kind, batch in items.items()}
     reasons: dict[str, list[str]] = {}
     for name, reason in not_run.items():
-        reasons.setdefault(reason, []).append(name)
+        if name not in left:
+            reasons.setdefault(reason, []).append(name)
+    if left:
+        names = ", ".join(f"{name} ({stage})" for name, stage in left.items())
+        print(f"report: left as it was, since data/ lacks the stage in brackets (`dvc repro STAGE` redraws): {names}")
     for reason, names in reasons.items():
         print(f"report: not run, {reason}: {', '.join(names)}")
     print(
@@ -138,16 +142,25 @@ def side_by_side(
         for topic in TOPICS:
             total.items += parts[kind, name_of(topic)].items
             total.not_run |= parts[kind, name_of(topic)].not_run
+            total.no_data |= parts[kind, name_of(topic)].no_data
     claims = tabled(CLAIMS, [row for topic in TOPICS for row in parts[CLAIMED, name_of(topic)]])
     return items, claims, parts["viewer", "page"]
 
 
-def remove_older(built: dict[str, Built], out: Path) -> None:
-    """Removes results of an earlier run that this run did not write, so that no old result looks new."""
+def remove_older(built: dict[str, Built], out: Path) -> dict[str, str]:
+    """Removes results of an earlier run that this run did not write, so that no old result looks new.
+
+    Results that lack nothing but a folder of data/ stay: {KIND/NAME: the stage that writes the folder}.
+    """
+    left: dict[str, str] = {}
     for kind, batch in built.items():
         (out / kind).mkdir(parents=True, exist_ok=True)
-        for path in set((out / kind).glob("*.*")).difference(*(item.paths for item in batch.items)):
-            path.unlink()
+        for path in sorted(set((out / kind).glob("*.*")).difference(*(item.paths for item in batch.items))):
+            if path.stem in batch.no_data:
+                left[f"{kind}/{path.stem}"] = batch.no_data[path.stem]
+            else:
+                path.unlink()
+    return left
 
 
 def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> None:

@@ -127,10 +127,14 @@ class Figure(Item):
 
 @dataclass
 class Built:
-    """Items of one kind that were built, and one line for each that lacks its measurement."""
+    """Items of one kind that were built, and one line for each that lacks its measurement.
+
+    no_data: {name: stage} of the items that lack the stage's folder in data/; their files of an earlier run stay.
+    """
 
     items: list = field(default_factory=list)
     not_run: dict[str, str] = field(default_factory=dict)
+    no_data: dict[str, str] = field(default_factory=dict)
 
 
 def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:

@@ -73,7 +73,8 @@ def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
     """Writes OUT/KIND/records.json of each kind, and OUT/provenance.json of the files of rows that they name."""
     files: set[str] = set()
     for kind, batch in built.items():
-        records = {item.name: item.record for item in batch.items}
+        left = {name: record for name, record in earlier(results, kind).items() if name in batch.no_data}
+        records = left | {item.name: item.record for item in batch.items}
         files |= {name for record in records.values() for name in record.get("files", ())}
         _write_parts(out / kind / FILE, {"items": records})
     known_commits = commits(results.reports) | commits(results.workspace.published)

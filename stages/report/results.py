@@ -74,6 +74,10 @@ class NotRun(Exception):
         self.stage, self.runnable = stage, runnable
 
 
+class NoData(NotRun):
+    """The folder data/SET/STAGE is absent, as in a fresh clone."""
+
+
 def some(findings: Findings, message: str, stage: str, runnable: bool = True) -> Findings:
     """Returns the findings; raises NotRun of `message` where there are none."""
     if not len(findings):
@@ -316,7 +320,7 @@ class Results:
         """data/SET/STAGE; NotRun when it is not there. dataset: None for the first set that has it."""
         datasets = self.in_order({path.parent.name for path in self.data.glob(f"*/{stage}") if path.is_dir()})
         if dataset not in datasets and (dataset or not datasets):
-            raise NotRun(f"no data/{dataset or 'SET'}/{stage}", stage)
+            raise NoData(f"no data/{dataset or 'SET'}/{stage}", stage)
         self.read.add(dataset or datasets[0])
         return self.data / (dataset or datasets[0]) / stage
 

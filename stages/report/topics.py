@@ -26,7 +26,7 @@ from .drawing import SETTINGS, plt
 from .items import Built, Figure, Table, add_words
 from .page import item_html
 from .records import record_of
-from .results import NotRun, Results
+from .results import NoData, NotRun, Results
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,
@@ -60,6 +60,8 @@ def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS
             except NotRun as missing:
                 if results.concerns(missing):
                     built.not_run[name] = str(missing)
+                    if isinstance(missing, NoData):
+                        built.no_data[name] = missing.stage
                 continue
             item.html = item_html(item)
             if isinstance(item, Figure):

@@ -26,20 +26,23 @@ def gain_rows(name: str, record: dict[str, np.ndarray], seed: int) -> Rows:
     return rows
 
 
+ROUNDING = 1e-9  # of the diagonal
+
+
 def shape_rows(name: str, mesh: Mesh) -> Rows:
     """Measures of shape by which the thesis explains the gains of channels: convexity and the extremes (T3.2.3).
 
     `extremes` is the distance of the farthest vertex from the centre of mass of the surface over the mean distance,
-    `distances_deviation` the deviation of the distances over their mean.
+    `distances_deviation` the deviation of the distances over their mean. Both distances are those of the middles of
+    faces. A mesh with one face has neither of the two, since its one middle is the centre.
     """
     areas, middles = mesh.face_areas, mesh.vertices[mesh.faces].mean(axis=1)
     centre = np.average(middles, axis=0, weights=areas)
     distances = np.linalg.norm(middles - centre, axis=1)
     mean = np.average(distances, weights=areas)
     corners = mesh.vertices[np.unique(mesh.faces[areas > 0])]
-    values = {
-        "convexity": convexity(mesh),
-        "extremes": np.linalg.norm(corners - centre, axis=1).max() / mean,
-        "distances_deviation": np.sqrt(np.average((distances - mean) ** 2, weights=areas)) / mean,
-    }
+    values = {"convexity": convexity(mesh)}
+    if mean > ROUNDING * mesh.diagonal:
+        values["extremes"] = np.linalg.norm(corners - centre, axis=1).max() / mean
+        values["distances_deviation"] = np.sqrt(np.average((distances - mean) ** 2, weights=areas)) / mean
     return [{"item": name, "metric": metric, "value": float(value)} for metric, value in values.items()]

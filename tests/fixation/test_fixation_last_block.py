@@ -7,7 +7,7 @@ import torch
 from haptic_glance.base.files import write_arrays
 from haptic_glance.deep.architectures import fully_connected
 from haptic_glance.deep.network import build, recalibrate
-from stages.fixation import Params, backbone
+from stages.fixation import Params, backbone, finetune
 from stages.fixation.backbone import Method, method_named, network_inputs
 from stages.fixation.finetune import divided, labels_of
 
@@ -53,6 +53,28 @@ def test_an_object_without_a_class_is_looked_at_but_neither_trains_nor_tests():
     assert labels.tolist() == [0] * 5 + [-1] * 5 + [1] * 5
     ids = np.concatenate(divided(labels, 0))
     assert sorted(ids) == [*range(5), *range(10, 15)]
+
+
+def test_a_picture_is_in_the_same_part_for_tasks_that_name_other_objects():
+    """The rate is chosen on validation pictures of the task with most classes; no other task may test on them."""
+    objects = [f"object {number}" for number in range(40)]
+    whole, part = ({name: name[-1] for name in objects[::step]} for step in (1, 3))
+    parts = [divided(labels_of(objects, classes, SETTINGS), 0) for classes in (whole, part)]
+    assert all(set(few) < set(all_of_them) for all_of_them, few in zip(*parts, strict=True))
+    assert [len(ids) for ids in parts[0]] == [120, 40, 40]
+
+
+def test_heads_and_networks_are_trained_on_the_same_pictures(tmp_path, monkeypatch):
+    objects, classes = ["a", "b", "c", "d"], {"a": "x", "c": "y", "d": "x"}
+    for number, name in enumerate(objects):
+        write_arrays(tmp_path / f".pooled/some/{name}.npz", pooled=5.0 * number + np.arange(5)[:, None])
+    seen, head = [], (np.zeros((2, 1)), np.zeros(2))
+    monkeypatch.setattr(finetune, "fit_head", lambda features, *_: seen.append(features) or head)
+    monkeypatch.setattr(finetune, "unseen_object_rows", lambda *_: [])
+    method, settings = Method("some", "mobilenet_v2", "frozen"), Params(**vars(SETTINGS) | {"penalties": [1.0]})
+    finetune.train_head("kind", tmp_path, tmp_path, method, settings, objects, {"kind": classes}, 0)
+    train = divided(labels_of(objects, classes, settings), 0)[0]
+    assert all(features[:, 0].tolist() == train.tolist() for features in seen) and len(seen) == 2
 
 
 @pytest.mark.slow

@@ -196,6 +196,22 @@ def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
 
 
+@pytest.mark.parametrize(
+    ("name", "content", "text"),
+    [
+        ("a.obj", FLAT.encode() + b"f 1 2 3\nl 1 2\n\tl 2 3\np 1\n", "lines (2), points (1)"),
+        ("a.obj", FLAT.encode() + b"f 1 2 3\n#l 1 2\ng l 1\n", ""),
+        ("a.ply", ply(TRIANGLE, [(0, 1, 2)]).replace(b"end_header", b"element edge 0\nproperty int a\nend_header"), ""),
+        ("a.ply", ply(TRIANGLE, [(0, 1, 2)]).replace(b"end_header", b"element edge 2\nproperty int a\nend_header")
+         + b"0\n1\n", "edges (2)"),
+    ],
+)  # fmt: skip
+def test_a_warning_counts_the_lines_and_points_beside_faces(tmp_path, recwarn, name, content, text):
+    (tmp_path / name).write_bytes(content)
+    assert len(load_as_stated(tmp_path / name).faces) == 1
+    assert [str(warning.message) for warning in recwarn] == [f"{name}: left out: {text}"] * bool(text)
+
+
 @pytest.mark.parametrize("corners", ["0 1 2", "1 2 0", "-1 -2 -4", "1/1 0/1 2/1"])
 def test_an_obj_that_counts_from_zero_or_beyond_its_vertices_is_refused(corners):
     with pytest.raises(MeshError, match="faces name (a|the) vertex .* which does not exist"):

@@ -108,6 +108,12 @@ def test_a_file_without_a_surface_is_refused_with_its_reason(tmp_path, change, r
         load(written(tmp_path, change=change))
 
 
+def test_a_warning_counts_the_parts_that_the_mesh_does_not_get(tmp_path):
+    skin = ('<instance_geometry url="#box"/>', '<instance_controller url="#box"/>')
+    with pytest.warns(UserWarning, match=r"^robot.dae: left out: skins \(1\)$"):
+        assert len(load(written(tmp_path, skin=skin)).faces) == 12
+
+
 def test_without_pycollada_the_message_names_the_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "collada", None)
     with pytest.raises(MissingExtra, match=r"robot.dae: pycollada, which reads .dae, is not installed: .*\[robots\]"):

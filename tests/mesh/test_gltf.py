@@ -374,6 +374,40 @@ def test_all_that_a_mesh_cannot_hold_is_named(glb, change, names):
     assert not_read(ready(changed(glb, lambda tree, _: change(tree)))) == names
 
 
+def add_instances(tree):
+    attributes = {"TRANSLATION": len(tree["accessors"])}
+    tree["nodes"][1]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+    tree["accessors"].append(next(entry for entry in tree["accessors"] if entry["type"] == "VEC3") | {"count": 5})
+
+
+def add_skin(tree, *places):
+    """Both balls share a skin; its joints stand at these places."""
+    joints = [len(tree["nodes"]) + number for number in range(len(places))]
+    tree["nodes"] += [{"translation": [place, 0, 0]} for place in places]
+    tree["skins"] = [{"joints": joints}]
+    for node in tree["nodes"]:
+        node |= {"skin": 0} if "mesh" in node else {}
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda tree: None, ""),
+        (lambda tree: tree["meshes"][0]["primitives"].extend(
+            {"mode": mode, "attributes": tree["meshes"][0]["primitives"][0]["attributes"]} for mode in (0, 1, 3, 5)),
+         "lines (2), points (1)"),
+        (lambda tree: tree.update(scenes=[{"nodes": [0]}, {"nodes": [0, 1]}]), "meshes of further scenes (1)"),
+        (lambda tree: tree.update(scenes=[{"nodes": [0]}, {"nodes": [0, 1]}], scene=1), ""),
+        (add_instances, "instances (5)"),
+        (lambda tree: add_skin(tree, 0.0, 1.0), "poses of skins (1)"),
+        (lambda tree: add_skin(tree, 1.0, 1.0), ""),  # the first joint speaks for all
+    ],
+)  # fmt: skip
+def test_a_warning_counts_the_parts_of_a_scene_that_change_its_shape(glb, change, text, recwarn):
+    parse(changed(glb, lambda tree, _: change(tree)), ".glb", name="scene.glb")
+    assert [str(warning.message) for warning in recwarn] == [f"scene.glb: left out: {text}"] * bool(text)
+
+
 @pytest.mark.parametrize("wrong", [3, [3], [{"normalTexture": {"index": 99}}], [{"extensions": 7}]])
 def test_malformed_materials_name_nothing(glb, wrong):
     assert not_read(changed(glb, lambda tree, _: tree.update(materials=wrong))) == []

@@ -127,14 +127,30 @@ def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     turned = replace(recording().touches, images=recording().touches.images[:, ::-1, ::-1])
     recordings = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
     training = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in recordings))
-    features = trial.frozen_features_by_data(training, recordings, small(), seed=0)
-    assert len(computed) == 2 and features["tiny"][0] is features["same"][0]
-    alone = trial.frozen_features_by_data(replace(training, runs=training.runs[2:]), recordings, small(), seed=0)
-    assert torch.equal(features["other"][0], alone["other"][0])
-    assert not torch.equal(features["other"][0], features["tiny"][0])
-    second = replace(training, runs=(training.runs[2]._replace(repetition=1),))
-    drawn = trial.frozen_features_by_data(second, recordings, small(), seed=0)["other"][0]
-    assert not torch.equal(alone["other"][0], drawn)
+    tiny, same, other = trial.frozen_features_by_run(training, recordings, small(), seed=0).values()
+    assert len(computed) == 2 and tiny[0] is same[0] and not torch.equal(other[0], tiny[0])
+    alone = trial.frozen_features_by_run(replace(training, runs=training.runs[2:]), recordings, small(), seed=0)
+    assert torch.equal(other[0], alone[training.runs[2]][0])
+    second = training.runs[2]._replace(repetition=1)
+    drawn = trial.frozen_features_by_run(replace(training, runs=(second,)), recordings, small(), seed=0)[second][0]
+    assert not torch.equal(other[0], drawn)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("weights", "share"), [("random", False), ("random_initial", True), ("imagenet", True)])
+def test_features_do_not_depend_on_the_images_that_test(weights, share):
+    runs = Run("tiny", "random", 0), Run("tiny", "blocks", 0)
+    training, plain = Trial("mobilenet_v2", weights, "frozen", runs), recording(splits=("random", "blocks"))
+    before = trial.frozen_features_by_run(training, {"tiny": plain}, small(), seed=0)
+    assert (before[runs[0]][0] is before[runs[1]][0]) == share
+    test = parts(plain, "random", trial.split_number(0, 0))[2]
+    images = plain.touches.images.copy()
+    images[test] = 255 - images[test]
+    other = replace(plain, touches=replace(plain.touches, images=images))
+    after = trial.frozen_features_by_run(training, {"tiny": other}, small(), seed=0)
+    rest = np.setdiff1d(np.arange(48), test)
+    assert torch.equal(before[runs[0]][0][0, rest], after[runs[0]][0][0, rest])
+    assert not torch.equal(before[runs[0]][0][0, test], after[runs[0]][0][0, test])
 
 
 @pytest.fixture

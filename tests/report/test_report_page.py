@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from haptic_glance.base.files import write_table, write_text
+from haptic_glance.base.files import write_json, write_table, write_text
 from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
@@ -204,6 +204,20 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     assert len(lines) == 1 and "`dvc repro classification`: tables/table_4_1, " in lines[0]
     text = (bare / "reports/index.html").read_text()
     assert "<p>not run: no data/SET/salient_points: run <code>dvc repro" in text and "no data/SET/meshes" in text
+
+
+def test_items_that_lack_their_data_alone_stay_with_their_records(bare, small, capsys):
+    reports = bare / "reports"
+    stays, goes = ("figures/figure_3_10.png", "tables/dataset.csv"), ("figures/no_name.png", "tables/table_4_1.csv")
+    for name in (*stays, *goes):
+        write_text(reports / name, "drawn")
+    record = {"sets": ["gaze"], "files": [], "rows": 3}
+    write_json(reports / "figures/records.json", {"items": {"figure_3_10": record, "no_name": record}})
+    write_report(small.results(bare))
+    assert [(reports / name).exists() for name in (*stays, *goes)] == [True, True, False, False]
+    assert json.loads((reports / "figures/records.json").read_text()) == {"items": {"figure_3_10": record}}
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if "figure_3_10" in line)
+    assert "tables/dataset (meshes)" in line and "figures/figure_3_10 (conspicuity)" in line and "no_name" not in line
 
 
 def test_a_folder_of_ones_own_has_a_page_about_it_alone(of_folder):

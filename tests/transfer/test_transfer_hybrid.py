@@ -181,6 +181,23 @@ def test_images_that_are_not_six_channels_in_0_to_1_are_refused(hybrid, bad):
         hybrid.predict(bad)
 
 
+@pytest.mark.parametrize("bad", [(2, 3, 8, 8), (6, 8, 8), (0, 6, 8, 8), (1, 12, 8, 8)])
+@pytest.mark.parametrize("method", ["forward", "separate_scores", "features"])
+def test_images_of_another_shape_are_refused_before_the_layers_see_them(hybrid, method, bad):
+    more = (0,) if method == "features" else ()
+    with pytest.raises(ValueError, match=r"images must have shape \(b, 6, h, w\) and not be empty, got \("):
+        getattr(hybrid, method)(torch.rand(bad), *more)
+
+
+@pytest.mark.parametrize("name", ["pictures", "imprints"])
+@pytest.mark.parametrize("bad", [(1, 1, 8, 8), (3, 8, 8), (1, 6, 8, 8)])
+def test_join_refuses_images_without_three_channels(name, bad):
+    images = {"pictures": torch.rand(bad), "imprints": torch.rand(bad)}
+    images[{"pictures": "imprints", "imprints": "pictures"}[name]] = None
+    with pytest.raises(ValueError, match=rf"{name} must have shape \(b, 3, h, w\)"):
+        join_senses(**images)
+
+
 def test_join_refuses_nothing_at_all_and_unequal_sizes():
     with pytest.raises(ValueError, match="one of the two senses"):
         join_senses(None, None)

@@ -159,7 +159,7 @@ def test_every_class_is_split_by_the_share_and_by_the_seed():
 
 @pytest.mark.parametrize(
     ("labels", "share", "reason"),
-    [([0, 0, 1], 0.5, "one touch alone"), ([0, 0], 1.0, "between 0 and 1"), ([0.5, 0.5], 0.5, "integers")],
+    [([0, 0, 1], 0.5, "class 1 has one item alone"), ([0, 0], 1.0, "between 0 and 1"), ([0.5, 0.5], 0.5, "integers")],
 )
 def test_what_cannot_be_split_is_refused(labels, share, reason):
     with pytest.raises(ValueError, match=reason):
