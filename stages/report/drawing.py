@@ -149,12 +149,12 @@ def plain_logarithm(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None
 def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     """Writes a PNG of PALETTE colours without dates or versions, so that equal runs give equal bytes; the path."""
     buffer = io.BytesIO()
-    uncompressed = {"compress_level": 0}  # read again at once
     figure.set_dpi(dpi)
     if figure.get_layout_engine():
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # all has its place now; a chart on the page is drawn again
-    figure.savefig(buffer, dpi=dpi, bbox_inches=figure.get_tightbbox().padded(MARGIN), pil_kwargs=uncompressed)
+    box = figure.get_tightbbox().padded(MARGIN)
+    figure.savefig(buffer, format="tiff", dpi=dpi, bbox_inches=box)  # without compression, since it is read at once
     plt.close(figure)
     with Image.open(buffer) as image:
         indexed = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
@@ -373,11 +373,14 @@ def _nearest(
     """(gap, box) of the best free place, or None. taken: what no name may cover; strokes: what it better does not."""
     window, free = axes.get_window_extent(), []
     for gap, side in product(GAPS, SIDES):
+        if free and min(free)[0] <= gap:
+            break  # no place from here on is better
         box = _beside(spot, extent, side, gap * scale)
         inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
+        if not inside or box.count_overlaps(taken):
+            continue
         line = _leader(spot, box, scale) if gap >= FAR else []  # its line would belong to others where it crosses them
-        free_way = not any(part.count_overlaps(taken + strokes) for part in line)
-        if inside and free_way and not box.count_overlaps(taken):
+        if not any(part.count_overlaps(taken + strokes) for part in line):
             free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
     return min(free)[2:] if free else None
 

@@ -82,11 +82,12 @@ def write_records(built: dict[str, Built], results: Results, out: Path) -> None:
     _write_parts(out / PROVENANCE_FILE, {"packages": versions(), "files": rows})
 
 
+@cache
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that the project asks for, as far as they are installed."""
     packages = {"python": python_version()}
-    for requirement in requires("haptic-glance") or ():
-        name = re.split(r"[^\w.-]", requirement)[0].lower()
+    names = (re.split(r"[^\w.-]", requirement)[0].lower() for requirement in requires("haptic-glance") or ())
+    for name in dict.fromkeys(names):  # several extras name the same package
         with suppress(PackageNotFoundError):
             packages[name] = version(name)
     return packages

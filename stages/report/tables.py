@@ -50,7 +50,9 @@ def scaled(rows: pd.DataFrame, scaling: str = TRAINING) -> pd.DataFrame:
 def with_means(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows, and behind them the means over the classifiers of MEANS where each of these was run."""
     columns = ("dataset", "set", "repetition", "group", "method", "variant", "split", "metric", "scaling")
-    keys, parts = [name for name in columns if name in rows], [rows]
+    keys = [name for name in columns if name in rows]
+    rows = rows[[*keys, "classifier", "value"]]  # of some forty columns
+    parts = [rows]
     for name, classifiers in MEANS.items():
         groups = rows[rows["classifier"].isin(classifiers)].groupby(keys, dropna=False, sort=False)
         means = groups.agg({"value": "mean", "classifier": "nunique"}).reset_index()

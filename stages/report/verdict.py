@@ -106,7 +106,7 @@ def _row(claim: Claim, results: Results) -> Row:
         pairs += ((claim.key, name, value, decides) for name, value in zip(pair_names, effect.differences, strict=True))
     row |= _numbers(judgement) | _words(judgement, judgements[0], results)
     row |= _readings(judgement, judgements, not_run)
-    return row | (_open(judgement.claim, effect_of(judgement.chosen)) if row["verdict"] == "open" else {}), pairs
+    return row | (_open(judgement.claim, judgement.effect) if row["verdict"] == "open" else {}), pairs
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class Judgement:
     missing: list[str]
     chosen: list[Effect]
 
-    @property
+    @cached_property
     def word(self) -> str:
         """The word that the judged sets come to.
 
@@ -131,7 +131,12 @@ class Judgement:
         """
         word = word_of(self.chosen, self.claim.unit)
         rivals = picked_from(self.claim)
-        return "open" if word == "contradicted" and effect_of(self.chosen).p_value * rivals > ALPHA else word
+        return "open" if word == "contradicted" and self.effect.p_value * rivals > ALPHA else word
+
+    @cached_property
+    def effect(self) -> Effect | PooledEffect:
+        """The effect on the judged sets."""
+        return effect_of(self.chosen)
 
     def everywhere(self, results: Results) -> "Judgement":
         """The reading with its effects on all sets."""
@@ -142,7 +147,7 @@ class Judgement:
     @cached_property
     def used(self) -> Sequence[Effect]:
         """The effects of the judged sets that the numbers come from."""
-        effect = effect_of(self.chosen)
+        effect = self.effect
         return effect.sets if isinstance(effect, PooledEffect) else [effect]
 
 
@@ -161,7 +166,7 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
             continue
         selection = deciding(variant, set_effects, results, strict=variant is not claim)
         judgement = Judgement(name, variant, set_effects, missing, selection)
-        if variant is claim or (selection and np.isfinite(effect_of(selection).interval[1])):
+        if variant is claim or (selection and np.isfinite(judgement.effect.interval[1])):
             judgements.append(judgement)
         else:
             not_run.append(f"{name}: {_without_interval(judgement)}")
@@ -212,18 +217,18 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: S
     if len(judgements) == 1 and judged_one.name == WRITTEN and not not_run:
         return {}
     ordered = sorted(judgements, key=lambda reading: reading is not judged_one)
-    texts = [f"{reading.name}: {reading.word} {_interval_text(effect_of(reading.chosen))}" for reading in ordered]
+    texts = [f"{reading.name}: {reading.word} {_interval_text(reading.effect)}" for reading in ordered]
     texts += not_run
     words, written = [reading.word for reading in judgements], judgements[0]
     if written is not judged_one and any(len(effect.refused) < effect.pairs for effect in written.used):
         # Its valid pairs count as a reading.
-        words.append(verdict(*effect_of(written.chosen).interval[1:], written.claim.unit))
+        words.append(verdict(*written.effect.interval[1:], written.claim.unit))
     return {"verdict": over_readings(words), "readings": "; ".join(texts)}
 
 
 def _numbers(judgement: Judgement) -> dict[str, object]:
     """The word with its numbers."""
-    effect, word, claim = effect_of(judgement.chosen), judgement.word, judgement.claim
+    effect, word, claim = judgement.effect, judgement.word, judgement.claim
     mean, low, high = effect.interval
     pooled = isinstance(effect, PooledEffect)
     columns: dict[str, object] = {"verdict": word, "effect": mean, "low": low, "high": high}

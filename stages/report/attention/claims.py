@@ -331,8 +331,8 @@ def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
     gains = [f"{name} {signed(*interval(difference(rows, metric, OURS, best)))}" for metric, name in ALONE.items()]
     yield f"The best other method that has not seen the object is {label(best)}: ours − it {_and(gains)}."
     for metric, name in ALONE.items():
-        methods = rivals(rows, metric)
-        left = [label(rival) for rival in methods if not interval(difference(rows, metric, OURS, rival))[1] > 0]
+        table, methods = scores(rows, metric), rivals(rows, metric)
+        left = [label(rival) for rival in methods if not interval(table[OURS] - table[rival])[1] > 0]
         labels = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
         yield (
             f"In {name} ours is higher than {len(methods) - len(left)} of the {len(methods)} others that have not seen "

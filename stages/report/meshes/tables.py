@@ -143,8 +143,9 @@ def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFr
     """Mean, its interval from `least` on, and mean difference from `plain`, over the objects of each value of `by`."""
     lines = []
     for key, group in grouped(rows, by):
-        gain = interval(over_items(group.assign(value=group["value"] - group["plain"])))
-        lines.append((*key, *within(over_items(group), least=least, top=np.inf), group["value"].count(), *gain))
+        values = over_items(group)
+        gain = interval(values - group["plain"].to_numpy())
+        lines.append((*key, *within(values, least=least, top=np.inf), values.count(), *gain))
     ends = ["mean", "low", "high", "objects", "over_plain", "over_plain_low", "over_plain_high"]
     return pd.DataFrame(lines, columns=[*by, *ends])
 

@@ -105,12 +105,11 @@ def accuracies(rows: pd.DataFrame, split: Split = Split.RANDOM) -> dict[str, flo
 
     The interval is over repeated splits of the same objects, or over random sets of objects.
     """
-    columns = [column for column in ("dataset", "set", "split", "value") if column in rows]  # of some forty
-    accuracy_rows = rows.loc[rows["metric"] == "accuracy", columns].dropna(subset=["value"])
-    splits, values = accuracy_rows["split"].to_numpy(), accuracy_rows["value"].to_numpy(float)
+    is_accuracy = ((rows["metric"] == "accuracy") & rows["value"].notna()).to_numpy()
+    values, splits = (rows[name].to_numpy()[is_accuracy] for name in ("value", "split"))
     of_split, share = values[splits == split], shared_by(split)
-    split_rows = accuracy_rows[splits == split]
-    if "set" in split_rows and split_rows["set"].notna().any():
+    if "set" in rows and rows["set"].notna().to_numpy()[is_accuracy][splits == split].any():
+        split_rows = rows.loc[is_accuracy, ["dataset", "set", "value"]][splits == split]
         of_split = split_rows.groupby(["dataset", "set"])["value"].mean()
         share = shared_objects(*of_split.index.get_level_values("dataset"))
     ends = zip(("accuracy", "low", "high"), within(of_split, share), strict=True)
