@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from typing import Any
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.lazy import trimesh
@@ -31,7 +32,8 @@ def read_collada(content: bytes, resolver: trimesh.resolvers.Resolver | None) ->
         raise MeshError("the file holds no scene")
     if NAN.search(content):
         raise MeshError("some numbers are NaN")
-    scene = trimesh.load_scene(io.BytesIO(content), file_type="dae", resolver=resolver and Beside(resolver))
+    beside: Any = Beside(resolver) if resolver else None  # has what a resolver is asked for
+    scene = trimesh.load_scene(io.BytesIO(content), file_type="dae", resolver=beside)
     if not scene.geometry and b"<instance_controller" in content:
         raise MeshError("has skins alone, which are not read: export it in its rest pose")
     return join_parts(scene, every_colour=True)

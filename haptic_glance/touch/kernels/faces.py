@@ -377,7 +377,7 @@ def raise_taxels(
 @helper
 def raise_cell(best: np.ndarray, back: np.ndarray, i: int, j: int, height: float, from_back: bool) -> None:
     """Stores the height of a face in the column of a cell, if it is the highest so far."""
-    i, j = np.uint32(i), np.uint32(j)
-    if height > best[i, j] or (height == best[i, j] and from_back):
-        best[i, j] = height
-        back[i, j] = from_back
+    row, column = np.uint32(i), np.uint32(j)  # never negative, and so without a test for it
+    if height > best[row, column] or (height == best[row, column] and from_back):
+        best[row, column] = height
+        back[row, column] = from_back
