@@ -71,7 +71,7 @@ FINDINGS = (
             "NSS more than the best other", "attention", places=2),
     Finding("glance_soft_gaze", "supported", "Saliency as a weight keeps meshes closer where people looked",
             "% less error where people looked", "meshes", "less:", 1),
-    Finding("glance_over_blind", "supported", "Touch where our glance points beats blind touch (weak evidence)",
+    Finding("glance_over_blind", "supported", "Touch where our glance points beats blind touch",
             "points of accuracy more than blind touch", "touch"),
     Finding("keep_metro", "contradicted", "Fails: neighbourhoods kept unchanged raise the error",
             "times the error of plain simplification", "meshes", "times:", 2),
