@@ -31,7 +31,7 @@ test: $(VENV)/ready ## unit and property tests, and beside them the whole pipeli
 quick: $(VENV)/ready ## the tests that are not marked slow, in a minute and a half
 	pytest -n auto --dist worksteal -m "not slow"
 
-foreign: $(VENV)/ready ## 370 mesh files of other people: each is simplified, or refused in one line (ten minutes)
+foreign: $(VENV)/ready ## 443 mesh files of other people: each is simplified, or refused in one line (ten minutes)
 	pytest tests/slow
 
 smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy, held against its baseline

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import io
 import re
+from contextlib import suppress
 from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
 
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.lazy import trimesh
@@ -13,11 +17,58 @@ from .headers import MeshError
 from .materials import join_parts
 from .mesh import Mesh
 from .obj import Beside
+from .polygons import refined
 
 UP = re.compile(rb"<(?:\w+:)?up_axis>\s*([XYZ])_UP\s*<")
 NAN = re.compile(rb"(?i)<(?:\w+:)?float_array[^>]*>[^<]*\bnan\b")
 OTHER_PARTS = {"lines": rb"<(?:\w+:)?line(?:s|strips)[\s>]", "skins": rb"<(?:\w+:)?instance_controller[\s>]"}
 PICTURE = re.compile(rb"<(?:\w+:)?init_from>\s*(?:file://)?([^<]*?)\s*<")
+
+
+def ready(content: bytes) -> bytes:
+    """The bytes in UTF-8; a concave polygon of a list begins at another corner, or becomes triangles.
+
+    pycollada would cut it as a fan about its first corner.
+    """
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = content.decode("utf-16")
+        content = re.sub(r"(<\?xml[^>]*encoding=)[\"'][^\"']*[\"']", r'\1"utf-8"', text, count=1).encode()
+    if not re.search(rb"<(?:\w+:)?polylist[\s>]", content):
+        return content
+    root = ElementTree.fromstring(content)
+    space = root.tag.rpartition("}")[0]
+    space += "}" * bool(space)
+    changed = False
+    for mesh in root.iter(f"{space}mesh"):
+        with suppress(ValueError, LookupError, AttributeError, TypeError, StopIteration):  # which the parser names
+            numbers = {source.get("id"): source.findtext(f"{space}float_array") for source in mesh}
+            positions = {f"#{part.get('id')}": _input(part, "POSITION") for part in mesh.iter(f"{space}vertices")}
+            for polygons in mesh.iter(f"{space}polylist"):
+                corner = _input(polygons, "VERTEX")
+                points = str(numbers[positions[corner.get("source")].get("source")[1:]])
+                changed |= _unfold(polygons, space, int(corner.get("offset")), points)
+    return ElementTree.tostring(root) if changed else content
+
+
+def _input(element: ElementTree.Element, semantic: str) -> Any:
+    return next(part for part in element if part.get("semantic") == semantic)
+
+
+def _unfold(polygons: Any, space: str, column: int, points: str) -> bool:
+    """Whether a list of polygons had concave ones, which are mended. column: of the vertices among the indices."""
+    counts, indices = polygons.find(f"{space}vcount"), polygons.find(f"{space}p")
+    sizes = np.array(counts.text.split()).astype(np.int64)
+    rows = np.array(indices.text.split()).astype(np.int64).reshape(sizes.sum(), -1)
+    mended = refined(rows[:, column], sizes, np.array(points.split()).astype(np.float64).reshape(-1, 3))
+    if not mended:
+        return False
+    starts = np.cumsum(sizes) - sizes
+    whole = ([range(size)] for size in sizes)
+    rings = [np.asarray(ring) + starts[k] for k, same in enumerate(whole) for ring in mended.get(k, same)]
+    counts.text = " ".join(str(len(ring)) for ring in rings)
+    indices.text = " ".join(map(str, rows[np.concatenate(rings)].ravel().tolist()))
+    polygons.set("count", str(len(rings)))
+    return True
 
 
 def read_collada(content: bytes, resolver: trimesh.resolvers.Resolver | None) -> Mesh | None:
@@ -34,7 +85,7 @@ def read_collada(content: bytes, resolver: trimesh.resolvers.Resolver | None) ->
         raise MeshError("some numbers are NaN")
     beside: Any = Beside(resolver) if resolver else None  # has what a resolver is asked for
     scene = trimesh.load_scene(io.BytesIO(content), file_type="dae", resolver=beside)
-    if not scene.geometry and b"<instance_controller" in content:
+    if not scene.geometry and left_out(content)["skins"]:
         raise MeshError("has skins alone, which are not read: export it in its rest pose")
     return join_parts(scene, every_colour=True)
 

@@ -41,7 +41,7 @@ MeshLike: TypeAlias = (
 WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
-READY = {".glb": gltf.ready, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain}
+READY = {".glb": gltf.ready, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain, ".dae": collada.ready}
 LEFT_OUT = {".glb": gltf.left_out, ".obj": obj.left_out, ".ply": ply.left_out, ".dae": collada.left_out}
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".dae", *clouds.FORMATS, clouds.DEPTH)
 

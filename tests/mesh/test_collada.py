@@ -56,6 +56,23 @@ def test_all_parts_of_a_scene_are_at_their_places_and_wound_outwards(tmp_path):
     assert np.allclose([mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)], [[10, 0, 0], [23, 1, 2]])
 
 
+ARROW = "-2 -2 0 0 -1 0 2 -2 0 0 2 0 -2 -2 1 0 -1 1 2 -2 1 0 2 1"  # whose second corner turns inwards
+
+
+def test_a_concave_polygon_keeps_its_shape(tmp_path):
+    mesh = load(written(tmp_path, points=("0 0 0 1 0 0 1 1 0 0 1 0 0 0 2 1 0 2 1 1 2 0 1 2", ARROW)))
+    corners = mesh.vertices[mesh.faces][:12]
+    sides = 2 * (5**0.5 + 20**0.5)
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.linalg.norm(cross, axis=1).sum() / 2 == pytest.approx(2 * 6 + sides)
+
+
+def test_a_file_in_utf_16_is_read(tmp_path):
+    path = written(tmp_path)
+    path.write_text('<?xml version="1.0" encoding="utf-16"?>' + path.read_text(), encoding="utf-16")
+    assert len(load(path).faces) == 24
+
+
 def test_a_colour_is_srgb_and_a_part_without_a_material_stays_beside_it(tmp_path):
     texture = load(written(tmp_path)).texture
     pixels = [tuple(image[0, 0, :3].tolist()) for image in texture.images]

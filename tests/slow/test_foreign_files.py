@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow
 # A package's file; how many of its files have a suffix that `load` knows, and how many hold a mesh; its SHA-256.
 PACKAGES = {
     "assimp": (
-        "assimp-testmodels_5.2.5~ds0-1_all.deb", (52, 38),
+        "assimp-testmodels_5.2.5~ds0-1_all.deb", (125, 77),
         "526f326186000cd6f631ea806128548a7d3d391abd8149fddc5c4c8513e80b8a",
     ),
     "cura": (
@@ -51,7 +51,7 @@ PACKAGES = {
         "4a05b16116ca8da7cb10224809f66094a991d5b4d7de75c087d1d85120536857",
     ),
 }  # fmt: skip
-BESIDE = (".mtl", ".png", ".jpg", ".jpeg", ".bmp", ".tga")  # what an OBJ names
+BESIDE = (".bin", ".mtl", ".png", ".jpg", ".jpeg", ".bmp", ".tga")  # what a glTF, an OBJ or a DAE names
 SECONDS, MEMORY = 60, 2 * 2**20  # of one command: processor seconds, KiB; half are for the surface of 100,000 points
 
 

@@ -161,7 +161,8 @@ def learned_to_gaze(key: str, section: str, first: str, sentence: str) -> Claim:
 
 CLAIMS = [
     Claim(
-        key="four_views_cover", section="T4.2.1", stage="views", dataset=(None, "gaze", "furniture", "princeton"), printed=0,
+        key="four_views_cover", section="T4.2.1", stage="views", dataset=(None, "gaze", "furniture", "princeton"),
+        printed=0,
         sentence="Four perpendicular viewpoints see the whole surface, but for one percent.", over=("item",),
         where={"metric": "seen_share", "views": 4}, first={"method": "principal"}, second=0.99, scale=100.0,
         unit="% of the surface", readings=(reading("four viewpoints around the object", first={"method": "four"}),),
