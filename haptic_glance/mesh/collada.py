@@ -26,14 +26,14 @@ PICTURE = re.compile(rb"<(?:\w+:)?init_from>\s*(?:file://)?([^<]*?)\s*<")
 
 
 def ready(content: bytes) -> bytes:
-    """The bytes in UTF-8; a concave polygon of a list begins at another corner, or becomes triangles.
+    """The bytes in UTF-8; a concave polygon begins at another corner, or becomes triangles.
 
     pycollada would cut it as a fan about its first corner.
     """
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = content.decode("utf-16")
         content = re.sub(r"(<\?xml[^>]*encoding=)[\"'][^\"']*[\"']", r'\1"utf-8"', text, count=1).encode()
-    if not re.search(rb"<(?:\w+:)?polylist[\s>]", content):
+    if not re.search(rb"<(?:\w+:)?poly(?:list|gons)[\s>]", content):
         return content
     root = ElementTree.fromstring(content)
     space = root.tag.rpartition("}")[0]
@@ -43,6 +43,8 @@ def ready(content: bytes) -> bytes:
         with suppress(ValueError, LookupError, AttributeError, TypeError, StopIteration):  # which the parser names
             numbers = {source.get("id"): source.findtext(f"{space}float_array") for source in mesh}
             positions = {f"#{part.get('id')}": _input(part, "POSITION") for part in mesh.iter(f"{space}vertices")}
+            for polygons in mesh.findall(f"{space}polygons"):
+                _list(polygons, space)
             for polygons in mesh.iter(f"{space}polylist"):
                 corner = _input(polygons, "VERTEX")
                 points = str(numbers[positions[corner.get("source")].get("source")[1:]])
@@ -52,6 +54,21 @@ def ready(content: bytes) -> bytes:
 
 def _input(element: ElementTree.Element, semantic: str) -> Any:
     return next(part for part in element if part.get("semantic") == semantic)
+
+
+def _list(polygons: Any, space: str) -> None:
+    """Turns `polygons`, which have an element `p` for each, into the equal `polylist`; polygons with holes stay."""
+    parts = polygons.findall(f"{space}p")
+    if not parts or polygons.find(f"{space}ph") is not None:
+        return
+    width = 1 + max(int(part.get("offset")) for part in polygons.findall(f"{space}input"))
+    corners = [part.text.split() for part in parts]
+    for part in parts:
+        polygons.remove(part)
+    sizes = ElementTree.SubElement(polygons, f"{space}vcount")
+    sizes.text = " ".join(str(len(indices) // width) for indices in corners)
+    ElementTree.SubElement(polygons, f"{space}p").text = " ".join(index for indices in corners for index in indices)
+    polygons.tag = f"{space}polylist"
 
 
 def _unfold(polygons: Any, space: str, column: int, points: str) -> bool:

@@ -59,8 +59,18 @@ def test_all_parts_of_a_scene_are_at_their_places_and_wound_outwards(tmp_path):
 ARROW = "-2 -2 0 0 -1 0 2 -2 0 0 2 0 -2 -2 1 0 -1 1 2 -2 1 0 2 1"  # whose second corner turns inwards
 
 
-def test_a_concave_polygon_keeps_its_shape(tmp_path):
-    mesh = load(written(tmp_path, points=("0 0 0 1 0 0 1 1 0 0 1 0 0 0 2 1 0 2 1 1 2 0 1 2", ARROW)))
+SIX = "0 0 3 0 2 0 1 0 4 1 5 1 6 1 7 1 0 0 1 0 5 0 4 0 1 0 2 0 6 0 5 0 2 0 3 0 7 0 6 0 3 0 0 0 4 0 7 0"
+POLYGONS = "".join(f"<p>{SIX[k : k + 15]}</p>" for k in range(0, len(SIX), 16))  # of single digits
+AS_POLYGONS = {
+    "start": ("<polylist", "<polygons"),
+    "indices": (f"<vcount>4 4 4 4 4 4</vcount>\n<p>{SIX}</p>", POLYGONS),
+    "end": ("</polylist", "</polygons"),
+}
+
+
+@pytest.mark.parametrize("element", [{}, AS_POLYGONS])
+def test_a_concave_polygon_keeps_its_shape(tmp_path, element):
+    mesh = load(written(tmp_path, **element, points=("0 0 0 1 0 0 1 1 0 0 1 0 0 0 2 1 0 2 1 1 2 0 1 2", ARROW)))
     corners = mesh.vertices[mesh.faces][:12]
     sides = 2 * (5**0.5 + 20**0.5)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
