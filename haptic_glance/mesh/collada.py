@@ -21,7 +21,11 @@ from .polygons import refined
 
 UP = re.compile(rb"<(?:\w+:)?up_axis>\s*([XYZ])_UP\s*<")
 NAN = re.compile(rb"(?i)<(?:\w+:)?float_array[^>]*>[^<]*\bnan\b")
-OTHER_PARTS = {"lines": rb"<(?:\w+:)?line(?:s|strips)[\s>]", "skins": rb"<(?:\w+:)?instance_controller[\s>]"}
+OTHER_PARTS = {
+    "lines": rb"<(?:\w+:)?line(?:s|strips)[\s>]",
+    "polygons with holes": rb"<(?:\w+:)?ph[\s>]",
+    "skins": rb"<(?:\w+:)?instance_controller[\s>]",
+}
 PICTURE = re.compile(rb"<(?:\w+:)?init_from>\s*(?:file://)?([^<]*?)\s*<")
 
 

@@ -141,6 +141,12 @@ def test_a_warning_counts_the_parts_that_the_mesh_does_not_get(tmp_path):
         assert len(load(written(tmp_path, skin=skin)).faces) == 12
 
 
+def test_a_polygon_with_a_hole_is_left_out_with_a_warning(tmp_path):
+    hole = POLYGONS.replace("<p>", "<ph><p>", 1).replace("</p>", "</p><h>0 0 1 0 2 0</h></ph>", 1)
+    with pytest.warns(UserWarning, match=r"^robot.dae: left out: polygons with holes \(1\)$"):
+        assert len(load(written(tmp_path, **AS_POLYGONS, hole=(POLYGONS, hole))).faces) == 2 * 10
+
+
 def test_without_pycollada_the_message_names_the_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "collada", None)
     with pytest.raises(MissingExtra, match=r"robot.dae: pycollada, which reads .dae, is not installed: .*\[robots\]"):
