@@ -13,6 +13,6 @@ RUN apt-get update \
 ARG PIP_EXTRA_INDEX_URL
 WORKDIR /haptic-glance
 COPY . .
-RUN make .venv/ready
+RUN PIP_NO_CACHE_DIR=1 make .venv/ready
 ENV PATH=/haptic-glance/.venv/bin:$PATH
 CMD ["make", "help"]

@@ -7,13 +7,15 @@ were learned, or, with `pose` unknown, are turned at random, and each array abou
 haptic_glance.know.unknown was chosen by the ten classes; three draws of classes and objects.
 
 Writes reports/bench/unknown.csv: pose, learned (objects), unknown (whether an object may be none of these), touched
-(known, sibling or stranger), explorations, the shares of them that end with the right name, a wrong name, the answer
-`none of these`, or undecided; the mean number of touches.
+(known, sibling or stranger), explorations; the share of them that ends with the right name, a wrong name, the answer
+`none of these`, or undecided, in the mean of the classes with a 95 % interval over the classes (`right_low`,
+`right_high` and so on, empty where all classes are equal); the mean number of touches.
 """
 
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
@@ -25,6 +27,7 @@ from haptic_glance.know import NONE, Exploration, Library, learn
 from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
+from stages.engine.statistics import interval
 from stages.meshes.sources import SOURCES
 
 OUT = Path("reports/bench/unknown.csv")
@@ -32,7 +35,8 @@ CLASSES = ("Airplane", "Armadillo", "Bird", "Bust", "Chair", "Fish", "Glasses", 
 KNOWN, DRAWS = 7, 3  # classes that are learned; draws
 EACH = (1, 3)  # learned objects of each class
 ANSWERS = ("right", "wrong", "none", "undecided")
-COLUMNS = ["pose", "learned", "unknown", "touched", "explorations", *ANSWERS, "touches"]
+SHARES = [f"{name}{end}" for name in ANSWERS for end in ("", "_low", "_high")]
+COLUMNS = ["pose", "learned", "unknown", "touched", "explorations", *SHARES, "touches"]
 
 
 def read(archive):
@@ -76,13 +80,16 @@ def rows_of(objects, pose, each, unknown):
         parts = drawn(objects, each, seed)
         library = learn(parts["known"], pose == "learned", seed, turned=pose != "learned", unknown=unknown)
         answers += [
-            (touched, *answer(library, name, mesh, pose != "learned", seed))
+            (touched, name.rpartition("_")[0], *answer(library, name, mesh, pose != "learned", seed))
             for touched, meshes in parts.items()
             for name, mesh in meshes.items()
         ]
-    frame = pd.DataFrame(answers, columns=["touched", "answer", "touches"])
+    frame = pd.DataFrame(answers, columns=["touched", "class", "answer", "touches"])
     for touched, group in frame.groupby("touched"):
-        shares = {name: (group["answer"] == name).mean() for name in ANSWERS}
+        shares = {}
+        for name in ANSWERS:
+            of_classes = (group["answer"] == name).groupby(group["class"]).mean()
+            shares |= zip((name, f"{name}_low", f"{name}_high"), np.clip(interval(of_classes), 0, 1), strict=True)
         yield {
             "pose": pose, "learned": KNOWN * each, "unknown": unknown, "touched": touched, "explorations": len(group),
             **shares, "touches": group["touches"].mean(),
