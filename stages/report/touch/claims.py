@@ -217,7 +217,7 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
         variant("more_touches_bayes", "Five joined touches are better than one for naive Bayes.",
                 "touches_5", "locations", SIX | {"classifier": "naive_bayes"}, readings=(ONE_MAPPED, *one_or_many)),
         variant("more_touches_many", "Five joined touches are better than one with many combinations to train on.",
-                "touches_5_many", "touches_1_many", SIX | TRAINED),
+                "touches_5_many", "touches_1_many", SIX | TRAINED, of=f"more_touches{end}"),
         claim("certain_at_five", "Recognition by kNN is near certain with five touches.",
               SIX | {"variant": "touches_5"}, {}, 0.95,  # "up to 100 % accuracy"
               readings=five_in_each),
@@ -231,7 +231,8 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
         variant("network_dips", "The network does worse with five touches than with three.", "touches_3", "touches_5",
                 NETWORK, readings=scalings),
         variant("network_dips_disjoint", "The network does worse with five touches where samples get fewer.",
-                "touches_3_disjoint", "touches_5_disjoint", NETWORK | TRAINED, readings=(MORE_THAN_KNN,)),
+                "touches_3_disjoint", "touches_5_disjoint", NETWORK | TRAINED, readings=(MORE_THAN_KNN,),
+                of=f"network_dips{end}"),
     ]  # fmt: skip
 
 
