@@ -275,6 +275,11 @@ def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(sets_of_ro
     assert "Sentences of this project (1): 1 contradicted. Verdicts, with 2" in text
 
 
+def test_each_claim_that_tests_a_sentence_elsewhere_names_a_primary_claim():
+    primaries = {entry.key for entry in CLAIMS if not entry.of}
+    assert {entry.key: entry.of for entry in CLAIMS if entry.of and entry.of not in primaries} == {}
+
+
 @pytest.mark.parametrize(("words", "word"), [
     (["supported", "open"], "supported"), (["supported", "open", "no difference"], "depends on the reading"),
     (["open", "supported"], "open"), (["mixed", "supported"], "mixed"),

@@ -106,6 +106,25 @@ def test_claims_follow_the_measurements(measure):
     assert "; 60 imprints of each object: contradicted -" in itti["readings"]
 
 
+@pytest.mark.parametrize(("variant", "sentence"), [
+    ("more_touches_many", "more_touches"), ("network_dips_disjoint", "network_dips"),
+    ("selection_helps_train", "selection_helps"), ("locations_help_side", "locations_help"),
+])  # fmt: skip
+def test_a_variant_that_the_thesis_did_not_run_is_no_sentence_of_the_thesis(variant, sentence):
+    of = {entry.key: entry.of for entry in claims.CLAIMS}
+    assert (of[variant], of[f"{variant}_ours"]) == (sentence, f"{sentence}_ours")
+
+
+@pytest.mark.parametrize(("key", "variant"), [
+    ("selection_helps", "first_15_selected"), ("selection_helps_four", "first_15_selected"),
+    ("selection_helps_train", "first_15_selected_train"),
+])  # fmt: skip
+def test_selection_is_read_with_as_many_imprints_as_the_thesis_had_too(key, variant):
+    (entry,) = (claim for claim in claims.CLAIMS if claim.key == key)
+    (few,) = (base.of(entry) for base in entry.readings if base.name == "15 imprints of each object")
+    assert (few.first, few.second) == ({"variant": variant}, {"variant": "first_15"})
+
+
 def test_the_mean_of_four_classifiers_is_read_beside_one_touch_with_the_map_too():
     (entry,) = (claim for claim in claims.CLAIMS if claim.key == "more_touches_all")
     (base,) = (base for base in entry.readings if base.name.startswith("without the SVM, beside one touch with"))

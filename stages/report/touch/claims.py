@@ -86,8 +86,12 @@ SIXTY = tuple(
             where=PLAIN | (scaled.changes["where"] if scaled else {}))
     for scaled in (None, *SCALED)
 )  # fmt: skip
-FIFTEEN_SELECTED = reading("without the SVM, 15 imprints of each object", where={"classifier": ALIVE} | TRAINED,
-                           first={"variant": "first_15_selected"}, second=FEW)  # fmt: skip
+FIFTEEN_SELECTED, FIFTEEN_TRAIN = (
+    reading(FIFTEEN.name, where=TRAINED, first={"variant": f"first_15_{selected}"}, second=FEW)
+    for selected in ("selected", "selected_train")
+)
+FIFTEEN_SELECTED_ALL = reading(f"without the SVM, {FIFTEEN.name}", where={"classifier": ALIVE} | TRAINED,
+                               first={"variant": "first_15_selected"}, second=FEW)  # fmt: skip
 # Scaling, imprints of each object, and the readings of both.
 Protocol = tuple[dict[str, Any], dict[str, Any], tuple[Reading, ...], tuple[Reading, ...]]
 PRINTED: Protocol = SCALE, FEW, SCALED, SIXTY
@@ -188,16 +192,16 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
                     sentence="Four objects are easier than six, even beyond chance.", of=f"four_easier{end}",
                     note="guessing scaled to 0 and certainty to 100"),
         variant("selection_helps", "Removing imprints that other objects have enhances recognition.", "selected",
-                readings=(*scalings, AS_MANY)),
+                readings=(*scalings, AS_MANY, FIFTEEN_SELECTED)),
         variant("selection_over_control", "Removing imprints that other objects have is better than as many at random.",
                 "selected", "selected_control", SIX | TRAINED, section="ours", readings=OURS[2]),
         claim("selection_helps_all", "Selection enhances recognition by all classifiers.",
               EVERY, {"variant": "selected"}, PLAIN, note=ALL,
-              readings=(NO_SVM, *scalings, RATES, FIFTEEN_SELECTED, AS_MANY_ALL, *EACH_ALONE)),
+              readings=(NO_SVM, *scalings, RATES, FIFTEEN_SELECTED_ALL, AS_MANY_ALL, *EACH_ALONE)),
         variant("selection_helps_four", "Selection enhances recognition with four objects, too.", "selected",
-                where=FOUR, readings=scalings),
+                where=FOUR, readings=(*scalings, FIFTEEN_SELECTED)),
         variant("selection_helps_train", "Selection enhances recognition where the test part is whole.",
-                "selected_train", where=SIX | TRAINED, of=f"selection_helps{end}"),
+                "selected_train", where=SIX | TRAINED, of=f"selection_helps{end}", readings=(FIFTEEN_TRAIN,)),
         variant("selection_train_over_control", "Where the test part is whole, selection is better than as many "
                 "imprints removed at random.", "selected_train", "selected_train_control", SIX | TRAINED,
                 section="ours"),
@@ -217,7 +221,7 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
         variant("more_touches_bayes", "Five joined touches are better than one for naive Bayes.",
                 "touches_5", "locations", SIX | {"classifier": "naive_bayes"}, readings=(ONE_MAPPED, *one_or_many)),
         variant("more_touches_many", "Five joined touches are better than one with many combinations to train on.",
-                "touches_5_many", "touches_1_many", SIX | TRAINED),
+                "touches_5_many", "touches_1_many", SIX | TRAINED, of=f"more_touches{end}"),
         claim("certain_at_five", "Recognition by kNN is near certain with five touches.",
               SIX | {"variant": "touches_5"}, {}, 0.95,  # "up to 100 % accuracy"
               readings=five_in_each),
@@ -231,7 +235,8 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
         variant("network_dips", "The network does worse with five touches than with three.", "touches_3", "touches_5",
                 NETWORK, readings=scalings),
         variant("network_dips_disjoint", "The network does worse with five touches where samples get fewer.",
-                "touches_3_disjoint", "touches_5_disjoint", NETWORK | TRAINED, readings=(MORE_THAN_KNN,)),
+                "touches_3_disjoint", "touches_5_disjoint", NETWORK | TRAINED, readings=(MORE_THAN_KNN,),
+                of=f"network_dips{end}"),
     ]  # fmt: skip
 
 

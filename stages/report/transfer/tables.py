@@ -300,7 +300,7 @@ def of_four(claim: Claim) -> Claim:
 
 PLAIN = [of_four(entry) if entry.section in ("T5.4", "T5.6") and not entry.of else entry for entry in PLAIN]
 EARLY = [  # by layers that the default run does not freeze
-    replace(entry, key=f"{entry.key}_psb", dataset=THEIRS)
+    replace(entry, key=f"{entry.key}_psb", of=entry.of and f"{entry.of}_psb", dataset=THEIRS)
     for entry in both(
         claim("early_decisive", "T5.5", "The early layers are decisive: tuning them too beats tuning the last ones "
               "alone.", "mode", "18:139", "1:134"),
