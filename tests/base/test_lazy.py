@@ -17,13 +17,13 @@ def test_a_stage_starts_without_packages_that_only_its_end_needs():
     assert process.stdout == "set()\n"
 
 
-def test_the_library_and_its_commands_work_on_arrays_without_trimesh():
+def test_the_library_and_its_commands_wait_for_no_package_that_arrays_do_not_need():
     code = """
 import sys
-from haptic_glance import as_mesh, find_points, press, saliency, simplify
+from haptic_glance import as_mesh, budget, find_points, press, saliency, simplify
 import haptic_glance.cli.points, haptic_glance.cli.simplify, haptic_glance.cli.touch
 assert len(as_mesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])).faces) == 1
-print({"pandas", "trimesh", "cv2", "matplotlib"} & set(sys.modules))
+print({"pandas", "trimesh", "cv2", "matplotlib", "scipy.interpolate", "scipy.optimize"} & set(sys.modules))
 """
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert process.stdout == "set()\n"
