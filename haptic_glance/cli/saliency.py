@@ -18,12 +18,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from scipy.spatial import KDTree
 
 from haptic_glance.base import progress
 from haptic_glance.base.extras import about
 from haptic_glance.base.files import existing, said_of, write_text
+from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.export import FORMATS, write_any
 from haptic_glance.lod.pictures import check_look, coloured, write_look

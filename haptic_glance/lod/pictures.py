@@ -1,6 +1,7 @@
 """Pictures of a mesh coloured by saliency with its salient points, and of its faces before and after simplification."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,6 @@ ROWS, FINER = 600, 2  # rows of a picture; drawn twice as fine and averaged
 TOP = 0.98  # quantile of the values at which the colours saturate
 WIRE = np.array([40, 56, 82])
 DOT, RIM, INK = (216, 27, 27), (255, 255, 255), (34, 34, 34)
-VIRIDIS = np.ascontiguousarray(trimesh.visual.color.interpolate(np.arange(256.0), "viridis")[:, :3])
 OUTER = 12  # pixels: radius of a dot with its rim, and one more
 MARGIN, ARROW, TIP = 20, 45, 8  # pixels: of the arrow that points up
 KINDS = (".jpg", ".png", ".webp")
@@ -87,7 +87,13 @@ def vivid(values: np.ndarray) -> np.ndarray:
 def viridis(values: np.ndarray) -> np.ndarray:
     """(n, 3) u1 colours of values (n,) in 0..1, from violet to yellow."""
     levels = np.rint(255 * values).astype(np.uint8)
-    return VIRIDIS[levels]
+    return _colour_scale()[levels]
+
+
+@cache
+def _colour_scale():
+    """(256, 3) u1 colours of the levels of `viridis`."""
+    return np.ascontiguousarray(trimesh.visual.color.interpolate(np.arange(256.0), "viridis")[:, :3])
 
 
 def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:

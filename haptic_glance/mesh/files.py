@@ -174,14 +174,14 @@ def with_known_up(source: MeshLike, remedy: str = WITH_UP, reason: str = "") -> 
 
 
 def _converted(source):
-    if isinstance(source, trimesh.Scene):
-        return join_parts(source, every_colour=True) or _to_mesh(None, False, False)
-    if isinstance(source, Cloud):
-        return _surface(source, "the point cloud")
-    if isinstance(source, trimesh.Trimesh | trimesh.PointCloud):
-        return _to_mesh(source, False, every_colour=True)
     if isinstance(source, tuple) and len(source) == 2:
         return Mesh(np.asarray(source[0], dtype=np.float64), np.asarray(source[1]))
+    if isinstance(source, Cloud):
+        return _surface(source, "the point cloud")
+    if isinstance(source, trimesh.Scene):
+        return join_parts(source, every_colour=True) or _to_mesh(None, False, False)
+    if isinstance(source, trimesh.Trimesh | trimesh.PointCloud):
+        return _to_mesh(source, False, every_colour=True)
     raise TypeError(f"no mesh: a {type(source).__name__}; give a path, a trimesh, (vertices, faces), a Cloud or a Mesh")
 
 

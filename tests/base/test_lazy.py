@@ -17,6 +17,18 @@ def test_a_stage_starts_without_packages_that_only_its_end_needs():
     assert process.stdout == "set()\n"
 
 
+def test_the_library_and_its_commands_wait_for_no_package_that_arrays_do_not_need():
+    code = """
+import sys
+from haptic_glance import as_mesh, budget, find_points, press, saliency, simplify
+import haptic_glance.cli.points, haptic_glance.cli.simplify, haptic_glance.cli.touch
+assert len(as_mesh(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])).faces) == 1
+print({"pandas", "trimesh", "cv2", "matplotlib", "scipy.interpolate", "scipy.optimize"} & set(sys.modules))
+"""
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert process.stdout == "set()\n"
+
+
 def test_a_package_that_was_used_goes_to_a_worker_and_comes_back():
     assert trimesh.Trimesh.__module__ == "trimesh.base"
     assert pickle.loads(pickle.dumps(trimesh)).visual.material.PBRMaterial is trimesh.visual.material.PBRMaterial

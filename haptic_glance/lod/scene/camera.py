@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy  # imports scipy.interpolate at its first use, which takes a tenth of a second
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
 
 from haptic_glance.mesh.mesh import Mesh, bounding_box, unit
 
@@ -128,8 +128,8 @@ def fly(eyes: ArrayLike, targets: ArrayLike, frames: int, angle: float, size: Se
     if not (np.isfinite(eye).all() and np.isfinite(target).all()):
         raise ValueError("the keyframes of a camera path must be finite: an eye or a target holds NaN or infinity")
     if len(eye) > 1:
-        times = np.linspace(0, len(eye) - 1, frames)
-        eye, target = (PchipInterpolator(range(len(points)), points)(times) for points in (eye, target))
+        knots, times = np.arange(len(eye)), np.linspace(0, len(eye) - 1, frames)
+        eye, target = (scipy.interpolate.PchipInterpolator(knots, points)(times) for points in (eye, target))
     else:
         eye, target = np.repeat(eye, frames, axis=0), np.repeat(target, frames, axis=0)
     screen = size[0], size[1]
