@@ -7,19 +7,18 @@ from itertools import islice
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 from scipy.spatial import KDTree
 
+from haptic_glance.base.packing import ERROR_COLOURS
 from haptic_glance.lod.errors import vertex_errors
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
 from stages.report.drawing import (
     GREY,
-    MAP,
     THIN,
     VIEWPOINT,
     colour_bar,
-    colour_map,
     filled,
     label,
     name_panels,
@@ -39,7 +38,8 @@ FACES = 1500  # the thesis's lower count; the nearest target that all methods re
 NEAR = 1.3  # times FACES, either way
 ENOUGH = 2.0  # times as many points, from step to step: then the first object of the settings is taken
 KEEPING = ("VisAttCurvSymCon", WEIGHTED, OURS)  # figure 3.8: the thesis's, or the next that was run
-TOP = 0.98  # quantile of all errors shown that has the brightest colour of figure 3.8
+COLOURS = LinearSegmentedColormap.from_list("error", np.array(ERROR_COLOURS) / 255)  # of figure 3.8, as of the viewer
+TOP = 0.98  # quantile of all errors shown that is darkest
 LEVELS = 3  # of figures 3.8 and 3.21: the thesis shows 3,000, 1,500 and 500 faces
 BEYOND = "out of reach:\nthe kept neighbourhoods\nleave too few faces"
 ROWS = {"figure_3_7": 330, "figure_3_8": 330, "figure_3_21": 300, "figure_3_22": 220}  # of pixels
@@ -109,7 +109,7 @@ def figure_3_8(results: Results) -> Figure:
         row[0].set_axis_off()
         for axes, values in zip(row[1:], field, strict=True):
             _show_coloured(axes, mesh, values / top, rows)
-    scale = ScalarMappable(Normalize(0, 100 * top), MAP)
+    scale = ScalarMappable(Normalize(0, 100 * top), COLOURS)
     bar = drawing.colorbar(scale, cax=drawing.add_axes((0.93, 0.1, 0.012, 0.5)), extend="max")
     bar.set_label("distance, % of the diagonal")
     bar.outline.set_edgecolor(GREY)
@@ -195,7 +195,7 @@ def errors(mesh: Mesh, level: Mesh) -> np.ndarray:
 
 
 def _show_coloured(axes: Axes, mesh: Mesh, values: np.ndarray, rows: int) -> None:
-    colours = np.rint(255 * colour_map(values)).astype(np.uint8)
+    colours = np.rint(255 * COLOURS(np.clip(values, 0, 1))[:, :3]).astype(np.uint8)
     mesh = Mesh(mesh.vertices, mesh.faces, colours)
     image = render(mesh, VIEWPOINT, (2 * rows, 2 * rows), "raster", background="white").rgb
     axes.imshow(squared(image.reshape(rows, 2, rows, 2, 3).mean(axis=(1, 3)) / 255)[0])
