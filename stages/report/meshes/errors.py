@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from stages.engine.statistics import interval
@@ -65,6 +66,7 @@ BOXES = [*FIXED_ADAPTIVE, OURS, f"{OURS}-adaptive", f"{OURS}-soft", "VisAttAll",
 TINTS = dict.fromkeys(BOXES, GREY) | dict.fromkeys(FIXED_ADAPTIVE, "#D55E00")  # the methods of T3.2; below: ours
 TINTS |= {method: METHOD_COLOURS[OURS] for method in BOXES if method.startswith(OURS)}
 TARGETS = ("1500", "3000")  # of the boxes
+GAP = 0.12  # inches beside each panel of the boxes: closer, numbers of two axes would touch
 FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes are exact
 
 
@@ -122,9 +124,8 @@ def figure_3_23(results: Results) -> Figure:
     heights = [0.9 + 0.17 * len(methods) for methods in boxes.values()]  # of a title, the boxes and an axis
     drawing, grid = plt.subplots(
         len(groups), 4, figsize=(10.4, sum(heights)), squeeze=False, sharey="row", height_ratios=heights,
-        layout="constrained",
+        layout=ConstrainedLayoutEngine(w_pad=GAP),
     )  # fmt: skip
-    drawing.get_layout_engine().set(w_pad=0.12)  # inches; numbers of neighbouring axes would touch
     for row, (name, rows) in zip(grid, groups.items(), strict=True):
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
             errors = by_object(rows, boxes[name], metric, target)
