@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 
 import pandas as pd
@@ -36,6 +37,21 @@ class Command:
         return match[1] if match else self.text
 
     @property
+    def meaning(self) -> str:
+        """The sentence at the head of the experiment or data set that the text names; "" of the default run."""
+        match = re.search(r"(experiment)=(\w+)|(sets)=\[(\w+)", self.text)
+        if not match:
+            return ""
+        folder, name = ("experiment", match[2]) if match[1] else ("data", match[4])
+        lines = (ROOT / f"conf/{folder}/{name}.yaml").read_text(encoding="utf-8").splitlines()[1:]
+        return " ".join(line.removeprefix("# ") for line in takewhile(lambda line: line.startswith("# "), lines))
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether the rows of all its stages have seconds."""
+        return self.text == DEFAULT or all(seconds(*pair) for pair in self.work)
+
+    @property
     def minutes(self) -> float:
         """Of one core, summed over the rows of all stages of its sets; of the default run as timed on two cores."""
         if self.text == DEFAULT:
@@ -52,27 +68,36 @@ def commands() -> list[Command]:
         if written.get(claim.key, {"pairs": "0"})["pairs"] == "0" or not (sets := sets_of(claim)):
             continue  # nothing was measured
         text = command_for(sets[0], claim.stage)
-        command = by_text.setdefault(text, Command(text))
-        command.claims.append(written[claim.key])
-        command.work |= {(sets[0], stage) for stage in stages_of(sets[0]) if command_for(sets[0], stage) == text}
+        by_text.setdefault(text, Command(text)).claims.append(written[claim.key])
+    for dataset in measured_sets():
+        for stage in stages_of(dataset):
+            if command := by_text.get(command_for(dataset, stage)):
+                command.work.add((dataset, stage))
     return sorted(by_text.values(), key=lambda entry: (entry.text != DEFAULT, -len(entry.claims)))
 
 
 def sets_of(claim: Claim) -> list[str]:
     """The sets whose rows a claim compares; a default set comes before others."""
     defaults = settings()["sets"]
-    names = sorted(path.name for path in (ROOT / "reports/measurements").iterdir())
-    sets = sorted((name for name in names if claim.stage in stages_of(name)), key=lambda name: name not in defaults)
+    sets = [name for name in measured_sets() if claim.stage in stages_of(name)]
+    sets.sort(key=lambda name: name not in defaults)
     others = [name for name in sets if name not in claim.sets]
     wanted = [name or next(iter(others), "") for name in claim.sets]
     return [name for name in wanted if name in sets]
 
 
+def measured_sets() -> list[str]:
+    """The sets that have rows."""
+    return sorted(path.name for path in (ROOT / "reports/measurements").iterdir() if path.is_dir())
+
+
+@cache
 def stages_of(dataset: str) -> list[str]:
     """The stages that have rows of a set."""
     return [path.name.removesuffix(SUFFIX) for path in (ROOT / "reports/measurements" / dataset).glob(f"*{SUFFIX}")]
 
 
+@cache
 def command_for(dataset: str, stage: str) -> str:
     """What runs a stage on a set."""
     chosen = switch(ROOT / "conf", dataset, stage)

@@ -5,17 +5,21 @@ import re
 from collections.abc import Callable
 from importlib import import_module
 
+from numpy.typing import ArrayLike
 from sphinx.application import Sphinx
+from sphinx.util.typing import stringify_annotation
 
 import haptic_glance
 
 SPECIAL = re.compile(r"([*|])|(?<=\w)(_)(?!\w)")  # what would begin emphasis, a substitution or a reference
+ARRAY_LIKE = stringify_annotation(ArrayLike, "smart")  # numpy's name stands for eight private types
 CODE = re.compile(r"(`+[^`]+`+)")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Hooks into autodoc."""
     app.connect("autodoc-process-docstring", _process)
+    app.connect("autodoc-process-signature", _short)
     app.connect("autodoc-skip-member", _skip)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -40,7 +44,7 @@ def _code(block):
 
 
 def _process(app, what, name, obj, options, lines):
-    if isinstance(obj, dict | tuple | int):  # else it would have the docstring of its type
+    if isinstance(obj, dict | tuple | int | str):  # else it would have the docstring of its type
         lines[:] = [_value_text(obj), ""]
         return
     text = as_rst(lines, lambda code: linked(code, getattr(obj, "__module__", None) or ""))
@@ -68,8 +72,8 @@ def with_bold_names(lines: list[str], names: list[str]) -> list[str]:
 
 
 def _value_text(obj):
-    """A constant in words: a number itself, of a dict or tuple its items by their names."""
-    if isinstance(obj, int):
+    """A constant in words: a number or a text itself, of a dict or tuple its items by their names."""
+    if isinstance(obj, int | str):
         return f"``{obj}``"
     if any(isinstance(item, tuple) for item in obj):
         return f"A {type(obj).__name__} of {len(obj)} tuples."
@@ -81,6 +85,11 @@ def _parameters(obj):
         return list(inspect.signature(obj).parameters)
     except (TypeError, ValueError):
         return []
+
+
+def _short(app, what, name, obj, options, signature, returns):
+    """The signature and the result with numpy's own name of everything that becomes an array."""
+    return tuple(text and text.replace(ARRAY_LIKE, "ArrayLike") for text in (signature, returns))
 
 
 def _skip(app, what, name, obj, skip, options):

@@ -7,12 +7,14 @@
 import re
 from pathlib import Path
 
+import yaml
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from .tables import made_table
 
+FOREIGN = ("defaults", "hydra")  # sections that Hydra itself reads
 CONF = Path(__file__).resolve().parents[2] / "conf" / "config.yaml"
 
 
@@ -25,14 +27,23 @@ def setup(app: Sphinx) -> dict[str, bool]:
 def settings() -> dict[str, dict[str, tuple[str, str]]]:
     """{section: {setting: (default, meaning; empty where a group of conf/ says it)}} of conf/config.yaml."""
     sections: dict[str, dict[str, tuple[str, str]]] = {}
-    section = ""
-    for line in CONF.read_text(encoding="utf-8").splitlines():
+    section, text = "", CONF.read_text(encoding="utf-8")
+    values = yaml.safe_load(text)
+    for line in text.splitlines():
         if head := re.match(r"(\w+):(?:\s*#.*)?$", line):
             section = head[1]
+        elif section in FOREIGN:
+            continue
         elif setting := re.match(r"  (\w+):(.*)$", line):
             default, _, meaning = setting[2].partition(" # ")
-            sections.setdefault(section, {})[setting[1]] = default.strip(), meaning.strip()
+            value = default.strip() or flow(values[section][setting[1]])
+            sections.setdefault(section, {})[setting[1]] = value, meaning.strip()
     return sections
+
+
+def flow(value: object) -> str:
+    """A default that stands on lines of its own, in one line."""
+    return yaml.safe_dump(value, default_flow_style=True, width=10**6, sort_keys=False).strip()
 
 
 class SettingsTable(SphinxDirective):

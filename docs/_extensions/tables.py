@@ -55,7 +55,7 @@ class Claims(SphinxDirective):
             rows = rows_of(REPORTS / "claims.csv", f"key={key}")
             (row,) = rows.to_dict("records")
             lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(rows), row["tested_on"]))
-        return [made_table(("", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
+        return [made_table(("section", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
 
 
 class Rows(SphinxDirective):
@@ -101,12 +101,9 @@ class Artifact(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """A table of the commands, then a section for each."""
         listed = commands()
-        lines = [
-            (code(command.text), str(len(command.claims)), tally(command), f"{max(command.minutes, 1):.0f}")
-            for command in listed
-        ]
-        head = ("command", "claims", ", ".join(WORDS), "minutes")
-        return [made_table(head, lines, (52, 10, 24, 14)), *(self.section(command) for command in listed)]
+        lines = [(code(command.text), str(len(command.claims)), tally(command), minutes(command)) for command in listed]
+        head = ("command", "claims", "verdicts", "minutes")
+        return [made_table(head, lines, (46, 8, 36, 10)), *(self.section(command) for command in listed)]
 
     def section(self, command: Command) -> nodes.section:
         """The claims of one command."""
@@ -115,8 +112,9 @@ class Artifact(SphinxDirective):
             for claim in command.claims
         ]
         title = nodes.title(command.name, command.name)
-        body = made_table(("", "claim", "verdict", "key"), lines, (10, 50, 16, 24))
-        return nodes.section("", title, body, ids=[nodes.make_id(f"claims of {command.name}")])
+        meaning = [nodes.paragraph("", command.meaning)] if command.meaning else []
+        body = made_table(("section", "claim", "verdict", "key"), lines, (10, 50, 16, 24))
+        return nodes.section("", title, *meaning, body, ids=[nodes.make_id(f"claims of {command.name}")])
 
 
 def effect(selected: pd.DataFrame) -> str:
@@ -152,8 +150,14 @@ def code(text: str) -> nodes.Node:
 
 
 def tally(command: Command) -> str:
-    """How many of each verdict."""
-    return ", ".join(str(sum(claim["verdict"] == word for claim in command.claims)) for word in WORDS)
+    """The number of claims with each verdict, without zeros."""
+    numbers = {word: sum(claim["verdict"] == word for claim in command.claims) for word in WORDS}
+    return ", ".join(f"{number} {word}" for word, number in numbers.items() if number)
+
+
+def minutes(command: Command) -> str:
+    """The minutes of a command; a plus stands for the stages whose rows have no seconds."""
+    return f"{max(command.minutes, 1):.0f}{'' if command.is_timed else '+'}"
 
 
 def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]], widths=None) -> nodes.table:
@@ -161,10 +165,7 @@ def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]],
     head = list(head)
     group = nodes.tgroup("", *(nodes.colspec("", colwidth=w) for w in widths or [1] * len(head)), cols=len(head))
     group += [nodes.thead("", made_row(head)), nodes.tbody("", *(made_row(line) for line in lines))]
-    kinds = [
-        "measured-table",
-        *([] if head[0] else ["claims-table"]),
-    ]  # claims stand behind their section, without a title
+    kinds = ["measured-table", *(["claims-table"] if "claim" in head else [])]
     return nodes.table("", group, classes=kinds)
 
 

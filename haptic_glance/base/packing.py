@@ -17,8 +17,8 @@ STEPS = 4095  # either side of 0 over -0.5..0.5: an eighth of a pixel of a canva
 SHADES = 64  # of the colour scale: more cannot be told apart
 CELLS = 1024  # a side of the grid whose Morton order puts neighbours next to each other
 TOP = 0.99  # of the coarsest level's vertices have an error below the top of the scale; the others show as the top
-# Blue is equal, green small, yellow, red large: the scale of CloudCompare.
-ERROR_COLOURS = ((38, 70, 200), (34, 160, 74), (245, 215, 50), (214, 30, 30))
+# Pale is equal, orange medium, dark red large: ever darker, so that the colour-blind can tell the errors apart, too.
+ERROR_COLOURS = ((236, 234, 228), (250, 190, 90), (213, 94, 0), (90, 18, 50))
 
 
 class Level(NamedTuple):

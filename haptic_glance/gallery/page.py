@@ -116,7 +116,7 @@ def levels_html(item: Exhibit, folder: str) -> str:
     heads = ["file", "faces", "% of all", "mean distance, %", "largest, %"]
     failures = "".join(f"<li>{escape(f'{target}: {reason}')}</li>" for target, reason in item.missing.items())
     note = '<p class="help">Distances of the mesh\'s vertices to the level, in % of its diagonal.</p>'
-    body = f"{table(heads, rows)}{note}" if rows else ""
+    body = f"{table(f'Levels of {item.name}', heads, rows)}{note}" if rows else ""
     return f"<h3>With fewer faces</h3>{body}" + (f"<ul>{failures}</ul>" if failures else "")
 
 
@@ -124,16 +124,16 @@ def places_html(item: Exhibit) -> str:
     """The table of the points in the file's coordinates."""
     rows = [[f"{rank}", f"{vertex:,}", *(f"{v:.6g}" for v in place), f"{value:.3f}"]
             for rank, vertex, *place, value in item.points]  # fmt: skip
-    return table(["place", "vertex", "x", "y", "z", "score"], rows)
+    return table(f"Places on {item.name}", ["place", "vertex", "x", "y", "z", "score"], rows)
 
 
-def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table in a box that scrolls; cells are HTML, all but the first column numbers."""
+def table(name: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in a box that scrolls; cells are HTML, all but the first column numbers. name: for screen readers."""
     kinds = ["", *[' class="number"'] * (len(heads) - 1)]
     head = "".join(f'<th scope="col"{kind}>{text}</th>' for kind, text in zip(kinds, heads, strict=True))
     cells = ("".join(f"<td{kind}>{text}</td>" for kind, text in zip(kinds, row, strict=True)) for row in rows)
     body = "".join(f"<tr>{row}</tr>" for row in cells)
-    box = '<div class="scroll" tabindex="0" role="region" aria-label="Table">'
+    box = f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(name)}">'
     return f"{box}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
 
 

@@ -90,7 +90,10 @@ LABELS = {
     "vtk": "VTK",
 }
 WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a method's name
-METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "glance": "#0072B2", "qem": GREY}
+METHOD_COLOURS = {
+    "random": "#E69F00", "itti": "#56B4E9", "VisAttAll": "#D55E00", "thesis_ssim": "#009E73", "glance": "#0072B2",
+    "qem": GREY,
+}  # fmt: skip
 MARKERS = "osD^vPX*"
 PALETTE = 160  # colours of a picture: a fourth of the bytes, and the shading of meshes still looks smooth
 SETTLED = 1_000  # pixels that still change their colour: to go on until all stay takes five times as long

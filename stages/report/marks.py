@@ -195,11 +195,11 @@ def has_marks_alone(drawing: Drawing) -> bool:
 
 
 def vector(drawing: Drawing, name: str, alt: str) -> tuple[str, list[Mark]]:
-    """(an svg element, its marks) of a drawing; name: makes the ids in it differ from those of other charts."""
+    """(an svg element, its marks) of a drawing; name and alt make its ids differ from those of other charts."""
     drawing.set_dpi(72)  # then a pixel is a typographic point, the unit of matplotlib's SVG
     box = drawing.get_tightbbox().padded(PAD)
     all_marks, buffer = marks(drawing), io.StringIO()
-    with plt.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
+    with plt.rc_context({"svg.fonttype": "none", "svg.hashsalt": name + alt}):
         drawing.savefig(buffer, format="svg", bbox_inches=box, transparent=True, metadata={"Date": None})
     width, height = 72 * box.width, 72 * box.height
     spots = [(mark.spot[0] - 72 * box.x0, height - (mark.spot[1] - 72 * box.y0)) for mark in all_marks]

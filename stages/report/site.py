@@ -109,7 +109,7 @@ def _card(finding: Finding, row, differences: pd.DataFrame) -> str:
     values = dict(zip(pairs["pair"].astype(str), map(finding.of, pairs["difference"]), strict=True))
     drawing = strip(values, (mean, low, high), finding.of(0.0), finding.unit)
     chart = box("wide", f"{title}, chart", vector(drawing, finding.key, alt)[0])
-    links = f'<a href="site/claims.html#{finding.key}">The claim</a> '
+    links = f'<a href="site/claims.html#{finding.key}">The claim</a>, '
     links += f'<a href="site/{finding.topic}.html">{finding.topic.capitalize()}</a>'
     return (
         f'<li><h3>{escape(title)}</h3><p class="figure"><strong>{signed}{figure}</strong> {escape(finding.unit)}</p>'

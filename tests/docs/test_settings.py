@@ -23,5 +23,11 @@ def test_each_setting_is_documented_once():
         assert sorted(beside + in_conf) == sorted(schema_of(section).__dataclass_fields__), section
 
 
+def test_each_default_is_shown_and_the_section_of_hydra_is_not():
+    listed = settings()
+    assert listed["report"]["viewer_objects"][0].startswith("[") and "hydra" not in listed
+    assert not [name for section in listed.values() for name, (default, _) in section.items() if not default]
+
+
 def test_a_default_and_its_meaning_are_read():
     assert settings()["lod"]["rings"] == ("3", "edges around a kept point within which every face is frozen (T3.1.3)")

@@ -50,6 +50,9 @@ def test_formulas_figures_and_verdicts_are_in_the_pages(site):
     )
     simplify = (site / "generated/api/haptic_glance.simplify.html").read_text(encoding="utf-8")
     assert "<strong>keep</strong>" in simplify and "Examples" in simplify
+    forces = (site / "generated/api/haptic_glance.press_forces.html").read_text(encoding="utf-8")
+    assert "ArrayLike" in forces and "_NestedSequence" not in forces
+    assert "Create a new string object" not in (site / "api/know.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow

@@ -89,6 +89,11 @@ def test_the_page_needs_nothing_but_itself_and_claims_nothing(whole):
     assert not re.search("supported|contradicted|claim|household|duck", text, re.I)
 
 
+def test_regions_of_the_page_have_names_of_their_own(whole):
+    names = re.findall(r'role="region" aria-label="([^"]+)"', whole[2])
+    assert "Levels of pear &amp; co" in names and len(set(names)) == len(names)
+
+
 def test_the_same_comes_of_the_three_commands_that_it_names(scans, capsys):
     out, mesh = scans.parent, str(scans / "pear.ply")
     _, page, _, _ = gallery(scans / "pear.ply", out / "out", "--count", "4", "--levels", "300,10%")

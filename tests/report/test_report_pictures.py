@@ -47,6 +47,11 @@ def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
     assert len(set(tints.values())) == len(tints) == 8
 
 
+def test_a_method_of_touch_has_one_colour_whichever_methods_stand_beside_it():
+    groups = (["random", "itti", "VisAttAll"], ["random", "itti", "VisAttAll", "glance"], ["VisAttAll"])
+    assert len({colours(group)["VisAttAll"] for group in groups}) == 1
+
+
 def test_colours_of_the_error_are_those_of_the_distance(small):
     inner = small.ball()
     inner = type(inner)(0.9 * inner.vertices, inner.faces)

@@ -2,15 +2,15 @@
 
 import math
 import re
-from itertools import product, zip_longest
+from itertools import pairwise, product, zip_longest
 from pathlib import Path
 
 import pytest
 
 from haptic_glance.base.files import read_json, read_table, write_table
 from stages.engine.settings import Workspace
-from stages.report import Params, items, topics
-from stages.report.drawing import plt
+from stages.report import Params, items, meshes, topics
+from stages.report.drawing import SETTINGS, plt
 from stages.report.results import Results
 from stages.report.topics import CLAIMS, TOPICS, build_all, name_of
 from stages.report.topics import KINDS as DICTS
@@ -112,3 +112,21 @@ def test_committed_rows_give_the_published_report(published, kind, topic):
         assert_claims_unchanged(published, topic)
     else:
         assert_items_unchanged(kind, published, topic)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["figure_3_4", "figure_3_5", "figure_3_23"])
+def test_numbers_of_axes_side_by_side_do_not_touch(published, name):
+    with plt.rc_context(SETTINGS):
+        drawing = meshes.FIGURES[name](published).drawing
+        drawing.draw_without_rendering()
+        for row in {axes.get_subplotspec().rowspan.start for axes in drawing.axes}:
+            boxes = []
+            for axes in (axes for axes in drawing.axes if axes.get_subplotspec().rowspan.start == row):
+                low, high = axes.get_xlim()
+                texts = (text for text in axes.get_xticklabels() if text.get_text())
+                boxes += [text.get_window_extent() for text in texts if low <= text.get_position()[0] <= high]
+            assert len(boxes) > 8
+            ends = sorted((box.x0, box.x1) for box in boxes)
+            assert all(right < left for (_, right), (left, _) in pairwise(ends)), name
+        plt.close(drawing)

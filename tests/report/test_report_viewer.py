@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from haptic_glance.base.files import write_mesh
-from haptic_glance.base.packing import SHADES, STEPS, Store, ordered
+from haptic_glance.base.packing import SHADES, STEPS, Store, ordered, viewer_data
 from haptic_glance.gallery.page import as_script
 from haptic_glance.mesh.mesh import Mesh
 from stages.report.page import FINEST, apart, pack_object, pack_viewer, part
@@ -219,3 +219,10 @@ def test_one_can_look_at_saliency_and_shading_instead(shown):
     grey = seen[2].astype(int)
     assert np.abs(grey[..., 0] - grey[..., 1]).max() < 10
     assert shown.page.locator("#legend").is_hidden()
+
+
+def test_a_larger_error_is_darker_for_every_eye():
+    shades = viewer_data([], np.zeros((SHADES, 3)), [])["colours"]
+    errors = np.frombuffer(base64.b64decode(shades), np.uint8).reshape(-1, 3)[SHADES:]
+    luminance = (errors / 255) ** 2.2 @ [0.2126, 0.7152, 0.0722]
+    assert len(errors) == SHADES and (np.diff(luminance) < 0).all()

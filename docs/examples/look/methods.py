@@ -5,6 +5,8 @@ Several methods side by side
 All methods share one signature: a name of ``haptic_glance.METHODS``. Each has its own idea of what stands out.
 """
 
+import textwrap
+
 import matplotlib.pyplot as plt
 
 from haptic_glance import METHODS, load, saliency, simplify
@@ -21,7 +23,7 @@ SHOWN = {
 }
 
 mesh = simplify(load(sample()), 4000)  # two of these methods take long on large meshes
-print(len(METHODS), "methods:", ", ".join(METHODS))
+print(f"{len(METHODS)} methods:\n" + textwrap.fill(", ".join(METHODS), 90))
 
 fig, axes = plt.subplots(2, 3, figsize=(9, 5.6), layout="constrained")
 for axis, (method, title) in zip(axes.flat, SHOWN.items(), strict=True):

@@ -241,6 +241,7 @@
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
     const [pw, ph] = stacked ? [w, Math.floor(h / 2)] : [Math.floor(w / 2), h];
+    if (ph <= head) return;  // the page has no layout yet
     panes.forEach((pane, k) => {
       const corner = stacked ? [0, k ? 0 : h - ph] : [k ? w - pw : 0, 0];
       gl.viewport(...corner, pw, ph - head);

@@ -166,6 +166,8 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def _option(value):
+    if value == WHOLE:
+        return "all"
     return label(value) if isinstance(value, str) else f"{value:.0f}"
 
 

@@ -180,7 +180,8 @@ def _honesty(frame: pd.DataFrame) -> list[str]:
         beliefs = frame[(frame["split"] == split) & (frame["likelihood"] == "imprint")]
         points = 100 * (beliefs["stated"] - beliefs["accuracy"]).mean()
         way = "too careful" if points < 0 else "too sure"
-        lines.append(f"{str(words).capitalize()}: {abs(points):.0f} points {way} on average")
+        unit = "point" if f"{abs(points):.0f}" == "1" else "points"
+        lines.append(f"{str(words).capitalize()}: {abs(points):.0f} {unit} {way} on average")
     return lines
 
 

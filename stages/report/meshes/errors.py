@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from stages.engine.statistics import interval
@@ -65,6 +66,7 @@ BOXES = [*FIXED_ADAPTIVE, OURS, f"{OURS}-adaptive", f"{OURS}-soft", "VisAttAll",
 TINTS = dict.fromkeys(BOXES, GREY) | dict.fromkeys(FIXED_ADAPTIVE, "#D55E00")  # the methods of T3.2; below: ours
 TINTS |= {method: METHOD_COLOURS[OURS] for method in BOXES if method.startswith(OURS)}
 TARGETS = ("1500", "3000")  # of the boxes
+GAP = 0.12  # inches beside each panel of the boxes: closer, numbers of two axes would touch
 FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes are exact
 
 
@@ -102,7 +104,6 @@ def figure_3_5(results: Results) -> Figure:
         _draw_dots(panels[1], errors, tint, PLAIN, target_text(target).removesuffix(" faces"), down)
     for axes, metric in zip(panels[2:5], ("ssim_error", "dlap", "dnor"), strict=True):
         _draw_dots(axes, by_object(rows, methods, metric), CYCLE[0], PLAIN)
-        axes.xaxis.set_major_locator(MaxNLocator(3))
     _draw_dots(panels[5], rows.pivot_table(index="item", columns="method", values="points")[methods], CYCLE[0])
     panels[0].set_xscale("log")
     panels[0].xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -123,7 +124,7 @@ def figure_3_23(results: Results) -> Figure:
     heights = [0.9 + 0.17 * len(methods) for methods in boxes.values()]  # of a title, the boxes and an axis
     drawing, grid = plt.subplots(
         len(groups), 4, figsize=(10.4, sum(heights)), squeeze=False, sharey="row", height_ratios=heights,
-        layout="constrained",
+        layout=ConstrainedLayoutEngine(w_pad=GAP),
     )  # fmt: skip
     for row, (name, rows) in zip(grid, groups.items(), strict=True):
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
@@ -147,10 +148,14 @@ def _draw_boxes(axes: Axes, errors: pd.DataFrame) -> None:
         axes.hlines(y, low, high, color=tints, lw=0.9, capstyle="projecting", zorder=2)
         axes.barh(y, right - left, 0.62, left, color=tints, alpha=0.45)
         axes.plot([middle, middle], [y - 0.31, y + 0.31], color=INK, lw=1.3)
-        axes.axvline(plain, color=GREY, lw=0.9, ls="--", zorder=0)
+        axes.axvline(plain, color=GREY, lw=0.9, ls="--", zorder=0.9)  # above the grid, below the boxes
         axes.set_xlim(left=max(FLOOR * plain, 0.7 * low.min()))
-    axes.xaxis.set_major_locator(LogLocator(numticks=4))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    low, high = axes.get_xlim()
+    if high < 100 * low:
+        plain_logarithm(axes.xaxis)  # powers of ten alone would name one place of the axis
+    else:
+        axes.xaxis.set_major_locator(LogLocator(numticks=4))
+        axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="x", labelsize=8, which="both")
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x", color=PALE, lw=0.5)
@@ -170,7 +175,7 @@ def _draw_dots(axes: Axes, table: pd.DataFrame, tint: str, base: str = "", name:
     axes.plot([low, high], [y, y], color=tint, lw=1.6, alpha=0.5)
     axes.plot(mean, y, "o", color=tint, ms=4.2, mec="white", mew=0.5)
     if base:
-        axes.axvline(middle, color=tint, lw=0.9, ls="--", zorder=0)
+        axes.axvline(middle, color=tint, lw=0.9, ls="--", zorder=1)  # above the grid
     if name:
         axes.plot([], [], "o", color=tint, ms=4, label=name)
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.99), ncols=3, fontsize=8, handletextpad=0,
@@ -182,12 +187,14 @@ def _dress(drawing: Drawing, titles: list[str], methods: list[str], pad: float =
     for axes, title in zip(drawing.axes, titles, strict=True):
         axes.set_title(title, fontsize=9.5, fontweight="normal", pad=pad)
         axes.grid(axis="x")
+        if axes.get_xscale() == "linear":
+            axes.xaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
         axes.hlines(range(len(methods)), 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.4, zorder=0)
         axes.tick_params(axis="x", labelsize=8)
         axes.tick_params(axis="y", length=0)
         axes.spines["left"].set_visible(False)
     _name_rows(drawing.axes[0], methods, {OURS: METHOD_COLOURS[OURS], PLAIN: GREY}, 8.5)
-    drawing.subplots_adjust(wspace=0.12)
+    drawing.subplots_adjust(wspace=0.28)  # closer, numbers of two axes would touch
 
 
 def _name_rows(axes: Axes, methods: list[str], tints: dict[str, str], size: float) -> None:

@@ -10,6 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from scipy.spatial import KDTree
 
+from haptic_glance.base.packing import ERROR_COLOURS
 from haptic_glance.lod.errors import vertex_errors
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
@@ -37,9 +38,8 @@ FACES = 1500  # the thesis's lower count; the nearest target that all methods re
 NEAR = 1.3  # times FACES, either way
 ENOUGH = 2.0  # times as many points, from step to step: then the first object of the settings is taken
 KEEPING = ("VisAttCurvSymCon", WEIGHTED, OURS)  # figure 3.8: the thesis's, or the next that was run
-# T figure 3.8 and CloudCompare: blue perfect, then green, yellow, red.
-COLOURS = LinearSegmentedColormap.from_list("error", ["#2c4fd8", "#35b46a", "#f2d530", "#d7261e"])
-TOP = 0.98  # quantile of all errors shown that is red
+COLOURS = LinearSegmentedColormap.from_list("error", np.array(ERROR_COLOURS) / 255)  # of figure 3.8, as of the viewer
+TOP = 0.98  # quantile of all errors shown that is darkest
 LEVELS = 3  # of figures 3.8 and 3.21: the thesis shows 3,000, 1,500 and 500 faces
 BEYOND = "out of reach:\nthe kept neighbourhoods\nleave too few faces"
 ROWS = {"figure_3_7": 330, "figure_3_8": 330, "figure_3_21": 300, "figure_3_22": 220}  # of pixels

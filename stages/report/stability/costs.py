@@ -26,7 +26,7 @@ def kernels(results: Results) -> Figure:
     axes.set_yscale("log")
     plain_logarithm(axes.yaxis)
     axes.set_xticks(range(len(commits)), commits, rotation=30, ha="right", fontsize=8)
-    axes.set(xlim=(-0.5, len(commits) - 0.5), ylabel="time, as a ratio to the peer's")
+    axes.set(xlim=(-0.5, len(commits) - 0.5), xlabel="commit", ylabel="time, as a ratio to the peer's")
     axes.grid(axis="y")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
     peers = rows.drop_duplicates("what").set_index("what")["peer"]
