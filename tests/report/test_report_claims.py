@@ -77,6 +77,12 @@ def test_claims_on_the_small_run_have_its_effects(results, key, word, size, pair
     assert (row["verdict"], row["pairs"]) == (word, pairs) and row["effect"] == pytest.approx(size, abs=2)
 
 
+def test_a_reading_without_an_interval_is_told_from_one_that_was_not_run(results):
+    readings = dict(text.split(": ") for text in of(results, "glance_keep_metro")["readings"].split("; "))
+    assert readings["only where three rings fit"] == "not testable, no interval"
+    assert readings["1,500 faces alone"] == "not run"
+
+
 @pytest.mark.parametrize(("six", "four", "beyond"), [(1 / 3, 1 / 4, 0), (2 / 3, 1 / 2, 1 / 3 - 1 / 2)])
 def test_beyond_chance_takes_off_the_guessing_of_the_objects_that_the_group_held(root, small, six, four, beyond):
     frame = small.classification()
