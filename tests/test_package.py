@@ -134,7 +134,7 @@ def test_what_a_mesh_of_ones_own_needs_runs_in_a_core_install(ball):
 
 
 @pytest.mark.slow
-def test_the_studio_needs_no_picture_table_or_learner(ball):
+def test_the_studio_needs_no_picture_table_or_learner():
     pytest.importorskip("viser")
     absent = without([*MODULES["pictures"], "pandas", "pywt", "sklearn"])
     code = "from haptic_glance.studio import app, guard, mystery, opening, window\n"

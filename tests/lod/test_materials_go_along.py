@@ -92,6 +92,7 @@ def simplified(tmp_path, capsys):
 
 def test_materials_and_their_pictures_go_from_glb_to_glb(simplified, tmp_path):
     out, messages = simplified("out.glb")
+    assert int.from_bytes(out.read_bytes()[8:12], "little") == out.stat().st_size  # as its header says
     paths = tmp_path / "art.glb", out
     before, after = ({entry["name"]: entry for entry in materials_of(path)} for path in paths)
     assert set(after) == {"varnish", "metal"} and "dropped" not in messages

@@ -132,7 +132,7 @@ def test_unusable_names_and_marks_are_refused_before_anything_is_written(tmp_pat
 def test_marks_off_the_mesh_are_named_with_their_distances():
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     places = np.array([[1.0, 0, 0], [0, 1, 0]])
-    check_on_mesh([1, 2], places, mesh, "cup.csv")
+    check_on_mesh([0, 1, 2], mesh.vertices, mesh, "cup.csv")
     with pytest.raises(ValueError, match=r"cup\.csv .*1 of 2 points lie 0\.25 to 0\.25 units"):
         check_on_mesh([1, 2], places + [[0, 0, 0], [0, 0, 0.25]], mesh, "cup.csv")
     with pytest.raises(ValueError, match="vertex 3 is not in 0..2"):

@@ -59,7 +59,7 @@ def test_a_piece_that_is_seen_along_its_surface_alone_is_smoothed(ball):
     np.testing.assert_allclose(smooth[len(far) :], 0, atol=1e-9)
 
 
-def test_a_hidden_front_does_not_lend_its_value_to_the_back(ball):
+def test_a_hidden_front_does_not_lend_its_value_to_the_back():
     wall = np.array([[0.45, -0.3, -0.3], [0.45, 0.3, -0.3], [0.45, 0.3, 0.3], [0.45, -0.3, 0.3]]) - [0.9, 0, 0]
     front = wall + [0.9, 0, 0]
     mesh = Mesh(np.r_[front, wall], [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])

@@ -49,7 +49,7 @@ def test_confirmed_choices_stand_beside_what_the_search_found(measured):
     assert "takes 10 ms" in build_one(chain, "tradeoff", "front", measured).caption
 
 
-def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both_accuracies(measured):
+def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both_accuracies():
     columns = ["regions", "regions_low", "objects", "objects_low", "seconds", "faces", "touches", "words"]
     best, quick = (0.7, 0.6, 0.6, 0.5, 1.0, 500, 1, "best"), (0.6, 0.5, 0.5, 0.4, 0.2, 500, 1, "quick")
     worse = [(0.59, 0.5, 0.6, 0.5, 0.1, 500, 1, "touched worse"), (0.8, 0.7, 0.49, 0.4, 0.1, 500, 1, "unseen worse")]

@@ -77,13 +77,20 @@ def test_claims_on_the_small_run_have_its_effects(results, key, word, size, pair
     assert (row["verdict"], row["pairs"]) == (word, pairs) and row["effect"] == pytest.approx(size, abs=2)
 
 
-def test_beyond_chance_takes_off_the_guessing_of_the_objects_that_the_group_held(root, small):
+def test_a_reading_without_an_interval_is_told_from_one_that_was_not_run(results):
+    readings = dict(text.split(": ") for text in of(results, "glance_keep_metro")["readings"].split("; "))
+    assert readings["only where three rings fit"] == "not testable, no interval"
+    assert readings["1,500 faces alone"] == "not run"
+
+
+@pytest.mark.parametrize(("six", "four", "beyond"), [(1 / 3, 1 / 4, 0), (2 / 3, 1 / 2, 1 / 3 - 1 / 2)])
+def test_beyond_chance_takes_off_the_guessing_of_the_objects_that_the_group_held(root, small, six, four, beyond):
     frame = small.classification()
-    small.write(root, "classification", frame.assign(value=frame["group"].map({"six": 1 / 3, "four": 1 / 4})))
+    small.write(root, "classification", frame.assign(value=frame["group"].map({"six": six, "four": four})))
     small.write_set(root, "six", 3)
     results = small.results(root)
-    assert of(results, "four_easier_ours")["effect"] == pytest.approx(100 * (1 / 4 - 1 / 3), rel=1e-3)
-    assert of(results, "four_easier_beyond_chance_ours")["effect"] == pytest.approx(0, abs=1e-3)
+    assert of(results, "four_easier_ours")["effect"] == pytest.approx(100 * (four - six), rel=1e-3)
+    assert of(results, "four_easier_beyond_chance_ours")["effect"] == pytest.approx(100 * beyond, abs=1e-3)
 
 
 def test_pairs_match_by_repetition_not_by_row(values):
@@ -103,7 +110,8 @@ def test_pairs_match_by_repetition_not_by_row(values):
 def test_rows_that_were_left_out_hand_on_their_note(measure, small, where, note, key, words):
     frame = small.left_out(small.classification(), note, **where)
     frame = frame if note else frame.dropna(subset=["value"])
-    assert of(measure("classification", frame), key)["tested_on"] == f"not run: {words}"
+    row = of(measure("classification", frame), key)
+    assert row["tested_on"] == f"not run: {words}" and (row["pairs"], row["units"]) == (0, 0)
 
 
 def test_several_values_are_averaged_where_all_were_measured(values):
@@ -416,6 +424,7 @@ def test_a_reading_in_the_place_of_the_claim_shows_all_its_sets(sets_of_rows):
     row = pooled(results, "absent", section="T9", readings=(reading("elsewhere", dataset=("one", "two")),))
     assert row["units"] == 12 and row["effect"] == pytest.approx(2.0, abs=1e-3)
     assert row["by_set"].startswith("one +2") and "; two +3" in row["by_set"]
+    assert row["tested_on"].endswith("in the reading elsewhere, since as written it was not run")
 
 
 def test_chance_calls_as_many_verdicts_as_is_said():
@@ -425,12 +434,6 @@ def test_chance_calls_as_many_verdicts_as_is_said():
     p_values = [p_value(values) if word != "open" else 0.5 for values, word in zip(noise, words, strict=True)]
     frame = pd.DataFrame({"section": "T9", "p": p_values, "verdict": words})
     assert (holding(frame) == "yes").sum() <= 2  # not one of them is an effect
-
-
-def test_a_set_without_rows_is_named_and_the_others_decide(sets_of_rows):
-    results = sets_of_rows(one=spread_about(2.0), two=spread_about(2.0, 1))
-    row = pooled(results, "absent", "one", "two")
-    assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
 
 
 def test_a_reading_in_sums_names_each_combination_anew_and_leaves_the_other_methods():

@@ -86,7 +86,7 @@ def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert judged.loc["sight_over_touch_objects", "verdict"] == "contradicted"
 
 
-def test_what_loses_about_the_point_that_may_be_lost_is_open_and_says_what_nobody_measured(run, measure):
+def test_what_loses_about_the_point_that_may_be_lost_is_open_and_says_what_nobody_measured(measure):
     row = verdicts(measure("transfer", rows(small=-0.01)), "eight_bits_touch_random").iloc[0]
     assert -3 < row["low"] < 0 < row["high"] < 3 and row["verdict"] == "open"
     assert "nobody measured whether the training was saturated" in row["tested_on"]
@@ -98,6 +98,32 @@ def test_a_file_is_as_much_smaller_as_in_print_or_more(run, measure):
     frame = rows()
     frame.loc[frame["metric"] == "size_ratio", "value"] -= 0.01
     assert verdicts(measure("transfer", frame), "hybrid_smaller").iloc[0]["verdict"] == "contradicted"
+
+
+@pytest.fixture
+def two_middles(measure):
+    """Results of the hybrid network and of one with other shared layers, which is better by two points."""
+    frame = rows(small=0.0)
+    sizes = frame[(frame["metric"] == "accuracy") & frame["sense"].isin(LEVELS) & frame["perturbation"].isna()]
+    frame = pd.concat([frame, sizes.assign(metric="size_bytes", value=1e6)])
+    other = frame[frame["data"].eq("hybrid") & frame["repetition"].lt(2)].assign(mode="18:147")
+    other["value"] += 0.02 * other["metric"].eq("accuracy")
+    return measure("transfer", pd.concat([other, frame]))
+
+
+def test_other_shared_layers_stand_by_their_gain_on_the_same_items(two_middles):
+    table = build_one(hybrid, "tables", "section_5_5", two_middles)
+    gains = table.frame.groupby("shared_layers", sort=False)[["vision_gain", "touch_gain"]].agg(["min", "max"])
+    assert list(gains.index) == [FIRST, "18:147"]  # the one with more repetitions first
+    assert gains.to_numpy() == pytest.approx(np.array([[0.0] * 4, [2.0] * 4]), abs=1e-9)
+    shown = table.shown.set_index("shared layers").filter(like="gain by sight")
+    assert set(shown.loc[FIRST].stack()) == {"–"} and set(shown.loc["18:147"].stack()) == {"+2.0"}
+    chart = build_one(hybrid, "tradeoff", "hybrid", two_middles)
+    first = table.frame[(table.frame["shared_layers"] == FIRST) & (table.frame["network"] == "hybrid")]
+    for axes, (_, row) in zip(chart.drawing.axes, first.iterrows(), strict=True):
+        hollow = {round(line.get_xdata()[0], 6) for line in axes.lines if line.get_markerfacecolor() == "white"}
+        assert hollow == {round(100 * row[sense] + 2, 6) for sense in LEVELS}
+    assert "Hollow: layers 18:147 shared instead of 18:139" in chart.caption
 
 
 OBJECTS = ("horse", "dog", "oldtimer", "urn", "dome_lamp", "lying_man", "long_sofa", "low_table")  # of seven classes

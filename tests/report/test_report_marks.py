@@ -39,6 +39,7 @@ def test_a_bar_through_a_point_within_the_axes_is_its_interval_and_that_of_anoth
     drawing, axes = panel
     axes.plot([1, 2], [0.5, 0.6], "o")
     axes.plot([1, 1], [0.4, 0.7])
+    axes.plot([1, 1], [0.1, 0.95])  # the narrowest counts
     axes.vlines([3], [0.1], [0.9])
     axes.plot([2, 100], [7, 0.6], "o")  # outside of the axes, as is what is not a number
     axes.plot([2], [np.nan], "o")

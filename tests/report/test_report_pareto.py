@@ -89,6 +89,13 @@ def frame():
     return pd.DataFrame(rows | {"low": [0.8, 0.4, np.nan], "high": [1.0, 0.6, np.nan]})
 
 
+@pytest.mark.parametrize(("near", "words"), [(0.85, ". In its interval, at 50 % of its cost: fast"), (0.5, "")])
+def test_the_title_names_the_best_choice_and_the_cheapest_within_its_interval(near, words):
+    rows = frame().assign(mean=[0.9, near, 0.4], seconds=[4.0, 2.0, 1.0])
+    figure = pareto_chart(rows, "mean", title="Title", reference="fast", quality_label="accuracy")
+    assert figure.drawing.axes[0].get_title(loc="left").replace("\n", " ") == f"Title. Best: slow (0.900){words}"
+
+
 def chart(folder, reference="fast"):
     figure = pareto_chart(frame(), "mean", title="Title", reference=reference, quality_label="accuracy")
     figure.name = "chart"

@@ -195,5 +195,6 @@ def test_random_sets_count_the_objects_that_they_share():
 
 def test_a_split_that_no_random_set_was_measured_by_has_no_accuracy():
     rows = pd.DataFrame({"dataset": "a", "set": [1, 2], "split": "random", "metric": "accuracy", "value": [0.4, 0.6]})
-    assert accuracies(rows)["accuracy"] == 0.5
+    rows = pd.concat([rows, rows.assign(set=None, split="folds", value=[0.7, 0.9])])
+    assert accuracies(rows)["accuracy"] == 0.5 and accuracies(rows)["accuracy_folds"] == pytest.approx(0.8)
     assert np.isnan(accuracies(rows, "regions")["accuracy"])

@@ -130,7 +130,7 @@ def test_joined_frames_show_what_one_ray_cast_of_the_whole_scene_shows(meshes, f
     assert (frames.owners(1, frames.full) == expected).mean() > 0.999
 
 
-def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes, chains):
+def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, chains):
     """Half of the faces at twice the distance: two levels of the chain that ours is chosen from."""
     scene = make_scene()
     frames = frames_of(scene)
@@ -170,7 +170,7 @@ def test_a_limit_holds_costs_error_and_hurts_less_than_shared_equally(meshes, ch
     assert plan.errors.max() < limited.errors.max() < online.equal(plan, limit).errors.max()
 
 
-def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(meshes, chains, make_scene, frames_of):
+def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(chains, make_scene, frames_of):
     frames = frames_of(make_scene(frames=1))
     full = chains["one"][0]
     wide = Level(Mesh(full.mesh.vertices * [1.5, 1, 1], full.mesh.faces), dict.fromkeys(ERRORS, 0.0))

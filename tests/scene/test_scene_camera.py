@@ -65,9 +65,18 @@ def test_a_rendering_shows_the_surface_where_it_is(meshes, chains):
     assert level.surface.nearest(points)[0].max() < 1e-9
 
 
-def test_an_object_behind_the_camera_covers_nothing(meshes):
-    camera = Camera((0.0, -2.0, 0.3), (0.0, -4.0, 0.3), 30.0, (60, 80))
-    top, bottom, left, right = pixel_box(camera, Placed("one", (0.0, 0.0, 0.0), 0.0, 0.3).pose(meshes["one"]))
+def test_an_object_covers_the_pixels_between_its_corners_none_behind_the_camera_and_all_where_it_reaches_there(meshes):
+    def box(place, target=(0.0, 0.0, 0.3)):
+        camera, pose = Camera((0.0, -2.0, 0.3), target, 30.0, (60, 80)), Placed("one", place, 40.0, 0.3)
+        return np.reshape(pixel_box(camera, pose.pose(meshes["one"])), (2, 2)), camera, pose.pose(meshes["one"])
+
+    covered, camera, pose = box((0.05, 0.0, 0.1))
+    for (first, end), corners in zip(covered, camera.project(pose.corners())[:2], strict=True):
+        assert 0 < first - 1 < corners.min() <= first and end - 1 <= corners.max() < end < 60
+    (top, bottom), (left, right) = box((-0.75, 0.0, 0.7))[0]  # beyond the upper left corner of the screen
+    assert top == left == 0 and 0 < bottom < 60 and 0 < right < 80
+    assert box((0.0, -2.0, 0.2))[0].tolist() == [[0, 60], [0, 80]]
+    (top, bottom), (left, right) = box((0.0, 0.0, 0.0), target=(0.0, -4.0, 0.3))[0]
     assert bottom <= top or right <= left
 
 

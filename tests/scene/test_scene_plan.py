@@ -60,6 +60,8 @@ def test_a_limit_is_shared_where_it_hurts_least():
     assert share_limit([0, 0], faces, errors, 120).tolist() == [2, 0]
     assert share_limit([0, 0], faces, errors, 70).tolist() == [2, 1]
     assert share_limit([0, 0], faces, errors, 1).tolist() == [2, 2]
+    faces = [np.array([100, 60, 10]), np.array([300, 240, 230])]  # of equal errors that which saves the most faces
+    assert share_limit([0, 0], faces, [np.array([0, 1, 2])] * 2, 350).tolist() == [0, 1]
 
 
 def test_no_sharing_has_a_smaller_worst_error():

@@ -142,7 +142,7 @@ def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
     assert all("curve.csv" in row["note"] for row in network)
 
 
-def test_no_picture_is_of_a_frame_of_few_pixels(settings, meshes, chains, frames_of):
+def test_no_picture_is_of_a_frame_of_few_pixels(settings, meshes, frames_of):
     scene = scene_of(settings, ["one", "two"])[0]
     frames = frames_of(scene)
     setup = SceneSetup(scene, meshes, frames, {})

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from haptic_glance.disturb.perturbed import Conditions
-from haptic_glance.look.points.methods import METHODS, PUBLISHED
+from haptic_glance.look.points.methods import METHODS
 from haptic_glance.look.points.options import Options
 from haptic_glance.look.weights import LearnedWeights
 from haptic_glance.mesh import normalise
@@ -45,8 +45,8 @@ ODD = {
     ),
 }
 CHANNELS = tuple(dict.fromkeys(name for method in METHODS.values() for name in method.channels))
-# One of each kind of detector, and each published one; others differ from these in channels alone.
-KINDS = ("glance", "itti", "VisAttCurvP", "equal", "random", "farthest", "touch", "height", *PUBLISHED)
+# One of each kind of detector: others differ in channels alone, published ones have tests/look/test_rival_manners.py.
+KINDS = ("glance", "itti", "VisAttCurvP", "equal", "random", "farthest", "touch", "height", "mesh_saliency", "harris")
 RUNNING = [name for name in KINDS if METHODS[name].required_weights in {None, *LearnedWeights().weights}]
 
 

@@ -6,6 +6,7 @@ import pytest
 import torch
 
 from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh.mesh import Mesh
 from stages.engine.statistics import stratified_split
 from stages.transfer import __main__ as stage
 from stages.transfer import plan as planning
@@ -153,8 +154,8 @@ def test_every_class_is_split_by_the_share_and_by_the_seed():
     assert np.bincount(labels[first]).tolist() == [30, 15, 6]
     again, other = (stratified_split(labels, 0.75, rng(seed))[0] for seed in (3, 4))
     assert np.array_equal(first, again) and not np.array_equal(first, other)
-    small = stratified_split(np.array([0, 0, 1, 1]), 0.99, rng())
-    assert [len(part) for part in small] == [2, 2]  # small classes lie on both sides
+    for share, counts in ((0.99, [4, 2]), (0.01, [2, 4])):  # small classes lie on both sides
+        assert [len(part) for part in stratified_split(np.array([0, 0, 0, 1, 1, 1]), share, rng())] == counts
 
 
 @pytest.mark.parametrize(
@@ -205,8 +206,12 @@ def test_salient_points_come_first_and_blind_ones_fill_up():
     grid = flat_grid(6, 6)
     chosen = choose_vertices(grid, np.array([7, 3]), 20, rng())
     assert chosen[:2].tolist() == [7, 3] and len(set(chosen.tolist())) == 20
+    assert choose_vertices(grid, np.array([7, 3, 9]), 2, rng()).tolist() == [7, 3]
     with pytest.raises(ValueError, match="only 36 vertices"):
         choose_vertices(grid, np.array([7, 3]), 37, rng())
+    stretched = Mesh(flat_grid(40, 40).vertices ** [2, 1, 1], flat_grid(40, 40).faces)
+    places = stretched.vertices[choose_vertices(stretched, np.array([], dtype=int), 100, rng())]
+    assert (places[:, 0] < 39**2 / 2).mean() == pytest.approx(0.5, abs=0.1)  # half of the area, 70 % of the vertices
 
 
 def test_only_hybrid_networks_see_images_of_their_own_size(small, monkeypatch):

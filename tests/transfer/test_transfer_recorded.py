@@ -262,6 +262,7 @@ def test_an_electrode_shows_where_it_lies_in_the_colour_of_its_finger():
             assert (np.delete(image, finger, axis=2) == 128).all() and image.min() >= 128
     fingers = np.array([0.5, -0.5, 0.25])  # equal readings of a finger fill it evenly
     assert (electrode_images(np.repeat(fingers, 24)[None]) == np.round(128 + 127 * fingers)).all()
+    assert (electrode_images(np.repeat([1.5, -1.5, 0.0], 24)[None]) == [255, 1, 128]).all()  # readings beyond the range
 
 
 def test_grey_values_come_from_the_objects_that_are_not_kept_for_testing(grasps):

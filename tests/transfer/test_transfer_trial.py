@@ -49,6 +49,19 @@ def row_of(small):
     return lambda row, **changes: trial_row(row, {"mobilenet_v2": None}, small.settings(**changes))
 
 
+@pytest.fixture
+def trained(monkeypatch):
+    """[(how many touches a training learned from, its passes)] of the trainings to come."""
+    calls, train_model = [], trial.train_model
+
+    def listed(task, labels, ids, rate, epochs, **other):
+        calls.append((len(ids), epochs))
+        return train_model(task, labels, ids, rate, epochs, **other)
+
+    monkeypatch.setattr(trial, "train_model", listed)
+    return calls
+
+
 def train(folder, settings, training=FROZEN):
     return trial.process(training.name, folder, folder, MEMBERS, settings, seed=0)
 
@@ -65,24 +78,21 @@ def test_touches_know_their_class_and_object(folder):
 
 
 @pytest.mark.slow
-def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_rate(folder, small, row_of, monkeypatch):
-    settings, learned, train_model = small.settings(), [], trial.train_model
-
-    def listed(task, labels, ids, *args, **other):
-        learned.append(len(ids))
-        return train_model(task, labels, ids, *args, **other)
+def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_rate(
+    folder, small, row_of, trained, monkeypatch
+):
+    settings = small.settings()
 
     def killed(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(trial, "train_model", listed)
     rows = train(folder, settings)
     files = [folder / part / f"{FROZEN.name}.npz" for part in ("networks", "predictions")]
     first, values = [sha256(file) for file in files], plain(rows)
     assert values["chance"] == 0.5 and values["trained_parameters"] == 2562 and values["weight_change"] == 0
     assert values["learning_rate"] in settings.frozen_rates and 0 <= values["accuracy"] <= 1
     assert values["epochs"] == 4 and 0 <= values["train_accuracy"] <= 1
-    assert learned == [24, 12]  # the printed training learns from all training touches, then from half of them
+    assert [count for count, _ in trained] == [24, 12]  # the printed training learns from all touches, then from half
     assert {path.name for path in folder.iterdir()} == {"imprints", "networks", "predictions"}
     rows = [row_of(row) for row in rows]
     disturbed = [(row["perturbation"], row["severity"]) for row in rows if row["metric"] == "disturbed_accuracy"]
@@ -90,10 +100,9 @@ def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_r
     assert all(0 <= row["value"] <= 1 for row in rows if row["metric"] == "disturbed_accuracy")
     assert not any("layer" in row or "trial" in row for row in rows)
     assert {row["split"] for row in rows} == {"random"} and {row["pretrained"] for row in rows} == {None}
-    monkeypatch.setattr(trial, "train_model", killed)
-    with pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(trial, "train_model", killed)
         train(folder, settings)
-    monkeypatch.setattr(trial, "train_model", train_model)
     monkeypatch.setattr(trial, "search_rate", killed)
     assert plain(train(folder, settings)) == values and [sha256(file) for file in files] == first
 
@@ -140,16 +149,9 @@ def test_a_training_to_convergence_has_its_curve_its_best_pass_and_the_accuracy_
     assert "disturbed_accuracy" not in set(rows["metric"])
 
 
-def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge(folder, small, row_of, monkeypatch):
-    learned, train_model = [], trial.train_model
-
-    def listed(task, labels, ids, *args, **other):
-        learned.append(len(ids))
-        return train_model(task, labels, ids, *args, **other)
-
-    monkeypatch.setattr(trial, "train_model", listed)
+def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge(folder, small, row_of, trained):
     rows = train(folder, small.settings(frozen_rates=[1e38]), CONVERGED)
-    assert learned == [16]  # a third of the training touches of each object validates
+    assert [count for count, _ in trained] == [16]  # a third of the training touches of each object validates
     assert len(rows) == 1 and rows[0]["value"] is None and "diverged: loss is not finite in pass" in rows[0]["note"]
     assert {path.name for path in folder.iterdir()} == {"imprints"}
     row = row_of(rows[0])
@@ -246,7 +248,7 @@ def run(make_workspace, small):
 
 
 @pytest.mark.slow
-def test_a_run_writes_what_the_report_reads_and_one_training_more_repeats_no_other(run, monkeypatch):
+def test_a_run_writes_what_the_report_reads_and_one_training_more_repeats_no_other(run, trained):
     short = {"epochs": 2, "search_epochs": 1, "frozen_rates": [0.01], "severities": {"noise": [0.5]}}
     workspace, table = run(**short)
     accuracy = table[table["metric"] == "accuracy"]
@@ -260,17 +262,11 @@ def test_a_run_writes_what_the_report_reads_and_one_training_more_repeats_no_oth
     assert table.loc[table["metric"] == "disturbed_accuracy", ["perturbation", "severity"]].notna().all(axis=None)
     assert set(json.loads((workspace.metrics / "transfer.json").read_text())) == {"chance", "imprints32"}
 
-    trained, train_model = [], trial.train_model
-
-    def counted(task, labels, ids, rate, epochs, **rest):
-        trained.append(epochs)
-        return train_model(task, labels, ids, rate, epochs, **rest)
-
-    monkeypatch.setattr(trial, "train_model", counted)
+    trained.clear()
     file = folder / f"networks/{FROZEN.name}.npz"
     before = sha256(file)
     _, more = run(**short, splits={"random": 2, "objects": 1})
-    assert trained == [2] and sha256(file) == before
+    assert [epochs for _, epochs in trained] == [2] and sha256(file) == before
     assert more[more["repetition"] == 0]["value"].tolist() == table["value"].tolist()
 
 
