@@ -1,10 +1,12 @@
 """Attributes in the error of a simplification (colours, texture coordinates, normals), and their values after it."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from scipy import sparse
 
+from haptic_glance.mesh.materials import without_corner_pictures
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from .attributes import SAME
@@ -47,6 +49,8 @@ def attribute_quadrics(
     texture counts as an edge over which it is off by one: pulled sideways, it shows the wrong picture.
     """
     weights = dict(attributes)
+    if "uv" in weights and mesh.texture is not None:
+        mesh = replace(mesh, texture=without_corner_pictures(mesh.texture))
     points = position[corner].reshape(-1, 3, 3)
     seam = _seams(mesh, opposite) if "uv" in weights else np.zeros(len(corner), dtype=bool)
     wedge = fans(corner, np.where(seam, np.int32(-1), opposite))[0]

@@ -11,6 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
+from haptic_glance.mesh.materials import (
+    corner_colours,
+    picture_of_corners,
+    shown_at_corners,
+    without_corner_pictures,
+)
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.nearest import SurfaceIndex, closest, same_place
 from haptic_glance.mesh.rays import barycentric
@@ -82,8 +88,15 @@ def faces_under(index: SurfaceIndex, mesh: Mesh) -> tuple[np.ndarray, np.ndarray
 
 
 def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
-    """The Texture of the faces of `mesh`, taken from the reference's."""
+    """The Texture of the faces of `mesh`, taken from the reference's.
+
+    Colours of vertices that stand beside pictures (`picture_of_corners`) are interpolated, in a new picture.
+    """
     assert reference.texture is not None
+    at_corners = shown_at_corners(reference.texture)
+    if at_corners.any():
+        plain = replace(reference, texture=without_corner_pictures(reference.texture))
+        return _with_corner_pictures(carry_texture(plain, mesh), reference, mesh, at_corners)
     chart, seams = charts(reference)
     search = ChartSearch(reference, chart)
     centres, under = faces_under(search.index, mesh)
@@ -104,6 +117,18 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     off_line = np.abs(steps - np.rint(steps)).max(axis=2) > SAME  # on another side, where the picture does not repeat
     uv = _fitted(mesh.face_areas, uv, _uv_at(reference, under, weights), number, fixed[number] | off_line)
     return replace(reference.texture, uv=uv, image=reference.texture.image[under])
+
+
+def _with_corner_pictures(texture, reference, mesh, at_corners):
+    """The Texture with the reference's colours at the corners of its faces `at_corners` (m,), interpolated."""
+    uv, images = texture.uv.copy(), list(texture.images)
+    for number in np.intersect1d(reference.texture.image[at_corners], texture.image):
+        source, faces = (np.flatnonzero(part.image == number) for part in (reference.texture, texture))
+        vertices, corners = np.unique(mesh.faces[faces], return_inverse=True)
+        _, face, weights = closest(Mesh(reference.vertices, reference.faces[source]), mesh.vertices[vertices])
+        colors = np.einsum("ij,ijk->ik", weights, corner_colours(reference.texture, source)[face])
+        uv[faces], images[number] = picture_of_corners(np.rint(colors)[corners.reshape(-1, 3)])
+    return replace(texture, uv=uv, images=tuple(images))
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.packing import ordered
 from haptic_glance.base.warner import warn_caller
 from haptic_glance.mesh.gltf import with_linear_colours
-from haptic_glance.mesh.materials import WHITE, bake_texture, pixels_of
+from haptic_glance.mesh.materials import WHITE, bake_texture, corner_colours, pixels_of, shown_at_corners
 from haptic_glance.mesh.mesh import Mesh, colour_factor
 from haptic_glance.mesh.srgb import encoded, multiplied
 from haptic_glance.mesh.up import with_stated_up
@@ -236,10 +236,19 @@ def _made(mesh, vertices, faces, carried, **looks):
 
 
 def _part(mesh, material, ids, name, carried):
-    """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
-    faces = mesh.faces[ids]
-    rows = np.column_stack([faces.ravel(), mesh.texture.uv[ids].reshape(-1, 2)])
+    """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates, or one colour.
+
+    A glb has the colours of a `picture_of_corners`, to which no material adds anything, at the vertices.
+    """
+    faces, texture = mesh.faces[ids], mesh.texture.of(ids)
+    stated = {key for key, value in (texture.materials[texture.image[0]] or {}).items() if value is not False}
+    has_colors = carried is not None and stated <= {"baseColorTexture"} and shown_at_corners(texture).all()
+    looks = corner_colours(texture, np.arange(len(ids))) if has_colors else texture.uv
+    rows = np.column_stack([faces.ravel(), looks.reshape(faces.size, -1)])
     vertices, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    if has_colors:
+        colors = vertices[:, 1:].astype(np.uint8)
+        return _made(mesh, faces.ravel()[first], inverse.reshape(-1, 3), carried, vertex_colors=colors)
     pbr = trimesh.visual.material.PBRMaterial(**{"name": name} | material)
     factor = np.asarray(material.get("baseColorFactor", ()))
     if carried is not None and factor.dtype.kind == "f" and len(factor):  # an assignment would make bytes of it

@@ -34,7 +34,7 @@ def measure_meshes(
 
     Where a coarse mesh exceeds the picture, all are drawn smaller by one scale, so that the columns of a table compare;
     this is reported, since the errors are then smaller too. Errors of pictures that fail are None, with the reason
-    reported; they are all None without OpenCV.
+    reported; they are all None without OpenCV, and for a black mesh, which the black background hides.
     """
     (before, *framed), scale = within_frame([task.upright(mesh) for mesh in (task.mesh, *meshes)])
     if scale < 1:
@@ -42,6 +42,9 @@ def measure_meshes(
     pictures, rows = None, []
     try:
         pictures = take_pictures(before, TWELVE, SIZE)
+        if not pictures.any():
+            report("no errors of the pictures: the mesh is as black as their background")
+            pictures = None
     except MissingExtra as error:
         report(f"no errors of the pictures: {error}")
     for mesh, picture in zip(meshes, framed, strict=True):

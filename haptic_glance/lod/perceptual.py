@@ -15,7 +15,7 @@ pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt a
 of it per tap. plenoptic's 1e-10 under the root is left out, so that equal pictures are at 0. The authors' program turns
 the small asymmetric filters by 180 degrees where plenoptic does not.
 
-Both meshes are scaled down together where one of them exceeds the picture.
+A mesh that exceeds the picture is refused; `within_frame` scales meshes down together, for `haptic-glance simplify`.
 """
 
 from collections.abc import Sequence

@@ -329,6 +329,8 @@ def surface_of(cloud: Cloud) -> Mesh:
     ------
     MeshError
         For a cloud without a shape.
+    TypeError
+        For anything but a Cloud.
 
     Notes
     -----
@@ -339,6 +341,8 @@ def surface_of(cloud: Cloud) -> Mesh:
     ----------
     Kazhdan and Hoppe, Screened Poisson surface reconstruction, ACM Transactions on Graphics 32(3), 2013.
     """
+    if not isinstance(cloud, Cloud):
+        raise TypeError(f"no point cloud: a {type(cloud).__name__}; give a Cloud, such as Cloud(points)")
     cloud = usable(cloud)
     with from_extra("a point cloud is made a surface by pymeshlab, which "):
         import pymeshlab

@@ -232,7 +232,7 @@ def parse(
 
 def _parsed(content, suffix, resolver, every_colour, name):
     if suffix == ".off":
-        vertices, faces, colors = read_off(content)
+        vertices, faces, colors = read_off(content, name)
         if len(faces):
             return _checked(vertices, faces, colors)
         with about("has no faces, so it is read as a point cloud", MeshError):

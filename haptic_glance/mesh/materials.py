@@ -31,6 +31,7 @@ WHITE, GREY = (255, 255, 255, 255), (204, 204, 204, 255)  # colours of no materi
 COLOURS_OF = {"baseColorFactor", "baseColorTexture"}
 BRIGHT = 2  # a float colour above it is one of 0..255: computed ones of 0..1 may end a little above 1
 BESIDE = "beside_colour"  # in the metadata of a part
+MIDDLE = 0.01  # pixels from the middle of one, below which texture coordinates of single precision mean the middle
 OF_NO_MATERIAL = {"doubleSided": False}  # a part of a GLB without a material has glTF's default one, which is white
 
 
@@ -358,18 +359,62 @@ def scale_colors(parts: list[dict[str, Any]]) -> None:
 
 
 def _as_picture(part):
-    """The part; its colours per vertex become a picture of one row, where it has no other picture."""
+    """The part; its colours per vertex become a picture, where it has no other one."""
     colors, beside = vertex_colors(part), part.vertex_attributes.get("color")
     if colors is None and beside is not None and _image(part).size == 4:  # an OBJ with colours and a plain material
         colors = trimesh.visual.color.to_rgba(beside)[:, :3]
     if colors is None:
         return part
-    uv = np.column_stack([(np.arange(len(colors)) + 0.5) / len(colors), np.full(len(colors), 0.5)])
-    visual = trimesh.visual.TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
-    pictured = trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
+    uv, picture = picture_of_corners(colors[part.faces])
+    visual = trimesh.visual.TextureVisuals(uv.reshape(-1, 2), image=Image.fromarray(picture[..., :3]))
+    corners = np.arange(part.faces.size).reshape(-1, 3)
+    pictured = trimesh.Trimesh(part.vertices[part.faces.ravel()], corners, visual=visual, process=False)
     if part.metadata.get(BESIDE):
         pictured.metadata[BESIDE] = part.metadata[BESIDE] | {"baseColorTexture": True}
     return pictured
+
+
+def picture_of_corners(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(uv (m, 3, 2), picture (h, w, 4) u1) of faces with a colour at each corner, (m, 3, 3) u1: four pixels each.
+
+    A viewer interpolates between pixels. The fourth continues the other three, so that a face shows what it would show
+    with colours of its vertices.
+    """
+    side = max(int(np.ceil(len(colors) ** 0.5)), 1)
+    first, second, third = colors.astype(np.int64).transpose(1, 0, 2)
+    four = np.stack([first, second, third, np.clip(second + third - first, 0, 255)], axis=1)
+    blocks = np.full((side * side, 2, 2, 4), 255, dtype=np.uint8)
+    blocks[..., :3] = np.resize(four, (side * side, 2, 2, 3))  # repeats colours, which a smaller picture may mix
+    picture = blocks.reshape(side, side, 2, 2, 4).swapaxes(1, 2).reshape(2 * side, 2 * side, 4)
+    row, column = np.divmod(np.arange(len(colors))[:, None], side)
+    x, y = 2 * column + [0.5, 1.5, 0.5], 2 * row + [0.5, 0.5, 1.5]
+    return np.stack([x, 2 * side - y], axis=2) / (2 * side), picture
+
+
+def shown_at_corners(texture: Texture) -> np.ndarray:
+    """(m,) boolean: faces whose picture is a `picture_of_corners`, of which each face shows four pixels of its own."""
+    found = np.zeros(len(texture.image), dtype=bool)
+    for number in np.unique(texture.image):
+        faces = np.flatnonzero(texture.image == number)
+        size = np.array(texture.images[number].shape[1::-1])
+        pixels = texture.uv[faces] * size - 0.5
+        whole = np.rint(pixels).astype(np.int64)
+        of_block, in_block = np.divmod(whole, 2)
+        corner = np.sort(in_block @ [1, 2], axis=1)
+        own = (of_block == of_block[:, :1]).all() and (np.diff(corner, axis=1) > 0).all()
+        found[faces] = own and (size > 1).all() and bool(np.abs(pixels - whole).max() < MIDDLE)
+    return found
+
+
+def without_corner_pictures(texture: Texture) -> Texture:
+    """The Texture with one place for all faces `shown_at_corners`, whose own places say nothing of the surface."""
+    return replace(texture, uv=np.where(shown_at_corners(texture)[:, None, None], 0.0, texture.uv))
+
+
+def corner_colours(texture: Texture, faces: np.ndarray) -> np.ndarray:
+    """(k, 3, 3) u1: the pixels at the corners of faces (k,), without the factors of their materials."""
+    plain = replace(texture, materials=())
+    return plain.sample(np.repeat(faces, 3), texture.uv[faces].reshape(-1, 2)).reshape(-1, 3, 3)
 
 
 def flat_texture(colors: np.ndarray) -> Texture:

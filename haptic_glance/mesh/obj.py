@@ -13,7 +13,7 @@ from haptic_glance.base.text import text_of
 
 from .headers import MeshError
 from .materials import obj_vertices
-from .polygons import refined
+from .polygons import FEW_CORNERS, refined
 
 NUMBERED = [b"v"], [b"vt"], [b"vn"], [b"f"]  # the first words of lines of numbers
 NUMBER = r"\s+[-+]?[\d.]+(?:e[-+]?\d+)?(?=\s)"
@@ -170,11 +170,14 @@ OTHER_MAPS = re.compile(r"(?mi)^\s*(?!map_Kd)(map_\w+|bump|disp|decal|norm|refl)
 # Further statements that change how a material looks, and the values that change nothing.
 LOOKS = {"d": 1.0, "Tr": 0.0, "Ks": 0.0, "Ke": 0.0}
 COLOUR_MAP, PLACED = re.compile(r"(?mi)^\s*map_Kd(\s.*)$"), re.compile(r"(?i)\s(-[ost])(?=\s)")
-OTHER_ELEMENTS = {"lines": rb"\n[ \t]*l[ \t]", "points": rb"\n[ \t]*p[ \t]"}
+OTHER_ELEMENTS = {
+    "lines": rb"\n[ \t]*l[ \t]", "points": rb"\n[ \t]*p[ \t]",
+    FEW_CORNERS: rb"\n[ \t]*f(?:[ \t]+[-\d][^\s#]*){1,2}[ \t]*(?:#[^\n]*)?\r?(?=\n|\Z)",
+}  # fmt: skip
 
 
 def left_out(content: bytes) -> dict[str, int]:
-    """{kind: count} of the elements of an OBJ, by statements, that are no faces."""
+    """{kind: count} of the elements of an OBJ, by statements, that are no surface."""
     return {kind: len(re.findall(form, content)) for kind, form in OTHER_ELEMENTS.items()}
 
 

@@ -7,20 +7,22 @@ import re
 
 import numpy as np
 
+from haptic_glance.base.warner import warn_caller
+
 from .headers import MeshError
-from .polygons import fans, refined
+from .polygons import FEW_CORNERS, fans, refined
 
 KEYWORD = re.compile(rb"\s*(?:#[^\n]*\s+)*(ST)?(C)?(N)?(4)?(n)?OFF(?![^\s#\d])([ \t]+BINARY[^\n]*\n)?")
 COUNTS = re.compile(rb"\s*(?:#[^\n]*\s+)*\d+[ \t]+\d+(?:[ \t]+\d+)?[ \t]*(?:#[^\n]*)?\r?\n")
 
 
-def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+def read_off(content: bytes, name: str = "the file") -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     """(vertices (n, 3) f8, faces (m, 3) i8, colors (n, 3) u1 or None) of an OFF file's bytes, in the order of the file.
 
     A polygon becomes a fan of triangles about its first vertex, or others where a fan would fold a concave one; one of
-    fewer than three vertices, which is a point or a line, is left out. Fourth coordinates divide the others. Colours of
-    faces are not read. Raises MeshError with the reason for any other file, before it allocates more than the file
-    fills.
+    fewer than three vertices, which is a point or a line, is left out, with a warning that names the file. Fourth
+    coordinates divide the others. Colours of faces are not read. Raises MeshError with the reason for any other file,
+    before it allocates more than the file fills.
     """
     if COUNTS.match(content):  # a plain file may leave the word out
         content = b"OFF\n" + content
@@ -37,6 +39,8 @@ def read_off(content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]
             vertices = vertices / table[:, 3:4]
     first = spans["place"] + spans["normals"]
     colors = _bytes(table[:, first : table.shape[1] - spans["texture"]]) if colored else None
+    if few := sum(len(polygon) < 3 for polygon in polygons):
+        warn_caller(f"{name}: left out: {FEW_CORNERS} ({few:,})")
     return vertices, _triangles(polygons, vertices), colors
 
 

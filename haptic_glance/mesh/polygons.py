@@ -7,6 +7,7 @@ import numpy as np
 ROUNDING = 1e-9  # of the area: a corner on a straight edge may seem concave
 FLAT = 0.05  # of the extent: corners farther from the plane leave open which diagonal was meant
 
+FEW_CORNERS = "faces of fewer than three corners"  # which are lines and points, as a warning counts them
 Rings = list[tuple[int, ...]]
 
 

@@ -183,6 +183,13 @@ def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_sa
     assert "the pictures show" not in simplified("--faces", 600, source=tmp_path / "smooth.ply")[2]
 
 
+def test_a_black_mesh_has_no_errors_of_pictures_in_place_of_zeros(simplified, tmp_path):
+    write_any(tmp_path / "black.ply", replace(smooth(), colors=np.zeros((642, 3), dtype=np.uint8)))
+    _, table, messages = simplified("--faces", 600, source=tmp_path / "black.ply")
+    assert "no errors of the pictures: the mesh is as black as their background" in messages
+    assert rows(table)["1 - SSIM of the pictures"] == ["-", "-", "-"]
+
+
 def test_meshes_within_the_frame_are_left_and_others_shrink_by_the_same():
     ball = smooth()
     fits = Mesh(1.04 * ball.vertices, ball.faces)

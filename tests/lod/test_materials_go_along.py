@@ -8,10 +8,11 @@ import pytest
 import trimesh
 from PIL import Image
 from PIL.ImageFile import ImageFile
+from scipy.ndimage import map_coordinates
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from haptic_glance import as_mesh, to_trimesh
+from haptic_glance import as_mesh, simplify, to_trimesh
 from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import dropped_from, run
 from haptic_glance.lod.export import _in_pictures, write_any
@@ -415,3 +416,53 @@ def test_colours_that_become_a_picture_keep_their_side_and_their_shade(tmp_path)
     (number,) = (number for number, image in enumerate(texture.images) if image[0, 0, 0] == 200)
     assert (texture.images[number][..., :3] == [200, 40, 9]).all()
     assert texture.materials[number] == {"doubleSided": False, "baseColorTexture": True}
+
+
+def shades(places):
+    """Colours that change evenly over a ball of radius 1."""
+    return 127.5 * (1 + places / np.linalg.norm(places, axis=1, keepdims=True))
+
+
+def painted_beside_a_picture():
+    """A Mesh of a ball whose vertices, in any order, have their `shades`, beside a ball with a picture."""
+    shape = trimesh.creation.icosphere(4)
+    order = np.random.default_rng(0).permutation(len(shape.vertices))
+    painted = trimesh.Trimesh(shape.vertices[order], np.argsort(order)[shape.faces], process=False)
+    painted.visual.vertex_colors = np.rint(shades(painted.vertices)).astype(np.uint8)
+    return as_mesh(trimesh.Scene([painted, ball(3, baseColorTexture=picture((9, 9, 9)))]))
+
+
+def shown_amiss(mesh):
+    """The mean error, of 255, of the colours that a viewer interpolates at the centres of the painted ball's faces."""
+    faces = np.flatnonzero((mesh.vertices[mesh.faces][..., 0] < 1.5).all(axis=1))
+    (number,) = np.unique(mesh.texture.image[faces])
+    image = mesh.texture.images[number]
+    column, row = ([0, 1] + [1, -1] * mesh.texture.uv[faces].mean(axis=1)).T * [
+        [image.shape[1]],
+        [image.shape[0]],
+    ] - 0.5
+    seen = np.stack([map_coordinates(image[..., k].astype(float), [row, column], order=1) for k in range(3)], axis=1)
+    return np.abs(seen - shades(mesh.vertices[mesh.faces[faces]].mean(axis=1))).mean()
+
+
+def test_colours_of_vertices_beside_a_picture_look_as_they_did_also_once_simplified(tmp_path):
+    mesh = painted_beside_a_picture()
+    assert shown_amiss(mesh) < 1
+    for attributes in ({}, {"uv": 1.0}):
+        small = simplify(mesh, "20%", attributes=attributes)
+        assert shown_amiss(small) < 2
+    assert len(np.unique(small.texture.image)) == 2
+    for suffix in ("glb", "obj"):
+        write_any(tmp_path / f"two.{suffix}", small)
+        assert shown_amiss(load(tmp_path / f"two.{suffix}")) < 2
+    parts = trimesh.load(tmp_path / "two.glb").geometry.values()
+    assert sorted(part.visual.kind for part in parts) == ["texture", "vertex"]
+
+
+def test_a_weight_of_texture_coordinates_spends_no_faces_on_colours_of_vertices():
+    mesh = painted_beside_a_picture()
+    counts = [
+        int((small.vertices[small.faces][..., 0] < 1.5).all(axis=1).sum())
+        for small in (simplify(mesh, "20%"), simplify(mesh, "20%", attributes={"uv": 1.0}))
+    ]
+    assert counts[1] <= counts[0]

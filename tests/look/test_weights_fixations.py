@@ -50,7 +50,7 @@ def test_the_density_is_at_most_one_and_grows_with_a_feature():
         (lambda: fit_fixations([], [], []), "no object"),
         (lambda: fit_fixations([np.ones((2, 1))], [np.zeros(2)], [np.ones(2)]), "without fixations"),
         (lambda: fixation_density({"height": np.zeros(3)}, {"height": np.nan}), "finite"),
-        (lambda: fixation_density({"height": np.zeros(3)}, {"shine": 1.0}), "no feature"),
+        (lambda: fixation_density({"height": np.zeros(3)}, {"shine": 1.0}), "shine to weigh: there are height$"),
         (lambda: fixation_density({"height": np.zeros(3)}, {}), "no feature"),
     ],
 )

@@ -201,6 +201,9 @@ def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new
     [
         ("a.obj", FLAT.encode() + b"f 1 2 3\nl 1 2\n\tl 2 3\np 1\n", "lines (2), points (1)"),
         ("a.obj", FLAT.encode() + b"f 1 2 3\n#l 1 2\ng l 1\n", ""),
+        ("a.obj", FLAT.encode() + b"f 1 2 3\nf 1 2 # edge\r\n f 3//\n", "faces of fewer than three corners (2)"),
+        ("a.obj", FLAT.encode() + b"f 1 2 \\\n 3\n", ""),
+        ("a.off", b"OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n2 0 1\n1 2\n", "faces of fewer than three corners (2)"),
         ("a.ply", ply(TRIANGLE, [(0, 1, 2)]).replace(b"end_header", b"element edge 0\nproperty int a\nend_header"), ""),
         ("a.ply", ply(TRIANGLE, [(0, 1, 2)]).replace(b"end_header", b"element edge 2\nproperty int a\nend_header")
          + b"0\n1\n", "edges (2)"),

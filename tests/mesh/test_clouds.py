@@ -293,6 +293,8 @@ def test_a_cloud_takes_lists_and_says_what_is_wrong_with_them():
     ):
         with pytest.raises(ValueError, match=re.escape(reason)):
             Cloud(**{"points": BALL, **wrong})
+    with pytest.raises(TypeError, match=r"^no point cloud: a ndarray; give a Cloud, such as Cloud\(points\)$"):
+        surface_of(BALL)
 
 
 @pytest.mark.parametrize(

@@ -164,3 +164,8 @@ def shuffled(level, seed):
     order = draw.permutation(len(level.mesh.vertices))
     faces = np.argsort(order)[level.mesh.faces][draw.permutation(len(level.mesh.faces))]
     return Level(Mesh(level.mesh.vertices[order], faces), level.error)
+
+
+def test_meshes_of_a_budget_are_a_mapping():
+    with pytest.raises(TypeError, match="^meshes must be a mapping from names to meshes, got list$"):
+        budget([], None)

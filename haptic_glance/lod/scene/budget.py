@@ -51,6 +51,8 @@ def budget(
     ValueError
         For a scene or options that do not fit the meshes, and for a limit below the smallest feasible one, which the
         message names.
+    TypeError
+        For meshes that are no mapping.
 
     Notes
     -----
@@ -60,6 +62,8 @@ def budget(
     within the tolerance as well, and a level stays for `scene.hold` frames. Where a frame exceeds the face limit, the
     objects whose error stays smallest are coarsened; such frames may exceed the tolerance.
     """
+    if not isinstance(meshes, Mapping):
+        raise TypeError(f"meshes must be a mapping from names to meshes, got {type(meshes).__name__}")
     if chains is None:
         meshes = {name: rotate_to_z_up(with_known_up(mesh)) for name, mesh in meshes.items()}
         scene.poses(meshes)  # raises before the work begins

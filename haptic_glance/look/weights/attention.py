@@ -234,9 +234,7 @@ def fixation_density(features: Mapping[str, np.ndarray], weights: Mapping[str, f
     """
     missing = [name for name in weights if name not in features]
     if missing or not weights:
-        raise ValueError(
-            f"no feature {', '.join(missing) or 'at all'}: the weights need {', '.join(weights) or 'names'}"
-        )
+        raise ValueError(f"no feature {', '.join(missing) or 'at all'} to weigh: there are {', '.join(features)}")
     if not np.isfinite(list(weights.values())).all():
         raise ValueError(f"weights must be finite, got {weights}")
     score = functools.reduce(np.add, (weight * features[name] for name, weight in weights.items()))
