@@ -34,13 +34,13 @@ from stages.engine.statistics import interval
 
 OUT, SHARED = Path("reports/bench/deep_gaze.csv"), Path("../shared/data")
 SETS, METRICS = ("gaze", "gaze_clouds"), (nss, auc, cc, kl)
-MAPS_RIDGE = 0.3  # penalty on the squared weights of the maps: they are many
-STEPS, CLOSE = 30, 1e-3  # of Newton's method, and the change of a weight below which it ends
+MAPS_RIDGE = 1.0  # penalty on the squared weights of the maps: they are many
+STEPS, CLOSE = 30, 1e-5  # of Newton's method, and the change of a weight below which it ends
 LIMIT = 4.0  # standard deviations, as of the features of the glance
 
 
 class Gaze(NamedTuple):
-    """The training data of one object: features (s, d), shares of the gaze (s,) and areas (s,)."""
+    """The training data of one object: features (s, d) f4, shares of the gaze (s,) and areas (s,)."""
 
     features: np.ndarray
     shares: np.ndarray
@@ -60,25 +60,35 @@ def simple_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
 FEATURES = {"glance": cell_features, "glance_deep": deep_features, "simple": simple_features}
 
 
-def quadratic(gaze: Gaze, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(slope (d,), bend (d, d)) of the loss of an object, see haptic_glance.look.weights.fit_fixations, at the weights
-    (d,).
-    """
-    score = gaze.features @ weights + np.log(np.maximum(gaze.areas, 1e-300))
-    likely = np.exp(score - np.logaddexp.reduce(score))
+def density(gaze: Gaze, weights: np.ndarray) -> np.ndarray:
+    """(s,) f8 the probability of a fixation, see haptic_glance.look.weights.fit_fixations, at the weights (d,)."""
+    score = gaze.features @ weights.astype(np.float32) + np.log(np.maximum(gaze.areas, 1e-300))
+    return np.exp(score - np.logaddexp.reduce(score))
+
+
+def slope(gaze: Gaze, weights: np.ndarray) -> np.ndarray:
+    """(d,) the first derivative of the loss of an object at the weights (d,)."""
+    return (density(gaze, weights) - gaze.shares).astype(np.float32) @ gaze.features
+
+
+def bend(gaze: Gaze, weights: np.ndarray) -> np.ndarray:
+    """(d, d) the second derivative of the loss of an object at the weights (d,)."""
+    likely = density(gaze, weights).astype(np.float32)
     mean = likely @ gaze.features
-    bend = (gaze.features.T * likely) @ gaze.features - np.outer(mean, mean)
-    return mean - gaze.shares @ gaze.features, bend
+    return (gaze.features.T * likely) @ gaze.features - np.outer(mean, mean)
 
 
-def fitted(objects: Iterable[Gaze], ridge: np.ndarray, start: np.ndarray) -> np.ndarray:
+def fitted(objects: Iterable[Gaze], ridge: np.ndarray, start: np.ndarray, near: np.ndarray | None = None) -> np.ndarray:
     """(d,) the weights of haptic_glance.look.weights.fit_fixations with a penalty (d,) for each weight, by Newton's
     method.
+
+    near (d, d): the mean bend at weights close to the optimum, used in every step; None computes the bend at each step.
     """
     weights, objects = start, list(objects)
     for _ in range(STEPS):
-        slope, bend = (np.mean(part, axis=0) for part in zip(*(quadratic(g, weights) for g in objects), strict=True))
-        step = np.linalg.solve(bend + np.diag(2 * ridge), slope + 2 * ridge * weights)
+        bends = np.mean([bend(gaze, weights) for gaze in objects], axis=0) if near is None else near
+        slopes = np.mean([slope(gaze, weights) for gaze in objects], axis=0)
+        step = np.linalg.solve(bends + np.diag(2 * ridge), slopes + 2 * ridge * weights)
         weights = weights - step * min(1.0, 1 / np.abs(step).max())  # the first steps are long
         if np.abs(step).max() < CLOSE:
             break
@@ -89,12 +99,11 @@ def left_out(method: str, objects: Mapping[tuple[str, str], Gaze], names: list[s
     """{object: {feature: weight}} learned from the others; that of ("", "") from all."""
     ridge = np.where(np.isin(names, MAPS), MAPS_RIDGE, RIDGE)
     everything = fitted(objects.values(), ridge, np.zeros(len(names)))
-    slopes, bends = (np.stack(part) for part in zip(*(quadratic(g, everything) for g in objects.values()), strict=True))
+    bends = np.stack([bend(gaze, everything) for gaze in objects.values()])
     learned = {("", ""): everything}
     for k, item in enumerate(progress(objects, method)):
-        slope, bend = np.delete(slopes, k, axis=0).mean(axis=0), np.delete(bends, k, axis=0).mean(axis=0)
-        start = everything - np.linalg.solve(bend + np.diag(2 * ridge), slope + 2 * ridge * everything)
-        learned[item] = fitted([gaze for other, gaze in objects.items() if other != item], ridge, start)
+        others = [gaze for other, gaze in objects.items() if other != item]
+        learned[item] = fitted(others, ridge, everything, np.delete(bends, k, axis=0).mean(axis=0))
     return {item: dict(zip(names, weights.tolist(), strict=True)) for item, weights in learned.items()}
 
 

@@ -80,7 +80,8 @@ def test_a_map_that_hardly_varies_is_not_scaled_up(monkeypatch):
     monkeypatch.setattr(glance, "maps_on_surface", lambda mesh, samples: faint)
     maps = glance.standardised_maps(mesh, samples)
     assert list(maps) == list(MAPS)
-    assert np.ptp(maps[MAPS[0]]) == pytest.approx(0.02 / glance.DEVIATION)
+    for name, deviation in zip(MAPS, glance.DEVIATIONS, strict=True):
+        assert np.ptp(maps[name]) == pytest.approx(0.02 / deviation)
     assert samples.shares @ maps[MAPS[0]] == pytest.approx(0, abs=1e-12)
 
 
@@ -108,12 +109,18 @@ def test_a_picture_and_its_mirror_image_are_laid_over_each_other():
 
 
 @pytest.mark.slow
-def test_the_trunk_is_the_network_up_to_its_last_maps_of_a_sixteenth_of_the_side():
+def test_the_trunk_gives_the_last_maps_of_a_sixteenth_of_the_side_and_160_of_half_that_size():
     images = torch.rand(1, 3, 64, 96, generator=torch.Generator().manual_seed(0))
     with torch.no_grad():
         maps, blocks = glance._trunk()(images), build("mobilenet_v2", 2, "imagenet", 0).convolutions
-        assert maps.shape == (1, len(MAPS), 4, 6) and blocks[14](maps).shape == (1, 160, 2, 3)
-        assert torch.allclose(maps, blocks[:14](images), atol=1e-4)
+        fine, coarse = blocks[:14](images), blocks[:17](images)
+        assert maps.shape == (1, len(MAPS), 4, 6) and blocks[14](fine).shape == coarse.shape == (1, 160, 2, 3)
+        assert torch.allclose(maps[:, :96], fine, atol=1e-4)
+        # The mean of four interpolated pixels in the middle of a 2 x 3 map, and the nearest pixel in a corner.
+        assert torch.allclose(maps[:, 96:, 0, 0], coarse[:, :, 0, 0], atol=1e-4)
+        middle = coarse[:, :, :, 1].mean(dim=2)
+        neighbours = coarse[:, :, :, [0, 2]].mean(dim=(2, 3))
+        assert torch.allclose(maps[:, 96:, 1:3, 2:4].mean(dim=(2, 3)), 0.75 * middle + 0.25 * neighbours, atol=1e-4)
 
 
 def test_without_torch_the_method_names_the_extra(monkeypatch):

@@ -150,12 +150,14 @@ def _on_vertices(mesh, samples, *values):
     return [scaled(np.where(has_area, (column[near] * weights).sum(axis=1), 0)) for column in values]
 
 
-BLOCK = 13  # of MobileNetV2: the last one with maps of a sixteenth of the side of the picture
-SIZE = 384  # pixels a side: maps of 24 x 24
+FINE = 13  # of MobileNetV2's blocks: the last one with maps of a sixteenth of the side of the picture
+COARSE = 16  # the last one with 160 maps of half that size
+SIZE = 384  # pixels a side: maps of 24 x 24 and 12 x 12
 AROUND = tuple(22.5 + 45.0 * k for k in range(8))  # degrees from the longest axis: alike on both sides of its planes
 NEAR = 1.5  # spacings behind the surface that a picture shows, up to which a sample is on it
 UNSEEN = 0.1  # a place that is seen by views of this sum of cosines is half way to the mean of the object
-DEVIATION = 0.29  # of a map on a typical object: the median over 33 objects, of each map 0.21 to 0.37
+# Of a map of either block on a typical object: the median over 33 objects, of each map 0.21 to 0.37 and 0.11 to 0.2.
+DEVIATIONS = np.repeat([0.29, 0.15], [96, 160])
 LIMIT = 4.0  # standard deviations; what lies farther out counts as this
 
 
@@ -166,7 +168,7 @@ def standardised_maps(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
     """
     values = maps_on_surface(mesh, samples)
     centred = values - samples.shares @ values
-    deviations = np.maximum(np.sqrt(samples.shares @ centred**2), DEVIATION / 2)
+    deviations = np.maximum(np.sqrt(samples.shares @ centred**2), DEVIATIONS / 2)
     return dict(zip(MAPS, (centred / deviations).clip(-LIMIT, LIMIT).T, strict=True))
 
 
@@ -184,7 +186,7 @@ def maps_on_surface(mesh: Mesh, samples: Samples) -> np.ndarray:
     framed = Mesh((mesh.vertices - middle) / (2 * radius), mesh.faces)
     points, spacing = (samples.points - middle) / (2 * radius), samples.spacing / (2 * radius)
     first = np.degrees(np.arctan2(samples.axes[0, 1], samples.axes[0, 0]))
-    total, coverage = 0.0, np.zeros(len(samples.points))
+    total, coverage = np.zeros((len(samples.points), len(MAPS)), dtype=np.float32), np.zeros(len(samples.points))
     for azimuth in AROUND:
         viewpoint = Viewpoint(first + azimuth, 0)
         view = render(framed, viewpoint, (SIZE, SIZE), "raster")
@@ -192,12 +194,13 @@ def maps_on_surface(mesh: Mesh, samples: Samples) -> np.ndarray:
         nearest = ndimage.maximum_filter(np.where(view.mask, view.depth, 0), 3)
         pixel = np.rint([rows, columns]).astype(np.int64).clip(0, SIZE - 1)
         weight = (samples.normals @ viewpoint.axes[2]).clip(0) * (depths < nearest[*pixel] + NEAR * spacing)
-        places = torch.from_numpy(np.stack([2 * columns + 1, 2 * rows + 1], axis=1) / SIZE - 1).float()
+        seen = np.flatnonzero(weight)
+        places = torch.from_numpy((np.stack([2 * columns + 1, 2 * rows + 1], axis=1) / SIZE - 1)[seen]).float()
         maps = _maps(trunk, torch.from_numpy(view.rgb))
         sampled = torch.nn.functional.grid_sample(
             maps, places[None, :, None], padding_mode="border", align_corners=False
         )
-        total = total + weight[:, None] * sampled[0, :, :, 0].T.numpy()
+        total[seen] += weight[seen, None].astype(np.float32) * sampled[0, :, :, 0].T.numpy()
         coverage += weight
     by_area = samples.shares @ total / max(samples.shares @ coverage, 1e-9)
     return (total + UNSEEN * by_area) / (coverage + UNSEEN)[:, None]
@@ -225,9 +228,21 @@ def _maps(trunk, picture):
 
 @cache
 def _trunk():
-    """The blocks of the network up to BLOCK, their normalisations folded into the convolutions."""
+    """A function of images (n, 3, h, w): (n, C, i, j) the maps of FINE and of COARSE, these interpolated to that size.
+
+    The normalisations of the network are folded into the convolutions.
+    """
+    import torch
     from torch.fx.experimental.optimization import fuse
 
     from haptic_glance.deep.network import build
 
-    return fuse(build("mobilenet_v2", 2, "imagenet", 0).convolutions[: BLOCK + 1])
+    blocks = build("mobilenet_v2", 2, "imagenet", 0).convolutions
+    fine, coarse = fuse(blocks[: FINE + 1]), fuse(blocks[FINE + 1 : COARSE + 1])
+
+    def maps(images: Any) -> Any:
+        first = fine(images)
+        second = torch.nn.functional.interpolate(coarse(first), size=first.shape[2:], mode="bilinear")
+        return torch.cat([first, second], dim=1)
+
+    return maps
