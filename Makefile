@@ -28,7 +28,7 @@ test: $(VENV)/ready ## unit and property tests, and beside them the whole pipeli
 	wait $$smoke || { tail -n 40 build/smoke.log; echo "the pipeline at profile=smoke failed: build/smoke.log"; exit 1; }; \
 	tail -n 1 build/smoke.log; exit $$rc
 
-quick: $(VENV)/ready ## the tests that are not marked slow, in a minute and a half
+quick: $(VENV)/ready ## the tests that are not marked slow, in a minute
 	pytest -n auto --dist worksteal -m "not slow"
 
 foreign: $(VENV)/ready ## 443 mesh files of other people: each is simplified, or refused in one line (ten minutes)

@@ -35,6 +35,12 @@ def pytest_collection():
     return result
 
 
+def pytest_ignore_collect(collection_path, config):
+    """`-m "not slow"` does not import a file whose tests are all slow: some files import packages for a second."""
+    is_file = collection_path.suffix == ".py" and config.option.markexpr == "not slow"
+    return is_file and "\npytestmark = pytest.mark.slow\n" in collection_path.read_text("utf-8") or None
+
+
 def spot_maps(mesh, spot, viewpoints=TWELVE, width=0.15, channels=CHANNELS):
     """dict channel -> (v, h, w): a Gaussian round a place in space, zero off the object."""
     scene, maps = RayScene(mesh), []

@@ -130,11 +130,13 @@ def test_a_home_folder_is_found_and_an_axis_may_have_commas(tmp_path, monkeypatc
     )
 
 
+@pytest.mark.slow
 def test_changed_gaze_in_an_archive_of_meshes_is_learned_anew():
     graph = compose(["sets=[gaze]", "gaze.meshes.folder=gaze.zip"])["graph"]
     assert graph["weights"] == graph["meshes"] == {"gaze": "gaze.zip"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options", [["channels=judged", "classifier=all"], ["channels=blind", "conspicuity.channels=[fine_grained]"]]
 )
@@ -237,6 +239,7 @@ def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
     assert hint in str(error.value)
 
 
+@pytest.mark.slow
 def test_names_in_a_list_may_have_blanks_accents_and_brackets():
     names = ["boule à vis", "cône (2)", "anneau#1", "caisse", "0012"]
     values = compose(["sets=[folder]", "meshes.folder=scans", f"meshes.objects=[{','.join(names)}]", "lod.rings=2"])

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from haptic_glance.base.files import read_json, write_mesh
+from haptic_glance.base.files import read_json, write_mesh, write_text
 from stages import recheck
 from stages.engine.rows import RECHECKED, agrees, read_rows
 from stages.recheck import EQUAL, by_method, chain, compared, run
@@ -32,6 +32,8 @@ def committed(shapes, make_workspace, tmp_path, monkeypatch):
     monkeypatch.chdir(clone)
     monkeypatch.setattr(recheck, "prepared", lambda dataset, settings: workspace)
     monkeypatch.setattr(recheck, "chain", lambda stage: [])
+    # digests of all stages take seconds
+    monkeypatch.setattr(recheck, "write_digests", lambda folder: write_text(folder / "views", "digest"))
     return target
 
 
@@ -86,7 +88,7 @@ def test_a_stage_that_stops_is_not_kept_and_the_next_file_goes_on(committed, mon
     assert outcome(committed)["compared"] > 0
 
 
-def test_a_stage_of_an_experiment_is_switched_on_by_its_name(committed, tmp_path, monkeypatch, capsys):
+def test_a_stage_of_an_experiment_is_switched_on_by_its_name(committed, monkeypatch, capsys):
     calls = []
 
     def without_views(dataset, settings):
@@ -98,7 +100,10 @@ def test_a_stage_of_an_experiment_is_switched_on_by_its_name(committed, tmp_path
     assert run(["seed=3", "toys/views", "profile=smoke"]) == 1
     assert calls == [("toys", ["seed=3", "profile=smoke"])]
     assert "conf/data/toys.yaml leaves views out; add experiment=NAME" in capsys.readouterr().err
-    monkeypatch.undo()
+
+
+@pytest.mark.slow
+def test_settings_of_an_experiment_switch_its_stage_on(tmp_path, monkeypatch):
     monkeypatch.setattr(recheck, "FOLDER", tmp_path)
     graph = recheck.prepared("furniture", ["experiment=coarse_imprints"]).params["graph"]
     assert graph["coarse_imprints"] == ["furniture"] and recheck.prepared("furniture").params["graph"]["contours"]

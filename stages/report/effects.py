@@ -70,7 +70,7 @@ def side(
     if part.several:
         cells = part.rows.groupby([*part.keys, *part.several], sort=False)["value"].mean()
         values = cells.unstack(part.several, sort=False).dropna().mean(axis=1)
-    return values.drop(part.invalid.index, errors="ignore")
+    return values if part.invalid.empty else values.drop(part.invalid.index, errors="ignore")
 
 
 def invalid_pairs(rows: pd.DataFrame, reasons: pd.Series, keys: Sequence[str]) -> pd.Series:
@@ -108,7 +108,7 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
                for part in side_rows]  # fmt: skip
         if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
             first, second = (part.means for part in side_rows)
-            pair_means = pd.concat({"first": first, "second": second}, axis=1, join="inner")
+            pair_means = both_sides(first, second)
             bad.append(pd.Series(SAME, index=pair_means.index[_same_mesh(claim, pair_means)], dtype=object))
         contrasts.append((parts, pd.concat(bad)))
     if all(bad.empty for _, bad in contrasts):
@@ -122,6 +122,13 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
 def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
     """The combinations of the columns, as an index of these columns has them: bare values of a single column."""
     return set(rows[keys[0]]) if len(keys) == 1 else set(zip(*(rows[key] for key in keys), strict=True))
+
+
+def both_sides(first: pd.Series, second: pd.Series) -> pd.DataFrame:
+    """Columns first and second of the pairs that both sides have; equal pairs, the usual case, need no join."""
+    if first.index.equals(second.index):
+        return pd.DataFrame({"first": first.array, "second": second.array}, index=first.index)
+    return pd.concat({"first": first, "second": second}, axis=1, join="inner")
 
 
 def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
@@ -205,8 +212,9 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
         if claim.mean_of:
             values = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
-            side_values = pd.concat({"first": first, "second": second}, axis=1, join="inner").dropna()
-            side_values = side_values[~_same_mesh(claim, side_values)]
+            side_values = both_sides(first, second).dropna()
+            is_same = _same_mesh(claim, side_values)
+            side_values = side_values[~is_same] if is_same.any() else side_values
             names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
             some(side_values, f"no pairs of {names}", claim.stage, runnable=False)
             values = side_values["first"] - side_values["second"]

@@ -108,7 +108,7 @@ class ByMethod(dict):
         return names or [self[method] for method in methods]
 
 
-RECENT = 32  # answers that are kept: the two sides of a claim are asked for again and again
+RECENT = 128  # answers that are kept: the two sides of a claim are asked for again and again
 
 
 class Results:
@@ -184,10 +184,13 @@ class Results:
     def _filtered(self, stage: str, dataset: str, where: Mapping[str, object]) -> pd.DataFrame:
         """The rows of `rows`; each column's values are compared one time, not its cells."""
         frame = self._read(stage, dataset)
-        positions = np.arange(len(frame))
+        positions: np.ndarray | None = None
         for column, value in where.items():
             if column in frame:
-                positions = positions[self._accepted(stage, dataset, column, value, positions)]
+                if positions is None:
+                    positions = self._positions(stage, dataset, column, value)
+                else:
+                    positions = positions[self._accepted(stage, dataset, column, value, positions)]
                 if len(positions):
                     continue
             notes = self.notes(stage, dataset, **where)
@@ -196,7 +199,7 @@ class Results:
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
             raise NotRun(f"{column} {either(value)} is not among those that {stage} measured", stage, runnable=False)
-        return frame.iloc[positions] if where else frame
+        return frame if positions is None else frame.iloc[positions]
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
         """As `rows`, only those that have a value; NotRun where there is none."""
@@ -237,6 +240,11 @@ class Results:
         """`notes` as sentences for a table's prose, a line each."""
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
+    def _positions(self, stage: str, dataset: str, column: str, value: object) -> np.ndarray:
+        """(k,) the positions of the rows that `_accepted` accepts; the rows of a column are compared one time."""
+        query = "positions", stage, dataset, column, value is None, *listed(value)
+        return self.once(query, lambda: np.flatnonzero(self._accepted(stage, dataset, column, value)))
+
     def _accepted(
         self, stage: str, dataset: str, column: str, value: object, among: np.ndarray | slice = slice(None)
     ) -> np.ndarray:
@@ -247,8 +255,12 @@ class Results:
         codes, values = self.once(
             ("values", stage, dataset, column), lambda: pd.factorize(self._read(stage, dataset)[column])
         )
-        accepted = np.zeros(len(values), dtype=bool) if value is None else values.isin(listed(value))
-        return np.append(accepted, value is None)[codes[among]]  # the code of an empty cell is -1
+
+        def accepted() -> np.ndarray:
+            wanted = np.zeros(len(values), dtype=bool) if value is None else values.isin(listed(value))
+            return np.append(wanted, value is None)  # the code of an empty cell is -1
+
+        return self.once(("accepted", stage, dataset, column, value is None, *listed(value)), accepted)[codes[among]]
 
     def _first(self, stage: str, dataset: str | None) -> str:
         return dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]

@@ -108,6 +108,7 @@ class Dead:
     kill = wait = staticmethod(lambda: None)
 
 
+@pytest.mark.slow
 def test_a_kernel_compiles_beside_a_command_though_its_file_imports_scipy(tmp_path, monkeypatch):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     only = "first_run.COMMANDS['demo'] = [kernel for kernel in first_run.LOOK if kernel[1] == '_average']"

@@ -12,6 +12,8 @@ pytest.importorskip("sphinx_gallery")
 pytest.importorskip("pydata_sphinx_theme")
 pytest.importorskip("torch", reason="the API has the hybrid network")
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 FETCHED = re.compile(
     r"<(?:script|img|iframe|source)[^>]*src=\"(https?:|//)|<link[^>]*href=\"(https?:|//)|url\((https?:|//)"
@@ -31,7 +33,6 @@ def site(tmp_path_factory):
     return copy / "built"
 
 
-@pytest.mark.slow
 def test_it_builds_without_a_warning_has_its_pages_and_fetches_nothing(site):
     pages = {str(path.relative_to(site)) for path in site.rglob("*.html")}
     assert {"index.html", "first_steps.html", "concepts/attention.html", "api/lod.html", "artifact.html"} <= pages
@@ -40,7 +41,6 @@ def test_it_builds_without_a_warning_has_its_pages_and_fetches_nothing(site):
     assert not [path.name for path in files if FETCHED.search(path.read_text(encoding="utf-8"))]
 
 
-@pytest.mark.slow
 def test_formulas_figures_and_verdicts_are_in_the_pages(site):
     attention = (site / "concepts/attention.html").read_text(encoding="utf-8")
     assert (
@@ -55,14 +55,12 @@ def test_formulas_figures_and_verdicts_are_in_the_pages(site):
     assert "Create a new string object" not in (site / "api/know.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
 def test_methods_have_their_names_in_words_sections_of_settings_are_listed_and_the_theme_has_a_mode(site):
     stability = (site / "concepts/stability.html").read_text(encoding="utf-8")
     assert "3D-Harris" in stability and 'data-default-mode="auto"' in stability
     assert 'href="#settings-lod"' in (site / "settings.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
 def test_every_link_within_the_site_leads_to_a_page(site):
     broken = []
     for path in site.rglob("*.html"):

@@ -24,6 +24,8 @@ from stages.lod import __main__ as lod
 pytest.importorskip("distributed", reason="the cluster extra is not installed")
 from stages.engine import cluster  # needs that extra
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 PATIENCE = 300  # seconds, on a machine that does much else
 # In each worker: a stage's code is one file, since a digest of all files takes seconds. A worker ends where it opens a
@@ -116,7 +118,6 @@ def machines(tmp_path, monkeypatch):
             process.wait()
 
 
-@pytest.mark.slow
 def test_lost_workers_change_no_byte_and_what_ends_a_run_is_named(machines, tmp_path, monkeypatch):
     """One worker is killed in the middle of an object; no worker can see the run's folder."""
     monkeypatch.setattr("stages.engine.code.imported_files", lambda path: set())
@@ -132,7 +133,6 @@ def test_lost_workers_change_no_byte_and_what_ends_a_run_is_named(machines, tmp_
         list(finished(lambda task, folder: os._exit(1), [Task("cup", 0)], tmp_path, "x", "dask"))
 
 
-@pytest.mark.slow
 def test_a_process_starts_one_cluster_for_all_its_maps(capsys):
     try:
         for _ in range(2):

@@ -220,7 +220,8 @@ def test_entropy(picture, agreement):
     grey = ndimage.median_filter(luminance(rgb).astype(np.uint8), 3, mode="nearest")
 
     def bits(window):
-        shares = np.unique(window, return_counts=True)[1] / len(window)
+        counts = np.bincount(window.astype(np.uint8))
+        shares = counts[counts > 0] / len(window)
         return -(shares * np.log2(shares)).sum()
 
     literal = n(ndimage.generic_filter(grey.astype(np.float64), bits, 9, mode="reflect"))

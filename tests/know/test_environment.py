@@ -101,6 +101,7 @@ def test_meshes_of_any_size_are_normalised(task):
     assert other.observation_space.contains(other.reset(seed=0)[0])
 
 
+@pytest.mark.slow
 def test_an_object_that_is_known_is_the_right_one():
     task, answers = TouchUntilSure(), []
     for seed in range(40):

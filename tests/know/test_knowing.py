@@ -198,6 +198,7 @@ def test_what_cannot_be_learned_or_felt_is_named(library, shapes):
         library.log_likelihoods(np.zeros((1, 8, 8)), np.zeros((1, 3)))
 
 
+@pytest.mark.slow
 def test_a_library_that_was_learned_through_a_faulty_skin_is_right_where_an_ideal_one_is_sure_and_wrong(shapes, blind):
     skin, right = Skin(dead=0.02), []
     for library in (blind, learn(shapes, placed=False, skin=skin)):

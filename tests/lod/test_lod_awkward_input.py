@@ -190,7 +190,9 @@ def test_no_tip_is_cut_by_more_than_a_thirtieth_unless_the_target_leaves_too_few
     assert len(simplify(mesh, 20).faces) == 20
 
 
-@pytest.mark.parametrize(("count", "asked", "shown"), [(50, 10, 10), (22_000, 10**6, 21_845)])
+@pytest.mark.parametrize(
+    ("count", "asked", "shown"), [(50, 10, 10), pytest.param(22_000, 10**6, 21_845, marks=pytest.mark.slow)]
+)
 def test_parts_too_many_to_simplify_are_shown_by_their_largest_faces(count, asked, shown):
     """And by few enough for the page, whose ids of vertices have 16 bits."""
     sizes = np.arange(1, count + 1)

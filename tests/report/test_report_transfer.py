@@ -130,11 +130,12 @@ def test_a_sentence_about_all_networks_is_judged_on_their_mean_network_by_networ
     levels = {"alexnet": 0.7, "vgg16": 0.65, "resnet50": 0.6}
     more = [rows("princeton_six", finetuned=level).assign(method=name) for name, level in levels.items()]
     more = pd.concat([frame[frame["data"] == FINE] for frame in more], ignore_index=True)
+    keys = ["tuned_over_frozen_random", "tuned_over_frozen_objects"]
     lone = more[(more["method"] == "resnet50") & (more["mode"] == "frozen")]  # one side alone
     for frame, effect in ((more, 18.75), (more.drop(lone.index), 21.67)):
-        judged = words(measure("transfer", pd.concat([rows("princeton_six"), frame])))
-        assert judged.loc["tuned_over_frozen_random", "effect"] == pytest.approx(effect, abs=0.2)
-        assert judged.loc["tuned_over_frozen_objects", "effect"] == pytest.approx(30, abs=0.2)  # MobileNetV2 alone
+        effects = words(measure("transfer", pd.concat([rows("princeton_six"), frame])), *keys)["effect"]
+        assert effects["tuned_over_frozen_random"] == pytest.approx(effect, abs=0.2)
+        assert effects["tuned_over_frozen_objects"] == pytest.approx(30, abs=0.2)  # MobileNetV2 alone
 
 
 def test_changes_of_weights_need_a_training_that_was_saturated(measure):
