@@ -9,6 +9,9 @@ import numpy as np
 
 from .belief import Calibration
 
+# Numbers of `State.predicted` that are weighed together: the cache holds them; all would need four times their memory.
+AT_ONCE = 1 << 16
+
 
 def explore(
     strategy: str,
@@ -89,11 +92,13 @@ def by_gain(state: State) -> np.ndarray:
     """
     belief = np.exp(state.calibration.log_belief(state.log_likelihoods, max(state.touches, 1)))
     scores = np.empty(state.random_scores.shape)
-    for place in range(len(scores[0])):  # all places at once would need the memory of `predicted` four times more
-        likelihoods = state.log_likelihoods[:, None, None] + state.predicted[:, place]
+    step = max(1, AT_ONCE * len(scores[0]) // max(1, state.predicted.size))
+    for first in range(0, len(scores[0]), step):
+        places = slice(first, first + step)
+        likelihoods = state.log_likelihoods[:, None, None, None] + state.predicted[:, places]
         log_after = state.calibration.log_belief(likelihoods, state.touches + 1)
-        entropy = -np.einsum("ecoj,ecoj->eco", np.exp(log_after), log_after)
-        scores[:, place] = -np.einsum("eco,eco,ec->e", entropy, state.probabilities[:, place], belief)
+        entropy = -np.einsum("eqcoj,eqcoj->eqco", np.exp(log_after), log_after)
+        scores[:, places] = -np.einsum("eqco,eqco,ec->eq", entropy, state.probabilities[:, places], belief)
     return scores
 
 

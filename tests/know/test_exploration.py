@@ -1,5 +1,7 @@
 """Exploring by touch on objects whose likelihoods are known."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -201,6 +203,16 @@ def test_gain_looks_where_the_objects_differ(likelihood):
     first = np.exp(first)[[0, 1], 0, [0, 1]]
     alike = np.exp(case.calibration.log_belief(case.observed, 1))[[0, 1], :, [0, 1]][places[:, :, 0] < 0]
     assert 0.3 < (places[:, :, 0] > 0).mean() < 0.7 and first.min() > 0.7 and first.min() > np.median(alike)
+
+
+@pytest.mark.parametrize("at_once", [1, 40, 10**6])
+def test_places_are_weighed_alike_however_many_at_once(at_once, monkeypatch):
+    generator = random()
+    observed, predicted = generator.normal(size=(2, 7, 3)), generator.normal(size=(2, 7, 3, 4, 3))
+    given = (observed, predicted, np.full((2, 7, 3, 4), 1 / 4), Calibration(1.0, 0.5), 5)
+    beliefs = explore("gain", *given, random())
+    monkeypatch.setattr(sys.modules[explore.__module__], "AT_ONCE", at_once)
+    assert np.array_equal(explore("gain", *given, random()), beliefs)
 
 
 def test_no_difference_leaves_the_belief_near_even():
