@@ -123,6 +123,12 @@ def test_bad_questions_are_named(box_view, mesh, channels, settings, says):
         conspicuity(mesh, box_view, channels, **settings)
 
 
+@pytest.mark.parametrize("channels", ["edge", iter(["edge"])])
+def test_one_name_or_an_iterator_of_names_is_enough(box_view, channels):
+    maps = conspicuity(BOX, box_view, channels)
+    assert list(maps) == ["edge"] and np.array_equal(maps["edge"], conspicuity(BOX, box_view, ["edge"])["edge"])
+
+
 def test_a_view_of_the_wrong_type_of_pixels_is_refused(box_view):
     floats = dataclasses.replace(box_view, rgb=box_view.rgb / 255)
     for name in ("edge", "fine_grained"):

@@ -50,7 +50,7 @@ REDUCTION = 4  # the default size of a map is the view's over this
 def conspicuity(
     mesh: Mesh,
     view: View,
-    channels: Iterable[str] | None = None,
+    channels: str | Iterable[str] | None = None,
     size: Sequence[int] | None = None,
     filled: bool = True,
     symmetry: str = PERCEIVED,
@@ -64,8 +64,8 @@ def conspicuity(
         The normalised mesh.
     view : View
         A view of this mesh, from `render`.
-    channels : iterable of str, optional
-        Names out of CHANNELS and `haptic_glance.look.channels.OTHERS`. None: the nine of CHANNELS.
+    channels : str or iterable of str, optional
+        A name or names out of CHANNELS and `haptic_glance.look.channels.OTHERS`. None: the nine of CHANNELS.
     size : sequence of 2 ints, optional
         Rows and columns of the maps. None: a quarter of the view's.
     filled : bool
@@ -122,12 +122,13 @@ def conspicuity(
     return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 
 
-def check_channels(names: Iterable[str]) -> list[str]:
-    """The names as a list; ValueError for a name that is not in MAPS."""
+def check_channels(names: str | Iterable[str]) -> list[str]:
+    """The names, or the single one, as a list; ValueError for a name that is not in MAPS."""
+    names = [names] if isinstance(names, str) else list(names)
     unknown = [name for name in names if name not in MAPS]
     if unknown:
         raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(MAPS)}")
-    return list(names)
+    return names
 
 
 @weak_cache  # the channels of a view share its mask
