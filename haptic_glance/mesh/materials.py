@@ -392,13 +392,16 @@ def picture_of_corners(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shown_at_corners(texture: Texture) -> np.ndarray:
-    """(m,) boolean: faces whose picture is a `picture_of_corners`, of which each face shows four pixels of its own."""
+    """(m,) boolean: faces whose picture is a `picture_of_corners`.
+
+    All faces of the picture then have their corners in the middles of three pixels of one block of 2 x 2.
+    """
     found = np.zeros(len(texture.image), dtype=bool)
     for number in np.unique(texture.image):
         faces = np.flatnonzero(texture.image == number)
         size = np.array(texture.images[number].shape[1::-1])
         pixels = texture.uv[faces] * size - 0.5
-        whole = np.rint(pixels).astype(np.int64)
+        whole = np.rint(pixels)  # of any size: texture coordinates may exceed integers
         of_block, in_block = np.divmod(whole, 2)
         corner = np.sort(in_block @ [1, 2], axis=1)
         own = (of_block == of_block[:, :1]).all() and (np.diff(corner, axis=1) > 0).all()
