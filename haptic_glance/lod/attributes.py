@@ -90,10 +90,10 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     """
     original = reference.texture
     assert original is not None
-    at_corners = shown_at_corners(original)
+    at_corners, plain = shown_at_corners(original), replace(original, materials=())  # pixels without factors
     if at_corners.any():  # numbers of colours, in place of places in their picture, tell where charts end
         uv = original.uv.copy()
-        uv[at_corners, :, 0] = corner_colours(original, np.flatnonzero(at_corners)) @ [1, 256, 256**2]
+        uv[at_corners, :, 0] = corner_colours(plain, np.flatnonzero(at_corners)) @ [1, 256, 256**2]
         uv[at_corners, :, 1] = 0
         reference = replace(reference, texture=replace(original, uv=uv))
     chart, seams = charts(reference)
@@ -119,7 +119,7 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     for shown in np.unique(image[at_corners[under]]):
         faces = np.flatnonzero(image == shown)
         corners = number[faces].ravel()
-        colors = np.einsum("ij,ijk->ik", nearest.weights[corners], corner_colours(original, nearest.faces[corners]))
+        colors = np.einsum("ij,ijk->ik", nearest.weights[corners], corner_colours(plain, nearest.faces[corners]))
         uv[faces], images[shown] = picture_of_corners(np.rint(colors).reshape(-1, 3, 3))
     return replace(original, uv=uv, image=image, images=tuple(images))
 

@@ -384,7 +384,7 @@ def picture_of_corners(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first, second, third = colors.astype(np.int64).transpose(1, 0, 2)
     four = np.stack([first, second, third, np.clip(second + third - first, 0, 255)], axis=1)
     blocks = np.full((side * side, 2, 2, 4), 255, dtype=np.uint8)
-    blocks[..., :3] = np.resize(four, (side * side, 2, 2, 3))  # repeats colours, which a smaller picture may mix
+    blocks[..., :3] = np.resize(four, (side * side, 2, 2, 3))  # the rest repeats colours: a viewer mixes pixels
     picture = blocks.reshape(side, side, 2, 2, 4).swapaxes(1, 2).reshape(2 * side, 2 * side, 4)
     row, column = np.divmod(np.arange(len(colors))[:, None], side)
     x, y = 2 * column + [0.5, 1.5, 0.5], 2 * row + [0.5, 0.5, 1.5]
@@ -415,9 +415,8 @@ def without_corner_pictures(texture: Texture) -> Texture:
 
 
 def corner_colours(texture: Texture, faces: np.ndarray) -> np.ndarray:
-    """(k, 3, 3) u1: the pixels at the corners of faces (k,), without the factors of their materials."""
-    plain = replace(texture, materials=())
-    return plain.sample(np.repeat(faces, 3), texture.uv[faces].reshape(-1, 2)).reshape(-1, 3, 3)
+    """(k, 3, 3) u1: the colours that the picture shows at the corners of faces (k,)."""
+    return texture.sample(np.repeat(faces, 3), texture.uv[faces].reshape(-1, 2)).reshape(-1, 3, 3)
 
 
 def flat_texture(colors: np.ndarray) -> Texture:
