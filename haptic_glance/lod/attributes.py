@@ -11,12 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
-from haptic_glance.mesh.materials import (
-    corner_colours,
-    picture_of_corners,
-    shown_at_corners,
-    without_corner_pictures,
-)
+from haptic_glance.mesh.materials import corner_colours, picture_of_corners, shown_at_corners
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.nearest import SurfaceIndex, closest, same_place
 from haptic_glance.mesh.rays import barycentric
@@ -37,9 +32,9 @@ def carry(reference: Mesh, mesh: Mesh) -> Mesh:
     the reference's takes its colour unchanged. Texture coordinates (m, 3, 2) are those of the chart under the face's
     centre, at the closest point of each vertex within the chart: faces share them, but across a seam of the original.
     Vertices that moved take those of least squared error over the faces around. Beyond a seam a corner takes the end of
-    its chart, or the coordinates there where the picture repeats. The images stay unchanged. Colours that `mesh` has
-    already stay, as those of a simplification whose error counts them. Where the reference has neither, the mesh itself
-    is returned.
+    its chart, or the coordinates there where the picture repeats. The images stay unchanged, but a
+    `picture_of_corners` is drawn anew. Colours that `mesh` has already stay, as those of a simplification whose error
+    counts them. Where the reference has neither, the mesh itself is returned.
 
     Source: attributes at the closest point as in Cohen, Olano and Manocha 1998 (appearance-preserving simplification,
     section 3); the thesis has no attributes. Raises ValueError where the reference has no faces.
@@ -90,13 +85,17 @@ def faces_under(index: SurfaceIndex, mesh: Mesh) -> tuple[np.ndarray, np.ndarray
 def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     """The Texture of the faces of `mesh`, taken from the reference's.
 
-    Colours of vertices that stand beside pictures (`picture_of_corners`) are interpolated, in a new picture.
+    Colours of vertices that stand beside pictures (`picture_of_corners`) are interpolated, in a new picture. Where two
+    colours meet, a chart ends, so that each face takes the colours of its own side.
     """
-    assert reference.texture is not None
-    at_corners = shown_at_corners(reference.texture)
-    if at_corners.any():
-        plain = replace(reference, texture=without_corner_pictures(reference.texture))
-        return _with_corner_pictures(carry_texture(plain, mesh), reference, mesh, at_corners)
+    original = reference.texture
+    assert original is not None
+    at_corners, plain = shown_at_corners(original), replace(original, materials=())  # pixels without factors
+    if at_corners.any():  # numbers of colours, in place of places in their picture, tell where charts end
+        uv = original.uv.copy()
+        uv[at_corners, :, 0] = corner_colours(plain, np.flatnonzero(at_corners)) @ [1, 256, 256**2]
+        uv[at_corners, :, 1] = 0
+        reference = replace(reference, texture=replace(original, uv=uv))
     chart, seams = charts(reference)
     search = ChartSearch(reference, chart)
     centres, under = faces_under(search.index, mesh)
@@ -116,19 +115,13 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     steps = uv - nearest.uv[number]
     off_line = np.abs(steps - np.rint(steps)).max(axis=2) > SAME  # on another side, where the picture does not repeat
     uv = _fitted(mesh.face_areas, uv, _uv_at(reference, under, weights), number, fixed[number] | off_line)
-    return replace(reference.texture, uv=uv, image=reference.texture.image[under])
-
-
-def _with_corner_pictures(texture, reference, mesh, at_corners):
-    """The Texture with the reference's colours at the corners of its faces `at_corners` (m,), interpolated."""
-    uv, images = texture.uv.copy(), list(texture.images)
-    for number in np.intersect1d(reference.texture.image[at_corners], texture.image):
-        source, faces = (np.flatnonzero(part.image == number) for part in (reference.texture, texture))
-        vertices, corners = np.unique(mesh.faces[faces], return_inverse=True)
-        _, face, weights = closest(Mesh(reference.vertices, reference.faces[source]), mesh.vertices[vertices])
-        colors = np.einsum("ij,ijk->ik", weights, corner_colours(reference.texture, source)[face])
-        uv[faces], images[number] = picture_of_corners(np.rint(colors)[corners.reshape(-1, 3)])
-    return replace(texture, uv=uv, images=tuple(images))
+    image, images = original.image[under], list(original.images)
+    for shown in np.unique(image[at_corners[under]]):
+        faces = np.flatnonzero(image == shown)
+        corners = number[faces].ravel()
+        colors = np.einsum("ij,ijk->ik", nearest.weights[corners], corner_colours(plain, nearest.faces[corners]))
+        uv[faces], images[shown] = picture_of_corners(np.rint(colors).reshape(-1, 3, 3))
+    return replace(original, uv=uv, image=image, images=tuple(images))
 
 
 @dataclass(frozen=True)

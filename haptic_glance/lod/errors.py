@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from haptic_glance.base.rng import rng
+from haptic_glance.mesh.materials import corner_colours, shown_at_corners
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.nearest import closest, surface_index
 
@@ -134,7 +135,8 @@ def colour_error(reference: Mesh, mesh: Mesh, samples: int = 10_000, seed: int =
 
     At points on either surface, uniform by area, and the nearest points on the other one; the larger of both
     directions, as in `metro`. A mesh with a texture shows its nearest pixel, one without its vertex colours
-    interpolated. Raises ValueError for a mesh without either, without area, or fewer than one sample.
+    interpolated, as those in a `picture_of_corners`. Raises ValueError for a mesh without either, without area, or
+    fewer than one sample.
     """
     if samples < 1:
         raise ValueError(f"samples must be 1 or more, got {samples}")
@@ -150,7 +152,10 @@ def shown(mesh: Mesh, faces: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """(k, 3) colours in 0..255 that a mesh shows at barycentric weights (k, 3) of faces (k,)."""
     if mesh.texture is not None:
         uv = np.einsum("ij,ijk->ik", weights, mesh.texture.uv[faces])
-        return mesh.texture.sample(faces, uv).astype(np.float64)
+        colors = mesh.texture.sample(faces, uv).astype(np.float64)
+        mixed = shown_at_corners(mesh.texture)[faces]
+        colors[mixed] = np.einsum("ij,ijk->ik", weights[mixed], corner_colours(mesh.texture, faces[mixed]))
+        return colors
     if mesh.colors is None:
         raise ValueError("the mesh has no colours to compare")
     return np.einsum("ij,ijk->ik", weights, mesh.colors[mesh.faces[faces]].astype(np.float64))

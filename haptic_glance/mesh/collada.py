@@ -61,9 +61,9 @@ def _input(element: ElementTree.Element, semantic: str) -> Any:
 
 
 def _list(polygons: Any, space: str) -> None:
-    """Turns `polygons`, which have an element `p` for each, into the equal `polylist`; polygons with holes stay."""
+    """Turns `polygons`, which have an element `p` for each, into the equal `polylist`, but for polygons with holes."""
     parts = polygons.findall(f"{space}p")
-    if not parts or polygons.find(f"{space}ph") is not None:
+    if not parts:
         return
     width = 1 + max(int(part.get("offset")) for part in polygons.findall(f"{space}input"))
     corners = [part.text.split() for part in parts]

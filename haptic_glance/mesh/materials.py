@@ -384,7 +384,7 @@ def picture_of_corners(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first, second, third = colors.astype(np.int64).transpose(1, 0, 2)
     four = np.stack([first, second, third, np.clip(second + third - first, 0, 255)], axis=1)
     blocks = np.full((side * side, 2, 2, 4), 255, dtype=np.uint8)
-    blocks[..., :3] = np.resize(four, (side * side, 2, 2, 3))  # repeats colours, which a smaller picture may mix
+    blocks[..., :3] = np.resize(four, (side * side, 2, 2, 3))  # the rest repeats colours: a viewer mixes pixels
     picture = blocks.reshape(side, side, 2, 2, 4).swapaxes(1, 2).reshape(2 * side, 2 * side, 4)
     row, column = np.divmod(np.arange(len(colors))[:, None], side)
     x, y = 2 * column + [0.5, 1.5, 0.5], 2 * row + [0.5, 0.5, 1.5]
@@ -392,13 +392,16 @@ def picture_of_corners(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shown_at_corners(texture: Texture) -> np.ndarray:
-    """(m,) boolean: faces whose picture is a `picture_of_corners`, of which each face shows four pixels of its own."""
+    """(m,) boolean: faces whose picture is a `picture_of_corners`.
+
+    All faces of the picture then have their corners in the middles of three pixels of one block of 2 x 2.
+    """
     found = np.zeros(len(texture.image), dtype=bool)
     for number in np.unique(texture.image):
         faces = np.flatnonzero(texture.image == number)
         size = np.array(texture.images[number].shape[1::-1])
         pixels = texture.uv[faces] * size - 0.5
-        whole = np.rint(pixels).astype(np.int64)
+        whole = np.rint(pixels)  # of any size: texture coordinates may exceed integers
         of_block, in_block = np.divmod(whole, 2)
         corner = np.sort(in_block @ [1, 2], axis=1)
         own = (of_block == of_block[:, :1]).all() and (np.diff(corner, axis=1) > 0).all()
@@ -412,9 +415,8 @@ def without_corner_pictures(texture: Texture) -> Texture:
 
 
 def corner_colours(texture: Texture, faces: np.ndarray) -> np.ndarray:
-    """(k, 3, 3) u1: the pixels at the corners of faces (k,), without the factors of their materials."""
-    plain = replace(texture, materials=())
-    return plain.sample(np.repeat(faces, 3), texture.uv[faces].reshape(-1, 2)).reshape(-1, 3, 3)
+    """(k, 3, 3) u1: the colours that the picture shows at the corners of faces (k,)."""
+    return texture.sample(np.repeat(faces, 3), texture.uv[faces].reshape(-1, 2)).reshape(-1, 3, 3)
 
 
 def flat_texture(colors: np.ndarray) -> Texture:

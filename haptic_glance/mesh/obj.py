@@ -172,7 +172,7 @@ LOOKS = {"d": 1.0, "Tr": 0.0, "Ks": 0.0, "Ke": 0.0}
 COLOUR_MAP, PLACED = re.compile(r"(?mi)^\s*map_Kd(\s.*)$"), re.compile(r"(?i)\s(-[ost])(?=\s)")
 OTHER_ELEMENTS = {
     "lines": rb"\n[ \t]*l[ \t]", "points": rb"\n[ \t]*p[ \t]",
-    FEW_CORNERS: rb"\n[ \t]*f(?:[ \t]+[-\d][^\s#]*){1,2}[ \t]*(?:#[^\n]*)?\r?(?=\n|\Z)",
+    FEW_CORNERS: rb"\n[ \t]*f(?:[ \t]+[-\d][^\s#]*+){1,2}+[ \t]*(?:#[^\n]*)?\r?(?=\n|\Z)",
 }  # fmt: skip
 
 

@@ -15,12 +15,13 @@ from trimesh.visual.material import PBRMaterial
 from haptic_glance import as_mesh, simplify, to_trimesh
 from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import dropped_from, run
+from haptic_glance.lod.errors import colour_error
 from haptic_glance.lod.export import _in_pictures, write_any
 from haptic_glance.lod.task import repaired
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
 from haptic_glance.mesh.gltf import as_glb, joined, opened, with_linear_colours
-from haptic_glance.mesh.materials import bake_texture, not_read
+from haptic_glance.mesh.materials import bake_texture, corner_colours, not_read, shown_at_corners
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.srgb import decoded, encoded
 
@@ -450,13 +451,29 @@ def test_colours_of_vertices_beside_a_picture_look_as_they_did_also_once_simplif
     assert shown_amiss(mesh) < 1
     for attributes in ({}, {"uv": 1.0}):
         small = simplify(mesh, "20%", attributes=attributes)
-        assert shown_amiss(small) < 2
+        assert shown_amiss(small) < 2 and colour_error(mesh, small) < 2
     assert len(np.unique(small.texture.image)) == 2
     for suffix in ("glb", "obj"):
         write_any(tmp_path / f"two.{suffix}", small)
         assert shown_amiss(load(tmp_path / f"two.{suffix}")) < 2
     parts = trimesh.load(tmp_path / "two.glb").geometry.values()
     assert sorted(part.visual.kind for part in parts) == ["texture", "vertex"]
+
+
+def test_a_hard_edge_between_colours_of_vertices_stays_hard():
+    shape = trimesh.creation.icosphere(3)
+    north = shape.triangles_center[:, 2] > 0
+    painted = trimesh.Trimesh(np.tile(shape.vertices, (2, 1)), shape.faces + 642 * north[:, None], process=False)
+    painted.visual.vertex_colors = np.repeat([[200, 0, 0], [0, 0, 200]], 642, axis=0).astype(np.uint8)
+    small = simplify(as_mesh(trimesh.Scene([painted, ball(3, baseColorTexture=picture((9, 9, 9)))])), "20%")
+    colors = corner_colours(small.texture, np.arange(len(small.faces)))
+    assert {(200, 0, 0), (0, 0, 200)} < set(map(tuple, colors[:, 0].tolist()))
+    assert (colors == colors[:, :1]).all()
+
+
+def test_texture_coordinates_beyond_integers_are_no_colours_at_corners(recwarn):
+    texture = Texture(np.array([[[1e30, 0], [0, 1], [1, 1]]]), np.array([0]), (np.zeros((4, 4, 4), np.uint8),))
+    assert not shown_at_corners(texture).any() and not list(recwarn)
 
 
 def test_a_weight_of_texture_coordinates_spends_no_faces_on_colours_of_vertices():

@@ -141,10 +141,14 @@ def test_a_warning_counts_the_parts_that_the_mesh_does_not_get(tmp_path):
         assert len(load(written(tmp_path, skin=skin)).faces) == 12
 
 
-def test_a_polygon_with_a_hole_is_left_out_with_a_warning(tmp_path):
+def test_a_polygon_with_a_hole_is_left_out_with_a_warning_and_concave_ones_beside_it_keep_their_shape(tmp_path):
     hole = POLYGONS.replace("<p>", "<ph><p>", 1).replace("</p>", "</p><h>0 0 1 0 2 0</h></ph>", 1)
+    arrow = {**AS_POLYGONS, "points": ("0 0 0 1 0 0 1 1 0 0 1 0 0 0 2 1 0 2 1 1 2 0 1 2", ARROW)}
+    whole = load(written(tmp_path, **arrow))
     with pytest.warns(UserWarning, match=r"^robot.dae: left out: polygons with holes \(1\)$"):
-        assert len(load(written(tmp_path, **AS_POLYGONS, hole=(POLYGONS, hole))).faces) == 2 * 10
+        mesh = load(written(tmp_path, **arrow, hole=(POLYGONS, hole)))
+    assert len(mesh.faces) == 2 * 10
+    assert mesh.face_areas.sum() == pytest.approx(whole.face_areas.sum() - (1 + 3) * 6)  # an arrow at each place
 
 
 def test_without_pycollada_the_message_names_the_extra(tmp_path, monkeypatch):
