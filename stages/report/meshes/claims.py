@@ -407,8 +407,8 @@ CLAIMS += [
           HKS, highest_of(*PRINTED, *PRINTED_ADAPTIVE), target=HIGH,
           readings=(*of_3_2["readings"], reading("equal weights, too", second={"method": ANY_ATTENTION}))),
     ranks(key="seen_confirms", section="T3.2.9.2", sentence="The error as seen confirms the Metro error.",
-          first=ERROR, second={"metric": SEEN}, **of_3_2, note=f"over the methods, {OF_EACH}",
-          checked=False),  # both errors are of the same mesh, whether its method kept points or not
+          first=ERROR, second={"metric": SEEN}, **of_3_2, checked=False,  # both errors are of the same mesh
+          note=f"over the methods, also those that kept no point, {OF_EACH}"),
     seen("hks_seen", "HKS is better as seen than attention.", PRINTED, HKS),
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", SSIM),
     *(
