@@ -133,14 +133,26 @@ def _pip(requirement, digest, folder, options, environment=None):
 
 
 def _apt_download(package, folder):
-    """Downloads into the folder; returns the reason to give where nothing fitting has come."""
+    """Downloads into the folder; returns the reason to give where nothing fitting has come.
+
+    The image of a container has no lists of packages, and old lists name old versions: new lists are then fetched to
+    the folder, which needs no root either.
+    """
+    lists = Path(folder, "lists")
+    own = ["-o", f"Dir::State::lists={lists}", "-o", f"Dir::Cache={lists}"]
     try:
-        process = subprocess.run(
-            ["apt-get", "download", package], cwd=folder, capture_output=True, text=True, check=False
-        )
+        process = _apt_get(folder, "download", package)
+        if process.returncode:
+            Path(lists, "partial").mkdir(parents=True)
+            _apt_get(folder, *own, "update")
+            process = _apt_get(folder, *own, "download", package)
     except FileNotFoundError:
         return "this machine has no apt-get"
     return next((line for line in process.stderr.splitlines() if line.startswith("E:")), "another file came")
+
+
+def _apt_get(folder, *arguments):
+    return subprocess.run(["apt-get", *arguments], cwd=folder, capture_output=True, text=True, check=False)
 
 
 @contextmanager

@@ -125,13 +125,33 @@ def test_without_apt_the_file_and_its_place_are_named(tmp_path, monkeypatch):
 def test_a_failed_download_names_what_apt_said_and_leaves_nothing(tmp_path, monkeypatch):
     (tmp_path / "bin").mkdir()
     apt = tmp_path / "bin/apt-get"
-    apt.write_text("#!/bin/sh\necho rubbish > $2.deb\necho 'E: Unable to locate package' >&2\n")
+    apt.write_text("#!/bin/sh\necho rubbish > rubbish.deb\necho 'E: Unable to locate package' >&2\nexit 100\n")
     apt.chmod(0o755)
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
     monkeypatch.setenv("PATH", f"{apt.parent}:/usr/bin:/bin")
     with pytest.raises(FetchError, match="cannot fetch some=1.0: E: Unable to locate package. Get some_1.0_all.deb"):
         fetch_debian("some_1.0_all.deb", "00")
     assert not list((tmp_path / "cache").iterdir())
+
+
+KNOWS_ITS_OWN_LISTS = """#!/bin/sh
+case "$*" in
+*update*) echo package > lists/list;;
+*lists*) cat lists/list > some_1.0_all.deb;;
+*) echo 'E: Unable to locate package' >&2; exit 100
+esac
+"""
+
+
+def test_an_image_without_lists_of_packages_gets_its_own(tmp_path, monkeypatch):
+    (tmp_path / "bin").mkdir()
+    apt = tmp_path / "bin/apt-get"
+    apt.write_text(KNOWS_ITS_OWN_LISTS)
+    apt.chmod(0o755)
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("PATH", f"{apt.parent}:/usr/bin:/bin")
+    path = fetch_debian("some_1.0_all.deb", hashlib.sha256(b"package\n").hexdigest())
+    assert path.read_text() == "package\n" and list(path.parent.iterdir()) == [path]
 
 
 @pytest.mark.parametrize(("content", "reason"), [(b"nothing", "not a Debian package"), (b"!<arch>\n", "damaged")])
