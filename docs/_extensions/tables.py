@@ -134,7 +134,8 @@ def shown(row: pd.DataFrame, column: str) -> str:
     if not parts_of(column)[2]:
         return row[column].iloc[0]
     try:
-        return SIGNED_ZERO.sub(r"\1", text_of(row, column))
+        text = SIGNED_ZERO.sub(r"\1", text_of(row, column))
+        return text.replace(", ", ",\u00a0")  # a line ends before an interval, not in it
     except LookupError:
         return "–"
 
