@@ -55,11 +55,12 @@ class Reading:
     """Another reasonable reading of an ambiguous protocol.
 
     name: the reading in words. changes: the fields of the claim that differ; a mapping such as `where` is merged into
-    that of the claim.
+    that of the claim. literal: whether this reading follows a printed formula to the letter and the claim does not.
     """
 
     name: str
     changes: Mapping[str, Any]
+    literal: bool = False
 
     def of(self, claim: "Claim") -> "Claim":
         """The claim in this reading."""
@@ -94,7 +95,7 @@ def in_sums(*sides: Methods, **more: Any) -> tuple[Reading, ...]:
     """
     summed = tuple(_renamed(side, _with_sums) for side in sides)
     changes = {side: {"method": methods} for side, methods in zip(("first", "second"), summed, strict=False)}
-    return () if summed == sides else (reading(SUMS, **changes, **more),)
+    return () if summed == sides else (Reading(SUMS, {**changes, **more}, literal=True),)
 
 
 def _with_sums(method: str) -> str:

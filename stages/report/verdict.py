@@ -121,6 +121,7 @@ class Judgement:
     set_effects: list[Effect]
     missing: list[str]
     chosen: list[Effect]
+    literal: bool = False
 
     @cached_property
     def word(self) -> str:
@@ -157,7 +158,8 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
     A reading on data sets of its own was run where the first of them was. Raises NotRun where no reading was run.
     """
     judgements, errors, not_run = [], [], []
-    for name, variant in [(WRITTEN, claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
+    others = [(reading.name, reading.of(claim), reading.literal) for reading in claim.readings]
+    for name, variant, literal in [(WRITTEN, claim, False), *others]:
         try:
             set_effects, missing = effects(variant, results, judged_sets=variant is not claim)
         except NotRun as error:
@@ -165,7 +167,7 @@ def _judgements(claim: Claim, results: Results) -> tuple[list[Judgement], list[s
             not_run.append(f"{name}: not run")
             continue
         selection = deciding(variant, set_effects, results, strict=variant is not claim)
-        judgement = Judgement(name, variant, set_effects, missing, selection)
+        judgement = Judgement(name, variant, set_effects, missing, selection, literal)
         if variant is claim or (selection and np.isfinite(judgement.effect.interval[1])):
             judgements.append(judgement)
         else:
@@ -200,16 +202,19 @@ def word_of(effects: Sequence[Effect], unit: str) -> str:
     return verdict(*effect.interval[1:], unit)
 
 
-def over_readings(words: Sequence[str]) -> str:
+def over_readings(words: Sequence[str], literal: str = UNTESTABLE) -> str:
     """The word of a claim from those of its readings: the first that can be tested, unless readings contradict.
 
     A reading in which the data sets disagree contradicts a decided word, too. An open word depends on the reading where
-    one reading supports the claim and another contradicts it.
+    one reading supports the claim and another contradicts it. literal: the word of the literal reading
+    (`stages.report.claims.Reading`); a claim that this reading alone supports, contradicts or leaves open depends on
+    the reading.
     """
     words = [word for word in words if word != UNTESTABLE] or [UNTESTABLE]
     opposed = {"supported", "contradicted"} <= {*words}
     differs = words[0] in DECIDED and {*words} & {*DECIDED, MIXED} != {words[0]}
-    return DEPENDS if opposed or differs else words[0]
+    alone = "open" in (words[0], literal) and {words[0], literal} & {"supported", "contradicted"}
+    return DEPENDS if opposed or differs or alone else words[0]
 
 
 def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: Sequence[str]) -> dict[str, str]:
@@ -223,7 +228,8 @@ def _readings(judged_one: Judgement, judgements: Sequence[Judgement], not_run: S
     if written is not judged_one and any(len(effect.refused) < effect.pairs for effect in written.used):
         # Its valid pairs count as a reading.
         words.append(verdict(*written.effect.interval[1:], written.claim.unit))
-    return {"verdict": over_readings(words), "readings": "; ".join(texts)}
+    literal = next((reading.word for reading in judgements if reading.literal), UNTESTABLE)
+    return {"verdict": over_readings(words, literal), "readings": "; ".join(texts)}
 
 
 def _numbers(judgement: Judgement) -> dict[str, object]:

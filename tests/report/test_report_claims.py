@@ -300,6 +300,16 @@ def test_a_verdict_holds_in_each_reading_or_depends_on_the_reading(words, word):
     assert over_readings(words) == word
 
 
+@pytest.mark.parametrize(("written", "literal", "word"), [
+    ("contradicted", "open", "depends on the reading"), ("open", "supported", "depends on the reading"),
+    ("open", "open", "open"), ("supported", "supported", "supported"), ("open", "mixed", "open"),
+    ("no difference", "open", "no difference"),
+    ("supported", "not testable", "supported"), ("open", "not testable", "open"), ("not testable", "open", "open"),
+])  # fmt: skip
+def test_a_word_that_the_literal_reading_alone_decides_or_leaves_open_depends_on_the_reading(written, literal, word):
+    assert over_readings([written, literal], literal) == word
+
+
 def test_readings_are_judged_by_their_own_rows_and_told(values):
     numbers = [*spread_about(2.0), *spread_about(-2.0)]
     results = values(item=[*range(12)] * 2, way=["a"] * 12 + ["b"] * 12, value=numbers)
