@@ -57,6 +57,7 @@ DATASETS = {
     "touch_events": "recorded events of a fingertip",
     "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
     "furniture_hands": "furniture, several arrays or touches",
+    "princeton_other_hands": "psb's other 11 classes, several arrays or touches",
     "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
 }  # fmt: skip
 
