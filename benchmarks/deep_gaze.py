@@ -2,11 +2,12 @@
 
 The objects of both sets with gaze, 19 meshes and 14 point clouds, are left out one at a time, and the model is learned
 from the 32 others. So are its rivals: the glance, and a model of three simple features, the height, how much a place
-faces viewers from the side, and the distance to the middle, which any learned model must beat. Prints the means, the
-paired differences with a 95 % interval over objects, and the weights learned from all objects, which are published
-(haptic_glance.look.weights.weights). Writes reports/bench/deep_gaze.csv: set, item, method, metric, value, seconds (of
-the processor, for the saliency of an object, without the training), and deep_gaze_means.csv with the means and
-differences. About 10 minutes on one core.
+faces viewers from the side, and the distance to the middle, which any learned model must beat. A random half of the
+fixated vertices of each object predicts the other half, to tell how much of the gaze is within reach at all. Prints the
+means, the paired differences with a 95 % interval over objects, and the weights learned from all objects, which are
+published (haptic_glance.look.weights.weights). Writes reports/bench/deep_gaze.csv: set, item, method, metric, value,
+seconds (of the processor, for the saliency of an object, without the training), and deep_gaze_means.csv with the means
+and differences. About 15 minutes on one core.
 """
 
 from collections.abc import Iterable, Mapping
@@ -19,7 +20,7 @@ import pandas as pd
 from benchmarks import arguments
 from haptic_glance.base.files import write_table
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.look.agreement import auc, cc, kl, nss
+from haptic_glance.look.agreement import GroundTruth, auc, cc, kl, nss
 from haptic_glance.look.glance import Samples, samples_of_mesh
 from haptic_glance.look.glance.cells import visibility
 from haptic_glance.look.points.glance import GlanceDetector, cell_features, deep_features
@@ -31,12 +32,15 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.bench import gazed
 from stages.engine.parallel import progress
 from stages.engine.statistics import interval
+from stages.weights.ground_truth import spread_on_surface
+from stages.weights.training import SPREAD
 
 OUT, SHARED = Path("reports/bench/deep_gaze.csv"), Path("../shared/data")
 SETS, METRICS = ("gaze", "gaze_clouds"), (nss, auc, cc, kl)
 MAPS_RIDGE = 1.0  # penalty on the squared weights of the maps: they are many
 STEPS, CLOSE = 30, 1e-5  # of Newton's method, and the change of a weight below which it ends
 LIMIT = 4.0  # standard deviations, as of the features of the glance
+HALF, DRAWS = "half_of_gaze", 3  # the name of gaze that predicts gaze, and the random halves of each object
 
 
 class Gaze(NamedTuple):
@@ -131,6 +135,24 @@ def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]
     return rows, weights["", ""]
 
 
+def rows_of_halves(objects: Mapping) -> list[dict]:
+    """Rows of METRICS of each object: the mean over DRAWS random halves, each of which predicts the other half."""
+    rows = []
+    for item, (mesh, truth) in progress(objects.items(), HALF):
+        rng, values = np.random.default_rng(0), []
+        for _ in range(DRAWS):
+            first = rng.random(len(truth.amounts)) < 0.5
+            parts = [np.where(first, truth.amounts, 0), np.where(first, 0, truth.amounts)]
+            maps = [spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal) for amounts in parts]
+            for k in (0, 1):
+                other = GroundTruth(parts[1 - k], maps[1 - k], truth.areas)
+                values.append([metric(maps[k], other) for metric in METRICS])
+        means = zip(METRICS, np.mean(values, axis=0), strict=True)
+        row = {"set": item[0], "item": item[1], "method": HALF}
+        rows += [row | {"metric": metric.__name__, "value": value} for metric, value in means]
+    return rows
+
+
 def summary(table: pd.DataFrame, method: str, than: str) -> pd.DataFrame:
     """By set and metric: means and median seconds of both methods, and the interval of their paired difference."""
     seconds = table.groupby("method")["seconds"].median()
@@ -153,9 +175,9 @@ def main():
         part, weights = rows_of(method, objects)
         rows += part
         print(method, {name: round(weight, 3) for name, weight in weights.items()})
-    table = pd.DataFrame(rows)
+    table = pd.DataFrame([*rows, *rows_of_halves(objects)])
     write_table(OUT, table.round({"value": 6, "seconds": 3}))
-    pairs = ("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple")
+    pairs = ("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple"), (HALF, "glance_deep"), (HALF, "glance")
     means = pd.concat([summary(table, *pair) for pair in pairs])
     write_table(OUT.with_name("deep_gaze_means.csv"), means)
     print(means.to_string(index=False))

@@ -72,7 +72,8 @@ about_points = partial(Claim, section="ours", stage=score.STAGE, dataset=BENCHMA
 CLAIMS = [
     *(
         Claim(key=f"autoencoder_over_{'none' if second == PLAIN else 'median'}_{fault}", sentence=sentence,
-              section="T6.3" if second == PLAIN else "ours", stage=touch.STAGE, dataset=touch.DENOISED,
+              section="T6.3" if second == PLAIN else "ours", stage=touch.STAGE,
+              dataset=(touch.DENOISED, "princeton_denoised", "furniture_denoised"), printed=0,
               first={"features": LEARNED}, second={"features": second}, within=("severity",), phrases=OF_TOUCHES,
               where={"perturbation": fault, "split": Split.RANDOM, "classifier": "knn", "metric": "accuracy"})
         for fault, second, sentence in DENOISING
