@@ -177,7 +177,8 @@ def main():
         print(method, {name: round(weight, 3) for name, weight in weights.items()})
     table = pd.DataFrame([*rows, *rows_of_halves(objects)])
     write_table(OUT, table.round({"value": 6, "seconds": 3}))
-    pairs = ("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple"), (HALF, "glance_deep"), (HALF, "glance")
+    pairs = [("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple")]
+    pairs += [(HALF, "glance_deep"), (HALF, "glance")]
     means = pd.concat([summary(table, *pair) for pair in pairs])
     write_table(OUT.with_name("deep_gaze_means.csv"), means)
     print(means.to_string(index=False))
