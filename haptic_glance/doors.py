@@ -145,7 +145,7 @@ def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]
                 if not hasattr(values["layout"], "cosines"):
                     raise TypeError(f"layout must be a Layout, as read_layout gives it, got {values['layout']!r}")
                 pitch = max(np.ptp(values["layout"].positions, axis=0).max(), np.sqrt(values["layout"].areas.max()))
-                _warn_of_units(whole, values["layer"], (1, 1), float(pitch), unit, "layout")
+                _warn_of_units(whole, values["layer"], (1, 1), float(pitch) / unit, unit, "layout")
             else:
                 _warn_of_units(whole, values["layer"], values["cells"], values["pitch"], unit)
         return function(*bound.args, **bound.kwargs)

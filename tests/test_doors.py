@@ -118,6 +118,8 @@ def test_forces_take_lengths_as_texts(body):
         felt = haptic_glance.layout_forces(*metres, layout, depth=text)
         assert felt.any()
         assert (felt == haptic_glance.layout_forces(*metres, layout, depth=number)).all()
+        in_mm = haptic_glance.layout_forces(mesh, *place, layer, layout, depth=text, unit="mm")
+        assert np.allclose(in_mm, felt)
         felt = haptic_glance.forces(gaps, layer, 1e-6, depth=text)
         assert (felt == haptic_glance.forces(gaps, layer, 1e-6, depth=number)).all()
     with pytest.raises(ValueError, match="depth='deep': give a number"):
@@ -147,14 +149,17 @@ def test_units_of_forces_that_do_not_fit_are_warned_of(body, sizes, words):
     assert all(warning.filename == __file__ for warning in caught)
 
 
-@pytest.mark.parametrize("scale, words", [(1.0, "layout: .* is the unit of length right"), (0.001, "")])
-def test_a_layout_that_does_not_fit_the_object_is_warned_of(body, scale, words):
+@pytest.mark.parametrize("scale, unit, words", [
+    (1.0, 1.0, "layout: .* is the unit of length right"), (0.001, 1.0, ""), (1.0, "mm", ""),
+])  # fmt: skip
+def test_a_layout_that_does_not_fit_the_object_is_warned_of(body, scale, unit, words):
     mesh = Mesh(scale * body[0], body[1])
     place = mesh.vertices[[7]], haptic_glance.sensor_axes(haptic_glance.sensor_normals(mesh, [7]))
     taxels = Layout([[0, 0, 0], [0.008, 0, 0]], [[0, 0, -1]] * 2, [1e-5] * 2)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        haptic_glance.layout_forces((mesh.vertices, mesh.faces), *place, haptic_glance.Layer(), taxels, depth=1e-4)
+        layer, arrays = haptic_glance.Layer(), (mesh.vertices, mesh.faces)
+        haptic_glance.layout_forces(arrays, *place, layer, taxels, depth=1e-4, unit=unit)
     assert len(caught) == bool(words) and all(re.match(words, str(warning.message)) for warning in caught)
     assert all(warning.filename == __file__ for warning in caught)
 

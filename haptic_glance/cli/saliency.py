@@ -37,6 +37,7 @@ from haptic_glance.look.weights.weights import GLANCE
 from haptic_glance.mesh.files import load_unnamed
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import barycentric
 from haptic_glance.mesh.repair import area_share, centre_and_radius, significant_digits
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
@@ -165,9 +166,10 @@ def finely(mesh: Mesh, saliency: np.ndarray, method: str = GLANCE) -> tuple[Mesh
 
 def _colours_at(mesh, source, vertices, faces):
     """(n, 3) u1 the colours of a mesh at the vertices (n, 3) of faces (m, 3) that lie in its faces `source` (m,)."""
-    corners, colors = mesh.faces[np.repeat(source, 3)], np.zeros((len(vertices), 3), dtype=np.uint8)
-    shares = trimesh.triangles.points_to_barycentric(mesh.vertices[corners], vertices[faces.ravel()])
-    mixed = np.einsum("nk,nkc->nc", np.nan_to_num(shares), mesh.colors[corners])
+    colors, has_area = np.zeros((len(vertices), 3), dtype=np.uint8), mesh.face_areas[source] > 0
+    faces, owners = faces[has_area], np.repeat(source[has_area], 3)  # a face without area has no coordinates within it
+    shares = barycentric(mesh, owners, vertices[faces.ravel()])
+    mixed = np.einsum("nk,nkc->nc", shares, mesh.colors[mesh.faces[owners]])
     colors[faces.ravel()] = mixed.round().clip(0, 255)
     return colors
 

@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 
 from haptic_glance.base import progress
-from haptic_glance.base.extras import MissingExtra, about
+from haptic_glance.base.extras import MissingExtra, about, from_extra
 from haptic_glance.base.files import check_folder, existing, said_of
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.attribute_quadrics import check_attributes
@@ -218,6 +218,9 @@ def check_options(options: argparse.Namespace) -> None:
         raise ValueError(f"--keep {options.keep}: give 1 or more points; --method {PLAIN} keeps none")
     if options.rings is not None and options.rings < 0:
         raise ValueError(f"--rings {options.rings}: give 0 (the faces that touch a point) or more")
+    if options.backend == "pymeshlab":  # the look before its first use may take minutes
+        with about("--backend pymeshlab"), from_extra():
+            import pymeshlab  # noqa: F401
 
 
 MIN_EXTENT = 1e-60  # units: areas, and products of two, underflow near 1e-80

@@ -6,7 +6,7 @@ from contextlib import suppress
 import numpy as np
 
 from .headers import MeshError
-from .polygons import fans, refined
+from .polygons import FEW_CORNERS, fans, refined
 
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"}
 TYPES |= {"float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2"}
@@ -30,9 +30,29 @@ def names_in(content: bytes) -> list[str]:
 
 
 def left_out(content: bytes) -> dict[str, int]:
-    """{kind: count} of the elements of a PLY that connect vertices without a face."""
+    """{kind: count} of the elements of a PLY that are no surface: edges, and faces of fewer than three corners."""
     header = content.partition(b"end_header")[0]
-    return {"edges": sum(map(int, re.findall(rb"(?m)^element edge (\d+)", header)))}
+    few = 0
+    with suppress(ValueError, LookupError, MeshError):  # which the parser names
+        few = int((_corner_counts(content) < 3).sum())
+    return {"edges": sum(map(int, re.findall(rb"(?m)^element edge (\d+)", header))), FEW_CORNERS: few}
+
+
+def _corner_counts(content):
+    """(m,) the number of corners of each face; empty where the place of the faces is not known."""
+    end = END.search(content)
+    lines = content[: end.end()].decode("latin-1").splitlines() if end else ["", ""]
+    if end and "ascii" in lines[1]:
+        rows, at = content[end.end() :].splitlines(), 0
+        for name, count, properties in _elements(lines):
+            if name == "face":
+                place = _place_of_list(properties)
+                return np.array([int(row.split(None, place + 1)[place]) for row in rows[at : at + count]])
+            at += count
+    for name, count, properties, at in _binary_elements(lines, end.end() if end else 0):
+        if name == "face" and count:
+            return _rows(content, at, count, properties, _order(lines))[1]
+    return np.zeros(0)
 
 
 def triangulated(content: bytes) -> bytes:
@@ -49,19 +69,16 @@ def triangulated(content: bytes) -> bytes:
             return _unfolded_text(content, end.end(), _elements(lines))
     if not end or "ascii" in lines[1]:
         return content
-    order, offset, vertices = ">" if "big" in lines[1] else "<", end.end(), np.zeros((0, 3))
-    for name, rows, properties in _elements(lines):
+    order, vertices = _order(lines), np.zeros((0, 3))
+    for name, rows, properties, at in _binary_elements(lines, end.end()):
         lists = [words for words in properties if words[0] == "list"]
         if name == "face" and len(lists) == 1 and lists[0][-1] in CORNERS and rows:
-            return _fans(content, lines, end.end(), offset, rows, properties, order, vertices)
-        if lists:  # what follows begins at a place that is not known
-            break
+            return _fans(content, lines, end.end(), at, rows, properties, order, vertices)
         if name == "vertex":
             with suppress(ValueError, LookupError):
                 kind = np.dtype([(words[1], order + TYPES[words[0]]) for words in properties])
-                table = np.frombuffer(content, kind, rows, offset)
+                table = np.frombuffer(content, kind, rows, at)
                 vertices = np.stack([table[axis] for axis in "xyz"], axis=1).astype(np.float64)
-        offset += rows * sum(np.dtype(TYPES[words[0]]).itemsize for words in properties)
     return content
 
 
@@ -104,13 +121,35 @@ def _elements(lines):
     return elements
 
 
-def _fans(content, lines, begin, at, rows, properties, order, vertices):
-    """The bytes with triangles for polygons, or with quads that a fan does not fold."""
-    place = next(i for i, words in enumerate(properties) if words[0] == "list")
+def _binary_elements(lines, begin):
+    """(name, rows, words of its properties, place in the bytes) of the elements up to the first one with a list."""
+    for name, rows, properties in _elements(lines):
+        yield name, rows, properties, begin
+        if any(words[0] == "list" for words in properties):  # the next element begins at a place that is not known
+            return
+        begin += rows * sum(np.dtype(TYPES[words[0]]).itemsize for words in properties)
+
+
+def _order(lines):
+    return ">" if "big" in lines[1] else "<"
+
+
+def _place_of_list(properties):
+    return [words[0] for words in properties].index("list")
+
+
+def _row_layout(properties, order):
+    """(type of the number of corners, type of a corner, bytes before the list, bytes behind it) of a binary face."""
+    place = _place_of_list(properties)
     number, ids = (np.dtype(order + TYPES[kind]) for kind in properties[place][1:3])
     sizes = [np.dtype(TYPES[words[0]]).itemsize if words[0] != "list" else 0 for words in properties]
-    before, after = sum(sizes[:place]), sum(sizes[place:])
-    starts, corners = _rows(content, at, rows, "big" if order == ">" else "little", number, ids.itemsize, before, after)
+    return number, ids, sum(sizes[:place]), sum(sizes[place:])
+
+
+def _fans(content, lines, begin, at, rows, properties, order, vertices):
+    """The bytes with triangles for polygons, or with quads that a fan does not fold."""
+    number, ids, before, after = _row_layout(properties, order)
+    starts, corners = _rows(content, at, rows, properties, order)
     if (corners == 3).all():
         return content
     octets = np.frombuffer(content, np.uint8)
@@ -146,11 +185,13 @@ def _fans(content, lines, begin, at, rows, properties, order, vertices):
     return b"".join([header.encode("latin-1"), content[begin:at], np.hstack(parts).tobytes(), content[stop:]])
 
 
-def _rows(content, at, rows, order, number, item, before, after):
+def _rows(content, at, rows, properties, order):
     """(where each face begins, its number of corners)."""
+    number, ids, before, after = _row_layout(properties, order)
+    item, endian = ids.itemsize, "big" if order == ">" else "little"
 
     def count(at):
-        return int.from_bytes(content[at : at + number.itemsize], order)
+        return int.from_bytes(content[at : at + number.itemsize], endian)
 
     after += number.itemsize
     size = before + count(at + before) * item + after

@@ -74,7 +74,7 @@ def press_forces(
         raise ValueError("give either load, in newtons, or depth, in metres")
     surface, (centres, axes) = as_surface(surface), as_places(centres, axes)
     cells, pitch, _ = check_array(cells, pitch)
-    _check_unit(unit)
+    check_unit(unit)
     area, count = (pitch * unit) ** 2, len(centres)
     if not 0 < area < np.inf:
         _check_areas(area)
@@ -133,7 +133,7 @@ def gaps_at(
     ValueError
         For invalid arrays, and for lengths that are none.
     """
-    _check_unit(unit)
+    check_unit(unit)
     if not isinstance(within, int | float | np.number) or not within >= 0:  # NaN fails as well
         raise ValueError(f"within must be 0 m or more, got {within}")
     centres, axes = check_places(centres, axes)
@@ -316,7 +316,8 @@ def _check_thickness(depths, layer):
         raise ValueError(f"touch {deep} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
 
 
-def _check_unit(unit):
+def check_unit(unit: float) -> None:
+    """Raises ValueError for a unit that is no number of metres above 0."""
     if not 0 < unit < np.inf:
         raise ValueError(f"unit must be a positive number of metres, got {unit}")
 

@@ -13,7 +13,7 @@ from haptic_glance.base.text import text_of
 from haptic_glance.mesh.mesh import Mesh, unit
 
 from .distances import check_places
-from .force import checked_depths, forces
+from .force import check_unit, checked_depths, forces
 from .kernels.faces import Taxels
 from .skin import Layer
 from .surface import Surface, as_surface
@@ -125,15 +125,16 @@ def layout_forces(
     layout: Layout,
     load: ArrayLike | None = None,
     depth: ArrayLike | None = None,
+    unit: float = 1.0,
 ) -> np.ndarray:
     """Forces along the normals of the taxels of a free layout, such as a curved fingertip.
 
     Parameters
     ----------
     mesh : Mesh, Surface or any input of `as_mesh`
-        The object, in metres.
+        The object.
     centres : (k, 3) array_like
-        Places of the layout, in metres.
+        Places of the layout, in units of the mesh.
     axes : (k, 3, 3) array_like
         Unit vectors right, up and normal; the approach is against the third.
     layer : Layer
@@ -142,6 +143,8 @@ def layout_forces(
         The taxels, from `read_layout`.
     load, depth : float, str or (k,) array_like, optional
         Along the approach, as of `forces`.
+    unit : float or str
+        Metres that a unit of the mesh is long; `haptic_glance.layout_forces` also takes a name such as "mm".
 
     Returns
     -------
@@ -152,7 +155,7 @@ def layout_forces(
     Raises
     ------
     ValueError
-        As `forces` does.
+        As `forces` does, and for a unit that is no length.
 
     Warns
     -----
@@ -160,26 +163,30 @@ def layout_forces(
         By `haptic_glance.layout_forces`, if only a wrong unit explains the sizes of the layout, the layer and the
         object.
     """
+    check_unit(unit)
     centres, axes = check_places(centres, axes)
     depths = layer.thickness if depth is None else checked_depths(depth, len(centres))
     within = min(np.max(depths, initial=0.0), layer.thickness)
-    gaps = layout_gaps(mesh, centres, axes, layout, layer, within)
+    gaps = layout_gaps(mesh, centres, axes, layout, layer, within, unit)
     return forces(gaps, layer, layout.areas, load, depth, layout.cosines)
 
 
 def layout_gaps(
-    mesh: Mesh | Surface, centres: np.ndarray, axes: np.ndarray, layout: Layout, layer: Layer, within: float
-) -> np.ndarray:
+    mesh: Mesh | Surface, centres: np.ndarray, axes: np.ndarray, layout: Layout, layer: Layer, within: float,
+    unit: float = 1.0,
+) -> np.ndarray:  # fmt: skip
     """(k, n) metres that each taxel can still approach, as `gaps_at` of a rectangular array.
 
     inf where the mesh is not in its way, not `within` so many metres of the first contact, or it faces away. The
-    approach begins as far off as the layout is wide.
+    approach begins as far off as the layout is wide. unit: metres that a unit of the mesh is long.
     """
     cells, pitch, (x, y, lowest), taxels = layout.cells
     start = layout.positions[:, 2].max() + np.ptp(layout.positions, axis=0).max() + layer.thickness
-    places = centres, axes, cells, pitch, np.array([x, y, start])
-    gaps = as_surface(mesh).below_taxels(*places, within, taxels, len(layout.areas))
-    gaps -= start - lowest
+    places = centres, axes, cells, pitch / unit, np.array([x, y, start]) / unit
+    taxels = taxels._replace(rise=taxels.rise / unit)
+    gaps = as_surface(mesh).below_taxels(*places, within / unit, taxels, len(layout.areas))
+    gaps -= (start - lowest) / unit
+    gaps *= unit
     return gaps
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import warnings
 
 import numpy as np
 import pytest
@@ -141,10 +142,13 @@ def test_the_picture_has_the_ranks_of_the_visible_points_and_the_others_are_coun
     assert 0 < seen.sum() == len(marked) and f"{(~seen).sum()} of 8 points are behind" in shown.err
 
 
-def test_the_finer_copy_of_long_faces_keeps_the_colours_that_a_method_sees():
+@pytest.mark.parametrize("without_area", [[], [[1, 4, 1]], [[4, 1, 1]], [[4, 4, 4]]])
+def test_the_finer_copy_of_long_faces_keeps_the_colours_that_a_method_sees(without_area):
     box = trimesh.creation.box()
+    box.faces = np.concatenate([box.faces, np.reshape(without_area, (-1, 3)).astype(int)])
     colors = np.where(box.vertices[:, [0, 0, 0]] > 0, [250, 0, 0], [0, 0, 50]).astype(np.uint8)
-    fine, values = finely(Mesh(box.vertices, box.faces, colors), np.zeros(8), "height")
+    with warnings.catch_warnings(action="error"):
+        fine, values = finely(Mesh(box.vertices, box.faces, colors), np.zeros(8), "height")
     share = fine.vertices[:, :1] + 0.5  # from one side of the box to the other
     expected = share * [250, 0, 0] + (1 - share) * [0, 0, 50]
     assert len(values) == len(fine.vertices) > 1000 and np.abs(fine.colors - expected).max() <= 0.5 + 1e-9

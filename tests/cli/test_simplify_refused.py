@@ -3,10 +3,12 @@
 import json
 import os
 import re
+import sys
 
 import numpy as np
 import pytest
 
+from haptic_glance.base.extras import MissingExtra
 from haptic_glance.cli import simplify as command
 from haptic_glance.cli.simplify import check_outputs, parser, run, share
 from haptic_glance.lod.export import write_any
@@ -140,6 +142,14 @@ def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch
     monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before they were refused"))
     with pytest.raises(ValueError, match=reason):
         run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
+
+
+def test_a_backend_that_is_not_installed_is_named_before_the_mesh_is_read(file, tmp_path, monkeypatch):
+    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before the backend was named"))
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    options = ["--faces", "300", "--out", str(tmp_path / "x.glb"), "--backend", "pymeshlab"]
+    with pytest.raises(MissingExtra, match=r"^--backend pymeshlab: pymeshlab is not installed: pip .*pipeline"):
+        run([str(file), *options])
 
 
 def test_a_mesh_full_of_holes_is_told_what_is_feasible(simplified, tmp_path):

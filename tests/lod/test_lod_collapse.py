@@ -46,7 +46,12 @@ def neighbours(faces, vertex):
     return {k for face in faces if vertex in face for k in face} - {vertex}
 
 
-def spoils(faces, before, v, other, place, turn, shape, fold, cut):
+def height(face, places):
+    a, b, c = (places[k] for k in face)
+    return np.linalg.norm(np.cross(b - a, c - a)) / np.sqrt(sum(side @ side for side in (b - a, c - b, a - c)))
+
+
+def spoils(faces, before, v, other, place, turn, shape, fold, cut, thin):
     """Whether a move of vertex v to a place spoils a face around it that does not touch `other`."""
     after = before.copy()
     after[v] = place
@@ -56,6 +61,8 @@ def spoils(faces, before, v, other, place, turn, shape, fold, cut):
         if cosine(first, second) < turn:
             return True
         if quality(face, after) < min(shape, quality(face, before) * (1 + 1e-12)):
+            return True
+        if height(face, after) < thin and np.linalg.norm(second) < np.linalg.norm(first):
             return True
         for beside in faces:
             if len({*face} & {*beside}) == 2 and (
@@ -69,10 +76,13 @@ def spoils(faces, before, v, other, place, turn, shape, fold, cut):
     return np.linalg.norm(back) > cut and all((before[k] - place) @ back <= 0 for k in around)
 
 
-LIMITS = [(0.2, 0.01, -0.9, np.inf), (0.05, 0.6, -2.0, np.inf), (0.01, 0.0, -0.3, np.inf), (0.01, 0.0, -2.0, 0.3)]
+LIMITS = [
+    (0.2, 0.01, -0.9, np.inf, 0.0), (0.05, 0.6, -2.0, np.inf, 0.0), (0.01, 0.0, -0.3, np.inf, 0.0),
+    (0.01, 0.0, -2.0, 0.3, 0.0), (0.01, 0.0, -2.0, np.inf, 0.1),
+]  # fmt: skip
 
 
-def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
+def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut, thin):
     """Whether the edge i-j may collapse to a place."""
     edge, near = {i, j}, {i, j} | neighbours(faces, i) | neighbours(faces, j)
     faces = [face for face in faces if near & {*face}]
@@ -81,7 +91,7 @@ def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
     if len(neighbours(faces, i) & neighbours(faces, j)) != 2 or len({frozenset(face) for face in left}) < len(left):
         return False
     for v, other in ((i, j), (j, i)):
-        if not locked[v] and spoils(faces, places, v, other, place, turn, shape, fold, cut):
+        if not locked[v] and spoils(faces, places, v, other, place, turn, shape, fold, cut, thin):
             return False
     after = places.copy()
     after[[i, j]] = place
@@ -94,7 +104,7 @@ def allowed(faces, places, i, j, locked, place, turn, shape, fold, cut):
     return True
 
 
-@pytest.mark.parametrize("limits", LIMITS, ids=["all", "slivers", "folds", "tips"])
+@pytest.mark.parametrize("limits", LIMITS, ids=["all", "slivers", "folds", "tips", "thin"])
 @pytest.mark.slow
 def test_a_collapse_keeps_the_topology_and_spoils_no_face(limits):
     random, answers, may = np.random.default_rng(2), [], interpreted(collapse.may_collapse)
@@ -124,7 +134,7 @@ def test_no_edge_of_a_tetrahedron_or_beside_a_vertex_of_three_faces_collapses(ap
     locked, mark, last = np.ones(5, dtype=bool), np.zeros(5, dtype=np.int32), np.zeros(1, dtype=np.int64)
     for h in range(len(surface.corner)):  # nothing moves: only the topology speaks
         link = surface.corner, surface.opposite, surface.start, locked, surface.position, mark, last, h
-        answer = interpreted(collapse.may_collapse)(*link, 0.0, 0.0, 0.0, 0.01, 0.0, -2.0, np.inf)
+        answer = interpreted(collapse.may_collapse)(*link, 0.0, 0.0, 0.0, 0.01, 0.0, -2.0, np.inf, 0.0)
         ends = source[surface.corner[[h, surface.opposite[h]]]]
         assert answer == (apex == 4 and max(ends) > 2)  # an apex may go down to the other three
 

@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 
 from haptic_glance.lod import simplify
 from haptic_glance.lod.attributes import carry
 from haptic_glance.lod.seams import Corners, charts, joined
+from haptic_glance.lod.topology import NONE, faults
 from haptic_glance.mesh.mesh import Mesh, Texture
 
 from .conftest import GREY, sheet, tube
@@ -113,3 +115,18 @@ def test_picture_that_is_stretched_unevenly_is_off_to_neither_side_within_coarse
     chord = (across**2).mean(axis=1) - across.mean(axis=1) ** 2  # of the parabola, which always lies above it
     off = carried.texture.uv[..., 0].mean(axis=1) - across.mean(axis=1) ** 2
     assert abs(off[inner].mean()) < 0.4 * chord[inner].mean()
+
+
+def test_seams_over_flat_faces_leave_no_face_without_height():
+    body = trimesh.creation.icosphere(2)
+    body.vertices *= np.random.default_rng(0).uniform(0.6, 1.4, (len(body.vertices), 1))
+    body = body.subdivide().subdivide().subdivide()  # each face of the first body is 64 flat ones
+    side = np.abs(body.face_normals).argmax(axis=1)  # a chart for each axis and direction, as a box projection has
+    ahead = np.take_along_axis(body.face_normals, side[:, None], axis=1)[:, 0] > 0
+    places = np.take_along_axis(body.triangles, np.array([[1, 2], [0, 2], [0, 1]])[side][:, None], axis=2)
+    uv = (places / 3 + 0.5) / [3, 2] + np.stack([side / 3, ahead / 2], axis=1)[:, None]
+    picture = np.full((4, 4, 4), 200, dtype=np.uint8)
+    mesh = Mesh(body.vertices, body.faces, texture=Texture(uv, np.zeros(len(uv), dtype=np.int32), (picture,)))
+    for faces in (10_240, 4_096):
+        small = simplify(mesh, faces, attributes={"uv": 1.0})
+        assert len(small.faces) == faces and faults(small) == NONE

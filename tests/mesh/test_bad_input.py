@@ -24,8 +24,14 @@ def ply(vertices, faces, count=None):
     head = ["ply", "format ascii 1.0", f"element vertex {count or len(vertices)}"]
     head += [f"property float {axis}" for axis in "xyz"]
     head += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
-    rows = [f"{x} {y} {z}" for x, y, z in vertices] + [f"3 {a} {b} {c}" for a, b, c in faces]
+    rows = [f"{x} {y} {z}" for x, y, z in vertices] + [" ".join(map(str, (len(face), *face))) for face in faces]
     return "\n".join([*head, *rows, ""]).encode()
+
+
+def binary_ply(vertices, faces):
+    head = ply(vertices, faces).partition(b"end_header\n")[0].replace(b"ascii", b"binary_little_endian")
+    rows = [struct.pack(f"<B{len(face)}i", len(face), *face) for face in faces]
+    return b"".join([head, b"end_header\n", np.array(vertices, "<f4").tobytes(), *rows])
 
 
 TRIANGLE = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
@@ -207,6 +213,9 @@ def test_an_obj_of_other_editors_has_the_faces_of_a_plain_one(tmp_path, old, new
         ("a.ply", ply(TRIANGLE, [(0, 1, 2)]).replace(b"end_header", b"element edge 0\nproperty int a\nend_header"), ""),
         ("a.ply", ply(TRIANGLE, [(0, 1, 2)]).replace(b"end_header", b"element edge 2\nproperty int a\nend_header")
          + b"0\n1\n", "edges (2)"),
+        ("a.ply", ply(TRIANGLE, [(0, 1, 2), (0, 1), (2,)]), "faces of fewer than three corners (2)"),
+        ("a.ply", binary_ply(TRIANGLE, [(0, 1), (0, 1, 2), (2,)]), "faces of fewer than three corners (2)"),
+        ("a.ply", binary_ply(TRIANGLE, [(0, 1, 2)]), ""),
     ],
 )  # fmt: skip
 def test_a_warning_counts_the_lines_and_points_beside_faces(tmp_path, recwarn, name, content, text):

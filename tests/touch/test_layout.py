@@ -56,6 +56,17 @@ def test_a_rectangular_layout_is_the_rectangular_array(shapes):
         assert np.allclose(layout_forces(mesh, *place, LAYER, layout, **pressed), grid.reshape(1, -1), rtol=1e-4)
 
 
+def test_a_layout_feels_the_same_on_a_mesh_in_millimetres(table):
+    tip, ball = fingertip(200), trimesh.creation.icosphere(5, radius=0.02)
+    small, large = Mesh(ball.vertices, ball.faces), Mesh(1000 * ball.vertices, ball.faces)
+    for pressed in ({"load": 1.0}, {"depth": 0.001}):
+        felt = layout_forces(small, [[0.001, 0, 0.02]], FRAME, LAYER, tip, **pressed)
+        in_mm = layout_forces(large, [[1, 0, 20]], FRAME, LAYER, tip, unit=0.001, **pressed)
+        assert felt.any() and np.allclose(in_mm, felt, rtol=1e-6, atol=1e-9)
+    with pytest.raises(ValueError, match="unit must be a positive number of metres, got 0"):
+        layout_forces(table, [[0, 0, 0]], FRAME, LAYER, tip, load=1.0, unit=0)
+
+
 @pytest.mark.parametrize(("pressed", "flat"), [({"depth": 0.0015}, True), ({"load": 0.4}, False)])
 def test_forces_are_those_of_a_ray_from_each_taxel(pressed, flat):
     """The reference casts rays along the approach, from as far above the highest taxel as the layout is wide."""

@@ -35,11 +35,12 @@ def may_collapse(
     shape: float,
     fold: float,
     cut: float,
+    thin: float,
 ) -> bool:
     """Whether the edge of half-edge h may collapse to x, y, z: nothing folds, and the link condition holds.
 
     The link condition: the ends share no neighbour but the two opposite the edge, and no tetrahedron closes. mark (n,)
-    scratch, last (1,) the tag of the last marking; turn, shape, fold, cut: see `check_move`.
+    scratch, last (1,) the tag of the last marking; turn, shape, fold, cut, thin: as of `check_move`.
     """
     t = np.int64(opposite[h])  # as all ids that are passed on: each further type compiles the callees once more
     i, j = np.int64(corner[h]), np.int64(corner[t])
@@ -52,7 +53,8 @@ def may_collapse(
         if locked[v]:
             shared = _mark_neighbours(corner, opposite, start, mark, last[0], v)
         else:
-            shared = check_move(corner, opposite, start, p, mark, last[0], v, partner, x, y, z, turn, shape, fold, cut)
+            limits = turn, shape, fold, cut, thin
+            shared = check_move(corner, opposite, start, p, mark, last[0], v, partner, x, y, z, *limits)
         if shared < 0:
             return False
     holds = shared == 2
@@ -129,6 +131,7 @@ def check_move(
     shape: float,
     fold: float,
     cut: float,
+    thin: float,
 ) -> int:
     """-1 where moving v to x, y, z spoils a face around v; faces that also touch `partner` are left out.
 
@@ -137,7 +140,7 @@ def check_move(
     boundary. p (n, 3). turn: least cosine, above 0, between a face's normal before and after; shape: least quality of a
     face after (1 for an equilateral triangle, 0 for a sliver), unless it was lower before; fold: least cosine, below 0,
     between the normals of two neighbours; cut: how far v may move where it is a tip, of which x, y, z then is the
-    nearest point that is left: all its neighbours lie behind that.
+    nearest point that is left: all its neighbours lie behind that; thin: least height of a face after, or 0 for any.
     """
     vx, vy, vz = point(p, v)
     # Normals, after and before, of the face before this one and of the first.
@@ -167,6 +170,8 @@ def check_move(
             if old > 0.0 and (along <= 0.0 or along * along < turn * turn * new * old):
                 return -1
             sides = _sides(sx, sy, sz, ex, ey, ez)
+            if new < thin * thin * sides and new < old:
+                return -1
             if 12 * new < shape * shape * sides * sides:
                 before_sides = _sides(tx, ty, tz, ex, ey, ez)
                 if new * before_sides * before_sides <= old * sides * sides:
@@ -268,6 +273,7 @@ def pop(head: np.ndarray, following: np.ndarray, lowest: np.ndarray) -> tuple[Id
 
 LATER = 8  # buckets by which a refused collapse is put off,
 GROWN = 16.0  # until the current cost has grown so many times
+THIN = 4e-7  # of the surface's longest side: twice the height of a face that `topology.faults` counts as degenerate
 
 
 def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: float, shape: float, fold: float) -> int:
@@ -298,9 +304,10 @@ def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn,
     xx, yy, zz = 0.0, 0.0, 0.0
     for v in range(len(quadric)):
         xx, yy, zz = xx + quadric[v, 0], yy + quadric[v, 3], zz + quadric[v, 5]
-    area = xx + yy + zz
+    area, thin = xx + yy + zz, 0.0
     if wedges is not None:  # whose attributes are in the quadrics too
-        area = 0.0
+        # Where seams meet, the best places of several edges are one point, and the faces between them would vanish.
+        area, thin = 0.0, THIN
         for w in range(len(wedges.sums)):
             area += wedges.sums[w, 0]
     level = 0.0
@@ -321,7 +328,7 @@ def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn,
             cost, least = cost * GROWN**refused, shape * 0.1**refused
         level = greater(level, cost)
         cut = np.sqrt(level * count / area)
-        limits = turn, least, fold, cut
+        limits = turn, least, fold, cut, thin
         if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):
             if wedges is not None:
                 merge_wedges(opposite, wedges, h)

@@ -34,7 +34,7 @@ def refit(
 @kernel
 def _refit(surface, points, faces, weight, samples, fold, pull, mark):
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
-    limits = TURN, SHAPE, fold, np.inf
+    limits = TURN, SHAPE, fold, np.inf, 0.0
     count = len(points) + len(faces) // 3
     for at in range(0, count, greater(count // greater(samples, 1), 1)):
         owner, x, y, z, share = _target(points, faces, weight, at)
