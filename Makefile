@@ -50,10 +50,9 @@ docs: $(VENV)/ready ## the documentation, to build/docs/index.html; a warning is
 	python -m sphinx -E -W --keep-going --quiet docs build/docs # -E: numbers come from reports/, which may have changed
 	@echo "Open build/docs/index.html."
 
-# Each is one process on one core, but the pipeline and cluster; errors, scenes and cluster read what `make repro` made.
-bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scenes, imprints (tacto=PYTHON), ... (an hour)
+# Each is one process on one core, but the pipeline and cluster; scenes and cluster read what `make repro` made.
+bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, scenes, imprints (tacto=PYTHON), ... (an hour)
 	OMP_NUM_THREADS=1 python -m benchmarks.kernels
-	OMP_NUM_THREADS=1 python -m benchmarks.errors
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb) $(newest)
 	OMP_NUM_THREADS=1 python -m benchmarks.salient_simplification $(gaze) $(newest)
 	python -m benchmarks.large_simplification

@@ -42,6 +42,17 @@ def peers(javascript=None):
     return backends
 
 
+class Unseen(Mesh):
+    """A mesh that equals itself alone: the library caches results of meshes and would find those of an equal one."""
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
+
+def fresh(mesh, colors=None):
+    """The same mesh, of which nothing is known yet."""
+    return Unseen(mesh.vertices, mesh.faces, colors)
+
+
 class Meshoptimizer:
     """meshopt_simplifyWithUpdate of the WebAssembly module in meshopt_simplifier.js."""
 

@@ -28,7 +28,7 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh.mesh import Mesh
 
 from ._history import HISTORY, TOLERANCE, committed, machine, slower, updated, version
-from .errors import fresh, hausdorff
+from ._simplify_peers import fresh
 from .imprints import by_trimesh
 
 SECONDS = 1.0  # of the processor for the pairs of a kernel
@@ -69,6 +69,28 @@ def simplification() -> tuple[Call, Call]:
     target, faces = len(mesh.faces) // 10, mesh.faces.astype(np.int32)
     peer = fast_simplification.simplify
     return lambda: simplify(fresh(mesh), target), lambda: peer(mesh.vertices, faces, target_count=target)
+
+
+def hausdorff(reference, mesh, samples, vertices):
+    """A function that asks pymeshlab for the mean error, over the diagonal; the meshes are in its memory already."""
+    import pymeshlab
+
+    work = pymeshlab.MeshSet(verbose=False)
+    for side in (reference, mesh):
+        work.add_mesh(pymeshlab.Mesh(side.vertices, side.faces))
+
+    def ask():
+        sides = [
+            work.apply_filter(
+                "get_hausdorff_distance", sampledmesh=k, targetmesh=1 - k, savesample=False, samplevert=vertices,
+                sampleedge=False, samplefauxedge=False, sampleface=True, samplenum=samples,
+                maxdist=pymeshlab.PercentageValue(50),
+            )
+            for k in (0, 1)
+        ]  # fmt: skip
+        return max(side["mean"] for side in sides) / reference.diagonal
+
+    return ask
 
 
 def surface_error() -> tuple[Call, Call]:

@@ -19,8 +19,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from benchmarks._simplify_peers import LOCK, PRIORITY, peers
-from benchmarks.errors import fresh
+from benchmarks._simplify_peers import LOCK, PRIORITY, fresh, peers
 from haptic_glance.base.files import write_table
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, salient_error, simplify
 from haptic_glance.mesh import normalise

@@ -31,8 +31,7 @@ import pandas as pd
 import trimesh
 
 from benchmarks import arguments
-from benchmarks._simplify_peers import UNABLE, peers
-from benchmarks.errors import fresh
+from benchmarks._simplify_peers import UNABLE, fresh, peers
 from haptic_glance.base.files import write_table
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, perceptual, simplify
 from haptic_glance.lod.fast import collapse as fast

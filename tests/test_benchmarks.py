@@ -24,6 +24,7 @@ def run_as_program(monkeypatch, name, *arguments):
     runpy.run_module(f"benchmarks.{name}", run_name="__main__", alter_sys=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BENCHMARKS)
 def test_help_of_a_benchmark_is_its_docstring(name, monkeypatch, capsys):
     doc = importlib.import_module(f"benchmarks.{name}").__doc__.splitlines()

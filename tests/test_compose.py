@@ -144,6 +144,7 @@ def test_every_channel_and_classifier_may_be_named(options):
     assert compose(["sets=[household]", *options])["household"]["conspicuity"]["channels"][-1] == "fine_grained"
 
 
+@pytest.mark.slow
 def test_a_setting_holds_for_all_sets_or_for_the_one_that_it_names():
     values = compose(["sets=[household,princeton]", "lod.rings=2", "princeton.lod.samples=7"])
     assert [values[name]["lod"]["rings"] for name in values["sets"]] == [2, 2]

@@ -217,6 +217,7 @@ def test_faces_are_a_count_or_a_share(body):
     assert simplify(body, 1.0) == Mesh(*body, up="auto")
 
 
+@pytest.mark.slow
 def test_an_axis_that_nobody_said_is_warned_of_where_it_first_matters(body):
     for passing in (
         haptic_glance.normalise, haptic_glance.repair,

@@ -220,6 +220,7 @@ def test_ctrl_c_during_imports_is_one_line(ball):
     assert process.returncode == -signal.SIGINT and process.stderr == "saliency: stopped\n"
 
 
+@pytest.mark.slow
 def test_an_unknown_command_is_named_with_one_like_it_and_none_at_all_shows_the_list():
     process = run_command("salience")
     assert process.returncode == 2 and "Traceback" not in process.stderr

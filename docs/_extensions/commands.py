@@ -13,13 +13,14 @@ from stages.engine.rows import SUFFIX
 from stages.report.cells import number_of, rows_of
 from stages.report.claims import Claim
 from stages.report.records import COMPOSE, switch
-from stages.report.stability.costs import SEEN, TIME_KEYS
 from stages.report.topics import CLAIMS
 
 from .measured import REPORTS
 
 ROOT = Path(__file__).resolve().parents[2]
 DEFAULT = "make repro"
+TIME_KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
+SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
 
 
 @dataclass

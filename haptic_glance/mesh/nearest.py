@@ -1,7 +1,7 @@
 """A surface indexed for distances: samples of it, and the exact nearest point on it to any other point.
 
 point_cloud_utils and trimesh build a tree at every call, which takes longer than the 10,000 queries that follow, and
-pymeshlab builds a grid; `benchmarks.errors` compares with the latter. Here a surface is indexed once, and most queries
+pymeshlab builds a grid; `benchmarks.kernels` compares with the latter. Here a surface is indexed once, and most queries
 are close to it: the faces of one cell are bounded without a branch, one of them is measured, and seldom must another
 cell be searched. (point_cloud_utils 0.34 also misreads an array of a single point.)
 """

@@ -137,6 +137,7 @@ def add_clipped(x, total):
         total[i % 2] += clipped(x[i]) ** 2
 
 
+@pytest.mark.slow
 def test_a_kernel_with_fewer_passes_of_numba_computes_what_python_does(tmp_path, monkeypatch):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     x, compiled, plain = np.linspace(-1, 2, 99), np.zeros(2), np.zeros(2)
@@ -146,6 +147,7 @@ def test_a_kernel_with_fewer_passes_of_numba_computes_what_python_does(tmp_path,
     np.testing.assert_array_equal(compiled, plain)
 
 
+@pytest.mark.slow
 def test_lesser_and_greater_are_min_and_max_bit_for_bit():
     @numba.njit
     def both(a, b):

@@ -51,6 +51,7 @@ def test_levels_are_counts_or_shares_each_once_and_keep_the_format_where_it_can_
     assert level_path(tmp_path, "a", tmp_path / "a.stl", "900", "obj") == tmp_path / "a_900.obj"
 
 
+@pytest.mark.slow
 def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
     looks, look = [], simplify.saliency
     monkeypatch.setattr(simplify, "saliency", lambda *args: looks.append(1) or look(*args))

@@ -128,6 +128,7 @@ def test_a_file_that_cannot_be_read_is_named_and_the_mesh_is_not_overwritten(egg
         run([str(egg), "--out", path, "--weights", os.path.relpath(path)])
 
 
+@pytest.mark.slow
 def test_the_picture_has_the_ranks_of_the_visible_points_and_the_others_are_counted(egg, capsys, monkeypatch):
     marked = {}
     monkeypatch.setattr("haptic_glance.lod.pictures.mark", lambda image, x, y, text: marked.update({text: (x, y)}))

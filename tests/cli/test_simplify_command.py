@@ -50,6 +50,7 @@ def test_result_has_the_faces_and_stands_where_the_mesh_stood_with_its_kept_plac
     assert "z up, as the file says" in messages and "border" not in table
 
 
+@pytest.mark.slow
 def test_tolerance_gives_a_small_mesh_within_it_or_the_mesh_itself(simplified):
     simple, _, messages = simplified("--tolerance", "0.5%")
     assert metro(bumpy(), simple)["mean"] <= 0.005 and len(simple.faces) < 500
@@ -223,6 +224,7 @@ def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
     assert int(rows(table)["fewest faces that keep them"][1].replace(",", "")) > 90
 
 
+@pytest.mark.slow
 def test_fewest_faces_are_found_to_two_per_cent():
     mesh, errors = bumpy(), {}
 

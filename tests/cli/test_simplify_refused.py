@@ -31,6 +31,7 @@ def test_the_mesh_itself_is_never_written_over(file, tmp_path, monkeypatch, link
     assert file.read_bytes() == content
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["other.mtl", "other_0.png"])
 def test_materials_of_another_mesh_are_never_written_over(file, tmp_path, name):
     (tmp_path / name).write_text("mine")

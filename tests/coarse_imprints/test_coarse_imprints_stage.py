@@ -13,6 +13,8 @@ from stages.coarse_imprints.__main__ import VARIANTS, run
 from stages.compose import compose
 from stages.engine.rows import read_rows
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = {
     "variants": ["random_weights"], "detector": "thesis_ssim", "touches": 8, "width": 0.16, "repetitions": 2,
     "epochs": 4, "search_epochs": 1, "batch": 8, "momentum": 0.9,
@@ -35,7 +37,6 @@ def test_each_variant_differs_from_the_plain_one():
     assert len(set(map(repr, VARIANTS.values()))) == len(VARIANTS) and VARIANTS["plain"].skin == Skin()
 
 
-@pytest.mark.slow
 def test_the_settings_name_all_variants():
     assert compose(["experiment=coarse_imprints"])["furniture"]["coarse_imprints"]["variants"] == list(VARIANTS)
 
@@ -56,7 +57,6 @@ def workspace(make_workspace):
     return workspace
 
 
-@pytest.mark.slow
 def test_a_run_trains_each_variant_on_every_split_and_refuses_a_detector_without_points(workspace, make_workspace):
     run(workspace)
     rows = read_rows(workspace.measurements / "coarse_imprints.csv.gz")

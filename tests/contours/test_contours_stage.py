@@ -103,6 +103,7 @@ def test_all_pairs_come_once_where_there_are_no_more():
         assert draw_pairs(np.array(few, dtype=np.int64), 5, rng(0, "e")).shape == (0, 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [60, 300_000])
 def test_pairs_are_distinct_and_of_the_points(size):
     pairs = draw_pairs(np.arange(size), 1500, rng(0, "b"))

@@ -18,6 +18,8 @@ from haptic_glance.deep.network import NETWORKS, SMALLEST, ScaledHead, build, co
 from haptic_glance.deep.resize import GRIDS, cell_positions
 from haptic_glance.deep.weights import available_weights
 
+pytestmark = pytest.mark.slow
+
 SIDE = {"alexnet": 13, "vgg16": 14}  # of the last maps at 224 pixels; 7 for the others
 PUBLISHED = {  # million parameters, giga multiply-adds, as torchvision and the papers give them, with 1000 classes
     "googlenet": (6.62, 1.498),
@@ -34,7 +36,6 @@ def untrained(request):
     return request.param, build(request.param, 1000, "random", 0)
 
 
-@pytest.mark.slow
 @torch.no_grad()
 def test_size_and_cost_are_those_of_the_papers_and_the_last_maps_keep_a_grid(untrained, monkeypatch):
     name, network = untrained
@@ -55,7 +56,6 @@ def momenta_of(network):
     return [layer.momentum for layer in network.modules() if isinstance(layer, torch.nn.BatchNorm2d)]
 
 
-@pytest.mark.slow
 @torch.no_grad()
 def test_untrained_networks_tell_images_apart_once_settled(untrained):
     network = deepcopy(untrained[1])
@@ -86,7 +86,6 @@ def middles(network):
     return network
 
 
-@pytest.mark.slow
 def test_a_cell_lies_where_it_looks(untrained):
     name, network = untrained
     size, network = 96, middles(deepcopy(network)).requires_grad_(False)
@@ -116,7 +115,6 @@ def test_the_seed_fixes_everything_and_the_callers_numbers_stay():
     assert not torch.equal(first["convolutions.0.weight"], other["convolutions.0.weight"])
 
 
-@pytest.mark.slow
 def test_resnet50_halves_its_maps_where_its_weights_were_trained_to():
     for source, expected in (("package", 2), ("download", 1)):
         block = build("resnet50", 2, "random", 0, source).convolutions.layer2[0]
@@ -173,7 +171,6 @@ def test_cost_leaves_the_network_and_the_threads_as_they_were():
         cost(torch.nn.Conv2d(6, 1, 3), 64)
 
 
-@pytest.mark.slow
 def test_downloaded_weights_take_the_same_path(monkeypatch, tmp_path):
     urls = {}
     monkeypatch.setattr(torch.hub, "get_dir", lambda: str(tmp_path))
@@ -192,7 +189,6 @@ def test_downloaded_weights_take_the_same_path(monkeypatch, tmp_path):
         assert available_weights(name, "download") == kind
 
 
-@pytest.mark.slow
 def test_googlenets_own_colours_move_into_its_first_layer():
     with torch.random.fork_rng(devices=[]), torch.no_grad():
         torch.manual_seed(0)

@@ -6,6 +6,8 @@ import torch
 
 from haptic_glance.deep.images import MEAN, STD, augmentation, normalise, to_images
 
+pytestmark = pytest.mark.slow
+
 IMPRINTS = np.random.default_rng(0).random((5, 24, 24), dtype=np.float32)
 
 

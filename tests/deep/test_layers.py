@@ -6,6 +6,8 @@ import torch
 from haptic_glance.deep.modes import LAYERS, frozen_modules, layers, parse_range
 from haptic_glance.deep.network import Network, build
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def network():

@@ -20,6 +20,8 @@ from haptic_glance.deep.training import (
     train_model,
 )
 
+pytestmark = pytest.mark.slow
+
 FIT, VALIDATION, TEST = np.arange(60), np.arange(60, 80), np.arange(80, 120)
 POINTS = torch.randn((120, 4), generator=torch.Generator().manual_seed(0))
 LABELS = (POINTS[:, 0] > POINTS[:, 1]).long().numpy()
@@ -156,7 +158,6 @@ def task_of(mode, width=8, size=32):
         return MODES[mode](small(width), IMPRINTS, size, 1)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("mode", list(MODES))
 def test_a_killed_network_ends_with_the_same_weights_and_repeats_no_finished_pass(tmp_path, mode):
     whole, path, steps = task_of(mode), tmp_path / "trial.pt", []
@@ -189,7 +190,6 @@ def test_a_checkpoint_is_whole_or_absent(tmp_path, monkeypatch):
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("network", "changes", "word"),
     [

@@ -13,6 +13,8 @@ from haptic_glance.deep.network import Network, build, count_parameters, recalib
 from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
 
+pytestmark = pytest.mark.slow
+
 SIZE = 32
 LABELS = np.arange(32) % 2
 
@@ -55,7 +57,6 @@ def test_frozen_mode_changes_no_convolution_and_no_statistic(imprints):
     assert count_parameters(model, trained=True) == 1280 * 2 + 2
 
 
-@pytest.mark.slow
 def test_finetuned_mode_changes_every_convolution_and_not_the_tasks_own_model(finetuned):
     network, before, model = finetuned
     layers = {key: value for key, value in model.state_dict().items() if value.ndim == 4}
@@ -65,7 +66,6 @@ def test_finetuned_mode_changes_every_convolution_and_not_the_tasks_own_model(fi
     assert count_parameters(model, trained=True) == count_parameters(network)
 
 
-@pytest.mark.slow
 def test_a_range_of_layers_keeps_its_weights_and_statistics_and_all_others_learn(imprints):
     network, before, model = train(imprints, "18:139")
     after, frozen = model.state_dict(), frozen_modules("18:139", network)
@@ -76,7 +76,6 @@ def test_a_range_of_layers_keeps_its_weights_and_statistics_and_all_others_learn
     assert count_parameters(model, trained=True) == count_parameters(network) - untrained
 
 
-@pytest.mark.slow
 def test_same_seed_same_weights_whatever_the_threads(imprints, finetuned):
     threads = torch.get_num_threads()
     torch.set_num_threads(3 - min(threads, 2))
@@ -93,7 +92,6 @@ def small():
     return Network(torch.nn.Sequential(*layers), 16, 2, dropout=0.0)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("mode", list(MODES))
 def test_two_visibly_different_classes_are_learned_from_augmented_inputs(imprints, mode):
     with repeatable(0):

@@ -20,6 +20,8 @@ from haptic_glance.deep.architectures import torchvision
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.network import build
 
+pytestmark = pytest.mark.slow
+
 PACKAGE = weights.PACKAGES["mobilenet_v2"]
 
 
@@ -38,7 +40,6 @@ def saved(value):
     return stream.getvalue(), hashlib.sha256(stream.getvalue()).hexdigest()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("network", "parts"),
     [
@@ -130,7 +131,6 @@ def photograph(name, size):
     return torch.nn.functional.interpolate(image, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["mobilenet_v2", "efficientnet_lite0", "resnet50"])
 def test_photographs_are_recognised(name):
     need(name)
@@ -166,7 +166,6 @@ def crops(size=32, count=4):
 
 
 @pytest.mark.parametrize("name", ["alexnet", "vgg16"])
-@pytest.mark.slow
 def test_convolutions_from_photographs_serve_a_linear_probe_better_than_random_ones(name):
     need(name)
     images, labels, test = crops()

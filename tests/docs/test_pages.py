@@ -87,6 +87,7 @@ def test_the_api_lists_every_name_of_a_package():
         assert not unknown, f"{name(path)} names {', '.join(unknown)}, which {package.__name__} lacks"
 
 
+@pytest.mark.slow
 def test_every_name_that_a_page_mentions_exists():
     import pkgutil
 

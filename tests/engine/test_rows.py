@@ -54,6 +54,7 @@ def test_parts_are_read_one_after_the_other_and_an_iterator_more_than_once(tmp_p
     assert [row["item"] for row in kept] == [row["item"] for row in kept] == ["a", "b", "c"] and len(kept) == 3
 
 
+@pytest.mark.slow
 def test_rows_are_written_and_summarised_without_a_list_of_all_of_them(tmp_path):
     names = [f"object {number}" for number in range(100)]
     kept = ItemRows(tmp_path, names)

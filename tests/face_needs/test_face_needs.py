@@ -59,6 +59,7 @@ def samples(seed=0):
     return {"one": first, "other": second}
 
 
+@pytest.mark.slow
 def test_an_object_is_known_until_its_model_is_that_of_another_and_every_place_is_held_out():
     shares = accuracies(samples(), SETTINGS, 0)
     assert shares["one"].tolist() == shares["other"].tolist() == [1.0] * 5 + [0]

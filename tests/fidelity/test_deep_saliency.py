@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pytest
 import torch
 import trimesh
 from scipy import ndimage
@@ -15,6 +16,8 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.fixation.fusion import fuse, highest_level, subtractive_clusters
 from stages.fixation.places import FLAT, curvature_shares, eccentricity, gaussian_curvature
 from stages.fixation.tasks import CLUSTERS, FUSED_TASKS, SHAPE_MEASURES, assign_classes
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 

@@ -1,6 +1,10 @@
 """T tables 4.7 and 4.8: the two networks, entry by entry."""
 
+import pytest
+
 from stages.sequences.networks import ImageNet, NormalNet
+
+pytestmark = pytest.mark.slow
 
 
 def test_table_4_7(agreement):

@@ -5,6 +5,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pandas as pd
+import pytest
 
 from haptic_glance.deep.images import to_images
 from haptic_glance.know import network as neural_network
@@ -21,6 +22,8 @@ from stages.sequences.networks import IMAGE_BATCH, NORMAL_BATCH
 from stages.weights.gain import AREAS
 from stages.weights.training import FOLDS as SVM_FOLDS
 from stages.weights.training import PIXELS
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 TWENTY = {

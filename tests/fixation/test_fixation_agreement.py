@@ -108,6 +108,7 @@ def test_the_truth_agrees_with_itself_and_noise_does_not(shapes, lesson):
     assert value_of(same, "nss", "all") > 3 > abs(value_of(noise, "nss", "all"))
 
 
+@pytest.mark.slow
 def test_a_view_where_nobody_looked_is_left_out_and_what_is_visible_passes_for_agreement_where_the_hidden_count(
     shapes, lesson
 ):

@@ -11,6 +11,8 @@ from stages.fixation import Params, backbone, finetune
 from stages.fixation.backbone import Method, method_named, network_inputs
 from stages.fixation.finetune import divided, labels_of
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = Params(
     parallels=1, azimuths=3, size=64, projection="camera", methods=[], source="package", device="cpu",
     penalties=[], folds=2,
@@ -28,7 +30,6 @@ def some_network(*_):
     return network
 
 
-@pytest.mark.slow
 def test_the_last_block_on_cached_maps_gives_the_scores_of_the_network(tmp_path, monkeypatch):
     monkeypatch.setattr(backbone, "build", some_network)
     method = Method("mobilenet_v2-last_block", "mobilenet_v2", "last_block")
@@ -77,7 +78,6 @@ def test_heads_and_networks_are_trained_on_the_same_pictures(tmp_path, monkeypat
     assert all(features[:, 0].tolist() == train.tolist() for features in seen) and len(seen) == 2
 
 
-@pytest.mark.slow
 def test_fully_connected_layers_are_those_of_the_state_or_random():
     shapes = {"0.weight": (4096, 25088), "0.bias": (4096,), "3.weight": (4096, 4096), "3.bias": (4096,)}
     state = {f"classifier.{key}": torch.tensor(0.5).expand(shape) for key, shape in shapes.items()}

@@ -14,6 +14,8 @@ from stages.fixation import __main__ as stage
 from stages.fixation.backbone import last_maps, method_named
 from stages.fixation.tasks import SEMANTICS
 
+pytestmark = pytest.mark.slow
+
 METHOD = "mobilenet_v2-random"
 SETTINGS = {
     "parallels": 1, "azimuths": 3, "size": 64, "projection": "camera",
@@ -53,7 +55,6 @@ def rows_of(workspace):
     return read_rows(workspace.measurements / "fixation.csv.gz")
 
 
-@pytest.mark.slow
 def test_stage_writes_the_contract_the_same_bytes_twice_without_networks_that_have_no_weights(
     run, shapes, monkeypatch, capsys
 ):
@@ -110,7 +111,6 @@ def check_judged(rows):
     assert np.isnan(alone["value"]) and alone["note"] == "each object is a class of its own"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("mode", backbone.TRAINED)
 def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypatch, mode):
     monkeypatch.setitem(backbone.MODES, mode, "random")  # from scratch: no weights are fetched here
@@ -121,7 +121,6 @@ def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypat
     assert rates in ([0.01], [0.03]) if mode == "last_block" else not rates
 
 
-@pytest.mark.slow
 def test_a_network_that_diverges_ends_the_run_and_looks_nowhere_in_no_row(run, monkeypatch):
     monkeypatch.setitem(backbone.MODES, "finetuned", "random")
     with pytest.raises(ValueError, match="diverged: loss is not finite in pass 1: take a lower learning rate"):

@@ -51,6 +51,7 @@ def test_what_feels_as_it_was_learned_is_known_and_there_is_a_row_an_object():
     assert {row["group"] for row in rows if row["split"] == "objects"} == set(CLASSES)
 
 
+@pytest.mark.slow
 def test_learning_is_from_the_model_and_asking_of_the_object():
     rows = ask(Made(asked=lambda code: -code))
     assert accuracy(rows, "regions") < 0.6 and accuracy(rows, "objects") < 0.6

@@ -124,6 +124,7 @@ def test_more_trials_go_on_from_fewer(asked, tmp_path):
             search(tmp_path / "few", MADE_OF | {key: value})
 
 
+@pytest.mark.slow
 def test_a_third_goes_on_and_of_the_last_the_front_is_confirmed_on_unseen_objects_alone(asked, tmp_path):
     rows = run(tmp_path)
     counts = [len({row["number"] for row in of_rung(rows, rung)}) for rung in ("wide", "narrow", "last")]

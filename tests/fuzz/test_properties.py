@@ -82,6 +82,7 @@ def test_a_normalised_mesh_fills_its_bounding_sphere(mesh):
     assert used.min(axis=0) == pytest.approx(-used.max(axis=0))
 
 
+@pytest.mark.slow
 @examples(20)
 @given(mesh=meshes())
 def test_cleaning_keeps_vertices_and_leaves_no_degenerate_or_duplicate_face(mesh):

@@ -6,12 +6,13 @@ import torch
 
 from haptic_glance.know.network import FeedForward
 
+pytestmark = pytest.mark.slow
+
 RANDOM = np.random.default_rng(0)
 LABELS = np.repeat(["cup", "duck", "hand"], 40)
 SAMPLES = RANDOM.normal(size=(120, 5)) + 3 * np.repeat(np.eye(3, 5), 40, axis=0)
 
 
-@pytest.mark.slow
 def test_agrees_with_torch_autograd_and_its_adadelta():
     ours = FeedForward(hidden=(7, 4), epochs=0, seed=3).fit(SAMPLES, LABELS)
     reference = torch.nn.Sequential(

@@ -38,6 +38,7 @@ def explored(library, mesh, draw=0):
     return exploration
 
 
+@pytest.mark.slow
 def test_an_object_that_was_never_learned_is_none_of_these_and_learned_ones_have_their_names(library, shapes):
     for draw in range(3):
         belief = explored(library, shapes["torus"], draw).belief

@@ -161,6 +161,7 @@ def plane_sums(mesh, weight, place, vertices):
     return error
 
 
+@pytest.mark.slow
 def test_the_cost_of_a_collapse_is_the_least_sum_of_squared_distances_to_the_planes_of_both_ends():
     mesh, random = rough_ball(3), np.random.default_rng(4)
     weight = random.uniform(0.5, 2, len(mesh.vertices))

@@ -153,6 +153,7 @@ def test_a_picture_on_other_coordinates_is_left_out_of_its_own_material_alone(tm
     assert not_read(as_glb(tmp_path / "art.glb")) == ["normalTexture.texCoord"]
 
 
+@pytest.mark.slow
 def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_bytes(simplified):
     def change(tree):
         tree["meshes"][0]["primitives"] += tree["meshes"][1]["primitives"]

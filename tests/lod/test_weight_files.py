@@ -135,6 +135,7 @@ def test_places_that_single_precision_moves_are_warned_of(ball, tmp_path):
     assert load(tmp_path / "w.obj").vertices == pytest.approx(far.vertices, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_saliency_of_each_vertex(tmp_path, capsys):
     run([str(sample()), "--count", "1", "--weights", str(tmp_path / "w.ply")])
     assert "written" in capsys.readouterr().err

@@ -153,6 +153,7 @@ def test_the_lateral_map_shows_the_plane_and_the_radial_map_the_pole():
     np.testing.assert_array_equal(maps["symmetry"], maps["symmetry_lateral"])
 
 
+@pytest.mark.slow
 def test_the_setting_replaces_the_maps_of_symmetry_alone():
     channels, view = (
         ["symmetry", "symmetry_radial", "intensity"],

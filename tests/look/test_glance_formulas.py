@@ -70,6 +70,7 @@ def test_an_average_weighs_near_points_of_its_side_by_their_area(few, dense):
     assert few.smoothed(values, 2.6 * spacing) == pytest.approx(steps @ values, abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stray", [0, 1e9])  # in units of the reach: more cubes than have keys of their own
 def test_an_average_is_that_of_all_pairs_however_many_are_near(stray):
     random = np.random.default_rng(0)
@@ -209,6 +210,7 @@ def test_rounding_moves_no_place_into_another_bin_and_a_symmetric_surface_stays_
     assert np.ptp(np.reshape(values[0], (2, 4, -1)), axis=1) == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_each_feature_is_its_formula():
     samples = samples_of_mesh(mesh_of(bean()), 3000)
     columns, (seen, side, above, below) = features(samples), visibility(samples)

@@ -75,6 +75,7 @@ def noisy(mesh: Mesh) -> Samples:
     return samples_of_mesh(Mesh(moved, mesh.faces))
 
 
+@pytest.mark.slow
 def test_noise_changes_neither_the_area_nor_how_far_a_sphere_stands_out(ball):
     mesh = ball_mesh(6, 0.5)
     samples, surface = noisy(mesh), np.pi

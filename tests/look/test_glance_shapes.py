@@ -75,6 +75,7 @@ def rack() -> Mesh:
     return normalise(mesh_of(trimesh.util.concatenate([*solids, trimesh.Trimesh(flag.vertices, flag.faces)])))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "mesh",
     [

@@ -15,6 +15,8 @@ from haptic_glance.look.weights.weights import DEEP, GLANCES, MAPS
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 
+pytestmark = pytest.mark.slow
+
 torch = pytest.importorskip("torch")
 
 
@@ -58,7 +60,6 @@ def test_what_faces_the_views_is_bright_and_what_they_do_not_see_has_the_mean(br
     assert values[side & middle].std() < 0.15 * values[side & middle].mean()
 
 
-@pytest.mark.slow
 def test_neither_the_order_of_faces_nor_place_size_turn_or_mirror_nor_colours_change_the_maps(brightness):
     mesh = body()
     samples, values = first_map(mesh)
@@ -85,7 +86,6 @@ def test_a_map_that_hardly_varies_is_not_scaled_up(monkeypatch):
     assert samples.shares @ maps[MAPS[0]] == pytest.approx(0, abs=1e-12)
 
 
-@pytest.mark.slow
 def test_the_method_is_the_density_of_both_kinds_of_features(brightness):
     mesh = body()
     samples = samples_of_mesh(mesh)
@@ -108,7 +108,6 @@ def test_a_picture_and_its_mirror_image_are_laid_over_each_other():
     assert maps[:, :8].min() > maps[:, 8:].max()
 
 
-@pytest.mark.slow
 def test_the_trunk_gives_the_last_maps_of_a_sixteenth_of_the_side_and_160_of_half_that_size():
     images = torch.rand(1, 3, 64, 96, generator=torch.Generator().manual_seed(0))
     with torch.no_grad():

@@ -138,6 +138,7 @@ def test_only_what_feels_alike_beyond_the_array_recurs():
     assert shares[2:4].max() < 0.01 and shares[4] < 0.01  # alike within the array's width; like no other
 
 
+@pytest.mark.slow
 def test_strong_points_are_the_peaks_more_than_a_deviation_above_the_mean():
     looked = Looked(load(sample()))
     values, areas, points = looked.sight.smooth, looked.sight.samples.areas, looked.sight.samples.points

@@ -220,6 +220,7 @@ def test_the_descriptor_counts_the_angles_of_a_pair(normals, bins):
     assert not fpfh(PAIR, np.array([[0.0, 0, 0], [0, 0, 1]]), EACH_OTHER, STARTS).any()  # a zero normal has none
 
 
+@pytest.mark.slow
 def test_a_rare_shape_is_more_salient_to_tasse_than_a_common_one():
     """One small ball among four large ones."""
     large, small = ball_mesh(3), ball_mesh(3, 0.2)

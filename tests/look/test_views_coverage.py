@@ -54,6 +54,7 @@ def test_a_view_sees_the_half_of_a_sphere_that_faces_it(shapes):
     assert wrong.mean() < 1e-4
 
 
+@pytest.mark.slow
 def test_an_inner_shell_is_not_visible_and_does_not_count(shapes):
     points, _ = surface_points(shapes["shells"])
     seen = point_visibility(shapes["shells"], CANDIDATES).any(axis=0)

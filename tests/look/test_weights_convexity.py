@@ -59,6 +59,7 @@ def test_torus_has_its_closed_form_and_a_bowl_with_a_wall_counts_as_wall():
     assert convexity(bowl(wall=0.1)) == pytest.approx(1 - 0.9**3, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_crack_size_place_turn_order_winding_loose_vertices_and_seams_hardly_matter():
     expected = convexity(TORUS)
     assert convexity(Mesh(TORUS.vertices, TORUS.faces[1:])) == pytest.approx(expected, rel=1e-3)

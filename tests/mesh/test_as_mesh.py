@@ -18,6 +18,7 @@ def forms(folder):
     return [folder / "egg.ply", str(folder / "egg.ply"), EGG, arrays, Mesh(EGG.vertices, EGG.faces, up="auto")]
 
 
+@pytest.mark.slow
 def test_each_form_gives_the_same_mesh_in_the_order_of_its_vertices(tmp_path):
     for form in forms(tmp_path):
         mesh = as_mesh(form)

@@ -138,6 +138,7 @@ SIGNS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("signs", SIGNS)
 def test_wrong_normals_of_every_format_are_estimated_anew_with_a_warning(signs, tmp_path, monkeypatch):
     monkeypatch.setattr(clouds, "surface_of", lambda cloud: SHEET if cloud.normals is None else None)
@@ -166,6 +167,7 @@ def test_normals_look_to_the_sensor_that_a_file_states():
     assert mended.normals is None and note.startswith("100 % of its normals look to the wrong side")
 
 
+@pytest.mark.slow
 def test_right_normals_are_kept_also_of_thin_parts_of_few_flips_and_of_a_hollow():
     plate, sides = trimesh.sample.sample_surface(trimesh.creation.box((1, 1, 0.01)), 3000, seed=0)
     few = np.where(np.arange(len(BALL)) % 10, 1, -1)[:, None]
@@ -240,18 +242,21 @@ def test_single_precision_points_far_from_the_origin_are_named(recwarn, tmp_path
     assert ["far.ply: its coordinates have steps of" in str(warning.message) for warning in recwarn] == [True] * warned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gap", "warned"), [pytest.param(3, False, marks=pytest.mark.slow), (300, True)])
 def test_parts_too_far_apart_for_one_surface_are_named(recwarn, gap, warned):
     surface_of(Cloud(np.concatenate([BALL, BALL + [gap, 0, 0]])))
     assert ["coarser than the points" in str(warning.message) for warning in recwarn] == [True] * warned
 
 
+@pytest.mark.slow
 def test_a_cloud_without_a_surface_near_its_points_is_refused(monkeypatch):
     monkeypatch.setattr(clouds, "GAP", 0)
     with pytest.raises(MeshError, match="no surface passes near the points"):
         surface_of(Cloud(BALL))
 
 
+@pytest.mark.slow
 def test_outliers_and_pixels_without_a_reading_change_nothing():
     holes = [np.full((50, 3), np.nan), np.zeros((50, 3)), RANDOM.uniform(-30, 30, (100, 3))]
     mesh = surface_of(Cloud(np.concatenate([BALL, *holes])))

@@ -248,6 +248,7 @@ def test_all_of_an_obj_and_its_materials_that_a_mesh_cannot_hold_is_named(tmp_pa
     assert not_read(tmp_path / "a.obj") == named
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["faces", "picture"])
 def test_a_ply_keeps_the_colours_of_its_faces_and_its_picture_through_a_command(ball, tmp_path, kind):
     red = ball.vertices[ball.faces].mean(axis=1)[:, 0] > 0

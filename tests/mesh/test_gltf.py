@@ -118,6 +118,7 @@ def test_what_is_not_beside_it_is_named(write, beside, tmp_path, capsys):
         parse(path.read_bytes(), ".gltf")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "picture"), [(0, "number 0"), (60, "of the material painted")])
 def test_a_damaged_picture_is_left_out_by_name(first, picture, glb, tmp_path):
     start = glb.index(b"\x89PNG") + first
@@ -147,6 +148,7 @@ def test_a_damaged_picture_beside_a_gltf_is_left_out_by_name(write, beside, tmp_
         load(path)
 
 
+@pytest.mark.slow
 def test_sixteen_bits_of_grey_keep_their_shades_and_their_file(tmp_path):
     grey = np.linspace(0, 65535, 256).astype(np.uint16).reshape(16, 16)
     ball, packed = trimesh.creation.icosphere(2), io.BytesIO()

@@ -69,6 +69,7 @@ def test_the_test_part_changes_neither_the_choice_nor_what_is_measured_within_tr
     assert set(first.loc[tested, "item"]) == set(touches.labels) and set(first.loc[tested, "count"]) == {2}
 
 
+@pytest.mark.slow
 def test_less_is_heard_or_felt_and_less_is_known(monkeypatch, tmp_path):
     monkeypatch.setattr(binned_module, "BINS", (12,))
     rows = pd.DataFrame(process(("objects", "discriminant"), tmp_path, {"objects": series()}, 1, 0))

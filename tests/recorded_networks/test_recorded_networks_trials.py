@@ -20,6 +20,8 @@ from stages.recorded_networks.data import SOURCES, Recording, neighbour_rows, ob
 from stages.recorded_networks.trial import Run, Trial, passes, process, trials
 from stages.transfer.recorded import Recorded
 
+pytestmark = pytest.mark.slow
+
 LABELS = np.repeat([0, 1], 24)
 GROUPS = np.array([f"{label}/{k % 6}" for label, k in zip(LABELS, range(48), strict=True)])
 SMALL = {
@@ -87,7 +89,6 @@ def train(mode, split="random", network="mobilenet_v2", kept=(), **changes):
     return {(row.get("item", ""), row["metric"]): row["value"] for row in rows}
 
 
-@pytest.mark.slow
 def test_a_frozen_network_learns_its_head_alone_and_the_same_again():
     values = train("frozen", network="alexnet", size=64)  # an untrained one that keeps much of an image
     assert values["", "accuracy"] >= 0.7 and values["", "chance"] == values["", "majority"] == 0.5
@@ -95,7 +96,6 @@ def test_a_frozen_network_learns_its_head_alone_and_the_same_again():
     assert values == train("frozen", network="alexnet", size=64)
 
 
-@pytest.mark.slow
 def test_fine_tuning_trains_every_parameter():
     values = train("finetuned", "test_objects", kept=("0/1", "1/1"))
     assert values["", "trained_parameters"] == values["", "parameters"] > 2e6
@@ -120,7 +120,6 @@ def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone()
     assert len(planned) == 3 + 12 and len({training.name for training in planned}) == len(planned)
 
 
-@pytest.mark.slow
 def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     computed, frozen_features = [], trial.frozen_features
     monkeypatch.setattr(trial, "frozen_features", lambda *args: computed.append(1) or frozen_features(*args))
@@ -136,7 +135,6 @@ def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     assert not torch.equal(other[0], drawn)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("weights", "share"), [("random", False), ("random_initial", True), ("imagenet", True)])
 def test_features_do_not_depend_on_the_images_that_test(weights, share):
     runs = Run("tiny", "random", 0), Run("tiny", "blocks", 0)
@@ -166,7 +164,6 @@ def measure(workspace):
     return read_rows(workspace.measurements / "recorded_networks.csv.gz")
 
 
-@pytest.mark.slow
 def test_a_finished_training_is_kept_and_other_settings_train_anew(workspace, monkeypatch):
     first = measure(workspace())
     assert set(first["split"]) == {"random", "blocks"} and set(first["pretrained"]) == {"none"}
@@ -179,7 +176,6 @@ def test_a_finished_training_is_kept_and_other_settings_train_anew(workspace, mo
     pd.testing.assert_frame_equal(more[more["repetition"] == 0].reset_index(drop=True), first)
 
 
-@pytest.mark.slow
 def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, monkeypatch, capsys):
     monkeypatch.setattr(trial, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
     networks = {"googlenet": ["frozen", "finetuned"]}  # no package registry has its weights
@@ -212,7 +208,6 @@ def test_a_training_that_diverges_is_a_row_with_a_note_and_the_others_run():
     assert stage.summary(rows) == {}
 
 
-@pytest.mark.slow
 def test_neighbours_of_pressure_images_are_those_of_the_stage_recorded(monkeypatch, tmp_path):
     random = np.random.default_rng(0)
     images = {name: random.random((16, 16)) + 0.5 * random.random((12, 16, 16)) for name in "abcdef"}

@@ -13,7 +13,7 @@ from scipy import stats
 from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.look.views import TWELVE
 from stages.engine.statistics import interval
-from stages.report import attention, stability
+from stages.report import attention
 from stages.report.attention import maps
 from stages.report.attention.claims import agreement, difference, rivals
 from stages.report.page import pack_viewer
@@ -121,18 +121,6 @@ def test_maps_without_a_channel_are_not_run_but_no_crash(root, small):
         with pytest.raises(NotRun, match="dkl"):
             figure_of(name, seen)
     assert "color, contrast, curvature" in figure_of("figure_3_10", seen).alt
-
-
-def test_the_time_spent_names_stages_and_methods_in_words_and_counts_a_piece_of_work_once(seen, measure):
-    work = {"item": "ball", "method": "net", "metric": "pcc", "value": 0.1, "seconds": 5}
-    rows = [work | {"task": task, "view": view} for task in ("level_1", "ewigc") for view in ("0", "all")]
-    views = seen.rows("views", "test")
-    results = measure("views", views, results=measure("fixation", pd.DataFrame(rows), "test"))
-    table = build_one(stability, "tables", "time_spent", results)
-    assert not table.text[["stage", "method"]].stack().str.contains("_").any()
-    seconds = table.frame.set_index(["stage", "method"])["seconds"]
-    assert seconds["fixation", "net"] == 5  # whatever it was judged in
-    assert seconds[[("views", "greedy")]].sum() == 14  # seven for each of two objects
 
 
 def test_cost_counts_views_channels_and_points(seen):

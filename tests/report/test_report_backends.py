@@ -92,6 +92,7 @@ def test_infeasible_targets_are_no_refusals_and_a_backend_that_keeps_nothing_tak
     assert frame.loc[("fast", True), "cells"] == 8 and ("poor", True) not in frame.index
 
 
+@pytest.mark.slow
 def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(bench):
     rows = benched()
     rows["backend"] = rows["backend"].replace("poor", "meshoptimizer")
@@ -102,6 +103,7 @@ def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(ben
     assert len(notes) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in notes)
 
 
+@pytest.mark.slow
 def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, measure):
     cells = [("a", 0.5, 0.5), ("a", 0.1, 0.5), ("b", 0.5, 1.0), ("b", 0.1, 1.0)]
     row = {"outcome": "reached", "bar": 1}

@@ -38,6 +38,7 @@ def measured(measure):
     return measure("front", frame.assign(dataset=frame["split"].map({"regions": "test", "objects": "classes"})))
 
 
+@pytest.mark.slow
 def test_confirmed_choices_stand_beside_what_the_search_found(measured):
     table = build_one(chain, "tables", "front", measured)
     assert list(table.frame["number"]) == [1, 0, 5]  # the quickest first

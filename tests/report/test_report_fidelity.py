@@ -70,7 +70,8 @@ def test_what_is_as_printed_agrees_by_a_test_that_is_never_skipped():
             (test,) = (node for node in body if isinstance(node, ast.FunctionDef) and node.name == name)
             marks = [ast.unparse(mark) for mark in test.decorator_list]
             marks += [ast.unparse(node) for node in body if isinstance(node, ast.Assign)]
-            assert not any(re.search("skip|xfail|slow|pytestmark", text) for text in marks), row.test
+            # `make test` runs slow tests too, such as those that need torch.
+            assert not any(re.search("skip|xfail", text) for text in marks), row.test
             assert "agreement" in [argument.arg for argument in test.args.args], f"{row.test} measures no agreement"
 
 

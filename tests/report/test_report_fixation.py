@@ -161,6 +161,7 @@ VERDICTS = {
 }
 
 
+@pytest.mark.slow
 def test_claims_say_what_the_rows_hold(gaze):
     judged = verdicts(topic.CLAIMS, gaze, *VERDICTS)
     assert judged["verdict"].to_dict() == {key: word for key, (word, _) in VERDICTS.items()}
@@ -205,6 +206,7 @@ def test_a_quartile_is_lower_where_more_views_lie_below_that_of_both(written, ke
     assert gaps.to_numpy() == pytest.approx(np.full(8, share))  # a tie counts half
 
 
+@pytest.mark.slow
 def test_no_interval_of_a_correlation_leaves_its_range(written):
     wild = np.array([1.0, 1.0, 1.0, -0.5])
     assert interval(wild)[2] > 1

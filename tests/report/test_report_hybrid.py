@@ -73,6 +73,7 @@ KEYS = ("sight_over_touch", "both_over_better", "touch_in_the_dark", "eight_bits
 EVERY = [f"{key}_{split}" for key in KEYS for split in ("random", "objects")] + ["apart_over_sum_random"]
 
 
+@pytest.mark.slow
 def test_claims_hold_and_turn_with_the_rows_of_their_split(run, measure):
     assert verdicts(run, *EVERY)["verdict"].to_dict() == dict.fromkeys(EVERY, "supported")
     frame = rows(both=-0.5, small=-0.03)
@@ -111,6 +112,7 @@ def two_middles(measure):
     return measure("transfer", pd.concat([other, frame]))
 
 
+@pytest.mark.slow
 def test_other_shared_layers_stand_by_their_gain_on_the_same_items(two_middles):
     table = build_one(hybrid, "tables", "section_5_5", two_middles)
     gains = table.frame.groupby("shared_layers", sort=False)[["vision_gain", "touch_gain"]].agg(["min", "max"])

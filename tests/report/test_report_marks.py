@@ -139,6 +139,7 @@ def test_every_mark_can_be_hovered_where_it_is_drawn(drawing):
         assert np.abs(hits - place).max(axis=1).min() < 0.1
 
 
+@pytest.mark.slow
 def test_two_charts_on_a_page_share_no_id_and_equal_charts_give_equal_bytes(drawing):
     texts = [vector(drawing, *words)[0] for words in (("one", "a"), ("other", "a"), ("one", "a"), ("one", "b"))]
     assert texts[0] == texts[2] and "metadata" not in texts[0] and "xml" not in texts[0]  # no date
@@ -148,6 +149,7 @@ def test_two_charts_on_a_page_share_no_id_and_equal_charts_give_equal_bytes(draw
         assert set(re.findall(r'(?:href="|url\()#([^")]+)', text)) == expected
 
 
+@pytest.mark.slow
 def test_too_many_marks_are_left_to_the_table(drawing):
     for k in range(MOST_PATHS // 100 + 1):
         drawing.axes[0].plot(np.linspace(0, 1, 100), np.full(100, 1 + k / 10), "o")

@@ -109,6 +109,7 @@ def test_table_3_2_compares_all_methods_on_the_same_objects(run):
     assert same.loc["svm-adaptive", "mean"] == pytest.approx(0.95 * same.loc["svm", "mean"], rel=0.01)
 
 
+@pytest.mark.slow
 def test_tables_of_ones_own_meshes_leave_out_the_thesis_and_what_is_of_other_data_sets(plain, root, small):
     small.write(root, "lod", measured())
     of_folder = small.own(root)
@@ -162,6 +163,7 @@ def test_difference_is_relative_and_a_group_is_the_mean_of_those_that_were_run_o
     assert best.to_numpy() == pytest.approx(higher(plain, "corners", "itti").to_numpy())
 
 
+@pytest.mark.slow
 def test_a_sentence_of_t3_1_5_must_hold_from_four_viewpoints_too(run):
     as_printed = [measured(name, seed) for seed, name in enumerate(("household_3_1", "princeton_3_1"))]
     four = [frame.assign(dataset=frame["dataset"] + "_four") for frame in as_printed]

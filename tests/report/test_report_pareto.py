@@ -71,6 +71,7 @@ def test_units_drawn_together_tell_a_small_gain_from_chance():
     assert placed(frame, "seconds", "mean", units=units)["on_front"].tolist() == [ON, ON]
 
 
+@pytest.mark.slow
 def test_the_cost_axis_has_seconds_of_a_named_clock_and_a_long_front_is_told_by_its_ends():
     words = {"title": "T", "quality_label": "accuracy", "clock": "processor, Model X"}
     figure = pareto_chart(frame(), "mean", reference="fast", **words)

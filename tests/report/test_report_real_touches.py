@@ -126,6 +126,7 @@ def test_grasps_are_counted_one_by_one(every):
     assert verdicts(SERIES, every, key).loc[key, "effect"] == pytest.approx(45)
 
 
+@pytest.mark.slow
 def test_claims_on_events_turn_with_the_rows(every, measure):
     events = [claim for claim in SERIES if claim.dataset == "touch_events"]
     words = verdicts(events, every)["verdict"]

@@ -169,6 +169,7 @@ def test_claims_say_what_the_rows_hold_in_every_setting(judged):
         assert len(subset) in (2, 3, len(SETTINGS)) and set(subset["verdict"]) == {word}, key
 
 
+@pytest.mark.slow
 def test_one_reading_is_a_sentence_and_pressure_arrays_have_one_side_alone(judged):
     primary = judged[judged["of"] == ""].index
     assert "recorded_instant_by_guessing_hand_random" in primary and "recorded_frozen_over_guessing_vitac" in primary

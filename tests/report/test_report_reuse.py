@@ -9,6 +9,8 @@ from stages.report import reuse, scene, touch
 from stages.report.reuse import HERE, built, keep, key_of, taken_again
 from stages.report.topics import build_all, files_of
 
+pytestmark = pytest.mark.slow
+
 
 def keys(small, root, kind="tables"):
     results = small.results(root)

@@ -28,6 +28,7 @@ def pressed():
     return pd.DataFrame(rows)
 
 
+@pytest.mark.slow
 def test_a_cost_has_the_interval_of_its_objects(measure):
     rows = pressed()
     timed = rows[rows["metric"] == "seconds_a_touch"]

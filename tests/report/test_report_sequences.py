@@ -46,6 +46,7 @@ def rows(guided=0.08, unseen=-0.2, splits=("random", "objects"), dataset="furnit
 table_4_9 = partial(build_one, sequences, "tables", "table_4_9")
 
 
+@pytest.mark.slow
 def test_larger_run_stands_below_where_there_is_one(measure):
     note = {"dataset": "furniture", "metric": "accuracy", "note": "class far: no sequences of away"}
     frame = pd.concat([rows(splits=("random",)), pd.DataFrame([note])], ignore_index=True)

@@ -163,6 +163,7 @@ def test_a_card_has_its_figure_its_chart_and_its_pairs():
     assert f'href="site/claims.html#{FINDINGS[0].key}"' in text
 
 
+@pytest.mark.slow
 def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
     text = findings_html(*of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
     assert FINDINGS[0].title not in text and "The sentence. (open)" in text

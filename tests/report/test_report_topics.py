@@ -33,6 +33,7 @@ def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(empty):
         assert not re.search(r", ?,|  |,$|minus$", text), (claim.key, text)
 
 
+@pytest.mark.slow
 def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone(root, small):
     small.write(root, "classification", small.classification().assign(group="mine"))
     small.write(root, "salient_points", small.judged(), "test")

@@ -135,6 +135,7 @@ def test_coincident_and_equally_salient_vertices_do_not_hold_up_a_count_or_go_by
     assert (continue_on_surface(ball, none, flat, 0.1, 20) == old[points]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("selection", ["suppression", "centroid"])
 def test_points_do_not_depend_on_the_order_of_the_vertices(selection, ball, spot, make_maps):
     other, old = shuffled(ball)
@@ -256,6 +257,7 @@ def test_bad_weights_and_a_channel_without_a_map_are_named(box, ball, make_maps)
         METHODS["itti"].find(ball, sight, Options())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", [trimesh.creation.capsule(1, 0.3), trimesh.creation.icosphere(3)])
 def test_places_of_a_symmetric_mesh_depend_neither_on_units_nor_on_the_corner_that_comes_first(shape):
     mesh = Mesh(shape.vertices * [1, 0.7, 0.5], shape.faces)

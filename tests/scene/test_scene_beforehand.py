@@ -50,6 +50,7 @@ def test_a_look_up_foretells_what_frames_show(alone):
         assert (cost[0] <= 1.1 * cost[1]).all()
 
 
+@pytest.mark.slow
 def test_no_plan_with_as_few_faces_has_less_displacement(alone):
     frames, (chain,), (sums,), _ = alone
     few = slice(2, 8)  # six levels in five frames: 7,776 plans

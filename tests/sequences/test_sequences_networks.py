@@ -19,6 +19,8 @@ from stages.sequences.networks import (
 )
 from stages.sequences.series import CHANNELS, FEATURES, sequence_features, series
 
+pytestmark = pytest.mark.slow
+
 KINDS = [(ImageInputs, "images"), (NormalInputs, "normals")]
 TRAIN, TEST = np.arange(40), np.arange(40, 60)
 
@@ -81,7 +83,6 @@ def test_training_is_repeatable_from_the_training_part_alone_and_leaves_the_call
     assert not torch.equal(first.fc1.weight, other.fc1.weight)
 
 
-@pytest.mark.slow
 def test_training_ends_when_its_loss_falls_no_more_and_says_so(films, monkeypatch):
     inputs, few, last = NormalInputs(films["normals"], TRAIN), films["labels"], 400
     free = train_network(inputs, few, TRAIN, 3, last, seed=0)

@@ -23,6 +23,8 @@ from stages.sequences.trial import (
     split_by_sequences,
 )
 
+pytestmark = pytest.mark.slow
+
 CLASSES = {"flat": ["plate", "tray"], "round": ["ball", "egg"]}
 SETTINGS = SimpleNamespace(
     repetitions=1, trainings=1, image_epochs=3, normal_epochs=3, smaller_strategy="guided", smaller=["5x4"],
@@ -109,7 +111,6 @@ def test_plan_holds_both_splits_and_the_smaller_sequences(contours):
     assert all(Trial.parse(name) == trial for name, trial in zip(names, planned.trials, strict=True))
 
 
-@pytest.mark.slow
 def test_each_fold_of_objects_is_trained_for_as_often_as_asked(contours, tmp_path):
     settings = changed(trainings=2, smaller=[], smaller_networks=[])
     names = [trial.name for trial in plan(CLASSES, contours, settings).trials if trial.split == "objects"]
@@ -138,7 +139,6 @@ def test_what_is_left_out_is_said(contours):
         plan(CLASSES, contours, changed(smaller=["5 by 8"]))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("split", ["random", "objects"])
 def test_trials_tell_clear_classes_apart_and_the_same_way_again(contours, tmp_path, split):
     def train(kind):
@@ -157,7 +157,6 @@ def test_trials_tell_clear_classes_apart_and_the_same_way_again(contours, tmp_pa
     assert {row.get("group") for row in rows} - {None} == (set(CLASSES) if split == "objects" else set())
 
 
-@pytest.mark.slow
 def test_rows_hold_every_answer_and_layer(contours, tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "CONVENTIONAL", ("knn_no_som", "svm_no_som"))
     planned = plan(CLASSES, contours, SETTINGS)

@@ -107,6 +107,7 @@ def test_one_depth_camera_sees_one_side(pear):
     assert (outwards > 0).mean() > 0.99
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("faces", [200, pytest.param(700, marks=pytest.mark.slow)])
 def test_a_scanned_plate_may_have_a_ragged_border(faces, monkeypatch):
     monkeypatch.setattr(disturbed, "SIZE", (30, 40))

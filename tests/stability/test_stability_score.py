@@ -1,4 +1,4 @@
-"""The score of a method, its breaking points with censored ends, pairs and uses, on rows with a known truth."""
+"""The score of a method, its breaking points with censored ends, and pairs, on rows with a known truth."""
 
 from dataclasses import replace
 

@@ -21,6 +21,7 @@ def value(rows, method, perturbation, severity, metric):
     return values[0]
 
 
+@pytest.mark.slow
 def test_a_disturbance_costs_who_is_disturbed_and_as_much_as_it_is_heavy(disturbed):
     rows = disturbed.rows
     for method in ("itti", "harris"):

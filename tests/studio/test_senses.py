@@ -7,6 +7,8 @@ from haptic_glance.know import place_at, primitives
 from haptic_glance.studio.panels.senses import CELLS, SIZE, Answer, ask, load_network, newest_network, sense, viewpoint
 from haptic_glance.touch import Surface
 
+pytestmark = pytest.mark.slow
+
 torch = pytest.importorskip("torch", reason="the hybrid network needs torch: pip install 'haptic-glance[deep]'")
 
 
@@ -44,7 +46,6 @@ def test_the_camera_becomes_a_viewpoint_that_the_network_knows():
     assert viewpoint(np.array([1.0, 0.0, -3.0]), np.zeros(3)).elevation == -10
 
 
-@pytest.mark.slow
 def test_both_senses_are_asked_and_the_surer_is_trusted(trained, sensed):
     picture, imprint = sensed
     assert picture.shape == (SIZE, SIZE, 3) and imprint.shape == (CELLS, CELLS) and np.ptp(picture) > 50
@@ -55,7 +56,6 @@ def test_both_senses_are_asked_and_the_surer_is_trusted(trained, sensed):
     assert answer.sense == surer
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("dark", "dead", "trusted"), [(1.0, 0.0, "touch"), (0.0, 1.0, "vision"), (1.0, 1.0, "")])
 def test_a_sense_that_is_dark_or_dead_is_not_trusted(trained, sensed, dark, dead, trusted):
     answer = ask(trained, *sensed, dark, dead)

@@ -49,6 +49,7 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert np.array_equal(looks[0].saliency, detection.saliency) and set(looks[0].vertices) == set(detection.points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["glance", "touch"])
 def test_another_count_needs_no_other_look(mesh, monkeypatch, method):
     specimen = Specimen(mesh, "ball")

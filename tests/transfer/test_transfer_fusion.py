@@ -8,6 +8,8 @@ from scipy.special import softmax
 from stages.transfer import fusion
 from stages.transfer.fusion import FUSIONS, best_temperature, calibration_error, certainty, fuse, probabilities
 
+pytestmark = pytest.mark.slow
+
 
 def chances(seed, count=50, classes=4):
     return softmax(np.random.default_rng(seed).normal(size=(count, classes)), axis=1)

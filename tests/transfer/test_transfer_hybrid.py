@@ -27,6 +27,8 @@ from haptic_glance.deep.network import Network, build, count_parameters, recalib
 from stages.transfer.export import export_onnx, onnx_scores
 from stages.transfer.hybrid_data import in_batches
 
+pytestmark = pytest.mark.slow
+
 SIZE, NAMES = 32, ["cup", "dog", "sofa"]
 
 
@@ -75,7 +77,6 @@ def mixed(images):
     return joined
 
 
-@pytest.mark.slow
 @torch.no_grad()
 def test_each_head_answers_as_its_own_network(hybrid, pair, images):
     seen, felt = (network(normalise(images)) for network in pair)
@@ -95,14 +96,12 @@ def test_rows_of_a_batch_are_absent_one_by_one(hybrid, images, mixed):
     assert torch.allclose(scores.vision[0], alone, rtol=1e-3)
 
 
-@pytest.mark.slow
 def test_both_at_once_see_the_sum_in_forward_and_not_in_apart(hybrid, images):
     joined, other = join_senses(images, images.flip(0)), join_senses(images, None)
     assert torch.allclose(hybrid.separate_scores(joined).vision, hybrid(other).vision, atol=1e-5)
     assert (hybrid(joined).vision - hybrid(other).vision).abs().max() > 1e-3
 
 
-@pytest.mark.slow
 def test_prediction_is_by_the_surer_sense_after_its_temperature(hybrid, images):
     network, joined = copy.deepcopy(hybrid), join_senses(images, images.flip(0))
     for sense, scores in enumerate(network.separate_scores(joined)):
@@ -160,7 +159,6 @@ def test_networks_that_do_not_fit_are_refused_by_the_name_of_the_tensor(pair):
         HybridNet(*pair, middle=(0, 17))
 
 
-@pytest.mark.slow
 def test_training_the_originals_later_does_not_reach_the_hybrid(base, images):
     pair = copy.deepcopy(base), copy.deepcopy(base)
     hybrid = HybridNet(*pair)
@@ -213,7 +211,6 @@ def test_too_little_memory_names_the_remedy(images):
         in_batches(too_much, images, "cpu")
 
 
-@pytest.mark.slow
 def test_a_saved_network_comes_back_bit_for_bit(hybrid, mixed, tmp_path):
     save(tmp_path / "net.npz", hybrid, NAMES)
     loaded, names = load(tmp_path / "net.npz")
@@ -222,7 +219,6 @@ def test_a_saved_network_comes_back_bit_for_bit(hybrid, mixed, tmp_path):
         assert torch.equal(a.nan_to_num(nan=-9), b.nan_to_num(nan=-9))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "ratio", "off"), [("float16", 1.9, 0.2), ("int8", 3.4, 0.8)])
 def test_smaller_kinds_are_nearly_the_same_and_equal_bytes_each_time(hybrid, images, tmp_path, kind, ratio, off):
     files = tmp_path / "first.npz", tmp_path / "again.npz"
@@ -256,7 +252,6 @@ def test_what_cannot_be_saved_is_refused(hybrid, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.slow
 def test_files_of_other_networks_and_damaged_ones_are_refused(hybrid, tmp_path):
     path = tmp_path / "net.npz"
     save(path, hybrid, NAMES, "int8")
@@ -303,7 +298,6 @@ def narrow():
     return HybridNet(tuned(network, 1), tuned(network, 2))
 
 
-@pytest.mark.slow
 def test_onnx_says_the_same_for_any_batch_and_any_absence(narrow, mixed, tmp_path):
     export_onnx(tmp_path / "net.onnx", narrow, SIZE)
     spread = np.nanstd(narrow(mixed).vision)

@@ -10,6 +10,8 @@ from haptic_glance.disturb.picture import PICTURES, damage, damage_pictures
 from haptic_glance.mesh.mesh import Mesh
 from stages.transfer.hybrid_data import pair_pictures
 
+pytestmark = pytest.mark.slow
+
 SEVERITIES = [(0.05, 0.3), (0.02, 0.1), (0.3, 0.9), (0.05, 0.5)]
 
 

@@ -14,6 +14,8 @@ from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, pri
 from stages.transfer.touches import choose_vertices
 from tests.shapes import flat_grid
 
+pytestmark = pytest.mark.slow
+
 CLASSES = {"animal": ["dog", "horse", "cow"], "chair": ["stool", "bench"], "vase": ["urn"]}
 ENOUGH = dict.fromkeys([name for objects in CLASSES.values() for name in objects], 100)
 LABELS = np.repeat([0, 1], [30, 40])  # of three and four objects of ten touches

@@ -20,6 +20,8 @@ from stages.transfer.export import network_parts, weight_changes
 from stages.transfer.plan import Trial, summary, trial_row
 from stages.transfer.touches import read_touches
 
+pytestmark = pytest.mark.slow
+
 SIZE = 32
 CLASSES = {"ramp": ["low", "steep"], "stripes": ["narrow", "wide"]}
 MEMBERS = {"random": CLASSES, "objects": CLASSES}
@@ -77,7 +79,6 @@ def test_touches_know_their_class_and_object(folder):
     assert np.bincount(touches.objects).tolist() == [8, 8, 8, 8]
 
 
-@pytest.mark.slow
 def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_rate(
     folder, small, row_of, trained, monkeypatch
 ):
@@ -107,7 +108,6 @@ def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_r
     assert plain(train(folder, settings)) == values and [sha256(file) for file in files] == first
 
 
-@pytest.mark.slow
 def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder, small):
     variant = FROZEN._replace(mode="18:139", split="objects")
     rows = train(folder, small.settings(epochs=1, search_epochs=1), variant)
@@ -247,7 +247,6 @@ def run(make_workspace, small):
     return start
 
 
-@pytest.mark.slow
 def test_a_run_writes_what_the_report_reads_and_one_training_more_repeats_no_other(run, trained):
     short = {"epochs": 2, "search_epochs": 1, "frozen_rates": [0.01], "severities": {"noise": [0.5]}}
     workspace, table = run(**short)

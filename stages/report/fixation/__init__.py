@@ -8,7 +8,6 @@ TABLES = {"fixation": agreement.build}
 FIGURES = {
     "figure_3_28": agreement.figure_3_28,
     "figure_3_29": maps.figure_3_29,
-    "figure_3_29_gaze": partial(maps.on_gaze, maps.figure_3_29),
     "figure_3_30": maps.figure_3_30,
     "figure_3_30_gaze": partial(maps.on_gaze, maps.figure_3_30),
     "figure_3_31": agreement.figure_3_31,

@@ -32,6 +32,4 @@ FIGURES = {
 CHARTS = {
     "simplification": errors.simplification,
     "backends": backends.backends_chart,
-    "error_samples": errors.samples,
-    "error_views": errors.views,
 }

@@ -1,4 +1,4 @@
-"""The stability of methods: the perturbation and severity at which each breaks; and the time of each stage.
+"""The stability of methods: the perturbation and severity at which each breaks; and the time of each kernel.
 
 The claims are on a denoising autoencoder before recognition by touch (T6.3), and on the stability of attention.
 """
@@ -16,19 +16,15 @@ TABLES = {
     "stability_score": score.table,
     "stability_breaking": score.breaking,
     "stability_pairs": people.pairs_table,
-    "stability_uses": people.uses,
     "stability": breaking.points_table,
     "stability_people": people.people_table,
     "stability_simplification": simplification.table,
     "touch_stability": touch.table,
-    "touch_denoised": touch.denoised,
     "transfer_stability": breaking.networks_table,
-    "time_spent": costs.time_spent,
 }
 FIGURES = {
     "stability": breaking.points_figure,
     "stability_failures": breaking.failures,
-    "stability_simplification": simplification.figure,
     "touch_stability": touch.figure,
     "touch_stability_imprints": touch.build,
     "transfer_stability": breaking.networks_figure,

@@ -1,14 +1,11 @@
-"""Charts and tables of seconds: the time of each kernel as a ratio to its peer, and seconds by stage and method."""
-
-from contextlib import suppress
-from itertools import product
+"""The time of each kernel as a ratio to its peer, over the commits."""
 
 import numpy as np
 import pandas as pd
 
-from stages.report.drawing import CYCLE, MARKERS, label, plain_logarithm, plt
-from stages.report.items import Figure, Table
-from stages.report.results import NotRun, Results, some
+from stages.report.drawing import CYCLE, MARKERS, plain_logarithm, plt
+from stages.report.items import Figure
+from stages.report.results import Results
 
 
 def kernels(results: Results) -> Figure:
@@ -41,24 +38,3 @@ def _draw(axes, rows: pd.DataFrame, tint: str, form: str) -> None:
     beside = np.array([-0.12, 0.12])[:, None] + rows["place"].to_numpy()  # a single commit has a width, too
     places, low, high = beside.T.ravel(), rows["ratio"].repeat(2), rows["limit"].repeat(2)
     axes.fill_between(places, low, high, color=tint, alpha=0.12, lw=0)
-
-
-TIME_KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
-SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
-
-
-def time_spent(results: Results) -> Table:
-    """Seconds of all pieces of work of the sets that are switched on, the most first."""
-    parts = []
-    for stage, dataset in product(results.stages, results.sets):
-        with suppress(NotRun):
-            rows = results.rows(stage, dataset).dropna(subset=["seconds"])
-            rows = rows.loc[~((rows["metric"] == SEEN) & (rows.get("views") != 1))]
-            parts.append(rows.drop(columns=TIME_KEYS, errors="ignore").drop_duplicates().assign(stage=stage))
-    timed = pd.concat(some([part for part in parts if len(part)], "nothing was timed", "meshes"))
-    fields = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
-    frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**fields).reset_index()
-    frame["share, %"] = 100 * frame["seconds"] / frame["seconds"].sum()
-    frame = frame.sort_values("seconds", ascending=False, kind="stable")
-    fields = {name: frame[name].map(label) for name in ("stage", "method")}
-    return Table(frame, frame.assign(**fields), words={"sets": ", ".join(results.sets)})

@@ -1,4 +1,4 @@
-"""The cost of disturbances, one or two at once, for agreement with people's gaze and for uses of the points."""
+"""The cost of disturbances, one or two at once, for agreement with people's gaze and for the points found."""
 
 import numpy as np
 import pandas as pd
@@ -16,12 +16,10 @@ from stages.report.tables import (
     records,
     signed,
     with_interval,
-    within,
 )
 from stages.stability.disturbance import AND
 from stages.stability.simplification import middle_severity
 from stages.stability.subject import UNPERTURBED
-from stages.stability.uses import KEPT, PARTITIONS, PLAIN, SENSOR_NOISE, SET, TARGET
 
 from .score import BENCHMARK, STAGE, of_gaze, points_lost, scores
 
@@ -88,54 +86,6 @@ def _line(key, case, methods):
         "chance, %": f"{100 * case['chance'].mean():.0f}",
         **{f"{label(name)}, NSS": signed(*case.loc[name, ["nss", "nss_low", "nss_high"]]) for name in methods},
     }  # fmt: skip
-
-
-SHOWN = ("glance", "itti", "harris")  # the CSV has all
-METRICS = ("lod_mean", "lod_salient", "recognised")
-
-
-def uses(results: Results) -> Table:
-    """A row a disturbance: per method the salient error as a share of that of plain QEM, and recognition by touch."""
-    rows = results.measured(STAGE, results.printed(BENCHMARK, STAGE), metric=list(METRICS))
-    frame = pd.DataFrame([
-        {"perturbation": name, "method": method, "metric": metric, **_number(rows, group, method, metric)}
-        for (name, method, metric), group in grouped(rows, ["perturbation", "method", "metric"])
-    ])  # fmt: skip
-    cells = frame.set_index(["perturbation", "method", "metric"])
-    methods = [name for name in SHOWN if name in set(frame["method"])] or list(dict.fromkeys(frame["method"]))
-    names = [name for name in dict.fromkeys(frame["perturbation"]) if name != PLAIN]
-    names.sort(key=lambda name: name != UNPERTURBED)
-    severity = rows.dropna(subset=["severity"]).drop_duplicates("perturbation").set_index("perturbation")["severity"]
-    text_table = pd.DataFrame([
-        {"disturbance": label(name),
-         "severity": f"{severity[name]:g} {PERTURBATIONS[name].unit}" if name in severity else "–",
-         **{f"{label(method)}, salient error, %": _text(cells, name, method, "lod_salient") for method in methods},
-         **{f"{label(method)}, recognised, %": _text(cells, name, method, "recognised") for method in methods}}
-        for name in names
-    ])  # fmt: skip
-    words = {
-        "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "kept": KEPT,
-        "set": SET, "partitions": PARTITIONS, "noise": f"{100 * SENSOR_NOISE:.0f}",
-    }  # fmt: skip
-    return Table(frame, text_table, words)
-
-
-def _number(rows, group, method, metric):
-    """Mean, low and high over the objects; of an error as a share of that of plain QEM of the same object."""
-    values = group.set_index("item")["value"]
-    if metric == "recognised":
-        ends = within(values)
-    else:
-        plain = rows[(rows["perturbation"] == PLAIN) & (rows["method"] == method) & (rows["metric"] == metric)]
-        ends = interval(values / plain.set_index("item")["value"].reindex(values.index))
-    return interval_columns("mean", ends, prefix="") | {"objects": len(values)}
-
-
-def _text(cells, *key):
-    if key not in cells.index:
-        return "–"
-    mean, low, high = cells.loc[key, ["mean", "low", "high"]]
-    return with_interval(mean, low, high, 100, 0)
 
 
 OF_PAIRS = ("glance", "glance_any_pose", "itti", "mesh_saliency", "harris")  # the CSV has all

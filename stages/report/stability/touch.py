@@ -1,7 +1,7 @@
 """Breaking points of recognition by touch: the severity of each perturbation at which half of its lead is lost.
 
-The lead is the accuracy above guessing. `denoised` has the points of accuracy that denoisers gain on the same touches.
-`build` shows imprints at one place under every perturbation of the tested touches, from mild to harsh.
+The lead is the accuracy above guessing. `build` shows imprints at one place under every perturbation of the tested
+touches, from mild to harsh.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,7 +16,7 @@ from stages.engine.statistics import breaking_point, interval, lead_left
 from stages.report.drawing import GREY, MARKERS, PALE, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import Results
-from stages.report.tables import grouped, interval_columns, records, signed
+from stages.report.tables import grouped
 from stages.touch_stability.trial import CLEAN
 
 from .breaking import ACCURACY, Curves, broken, degradation
@@ -82,27 +82,6 @@ def table(results: Results) -> Table:
     return Table(pd.concat(frames), pd.concat(text_tables), words)
 
 
-def denoised(results: Results) -> Table:
-    """Points of accuracy that a denoiser gains, by disturbance and classifier, on the same touches."""
-    frame = pd.DataFrame([
-        {"perturbation": name, "denoiser": behind.removeprefix("_"), "classifier": words}
-        | interval_columns("gain", gain(rows, name, line), prefix="")
-        for behind in list(DENOISERS)[1:]
-        for rows, curves in [_curves(results, DENOISED, behind)]
-        for name, lines in curves.items()
-        for line, words in _lines(behind).items() if line in lines
-    ])  # fmt: skip
-    cells = [signed(100 * row.gain, 100 * row.low, 100 * row.high, 0) for row in records(frame)]
-    texts = frame.assign(cell=cells, gained=frame["classifier"] + ": points gained")
-    texts = texts.pivot(index=["perturbation", "denoiser"], columns="gained", values="cell").reset_index()
-    behind = {name.removeprefix("_"): words for name, words in DENOISERS.items()}
-    labelled = texts.assign(
-        perturbation=texts["perturbation"].map(label), denoiser=texts["denoiser"].map(behind).str.removeprefix("after ")
-    )
-    group = results.measured(STAGE, DENOISED, metric="accuracy")["group"].iloc[0]
-    return Table(frame, labelled.rename_axis(columns=None), {"objects": results.group_text(group)})
-
-
 def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFrame, pd.DataFrame, str]:
     """(breaking points, the same for a reader, undisturbed accuracies) of one denoiser, a name of DENOISERS."""
     entries = []
@@ -124,14 +103,6 @@ def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFram
     clean = {key: group["value"].mean() for key, group in grouped(rows.loc[rows["perturbation"] == CLEAN], KEYS)}
     texts = [f"{words} {100 * clean[line]:.0f} %" for line, words in labels.items() if line in clean]
     return frame, text_table, " ".join(filter(None, [DENOISERS[behind], ", ".join(texts)]))
-
-
-def gain(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> tuple[float, float, float]:
-    """(mean, low, high) of the accuracy that a denoiser gains, over the severities; in pairs of equal touches."""
-    runs = rows[rows["perturbation"] == perturbation].set_index([*KEYS, "repetition", "severity"])["value"].sort_index()
-    split, features, classifier = line
-    paired = runs.loc[split, features, classifier] - runs.loc[split, PLAIN, classifier]
-    return interval(paired.groupby("repetition").mean(), shared_by(split))
 
 
 def figure(results: Results) -> Figure:
