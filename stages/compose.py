@@ -183,6 +183,8 @@ def _check_run(values: dict[str, Any]) -> None:
         raise ParamsError(f"sets=[] names no set: write sets=[household], or others of {', '.join(groups()['data'])}")
     if twice := [name for name in dict.fromkeys(sets) if sets.count(name) > 1]:
         raise ParamsError(f"sets=[{','.join(sets)}] names {', '.join(twice)} twice")
+    if unknown := [str(name) for name in sets if name not in groups()["data"]]:
+        raise ParamsError(f"sets: unknown set {unknown[0]}: {nearest(unknown[0], groups()['data'])}")
     if not (isinstance(workers, int) and (workers == -1 or workers >= 1)):
         raise ParamsError(f"parallel.workers={workers} must be 1 or more, or -1 for one a core")
     out = Path(os.path.normpath(values["out"]))

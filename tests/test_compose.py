@@ -208,6 +208,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("lod.targets=[50%,half]", "lod.targets: 'half' is not a face count: write one like 1500 or 25%"),
         ("sets=[]", "sets=[] names no set: write sets=[household]"),
         ("sets=[gaze,gaze]", "sets=[gaze,gaze] names gaze twice"),
+        ("sets=[gaze,houshold_four]", "sets: unknown set houshold_four: did you mean household_four?"),
         ("gaze.lod.rings=2", "gaze is not switched on: add 'sets=[household,gaze]'"),
         ("houshold.lod.rings=2", "did you mean household.lod.rings?"),
         ("nope=1", "unknown setting nope: known: "),

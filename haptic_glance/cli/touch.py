@@ -144,7 +144,8 @@ def check_lengths(options: argparse.Namespace) -> None:
     """Raises ValueError for a pitch or a depth that is not positive, and for a pitch larger than the object."""
     check_array(options.cells, options.pitch)
     if not isinstance(options.pitch, Metres) and options.pitch >= 1 and max(options.cells) > 1:
-        raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
+        remedy = f"try 0.01, or write {options.pitch:g}{options.unit}" if options.unit else "try 0.01"
+        raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: {remedy}")
     if options.depth is not None and not 0 < options.depth < float("inf"):
         raise ValueError(f"--depth {options.depth:g}: give a positive length")
 

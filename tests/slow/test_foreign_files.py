@@ -8,6 +8,7 @@ import os
 import resource
 import sys
 import tarfile
+import warnings
 from contextlib import redirect_stderr
 from pathlib import Path
 
@@ -73,6 +74,11 @@ def unpacked(package, digest, folder):
     return sorted(path for path in folder.rglob("*") if path.suffix.lower() in FORMATS)
 
 
+def shown(message, category, *_):
+    """Prints a warning in one line, as a command does; the word Warning marks a warning that is not for the user."""
+    print(message if issubclass(category, UserWarning) else f"{category.__name__}: {message}")
+
+
 def attempted(command, arguments, log):
     """(how the command ended, its processor seconds, its memory in KiB, its words), in a process of its own."""
     child = os.fork()  # kernels and imports are there already
@@ -80,6 +86,7 @@ def attempted(command, arguments, log):
         status = 1
         try:
             resource.setrlimit(resource.RLIMIT_CPU, (SECONDS + 5, SECONDS + 5))
+            warnings.showwarning = shown  # pytest's own keeps warnings from the log
             with log.open("w", encoding="utf-8") as sys.stdout, redirect_stderr(sys.stdout):
                 try:
                     status = run(command, arguments)
