@@ -217,7 +217,6 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
             values = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
             side_values = both_sides(first, second)
-            side_values = side_values.dropna() if np.isnan(side_values.to_numpy()).any() else side_values
             is_same = _same_mesh(claim, side_values)
             side_values = side_values[~is_same] if is_same.any() else side_values
             names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
