@@ -28,6 +28,7 @@ def settings_read(stage):
     return {schema.__module__.split(".")[-1] for schema in schemas}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stage", ORDER)
 def test_dvc_knows_the_code_the_data_and_the_settings_of_a_stage(stage):
     block, text = STAGES[stage], "".join(path.read_text() for path in (ROOT / "stages" / stage).rglob("*.py"))

@@ -104,7 +104,8 @@ def rows_of(path: Path, where: str = "") -> pd.DataFrame:
             numbers = pd.to_numeric(frame[value]).dropna()
             frame = frame.loc[[ENDS[column](numbers)]] if len(numbers) else frame[:0]
         else:
-            frame = frame[[fnmatchcase(cell, value) == (sign == "=") for cell in frame[column]]]
+            matches = [cell for cell in frame[column].unique() if fnmatchcase(cell, value)]
+            frame = frame[frame[column].isin(matches) == (sign == "=")]
     return frame
 
 

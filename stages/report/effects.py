@@ -110,7 +110,8 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
             first, second = (part.means for part in side_rows)
             pair_means = both_sides(first, second)
             bad.append(pd.Series(SAME, index=pair_means.index[_same_mesh(claim, pair_means)], dtype=object))
-        contrasts.append((parts, pd.concat(bad)))
+        bad = [causes for causes in bad if len(causes)]
+        contrasts.append((parts, pd.concat(bad) if bad else pd.Series(dtype=object)))
     if all(bad.empty for _, bad in contrasts):
         return pd.Series(dtype=object), 0
     common = [set.intersection(*(_pairs(part, keys) for part in parts)) for parts, _ in contrasts]
@@ -125,10 +126,13 @@ def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
 
 
 def both_sides(first: pd.Series, second: pd.Series) -> pd.DataFrame:
-    """Columns first and second of the pairs that both sides have; equal pairs, the usual case, need no join."""
+    """Columns first and second of the pairs that both sides have, in the order of the first side."""
     if first.index.equals(second.index):
         return pd.DataFrame({"first": first.array, "second": second.array}, index=first.index)
-    return pd.concat({"first": first, "second": second}, axis=1, join="inner")
+    places = second.index.get_indexer(first.index)
+    has_both = places >= 0
+    columns = {"first": first.array[has_both], "second": second.array[places[has_both]]}
+    return pd.DataFrame(columns, index=first.index[has_both])
 
 
 def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
@@ -212,7 +216,7 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
         if claim.mean_of:
             values = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
-            side_values = both_sides(first, second).dropna()
+            side_values = both_sides(first, second)
             is_same = _same_mesh(claim, side_values)
             side_values = side_values[~is_same] if is_same.any() else side_values
             names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
@@ -241,8 +245,8 @@ def _picked(parts: Sequence[pd.DataFrame], claim: Claim, column: str, pick: Pick
         rows = rows[[not any(fnmatch(str(name), str(pattern)) for pattern in out) for name in rows[column]]]
         rows = rows[rows[column].isin(pick.names)] if pick.names else rows
         _some(rows, claim, f"other {column} than {either(out)}" if out else column)
-        index = [*claim.over, *claim.within]
-        tables.append(rows.pivot_table(index=index, columns=column, values="value", sort=False))
+        cells = rows.groupby([*claim.over, *claim.within, column], sort=False)["value"].mean()
+        tables.append(cells.unstack(column, sort=False))
     table = tables[0] if len(tables) == 1 else (tables[0] - tables[1]).dropna(axis=1, how="all")
     _some(table, claim, f"{column} in both parts")
     averages = (table if table.dropna().empty else table.dropna()).mean()  # over the pairs that all of them have

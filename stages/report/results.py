@@ -113,6 +113,18 @@ class ByMethod(dict):
 RECENT = 128  # answers that are kept: the two sides of a claim are asked for again and again
 
 
+def clock_of(rows: pd.DataFrame, stage: str) -> str:
+    """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time of older rows.
+
+    If rows have both clocks, the clock is wall time, the less precise one.
+    """
+    timed = rows[rows["seconds"].notna()] if "seconds" in rows else rows
+    clocks = timed.get("clock", pd.Series(dtype=str)).dropna()
+    if len(clocks) and len(clocks) == len(timed):
+        return clocks.iloc[0]
+    return CLOCK if stage in ALWAYS_PROCESSOR else WALL
+
+
 class Results:
     """Everything that the report reads: rows of measurements, and what the stages left in data/.
 
@@ -214,16 +226,8 @@ class Results:
         return frame
 
     def clock(self, stage: str, dataset: str | None = None) -> str:
-        """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time of older rows.
-
-        If rows have both clocks, the clock is wall time, the less precise one.
-        """
-        rows = self._read(stage, dataset)
-        timed = rows[rows["seconds"].notna()] if "seconds" in rows else rows
-        clocks = timed.get("clock", pd.Series(dtype=str)).dropna()
-        if len(clocks) and len(clocks) == len(timed):
-            return clocks.iloc[0]
-        return CLOCK if stage in ALWAYS_PROCESSOR else WALL
+        """The `clock_of` a stage's rows."""
+        return clock_of(self._read(stage, dataset), stage)
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""

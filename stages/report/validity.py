@@ -51,7 +51,7 @@ def of_all_rows(work: Check) -> Check:
         answers = results.once(
             (work.__name__, stage, dataset), lambda: work(results, stage, dataset, results.rows(stage, dataset))
         )
-        return answers[rows.index]
+        return answers.take(rows.index.to_numpy())  # the index of all rows counts them
 
     return selected
 
