@@ -63,10 +63,16 @@ def everywhere(results: Results, *passes: str, metric: str = "accuracy", **where
 
 
 def of_passes(rows: pd.DataFrame, *passes: str) -> pd.DataFrame:
-    """The rows of trainings with some of PASSES, printed without any; rows that do not say theirs are printed."""
+    """The rows of trainings with some of PASSES, printed without any; rows that do not say theirs are printed.
+
+    Splits that no training as printed has are left out, so that tables and charts compare all on the same splits.
+    """
     padded_rows = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
     padded_rows["passes"] = padded_rows["passes"].fillna("printed")
-    return padded_rows[padded_rows["passes"].isin(passes or ("printed",))]
+    splits = pd.MultiIndex.from_frame(padded_rows[["split", "repetition"]])
+    is_printed = padded_rows["passes"] == "printed"
+    comparable = splits.isin(splits[is_printed]) if is_printed.any() else True
+    return padded_rows[padded_rows["passes"].isin(passes or ("printed",)) & comparable]
 
 
 def shared(split: str, dataset: str | None = None) -> float:

@@ -87,6 +87,12 @@ def test_passes_are_not_mixed_in_gains_and_claims(run):
     assert differences(run, late).mean() == pytest.approx(25)
 
 
+def test_tables_compare_all_trainings_on_the_splits_of_the_printed_ones():
+    more = converged(repetitions=8)
+    assert set(_transfer.of_passes(pd.concat([rows(), more]), "converged")["repetition"]) == {0, 1, 2, 3, 4}
+    assert set(_transfer.of_passes(more, "converged")["repetition"]) == {*range(8)}
+
+
 @pytest.mark.slow
 def test_the_gains_of_one_set_alone_are_drawn(run):
     assert has_ink(build_one(transfer, "figures", "figure_5_3", run))
