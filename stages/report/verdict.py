@@ -23,10 +23,7 @@ DECIDED = ("supported", "contradicted", "no difference")
 MIXED, DEPENDS, UNTESTABLE = "mixed", "depends on the reading", "not testable"
 WORDS = (*DECIDED, MIXED, DEPENDS, UNTESTABLE, "open")
 # By unit: what nobody would act on. Stated before the claims were judged by it; other units have none.
-NEGLIGIBLE = {
-    POINTS: 3.0, "% of the mean of both errors": 3.0, "% of the mean of both deviations": 3.0,
-    "PCC": 0.03, "NSS": 0.05, "AUC": 0.01,
-}  # fmt: skip
+NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
 ALPHA = 0.05  # of a p-value
 FEW, HUNDRED = 5, 100  # units
 PROPOSED = "T6.3"  # the section that proposes future work, and states no result
