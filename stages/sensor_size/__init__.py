@@ -9,6 +9,7 @@ COLUMNS = {
     "fine": "CELLS-PITCH of a second, finer array that is pressed at the same place; empty: none",
     "extent": "where the touches of a sample lie: points, region or disc; empty: one touch a sample",
     "touches": "imprints per object at most",
+    "set": "number of a random set of classes, of those that are drawn",
     "fold": "number of the round in which the item was tested",
 }
 
@@ -18,6 +19,7 @@ class Params:
     """Section `sensor_size` of params.yaml."""
 
     classes: list[str]
+    drawn: int
     method: str
     touches: int
     cells: list[int]
