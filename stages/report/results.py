@@ -51,6 +51,7 @@ DATASETS = {
     ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
     "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
     "princeton_touched": "psb, 8 classes of 6 objects", "princeton_hands": "psb, several arrays or touches",
+    "princeton_4_3_sets": "random sets of psb as in T4.3",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "furniture_splits": "furniture, 20 splits",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",

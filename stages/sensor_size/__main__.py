@@ -10,6 +10,7 @@ import functools
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from stages.meshes.collect import read_classes
 from stages.salient_points.measure import read_points, read_saliency
 
 from . import COLUMNS, Params
-from .protocol import ARRAY, TOUCHES, choice_repeatability, evaluate, sample_vertices, smallest_sufficient
+from .protocol import ARRAY, TOUCHES, choice_repeatability, drawn_sets, evaluate, sample_vertices, smallest_sufficient
 
 
 def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]], settings: Params, seed: int) -> Rows:
@@ -40,23 +41,24 @@ def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]
     arrays = [parts(part) for part in array.split("+")]
     (cells, pitch), fine = arrays[0], "+".join(array.split("+")[1:])
     warm_up()
-    imprints: dict[str, list[np.ndarray]] = {}
-    costs = []
+    imprints: dict[str, np.ndarray] = {}
+    rows = []
     for label, names in classes.items():
         for name in names:
             with Stopwatch() as watch:
-                images = touch(name, data, arrays, extent, settings, seed)
-            imprints.setdefault(label, []).append(images)
-            cost = {"metric": "seconds_a_touch", "value": watch.seconds / len(images), "seconds": watch.seconds}
-            costs.append({"group": label, "item": name, **cost})
+                imprints[name] = touch(name, data, arrays, extent, settings, seed)
+            cost = {"metric": "seconds_a_touch", "value": watch.seconds / len(imprints[name]), "seconds": watch.seconds}
+            rows.append({"group": label, "item": name, **cost})
+    drawn = dict(enumerate(drawn_sets(classes, settings.drawn, seed), 1))
     # One thread gives equal sums on any number of cores. The fits of trees are so small that checks would take longer.
     with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
-        rows = evaluate(imprints, settings.classifiers, seed, TOUCHES if extent else 1)
-    for row in rows:
-        row["item"] = classes[row["group"]][row["item"]]
+        for number, members in (drawn or {None: classes}).items():
+            samples = {label: [imprints[name] for name in names] for label, names in members.items()}
+            for row in evaluate(samples, settings.classifiers, seed, TOUCHES if extent else 1):
+                rows.append(row | {"item": members[row["group"]][row["item"]], "set": number})
     common = {"method": settings.method, "cells": cells, "pitch": pitch, "touches": settings.touches}
     common |= {"fine": fine or None, "extent": extent or None}
-    return [common | row for row in [*costs, *rows]]
+    return [common | row for row in rows]
 
 
 def parts(item: str) -> tuple[int, float]:
@@ -97,14 +99,19 @@ def chosen_classes(classes: Mapping[str, list[str]], names: Sequence[str]) -> di
 
 
 def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
-    """{classifier: {smallest, arrays: {CELLS-PITCH: {mean, low, high}}}} over the objects left out."""
-    values: defaultdict[str, defaultdict[tuple[int, float], list[float]]] = defaultdict(lambda: defaultdict(list))
+    """{classifier: {smallest, arrays: {CELLS-PITCH: {mean, low, high}}}} over the objects left out.
+
+    An object of several drawn sets counts once, with its mean.
+    """
+    values: defaultdict[str, defaultdict[tuple[int, float], defaultdict[str, list[float]]]]
+    values = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
     tree = {}
     for row in rows:
         single = not (row.get("fine") or row.get("extent"))
         if single and row["metric"] == "accuracy" and row["split"] == Split.OBJECTS:
-            values[row["classifier"]][row["cells"], row["pitch"]].append(row["value"])
-    for name, scores in sorted(values.items()):
+            values[row["classifier"]][row["cells"], row["pitch"]][row["item"]].append(row["value"])
+    for name, of_arrays in sorted(values.items()):
+        scores = {array: list(map(fmean, items.values())) for array, items in of_arrays.items()}
         arrays = {}
         for array, accuracies in sorted(scores.items()):
             arrays["{}-{}".format(*array)] = interval_metrics(accuracies, seed)

@@ -4,7 +4,7 @@ The touches of a sample lie at separate points, in the salient region around one
 classifiers are those of T figure 4.11 (T4.3.1). The smallest sufficient sensor has a repeatability.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,7 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import touchable
 
 COMPONENTS = 10  # T4.3.1
+PRINTED_SET = (4, 3)  # classes, and objects of each (T figure 4.10)
 HOLDOUT = 0.25  # T4.2.4
 SEEDS = {Split.OBJECTS: "accuracy", Split.RANDOM: "accuracy_holdout"}  # words on which the random numbers depend
 
@@ -57,6 +58,29 @@ def evaluate(imprints: dict[str, list[np.ndarray]], names: list[str], seed: int 
             rows += [{**common, "group": label, "item": index, "value": float((answer == label).mean())}
                      for (label, index, _), answer in zip(test, answers, strict=True)]  # fmt: skip
     return rows
+
+
+def drawn_sets(classes: Mapping[str, Sequence[str]], count: int, seed: int) -> list[dict[str, list[str]]]:
+    """`count` random sets {class: objects} of the size of T figure 4.10: four classes of three objects.
+
+    The objects of each class are shuffled and dealt in threes. A set takes threes of the four classes that have most of
+    them left, of equals those that were shuffled to the front. All are shuffled anew when fewer than four classes have
+    three objects left, so that two sets share as few objects as they can.
+    Raises ValueError where fewer than four classes have three objects.
+    """
+    width, size = PRINTED_SET
+    large = sorted(label for label, names in classes.items() if len(names) >= size)
+    if count and len(large) < width:
+        raise ValueError(f"sensor_size.drawn: a set takes {width} classes of {size} objects, there are {len(large)}")
+    sets: list[dict[str, list[str]]] = []
+    left: dict[str, list[str]] = {}
+    while len(sets) < count:
+        if sum(len(names) >= size for names in left.values()) < width:
+            random = rng(seed, f"classes {len(sets)}")
+            left = {label: random.permutation(sorted(classes[label])).tolist() for label in random.permutation(large)}
+        most = sorted(left, key=lambda label: -(len(left[label]) // size))[:width]
+        sets.append({label: [left[label].pop() for _ in range(size)] for label in sorted(most)})
+    return sets
 
 
 def majority(answers: np.ndarray, votes: int) -> np.ndarray:

@@ -41,7 +41,7 @@ def test_a_cost_has_the_interval_of_its_objects(measure):
 
 
 def test_claims_know_the_truth_of_the_rows(measure):
-    results = measure("sensor_size", pd.concat([pressed(), pressed().assign(dataset="princeton_eight")]))
+    results = measure("sensor_size", pd.concat([pressed(), pressed().assign(dataset="princeton_4_3_sets")]))
     judged = verdicts(sensor.CLAIMS, results)
     words = judged["verdict"]
     better = ["more_cells_help_all", "more_cells_help_more", "larger_pitch_helps_16", "larger_pitch_helps_32",

@@ -19,6 +19,7 @@ from stages.sensor_size.protocol import (
     choice_repeatability,
     classifier,
     disc,
+    drawn_sets,
     evaluate,
     majority,
     salient_region,
@@ -139,8 +140,10 @@ def test_bad_input_is_named(plain):
 
 def test_the_metrics_name_the_smallest_array():
     rows = [
-        {"metric": "accuracy", "split": "objects", "classifier": "knn", "cells": cells, "pitch": 0.01, "value": value}
-        for cells, mean in ((8, 0.5), (16, 0.9), (32, 0.91)) for value in (mean - 0.05, mean + 0.05)
+        {"metric": "accuracy", "split": "objects", "classifier": "knn", "cells": cells, "pitch": 0.01, "value": value,
+         "item": item}
+        for cells, mean in ((8, 0.5), (16, 0.9), (32, 0.91))
+        for item, value in (("a", mean - 0.07), ("a", mean - 0.03), ("b", mean + 0.05))
     ]  # fmt: skip
     metrics = summary(rows, 0.02, 0)["knn"]
     assert metrics["smallest"] == {"cells": 16, "pitch": 0.01, "accuracy": 0.9, "again": 1.0}
@@ -161,7 +164,7 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
     monkeypatch.setattr(
         stage, "touch", lambda *_: calls.append("touched") or np.random.default_rng(0).random((9, 8, 8))
     )
-    settings = SimpleNamespace(method="glance", touches=9, classifiers=["knn"])
+    settings = SimpleNamespace(method="glance", touches=9, classifiers=["knn"], drawn=0)
     stage.process("8-0.01", tmp_path, tmp_path, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, settings, 0)
     assert calls[0] == "loaded" and calls.count("touched") == 4
 
@@ -169,7 +172,7 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
 @pytest.mark.slow
 def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
-    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"], "classifiers": ["knn"]}
+    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"], "classifiers": ["knn"], "drawn": 0}
     workspace = make_workspace({"sensor_size": settings})
     sizes = {"cube": (0.5, 0.5, 0.5), "brick": (0.5, 0.4, 0.5), "stick": (0.1, 0.1, 0.6), "pole": (0.12, 0.1, 0.6)}
     for name, size in sizes.items():
@@ -189,6 +192,35 @@ def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     assert (rows["metric"] == "smallest_chosen_again").sum() == 1 and len(rows) == 3 * (4 + 4 + 4) + 1
     assert (rows["fine"] == "3-0.01").sum() == (rows["extent"] == "region").sum() == 12
     assert rows.loc[rows["metric"] == "seconds_a_touch", "item"].tolist() == 3 * list(sizes)
+
+
+CLASSES = {label: [f"{label}{k}" for k in range(6)] for label in "edcba"}
+
+
+def test_a_drawn_set_has_the_size_of_the_thesis_and_an_object_comes_back_once_the_others_were_in_a_set():
+    sets = drawn_sets(CLASSES, 4, 0)
+    assert all(len(members) == 4 and all(len(names) == 3 for names in members.values()) for members in sets)
+    assert all(set(names) < set(CLASSES[label]) for members in sets for label, names in members.items())
+    first, second, *_ = [sorted(name for names in members.values() for name in names) for members in sets]
+    assert not set(first) & set(second) and sets == drawn_sets(CLASSES, 4, 0) != drawn_sets(CLASSES, 4, 1)
+    assert drawn_sets(CLASSES, 0, 0) == [] == drawn_sets({}, 0, 0)
+    with pytest.raises(ValueError, match=r"sensor_size\.drawn: .* there are 3"):
+        drawn_sets({label: CLASSES[label] for label in "abc"} | {"few": ["f0", "f1"]}, 1, 0)
+
+
+def test_drawn_sets_know_their_own_classes_alone(monkeypatch, tmp_path):
+    """Each class has one level, so every answer is right."""
+    levels = {name: float(5 * "abcde".index(name[0])) for names in CLASSES.values() for name in names}
+    monkeypatch.setattr(stage, "touch", lambda name, *_: touches(levels[name], 0, noise=0.01))
+    settings = SimpleNamespace(method="glance", touches=12, classifiers=["knn"], drawn=3)
+    rows = pd.DataFrame(stage.process("8-0.01", tmp_path, tmp_path, CLASSES, settings, 0))
+    tested = rows[rows["split"] == "objects"]
+    members = dict(enumerate(drawn_sets(CLASSES, 3, 0), 1))
+    assert {number: part.groupby("group")["item"].agg(sorted).to_dict() for number, part in tested.groupby("set")} == {
+        number: {label: sorted(names) for label, names in groups.items()} for number, groups in members.items()
+    }
+    assert (tested["value"] == 1).all() and len(tested) == 3 * 12
+    assert rows["metric"].eq("seconds_a_touch").sum() == 30
 
 
 def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):

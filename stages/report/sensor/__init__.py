@@ -29,7 +29,7 @@ def table(results: Results) -> Table:
     rows = pd.concat([rows.sort_values("split", kind="stable") for rows in by_set.values()])
     rows, smallest = (rows[rows["metric"] == metric] for metric in ("accuracy", "smallest_chosen_again"))
     thesis = results.thesis("figure_4_11_sensor_32x32_sensel_0_01").set_index("classifier")["accuracy"]
-    rows = rows.reindex(columns=[*rows.columns.union(list(EMPTY), sort=False)]).fillna(EMPTY)
+    rows = rows.reindex(columns=[*rows.columns.union([*EMPTY, "set"], sort=False)]).fillna(EMPTY)
     frame = _cells(rows, ["dataset", "split", "cells", "pitch", *EMPTY, "classifier"])
     frame["thesis"] = frame["classifier"].map(thesis).where((frame["cells"] == LARGE) & (frame["pitch"] == COARSE))
     cells = frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format), cells=_arrays(frame))
@@ -67,7 +67,8 @@ def _classes(rows: pd.DataFrame) -> str:
     """The content of each set, in words."""
     return "; ".join(
         f"{dataset_text(str(name))}: {', '.join(sorted(set(part['group'])))}, {part['item'].nunique()} objects, "
-        f"{int(part['touches'].iloc[0])} touches each, guessing {100 / part['group'].nunique():.1f} %"
+        f"{int(part['touches'].iloc[0])} touches each, "
+        f"guessing {100 / part.groupby('set', dropna=False)['group'].nunique().max():.1f} %"
         for name, part in rows.groupby("dataset", sort=False)
     )
 
@@ -160,7 +161,7 @@ PHRASES = {
     **{("pitch", pitch): f"{pitch:g} apart" for pitch in (FINE, COARSE, 2 * COARSE)},
 }
 MORE = (None, "princeton_touched")  # the furniture, and eight classes of six objects
-claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset="princeton_eight", where=UNSEEN,
+claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset="princeton_4_3_sets", where=UNSEEN,
                 over=("group", "item"), phrases=PHRASES, note=ALL)  # fmt: skip
 ours = partial(claim, section="ours", dataset=MORE)
 larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
@@ -190,8 +191,8 @@ PRINTED_CLAIMS = [
 CLAIMS = [
     *PRINTED_CLAIMS,
     *(
-        replace(entry, key=f"{entry.key}_more", of=entry.of or entry.key, dataset=MORE, printed=0)
-        for entry in PRINTED_CLAIMS
+        replace(entry, key=f"{entry.key}_{suffix}", of=entry.of or entry.key, dataset=sets, printed=0)
+        for suffix, sets in (("more", MORE), ("figure_4_10", "princeton_eight")) for entry in PRINTED_CLAIMS
     ),
     ours(key="more_cells_help_all", note=f"{ALL} and all distances of sensels", first={"cells": LARGE},
          second={"cells": SMALL}, sentence="At equal sensel size a larger sensor is better, whatever the size."),
