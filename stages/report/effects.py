@@ -325,14 +325,19 @@ class Effect:
 
 @dataclass(frozen=True)
 class PooledEffect:
-    """The effects of two or more sets with an interval each, and their pooled effect."""
+    """The effects of two or more sets with an interval each, and their pooled effect.
+
+    these: whether the mean of these sets is asked for, and not that of any sets.
+    """
 
     sets: Sequence[Effect]
+    these: bool = False
 
     @cached_property
     def pooled(self) -> Pooled:
-        """By random effects."""
-        return pool(*zip(*((effect.interval[0], effect.error, effect.freedom) for effect in self.sets), strict=True))
+        """By random effects, or the mean of these sets."""
+        effects = zip(*((effect.interval[0], effect.error, effect.freedom) for effect in self.sets), strict=True)
+        return pool(*effects, these=self.these)
 
     @property
     def interval(self) -> tuple[float, float, float]:
@@ -362,7 +367,12 @@ class PooledEffect:
 
     @property
     def disagree(self) -> bool:
-        """Whether each side of zero has a set whose own interval excludes it, or sets of both signs differ by Q."""
+        """Whether each side of zero has a set whose own interval excludes it, or sets of both signs differ by Q.
+
+        Sets whose mean is asked for may differ.
+        """
+        if self.these:
+            return False
         means, low, high = np.transpose([effect.interval for effect in self.sets])
         both_signs = means.min() < 0 < means.max()
         return bool((low > 0).any() and (high < 0).any()) or (both_signs and self.pooled.differ < ALIKE)
@@ -425,7 +435,7 @@ def deciding(claim: Claim, measured: Sequence[Effect], results: Results, strict:
     return printed_effects if printed_effects or strict else list(measured[:1])
 
 
-def effect_of(measured: Sequence[Effect]) -> Effect | PooledEffect:
+def effect_of(measured: Sequence[Effect], these: bool = False) -> Effect | PooledEffect:
     """The pooled effect of all testable sets with an interval, or that of the only one; of all sets where none is.
 
     A set of two units is left out beside others: the spread of two is often tiny by luck, and would rule the mean.
@@ -433,4 +443,4 @@ def effect_of(measured: Sequence[Effect]) -> Effect | PooledEffect:
     testable = [effect for effect in measured if effect.testable] or measured  # else the numbers of all
     usable = [effect for effect in testable if np.isfinite(effect.interval[1])]
     usable = [effect for effect in usable if len(usable) == 1 or effect.most > PAIR] or usable
-    return PooledEffect(usable) if len(usable) > 1 else (usable or testable)[0]
+    return PooledEffect(usable, these) if len(usable) > 1 else (usable or testable)[0]

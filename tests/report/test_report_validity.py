@@ -226,6 +226,16 @@ def test_the_effect_is_of_all_testable_sets_or_else_of_all_sets():
     assert effect_of(sets) is sets[1]
 
 
+def test_sets_that_disagree_have_a_mean_of_their_own(measure):
+    """One set leads by far, one lags behind beyond its interval: their mean leads, other sets' may not."""
+    leads = simplified().assign(dataset="leads")
+    lags = leads.assign(dataset="lags", value=leads["value"] - 1.3 * (leads["method"] == "x"))
+    claim = replace(OVER, dataset=("leads", "lags"), printed=0)
+    results = measure("lod", pd.concat([leads, lags]))
+    assert judge([claim], results)["verdict"].tolist() == ["mixed"]
+    assert judge([replace(claim, these=True)], results)["verdict"].tolist() == ["supported"]
+
+
 def test_two_sides_with_the_same_mesh_are_no_evidence(measure):
     rows = simplified()
     other = rows[rows["method"] == "x"].assign(method="y")

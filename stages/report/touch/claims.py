@@ -54,7 +54,7 @@ POINTS: dict[str, Any] = {
     "best_touch": RIVAL,
     "touch": "touch",  # places worth touching
 }
-ROWS = {"": SIX, "_four": FOUR, "_all": EVERY, "_apart": APART, "_60": SIX}
+ROWS = {"": SIX, "_mean": SIX, "_four": FOUR, "_all": EVERY, "_apart": APART, "_60": SIX}
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
 MIXED = (  # five touches; of one touch there is nothing to combine: mixed, its test part would be in training, too
     ("combined before the split", "touches_5_mixed"),
@@ -149,7 +149,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end] | scale | size, stage=STAGE,
         phrases=PHRASES, note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (),
-        **sets,
+        these=end == "_mean", **sets,
     )  # fmt: skip
 
 
@@ -272,6 +272,8 @@ CLAIMS = [
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points, on new "
               "regions.", "_apart"),
     by_points("touch_over_best_touch", "Touch where imprints recur is better than at the best rival's points."),
+    by_points("touch_over_best_touch", "Touch where imprints recur is better than at the best rival's points, on the "
+              "mean of these three collections.", "_mean", of="touch_over_best_touch"),
     by_points("touch_over_best_touch", "Touch where imprints recur is better than at the best rival's points, on new "
               "regions.", "_apart"),
     by_points("touch_over_glance", "Touch where imprints recur is better than at the places of our glance."),
