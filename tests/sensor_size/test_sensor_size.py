@@ -202,6 +202,7 @@ def test_a_drawn_set_has_the_size_of_the_thesis_and_an_object_comes_back_once_th
     assert all(len(members) == 4 and all(len(names) == 3 for names in members.values()) for members in sets)
     assert all(set(names) < set(CLASSES[label]) for members in sets for label, names in members.items())
     first, second, *_ = [sorted(name for names in members.values() for name in names) for members in sets]
+    assert {*sets[0], *sets[1]} == set(CLASSES)
     assert not set(first) & set(second) and sets == drawn_sets(CLASSES, 4, 0) != drawn_sets(CLASSES, 4, 1)
     assert drawn_sets(CLASSES, 0, 0) == [] == drawn_sets({}, 0, 0)
     with pytest.raises(ValueError, match=r"sensor_size\.drawn: .* there are 3"):
