@@ -65,13 +65,16 @@ def everywhere(results: Results, *passes: str, metric: str = "accuracy", **where
 def of_passes(rows: pd.DataFrame, *passes: str) -> pd.DataFrame:
     """The rows of trainings with some of PASSES, printed without any; rows that do not say theirs are printed.
 
-    Splits that no training as printed has are left out, so that tables and charts compare all on the same splits.
+    Splits that no fine-tuned training as printed has are left out where there is one, else those that no training as
+    printed has, so that tables and charts compare all on the same splits.
     """
     padded_rows = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
     padded_rows["passes"] = padded_rows["passes"].fillna("printed")
-    splits = pd.MultiIndex.from_frame(padded_rows[["split", "repetition"]])
-    is_printed = padded_rows["passes"] == "printed"
-    comparable = splits.isin(splits[is_printed]) if is_printed.any() else True
+    splits = pd.MultiIndex.from_frame(padded_rows[["dataset", "split", "repetition"]])
+    kinds, is_printed = splits.droplevel("repetition"), padded_rows["passes"] == "printed"
+    is_tuned = is_printed & (padded_rows["mode"] == "finetuned")
+    is_leading = is_tuned | (is_printed & ~kinds.isin(kinds[is_tuned]))
+    comparable = splits.isin(splits[is_leading]) | ~kinds.isin(kinds[is_leading]) | padded_rows["mode"].isna()
     return padded_rows[padded_rows["passes"].isin(passes or ("printed",)) & comparable]
 
 

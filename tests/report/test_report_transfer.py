@@ -88,9 +88,16 @@ def test_passes_are_not_mixed_in_gains_and_claims(run):
 
 
 def test_tables_compare_all_trainings_on_the_splits_of_the_printed_ones():
-    more = converged(repetitions=8)
-    assert set(_transfer.of_passes(pd.concat([rows(), more]), "converged")["repetition"]) == {0, 1, 2, 3, 4}
-    assert set(_transfer.of_passes(more, "converged")["repetition"]) == {*range(8)}
+    def shown(*frames):
+        return set(_transfer.of_passes(pd.concat(frames), *_transfer.PASSES)["repetition"])
+
+    more, printed = converged(repetitions=8), rows()
+    is_tuned = printed["mode"] == "finetuned"
+    assert shown(printed, more) == {*range(5)} and shown(more) == {*range(8)}
+    assert shown(printed[~is_tuned | (printed["repetition"] < 3)], more) == {*range(3)}
+    assert shown(printed[~is_tuned], more) == {*range(5)}
+    assert shown(printed, more.assign(dataset="other")) == shown(more)
+    assert shown(printed, more.assign(mode=None)) == shown(more)
 
 
 @pytest.mark.slow
