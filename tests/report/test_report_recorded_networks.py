@@ -27,7 +27,7 @@ LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exac
 }
 FEATURES, CHANCE, MAJORITY = 0.6, 0.1, 0.2
 COLUMNS = ["dataset", "data", "item", "method", "weights", "pretrained", "mode", "size", "split", "repetition",
-           "metric", "value"]  # fmt: skip
+           "passes", "metric", "value"]  # fmt: skip
 DATASETS = {"pressure": "pressure_images", "grasps_object": "biotac_grasps", "grasps_slip": "biotac_grasps"}
 DATASETS |= dict.fromkeys(("schunk", "schunk_coarse"), "schunk")
 PIXELS = {"frozen": 96, "finetuned": 64}
@@ -40,7 +40,7 @@ def touches(levels=LEVELS, settings=None, repetitions=3):
     random, rows = np.random.default_rng(0), []
     for data, split in settings or SETTINGS.values():
         for (network, weights, mode), level in levels.items():
-            way = {"method": network, "weights": weights, "mode": mode, "size": PIXELS[mode]}
+            way = {"method": network, "weights": weights, "mode": mode, "size": PIXELS[mode], "passes": "printed"}
             way |= {"pretrained": "complete" if weights == "imagenet" else "none"}
             rows += _trained({"data": data, "split": split} | way, level, random, repetitions)
         rows += _trained({"data": data, "split": split, "method": "features_knn"}, FEATURES, random, repetitions + 3)
@@ -224,6 +224,16 @@ def test_a_claim_names_the_training_or_the_rival_that_it_lacks(measured):
     alone = {way: level for way, level in levels.items() if way[0] == "resnet50"}
     alone = judge(measured(touches(alone, PRESSURE)), "recorded_resnet_best_pressure_random").iloc[0]
     assert alone["verdict"] == "open" and "no other method than resnet50" in alone["tested_on"]
+
+
+def test_trainings_until_nothing_improves_are_a_reading_of_their_own(measured):
+    more = touches({way: 0.9 for way in LEVELS if way[2] == "finetuned"}, PRESSURE)
+    more = more.assign(passes="converged", value=more["value"] - 0.01 * more["repetition"])
+    keys = [f"recorded_{key}_pressure_random" for key in ("seen_over_random_tuned", "tuned_over_frozen")]
+    frame = judge(measured(pd.concat([touches(settings=PRESSURE), more])), *keys)
+    assert frame["effect"].to_numpy() == pytest.approx([30, 10], abs=0.3)
+    readings = frame["readings"].str.partition("trained until nothing improves: ")[2]
+    assert readings.iloc[0].startswith("no difference") and readings.iloc[1].startswith("supported +19")
 
 
 def test_claims_over_repeated_splits_alone_are_widened():
