@@ -98,8 +98,8 @@ def judged(touched):
     return judge(touched)
 
 
-def line(table, data="pressure", split="random", method="mobilenet_v2", weights="imagenet", mode="frozen"):
-    return only(table.frame, data=data, split=split, method=method, weights=weights, mode=mode)
+def line(table, data="pressure", split="random", method="mobilenet_v2", weights="imagenet", mode="frozen", **more):
+    return only(table.frame, data=data, split=split, method=method, weights=weights, mode=mode, **more)
 
 
 @pytest.mark.parametrize(("data", "split"), SETTINGS.values())
@@ -230,10 +230,15 @@ def test_trainings_until_nothing_improves_are_a_reading_of_their_own(measured):
     more = touches({way: 0.9 for way in LEVELS if way[2] == "finetuned"}, PRESSURE)
     more = more.assign(passes="converged", value=more["value"] - 0.01 * more["repetition"])
     keys = [f"recorded_{key}_pressure_random" for key in ("seen_over_random_tuned", "tuned_over_frozen")]
-    frame = judge(measured(pd.concat([touches(settings=PRESSURE), more])), *keys)
+    results = measured(pd.concat([touches(settings=PRESSURE), more]))
+    frame = judge(results, *keys)
     assert frame["effect"].to_numpy() == pytest.approx([30, 10], abs=0.3)
     readings = frame["readings"].str.partition("trained until nothing improves: ")[2]
     assert readings.iloc[0].startswith("no difference") and readings.iloc[1].startswith("supported +19")
+    table = real_networks(results)
+    gains = [line(table, mode="finetuned", passes=passes)["over_random"] for passes in ("printed", "converged")]
+    assert gains == pytest.approx([0.3, 0.0], abs=0.003)
+    assert "fine-tuned, 64 px, until nothing improves" in set(table.text["filters"])
 
 
 def test_claims_over_repeated_splits_alone_are_widened():

@@ -4,6 +4,7 @@
 numbers, and `chart` accuracy against cost. `build_table` compares real touches alone with real touches and simulated
 imprints, by kNN."""
 
+from collections.abc import Iterable
 from contextlib import suppress
 from typing import Any
 
@@ -16,7 +17,7 @@ from haptic_glance.know.split import Split, shared_by
 from stages.engine.statistics import interval
 from stages.report.drawing import INK, label, place_names, plain_logarithm, plt
 from stages.report.items import Figure, Table
-from stages.report.networks import MODES, PRINTED, STARTS, of_passes, origin
+from stages.report.networks import MODES, PASSES, PRINTED, STARTS, of_passes, origin
 from stages.report.pareto import NOISE, ON, lines, placed, ticks
 from stages.report.results import NotRun, Results, some
 from stages.report.tables import (
@@ -52,37 +53,37 @@ SPLITS = {
     Split.OBJECTS: "objects or recordings together",
 }
 OVER = (Split.TEST_OBJECTS,)  # splits whose values are of independent objects, not of repetitions
-KEYS = ["data", "split", "method", "weights", "mode", "size"]
+KEYS = ["data", "split", "method", "weights", "mode", "size", "passes"]
 GAINS = [f"over_{control}{end}" for control in ("features", "random") for end in ("", "_low", "_high", "_pairs")]
 VALUES = ["accuracy", "low", "high", "values", *GAINS, "guess"]
-CLASSICAL = ("features_knn", "", "", "")  # the control without a network: neither weights, nor mode, nor size
+CLASSICAL = ("features_knn", "", "", "", "printed")  # the control without a network: no weights, mode or size
 
 
-def measured(results: Results, *metrics: str) -> pd.DataFrame:
-    """Rows of some metrics that have a value after the printed passes, of all recorded data sets; "" where KEYS lack.
+def measured(results: Results, *metrics: str, passes: Iterable[str] = ("printed",)) -> pd.DataFrame:
+    """Rows of some metrics that have a value after some of PASSES, of all recorded data sets; "" where KEYS lack.
 
     unit: the repetition, whose number is the same split for all, or the object where OVER. NotRun without any.
     """
     message = f"no {' or '.join(metrics)} of networks on recorded touches"
     by_set = everywhere(results, STAGE, message, metric=list(metrics))
-    rows = of_passes(pd.concat(by_set.values(), ignore_index=True)).astype({"size": "Int64"})
+    rows = of_passes(pd.concat(by_set.values(), ignore_index=True), *passes).astype({"size": "Int64"})
     rows = rows[rows["item"].notna() == rows["split"].isin(OVER)].astype(dict.fromkeys(["item", *KEYS], object))
     return rows.fillna(dict.fromkeys(KEYS, "")).assign(unit=rows["item"].fillna(rows["repetition"]))
 
 
 def measured_lines(results: Results) -> pd.DataFrame:
-    """A frame with a row a data set, split, network, start, mode and size that was measured, the classical first.
+    """A frame with a row a data set, split, network, start, mode, size and passes measured, the classical first.
 
     accuracy with low and high over so many values; guess; over_features and over_random: the gain over the classical
     features and over the same network untrained, each with _low, _high and the number of _pairs.
     """
-    rows, guess, lines = measured(results, "accuracy"), _guesses(results), []
+    rows, guess, lines = measured(results, "accuracy", passes=PASSES), _guesses(results), []
     groups = {key: values.groupby("unit")["value"].mean() for key, values in grouped(rows, KEYS)}
     for key, values in groups.items():
-        data, split, method, _, mode, size = key
+        data, split, method, _, *way = key
         shared = 0.0 if split in OVER else shared_by(Split.RANDOM)
         line = [*key, *within(values, shared), len(values)]
-        for control in (data, split, *CLASSICAL), (data, split, method, "random", mode, size):
+        for control in (data, split, *CLASSICAL), (data, split, method, "random", *way):
             gains = (values - groups[control]).dropna() if control in groups and control != key else values[:0]
             line += [*interval(gains, shared), len(gains)]
         lines.append([*line, guess.get((data, split), np.nan)])
@@ -122,7 +123,13 @@ COSTS = {
 }
 SIZE = 96  # pixels a side at which the recorded touches are seen
 SLACK = 0.02  # accuracy that the smallest network may lack of the best one's
-SETTING = {"data": "pressure", "split": Split.BLOCKS, "weights": "imagenet", "mode": "frozen", "size": SIZE}
+SETTING = {
+    "data": "pressure", "split": Split.BLOCKS, "weights": "imagenet", "mode": "frozen", "size": SIZE,
+    "passes": "printed",
+}  # fmt: skip
+
+
+ENDS = {"converged": ", until nothing improves"}
 
 
 def build(results: Results) -> Table:
@@ -134,7 +141,7 @@ def build(results: Results) -> Table:
             "split": SPLITS.get(row.split, row.split),
             "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
             "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
-            "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
+            "filters": f"{label(row.mode)}, {row.size} px{ENDS.get(row.passes, '')}" if row.mode else "–",
             "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
             "guessing, %": percent(row.guess, 1),
             "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
