@@ -174,16 +174,16 @@ class Pooled(NamedTuple):
         return float(2 * scipy.stats.t.sf(abs(self.mean) / self.error, self.freedom))
 
 
-def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[float], these: bool = False) -> Pooled:
+def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[float], fixed: bool = False) -> Pooled:
     """The random-effects mean of the effects of k sets, (k,) with their standard errors and degrees of freedom.
 
     The variance between sets is that of restricted maximum likelihood. Where it is above zero and there are three sets
     or more, the error is Hartung and Knapp's (2001) with k - 1 degrees of freedom: it carries to other sets. That error
     is too small where sets agree by luck, and therefore never taken below the plain one (Roever, Knapp and Friede,
     BMC Medical Research Methodology 2015). Else the error is the plain one, sqrt(1 / sum of weights), with the degrees
-    of freedom of Welch and Satterthwaite. Of two sets nobody knows the spread of sets: it is about these two. these:
-    whether the mean of these k sets is asked for, in which each counts alike, and not that of any sets. Raises
-    ValueError for fewer than two sets, or an error that is not above zero.
+    of freedom of Welch and Satterthwaite. Of two sets nobody knows the spread of sets: it is about these two. fixed:
+    whether the mean of these k sets is asked for (fixed effects, each set counts alike), and not that of any sets.
+    Raises ValueError for fewer than two sets, or an error that is not above zero.
     """
     effects, within = np.asarray(means, dtype=np.float64), np.asarray(errors, dtype=np.float64) ** 2
     k = len(effects)
@@ -198,7 +198,7 @@ def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[flo
     error, freedom = weights.sum() ** -0.5, weights.sum() ** 2 / (weights**2 / np.asarray(freedoms)).sum()
     if between > 0 and k > 2:
         error, freedom = error * max(1.0, float(weights @ (effects - mean) ** 2) / (k - 1)) ** 0.5, k - 1
-    if these:
+    if fixed:
         mean, error = float(effects.mean()), within.sum() ** 0.5 / k
         freedom = within.sum() ** 2 / (within**2 / np.asarray(freedoms)).sum()
     shares = between / (between + typical), scipy.stats.chi2.sf(q, k - 1)

@@ -123,7 +123,7 @@ class Claim:
     None: 1 for the thesis's claims, 0 for ours. of: key of the primary claim whose sentence this claim tests elsewhere;
     a later claim in the same words and chapter is secondary without being told. readings: other readings of the
     protocol, in which the verdict must hold too. checked: whether rows that stages.report.effects refuses are out.
-    ties: whether two equal meshes are a result, a difference of zero; otherwise such a pair is invalid. these: whether
+    ties: whether two equal meshes are a result, a difference of zero; otherwise such a pair is invalid. fixed: whether
     the claim is about the mean of its sets, in which each counts alike, and not about any sets.
     """
 
@@ -153,7 +153,7 @@ class Claim:
     readings: tuple[Reading, ...] = ()
     checked: bool = True
     ties: bool = False
-    these: bool = False
+    fixed: bool = False
 
     @property
     def is_ours(self) -> bool:

@@ -327,17 +327,17 @@ class Effect:
 class PooledEffect:
     """The effects of two or more sets with an interval each, and their pooled effect.
 
-    these: whether the mean of these sets is asked for, and not that of any sets.
+    fixed: whether the mean of these sets is asked for, and not that of any sets.
     """
 
     sets: Sequence[Effect]
-    these: bool = False
+    fixed: bool = False
 
     @cached_property
     def pooled(self) -> Pooled:
         """By random effects, or the mean of these sets."""
         effects = zip(*((effect.interval[0], effect.error, effect.freedom) for effect in self.sets), strict=True)
-        return pool(*effects, these=self.these)
+        return pool(*effects, fixed=self.fixed)
 
     @property
     def interval(self) -> tuple[float, float, float]:
@@ -371,7 +371,7 @@ class PooledEffect:
 
         Sets whose mean is asked for may differ.
         """
-        if self.these:
+        if self.fixed:
             return False
         means, low, high = np.transpose([effect.interval for effect in self.sets])
         both_signs = means.min() < 0 < means.max()
@@ -435,7 +435,7 @@ def deciding(claim: Claim, measured: Sequence[Effect], results: Results, strict:
     return printed_effects if printed_effects or strict else list(measured[:1])
 
 
-def effect_of(measured: Sequence[Effect], these: bool = False) -> Effect | PooledEffect:
+def effect_of(measured: Sequence[Effect], fixed: bool = False) -> Effect | PooledEffect:
     """The pooled effect of all testable sets with an interval, or that of the only one; of all sets where none is.
 
     A set of two units is left out beside others: the spread of two is often tiny by luck, and would rule the mean.
@@ -443,4 +443,4 @@ def effect_of(measured: Sequence[Effect], these: bool = False) -> Effect | Poole
     testable = [effect for effect in measured if effect.testable] or measured  # else the numbers of all
     usable = [effect for effect in testable if np.isfinite(effect.interval[1])]
     usable = [effect for effect in usable if len(usable) == 1 or effect.most > PAIR] or usable
-    return PooledEffect(usable, these) if len(usable) > 1 else (usable or testable)[0]
+    return PooledEffect(usable, fixed) if len(usable) > 1 else (usable or testable)[0]

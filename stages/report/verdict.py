@@ -130,14 +130,14 @@ class Judgement:
         A rival that is the best of several on the same rows leads by chance, too: it contradicts a claim only where its
         p-value times the number of rivals stays below 5 %.
         """
-        word = word_of(self.chosen, self.claim.unit, self.claim.these)
+        word = word_of(self.chosen, self.claim.unit, self.claim.fixed)
         rivals = picked_from(self.claim)
         return "open" if word == "contradicted" and self.effect.p_value * rivals > ALPHA else word
 
     @cached_property
     def effect(self) -> Effect | PooledEffect:
         """The effect on the judged sets."""
-        return effect_of(self.chosen, self.claim.these)
+        return effect_of(self.chosen, self.claim.fixed)
 
     def everywhere(self, results: Results) -> "Judgement":
         """The reading with its effects on all sets."""
@@ -192,11 +192,11 @@ def _without_interval(judgement: Judgement) -> str:
     return f"{UNTESTABLE}, no interval"
 
 
-def word_of(effects: Sequence[Effect], unit: str, these: bool = False) -> str:
+def word_of(effects: Sequence[Effect], unit: str, fixed: bool = False) -> str:
     """The word that the effects on one set or several come to."""
     if not any(single.testable for single in effects):
         return UNTESTABLE
-    effect = effect_of(effects, these)
+    effect = effect_of(effects, fixed)
     if isinstance(effect, PooledEffect) and effect.disagree:
         return MIXED
     return verdict(*effect.interval[1:], unit)

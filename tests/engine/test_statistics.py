@@ -168,7 +168,7 @@ def test_few_units_widen_the_interval():
 
 
 def test_in_the_mean_of_these_sets_each_counts_alike_and_their_differences_do_not_widen_it():
-    pooled = pool([0.0, 1.0, 5.0], [0.1, 0.2, 0.3], [5, 8, 11], these=True)
+    pooled = pool([0.0, 1.0, 5.0], [0.1, 0.2, 0.3], [5, 8, 11], fixed=True)
     assert pooled.mean == pytest.approx(2) and pooled.error == pytest.approx((0.01 + 0.04 + 0.09) ** 0.5 / 3)
     assert pooled.freedom == pytest.approx(0.14**2 / (0.01**2 / 5 + 0.04**2 / 8 + 0.09**2 / 11))
     assert pooled.between > 0 and pooled.differ < 0.001  # which is told nevertheless

@@ -233,7 +233,7 @@ def test_sets_that_disagree_have_a_mean_of_their_own(measure):
     claim = replace(OVER, dataset=("leads", "lags"), printed=0)
     results = measure("lod", pd.concat([leads, lags]))
     assert judge([claim], results)["verdict"].tolist() == ["mixed"]
-    assert judge([replace(claim, these=True)], results)["verdict"].tolist() == ["supported"]
+    assert judge([replace(claim, fixed=True)], results)["verdict"].tolist() == ["supported"]
 
 
 def test_two_sides_with_the_same_mesh_are_no_evidence(measure):

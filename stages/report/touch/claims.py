@@ -149,7 +149,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end] | scale | size, stage=STAGE,
         phrases=PHRASES, note=ALL if end == "_all" else "", section=section, of=of, readings=readings if sets else (),
-        these=end == "_mean", **sets,
+        fixed=end == "_mean", **sets,
     )  # fmt: skip
 
 
