@@ -17,7 +17,7 @@ from haptic_glance.lod.pictures import vivid
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh import Mesh, load, normalise, rotate_to_z_up
 from haptic_glance.touch import Surface
-from stages.report.drawing import picture, visible
+from stages.charts.drawing import picture, visible
 
 OUT = Path(__file__).with_name("moving_picture.webp")
 HOUSEHOLD = Path("data/household/meshes")

@@ -108,10 +108,10 @@ def judged_again(workspace: Workspace, claim: Any, anew: bool = False) -> dict[s
 
     anew: from the rows of the run that params.yaml describes, not from the published ones.
     """
+    from stages.charts.results import Results
     from stages.report import Params
     from stages.report.claims_page import open_text, over_text, sets_read, sets_text
     from stages.report.records import command
-    from stages.report.results import Results
     from stages.report.verdict import judged
 
     results = (Results if anew else Results.published)(workspace, workspace.settings(Params))
@@ -148,7 +148,7 @@ def as_share(row: dict[str, Any]) -> list[str]:
     """A line with an effect in % of the mean of both as README.md and the pages state it: % less, or times as much."""
     if not row["unit"].startswith("% of the mean of both") or "low" not in row:
         return []
-    from stages.report.cells import PREFIXES
+    from stages.charts.cells import PREFIXES
 
     less = row["effect"] > 0
     share = PREFIXES["less:" if less else "times:"]

@@ -42,10 +42,10 @@ from haptic_glance.look.points.methods import find_all, method_named, split_runn
 from haptic_glance.look.points.options import Options
 from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.touch import press_many, touchable
+from stages.charts.tables import with_interval, within
 from stages.compose import composed, quoted
 from stages.conspicuity.measure import read_view_maps
 from stages.engine.settings import FILE, ParamsError, check_clone, check_section, conf_folder, load_params, schema_of
-from stages.report.tables import with_interval, within
 
 OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from stages.charts.cells import rows_of
 from stages.claim import as_share, run
 from stages.engine.settings import Workspace
-from stages.report.cells import rows_of
 
 ROOT = Path(__file__).parents[1]
 KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]

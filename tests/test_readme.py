@@ -8,8 +8,8 @@ import pytest
 import trimesh
 
 from haptic_glance.__main__ import MESH_COMMANDS
+from stages.charts.cells import number_of, rows_of
 from stages.compose import groups
-from stages.report.cells import number_of, rows_of
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -28,7 +28,7 @@ def shown(number, like):
 
 @pytest.mark.parametrize("line", WITH_FIGURES, ids=lambda line: line.strip("| ")[:40])
 def test_every_figure_is_that_of_its_table(line):
-    """The title of a link to a CSV names the cells behind the figure, as stages.report.cells has them."""
+    """The title of a link to a CSV names the cells behind the figure, as stages.charts.cells has them."""
     (texts,) = FIGURE.findall(line)
     ((path, title),) = [link for link in LINK.findall(line) if link[1]]
     where, _, columns = title.partition(": ")

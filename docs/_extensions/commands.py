@@ -9,8 +9,8 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
+from stages.charts.cells import number_of, rows_of
 from stages.engine.rows import SUFFIX
-from stages.report.cells import number_of, rows_of
 from stages.report.claims import Claim
 from stages.report.records import COMPOSE, switch
 from stages.report.topics import CLAIMS

@@ -3,7 +3,7 @@
     {measured}`claims key=glance_over_best_gaze: effect low high +.2f`      +0.96 [0.75, 1.19]
     {measured}`tables/scenes scene=shelf method=uniform: faces .0f`         2,803
 
-Asked for as in the report's prose: stages.report.cells.
+Asked for as in the report's prose: stages.charts.cells.
 """
 
 from pathlib import Path
@@ -12,7 +12,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxRole
 
-from stages.report.cells import PLACE, rows_of, text_of
+from stages.charts.cells import PLACE, rows_of, text_of
 
 REPORTS = Path(__file__).resolve().parents[2] / "reports"
 

@@ -26,8 +26,8 @@ from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from stages.report.cells import parts_of, rows_of, text_of
-from stages.report.drawing import label
+from stages.charts.cells import parts_of, rows_of, text_of
+from stages.charts.drawing import label
 from stages.report.verdict import WORDS
 
 from .commands import Command, commands

@@ -56,6 +56,11 @@ def read_imprints(path: str | Path) -> dict[str, Imprints]:
     return imprints
 
 
+def read_images(path: Path) -> dict[str, np.ndarray]:
+    """{method: (k, rows, cols) imprints in 0..1} of one object."""
+    return {method: imprints.images for method, imprints in read_imprints(path).items()}
+
+
 class FaceCentres(Surface):
     """A Surface whose distances are those to the centres of the faces under the cells (T4.3.1, T figure 4.7).
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from haptic_glance.know.split import Split, shared_by
 from haptic_glance.look.points.methods import METHODS, SUMMED
-
-from .drawing import label
-from .results import Results, dataset_text
-from .tables import number
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import label
+from stages.charts.results import Results
+from stages.charts.tables import number
 
 Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean

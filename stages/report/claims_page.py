@@ -6,21 +6,28 @@ verdict, effect, data sets and command.
 
 from collections.abc import Sequence
 from html import escape
+from importlib import resources
 from string import Template
 from typing import Any
 
 import pandas as pd
 
 from haptic_glance.gallery.page import as_script
+from stages.charts.commands import command
+from stages.charts.datasets import dataset_text
+from stages.charts.html import box, folded, prose
+from stages.charts.results import Results
+from stages.charts.tables import with_interval
 
 from .claims import Claim
 from .effects import sets_of
-from .page import WORDS, box, folded, part, prose
-from .records import command
-from .results import Results, dataset_text
-from .tables import with_interval
 from .verdict import counted, open_by_cause, sentences
 
+# Verdict -> class in the style sheet.
+CLASSES = {
+    "supported": "yes", "contradicted": "no",
+    **dict.fromkeys(("no difference", "mixed", "depends on the reading", "not testable", "open"), "open"),
+}  # fmt: skip
 CHAPTERS = {  # start of a claim's section -> what it is about
     "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",
     "T6": "chapter 6: proposals for future work", "ours": "this project's own",
@@ -104,7 +111,9 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         "claims": "".join(items),
         "pairs": as_script(pairs),
     }
-    return Template(part("claims.html")).substitute(words)
+    return Template(resources.files(__package__ or "").joinpath("page/claims.html").read_text("utf-8")).substitute(
+        words
+    )
 
 
 def chapter_of(section: str) -> str:
@@ -115,7 +124,7 @@ def chapter_of(section: str) -> str:
 def what_holds(once: pd.DataFrame) -> str:
     """A table of sentences by chapter and verdict, each number a link to its sentences. once: as `sentences`."""
     chapters = pd.Series([chapter_of(str(section)) for section in once["section"]], dtype=object)
-    words = [word for word in WORDS if (once["verdict"] == word).any()]
+    words = [word for word in CLASSES if (once["verdict"] == word).any()]
     masks = {"sentences": once["verdict"].notna(), **{word: once["verdict"] == word for word in words}}
 
     def cell(chapter: str, word: str) -> str:
@@ -159,7 +168,7 @@ def _claim_html(
     terms = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
     pair_text = escape(over_text(row)) if row.pairs else "none"
     details = f'<dl>{terms}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{pair_text}</dd></dl>'
-    badge = f'<span class="word {WORDS[row.verdict]}">{row.verdict}</span>'
+    badge = f'<span class="word {CLASSES[row.verdict]}">{row.verdict}</span>'
     key = f" · <code>{row.key}</code>" if row.of else ""  # other claims have the same sentence
     summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}{key}</small>"
     marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'

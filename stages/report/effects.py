@@ -16,11 +16,11 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from stages.charts.results import NotRun, Results, either, listed, require_rows
 from stages.engine.rows import by_unit
 from stages.engine.statistics import Pooled, interval, needed, p_value, pool
 
 from .claims import Claim, Pick, Side
-from .results import NotRun, Results, either, listed, some
 from .validity import CHECKS, SAME, causes
 
 STATISTICS: dict[str, Callable[[Results, Claim], pd.Series]] = {}
@@ -34,9 +34,9 @@ def statistic(name: str) -> Callable:
 def differences(results: Results, claim: Claim) -> pd.Series:
     """The differences of a claim on one set, in its unit, indexed by its `over`; NotRun where nothing can be paired."""
     if claim.statistic not in STATISTICS:
-        import_module(f"{__package__}.topics")  # a worker has not imported the topic that registers it
+        import_module(f"{__package__}.parts")  # a worker has not imported the topic that registers it
     values = STATISTICS[claim.statistic](results, claim).dropna()
-    return claim.scale * some(values, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
+    return claim.scale * require_rows(values, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
 
 
 @statistic("difference")
@@ -174,7 +174,7 @@ def _side_rows(
     dataset = where.pop("dataset", claim.sets[0])
     keys = (*claim.over, *claim.within)
     query = (claim.stage, dataset, keys, claim.checked, repr(where), repr(other))
-    return results.recently(query, lambda: _select(results, claim, where, dataset, other))
+    return results.cached(query, lambda: _select(results, claim, where, dataset, other))
 
 
 def _select(
@@ -220,7 +220,7 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
             is_same = _same_mesh(claim, side_values)
             side_values = side_values[~is_same] if is_same.any() else side_values
             names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
-            some(side_values, f"no pairs of {names}", claim.stage, runnable=False)
+            require_rows(side_values, f"no pairs of {names}", claim.stage, runnable=False)
             values = side_values["first"] - side_values["second"]
             if claim.relative:
                 middle = (side_values["first"] + side_values["second"]) / 2
@@ -254,7 +254,7 @@ def _picked(parts: Sequence[pd.DataFrame], claim: Claim, column: str, pick: Pick
 
 
 def _some(rows: pd.DataFrame, claim: Claim, subject: str) -> pd.DataFrame:
-    return some(rows, f"no {subject} is among those that {claim.stage} measured", claim.stage, runnable=False)
+    return require_rows(rows, f"no {subject} is among those that {claim.stage} measured", claim.stage, runnable=False)
 
 
 TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested

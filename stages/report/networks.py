@@ -16,11 +16,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from haptic_glance.know.split import shared_by
+from stages.charts import tables
+from stages.charts.drawing import label, plt, start
+from stages.charts.results import NotRun, Results
 
-from . import tables
 from .claims import Claim
-from .drawing import label, plt, start
-from .results import NotRun, Results
 
 # As the thesis calls them, in its order.
 PRINTED = {name: label(name) for name in ("alexnet", "googlenet", "vgg16", "resnet50", "mobilenet_v2")}

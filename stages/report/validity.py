@@ -10,7 +10,7 @@ from math import log
 
 import pandas as pd
 
-from .results import NUMBERS, NotRun, Results
+from stages.charts.results import NUMBERS, NotRun, Results
 
 PLAIN, QSLIM = "qem", "qslim"  # plain simplification: with and without the fit of ours
 UNIT = ["item", "method", "target"]
@@ -48,7 +48,7 @@ def of_all_rows(work: Check) -> Check:
 
     @wraps(work)
     def selected(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-        answers = results.once(
+        answers = results.cached(
             (work.__name__, stage, dataset), lambda: work(results, stage, dataset, results.rows(stage, dataset))
         )
         return answers.take(rows.index.to_numpy())  # the index of all rows counts them
@@ -207,7 +207,7 @@ def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metr
 
     value_columns = {"metric", "value", "seconds", "note", "imprints", "clock", "layer", "part"}
     keys = [column for column in rows if column in metric_rows and column not in value_columns]
-    return results.once(("beside", stage, dataset, metric, *keys), of_all)[rows.index]
+    return results.cached(("beside", stage, dataset, metric, *keys), of_all)[rows.index]
 
 
 def invalid_units(rows: pd.DataFrame) -> pd.Series:

@@ -12,12 +12,13 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from stages.charts.datasets import dataset_text
+from stages.charts.results import NotRun, Results, listed
+from stages.charts.tables import number
 from stages.engine.statistics import discoveries
 
 from .claims import POINTS, Claim, Pick, tested_on
 from .effects import Effect, PooledEffect, deciding, effect_of, effects
-from .results import NotRun, Results, dataset_text, listed
-from .tables import number
 
 DECIDED = ("supported", "contradicted", "no difference")
 MIXED, DEPENDS, UNTESTABLE = "mixed", "depends on the reading", "not testable"

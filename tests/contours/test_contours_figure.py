@@ -8,10 +8,10 @@ from haptic_glance.base.files import write_mesh, write_text
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface
+from stages.charts.results import Results
 from stages.contours.contours import sample_contours, write_sequences
 from stages.engine.settings import Workspace
 from stages.report import Params, sequences
-from stages.report.results import Results
 from stages.report.sequences.contours import followed
 from stages.report.topics import build_one
 

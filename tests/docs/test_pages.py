@@ -16,7 +16,7 @@ from _extensions.tables import minutes  # noqa: E402
 
 import haptic_glance  # noqa: E402
 from haptic_glance.__main__ import MESH_COMMANDS  # noqa: E402
-from stages.report.cells import rows_of  # noqa: E402
+from stages.charts.cells import rows_of  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 CLAIMS = rows_of(REPORTS / "claims.csv")

@@ -12,13 +12,14 @@ from scipy import stats
 
 from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.look.views import TWELVE
+from stages.charts.datasets import COLOURED
+from stages.charts.pareto import attention_seconds
+from stages.charts.results import NotRun
 from stages.engine.statistics import interval
 from stages.report import attention
 from stages.report.attention import maps
 from stages.report.attention.claims import agreement, difference, rivals
 from stages.report.page import pack_viewer
-from stages.report.pareto import attention_seconds
-from stages.report.results import COLOURED, NotRun
 from stages.report.topics import CLAIMS, build_one
 from stages.report.verdict import judge
 from tests.report.frames import only, verdicts

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.charts.results import NotRun
 from stages.report import meshes
 from stages.report.meshes.backends import growth
-from stages.report.results import NotRun
 from stages.report.topics import build_one
 
 SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]

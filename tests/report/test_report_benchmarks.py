@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.charts.results import NotRun
 from stages.report import touch
-from stages.report.results import NotRun
 from stages.report.stability import costs
 from stages.report.topics import build_one
 

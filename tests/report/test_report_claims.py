@@ -6,13 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.charts.datasets import SECTION_3_1
+from stages.charts.results import NotRun
 from stages.engine.statistics import interval, p_value
 from stages.report import effects, topics
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.effects import STATISTICS, differences
-from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import CLAIMS
 from stages.report.verdict import counted, holding, judge, judged, over_readings, sentences, verdict
 from tests.report.frames import verdicts

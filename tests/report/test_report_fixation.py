@@ -12,14 +12,14 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_arrays
+from stages.charts.items import Figure
+from stages.charts.results import NotRun
 from stages.engine.statistics import interval
 from stages.fixation.agreement import ALL_VIEWS
 from stages.report import fixation as topic
 from stages.report.effects import differences
 from stages.report.fixation import maps
 from stages.report.fixation import rows as _fixation
-from stages.report.items import Figure
-from stages.report.results import NotRun
 from stages.report.topics import build_one
 from tests.report.frames import has_ink, only, verdicts
 

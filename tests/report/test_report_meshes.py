@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_arrays, write_mesh
+from stages.charts.results import NotRun
 from stages.engine.statistics import interval
 from stages.report import meshes
 from stages.report.claims import highest_of, lowest_of
@@ -14,7 +15,6 @@ from stages.report.effects import differences
 from stages.report.meshes import pictures
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.tables import data_sets, face_counts, paired_cells
-from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 from tests.report.frames import has_ink

@@ -14,15 +14,15 @@ import pytest
 import yaml
 
 from haptic_glance.base.files import write_json, write_table, write_text
+from stages.charts.drawing import save
+from stages.charts.results import NotRun
 from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
 from stages.report import items, reuse
 from stages.report.__main__ import write_report
 from stages.report.claims_page import sets_read
-from stages.report.drawing import save
 from stages.report.records import command
-from stages.report.results import NotRun
 from stages.report.topics import CLAIMS, TOPICS
 
 pytestmark = pytest.mark.slow

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 from matplotlib.text import Text
 
-from stages.report.drawing import place_names, plt
-from stages.report.pareto import OFF, ON, PERHAPS, pareto_chart, pareto_front, placed, ticks
-from stages.report.results import NotRun
+from stages.charts.drawing import place_names, plt
+from stages.charts.pareto import OFF, ON, PERHAPS, pareto_chart, pareto_front, placed, ticks
+from stages.charts.results import NotRun
 
 
 @pytest.mark.parametrize(("cost", "accuracy", "better", "front"), [

@@ -5,7 +5,7 @@ import pytest
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh.mesh import Mesh
-from stages.report.drawing import VIEWPOINT, colours, picture, visible, vivid
+from stages.charts.drawing import VIEWPOINT, colours, picture, visible, vivid
 from stages.report.meshes import pictures
 from stages.report.meshes.errors import METHODS
 from stages.report.meshes.pictures import against_the_mean, density, faces_an_area

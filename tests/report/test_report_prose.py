@@ -9,9 +9,9 @@ import pytest
 from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import read_json, write_table
+from stages.charts.cells import CLAIMS, PLACE, filled
+from stages.charts.items import Figure, Table, add_words, findings
 from stages.report import topics
-from stages.report.cells import CLAIMS, PLACE, filled
-from stages.report.items import Figure, Table, add_words, findings
 from stages.report.records import write_headlines
 from stages.report.site import topic_main
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from haptic_glance.base.files import read_json, read_table, write_table
+from stages.charts.drawing import SETTINGS, plt
+from stages.charts.results import Results
 from stages.engine.settings import Workspace
 from stages.report import Params, items, meshes, topics
-from stages.report.drawing import SETTINGS, plt
-from stages.report.results import Results
 from stages.report.topics import CLAIMS, TOPICS, build_all, name_of
 from stages.report.topics import KINDS as DICTS
 from stages.report.verdict import COLUMNS, by_claim, tabled

@@ -11,11 +11,11 @@ import pytest
 from matplotlib.figure import Figure as Drawing
 from PIL import Image
 
-from stages.report.cells import CLAIMS as OF_CLAIMS
-from stages.report.items import Built, Figure, Table
+from stages.charts.cells import CLAIMS as OF_CLAIMS
+from stages.charts.items import Built, Figure, Table
+from stages.charts.tables import Ranking
 from stages.report.page import frame_html, item_html, prose, small_picture
 from stages.report.site import FINDINGS, findings_html, front_main, page, questions, questions_html
-from stages.report.tables import Ranking
 from stages.report.topics import CLAIMS, KINDS, TOPICS
 
 REPORTS = Path(__file__).parents[2] / "reports"

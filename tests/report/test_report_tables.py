@@ -7,12 +7,10 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_table
-from stages.report import touch
-from stages.report.cells import filled
-from stages.report.items import Table
-from stages.report.meshes.tables import paired_cells
-from stages.report.results import NotRun
-from stages.report.tables import (
+from stages.charts.cells import filled
+from stages.charts.items import Table
+from stages.charts.results import NotRun
+from stages.charts.tables import (
     Ranking,
     as_text,
     blocks,
@@ -25,6 +23,8 @@ from stages.report.tables import (
     signed,
     with_interval,
 )
+from stages.report import touch
+from stages.report.meshes.tables import paired_cells
 from stages.report.topics import build_all, build_one
 from stages.report.touch.tables import METHODS, SSIM
 

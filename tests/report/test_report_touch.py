@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.charts.datasets import SETS_4_2
+from stages.charts.results import NotRun
+from stages.charts.tables import CLASSIFIERS
 from stages.report import touch
 from stages.report.effects import differences
-from stages.report.results import SETS_4_2, NotRun
-from stages.report.tables import CLASSIFIERS
 from stages.report.topics import build_one
 from stages.report.touch import claims, pictures, tables
 from stages.report.touch.tables import COMMON, METHODS, PRINTED, accuracies, shared_objects

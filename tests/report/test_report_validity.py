@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.charts.datasets import SECTION_3_1
 from stages.report import meshes
 from stages.report.claims import POINTS, Claim, highest_of, reading
 from stages.report.effects import Effect, differences, effect_of, invalid
 from stages.report.meshes import tables
-from stages.report.results import SECTION_3_1
 from stages.report.topics import build_one
 from stages.report.validity import (
     AS_PLAIN,

@@ -4,9 +4,9 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_table, write_text
+from stages.charts.results import NotRun, Results
 from stages.engine.settings import Workspace
 from stages.report import scene
-from stages.report.results import NotRun, Results
 from stages.report.scene import counts as table
 from stages.report.topics import build_one
 

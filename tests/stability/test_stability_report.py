@@ -4,11 +4,11 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_text
+from stages.charts.drawing import label
+from stages.charts.results import Results
 from stages.engine.rows import write_rows
 from stages.engine.settings import Workspace
 from stages.report import Params, stability
-from stages.report.drawing import label
-from stages.report.results import Results
 from stages.report.stability import simplification
 from stages.report.topics import build_one
 from stages.stability import COLUMNS

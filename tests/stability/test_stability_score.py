@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.charts.results import NotRun
 from stages.engine.statistics import breaking_interval
 from stages.report import stability
-from stages.report.results import NotRun
 from stages.report.stability.breaking import cell
 from stages.report.stability.people import compared, verdict
 from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores

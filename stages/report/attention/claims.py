@@ -13,23 +13,14 @@ from typing import Any
 import pandas as pd
 
 from stages.bench import PER_OBJECT, has_seen
+from stages.charts.datasets import COLOURED, GAZED, GREY_3_1, MENDED_3_2, ON_BLACK, SECTION_3_2
+from stages.charts.drawing import label
+from stages.charts.items import Table, shared_notes
+from stages.charts.pareto import attention_seconds
+from stages.charts.results import NotRun, Results, require_rows
+from stages.charts.tables import Ranking, interval_columns, number, records, signed, with_interval
 from stages.engine.statistics import BROKEN, interval
 from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
-from stages.report.drawing import label
-from stages.report.items import Table, shared_notes
-from stages.report.pareto import attention_seconds
-from stages.report.results import (
-    COLOURED,
-    GAZED,
-    GREY_3_1,
-    MENDED_3_2,
-    ON_BLACK,
-    SECTION_3_2,
-    NotRun,
-    Results,
-    some,
-)
-from stages.report.tables import Ranking, interval_columns, number, records, signed, with_interval
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"
@@ -52,7 +43,7 @@ def method_text(method: str) -> str:
 def scores(rows: pd.DataFrame, metric: str) -> pd.DataFrame:
     """Frame objects x methods of one metric; NotRun where it was not measured."""
     values = rows[rows["metric"] == metric].dropna(subset=["value"])
-    some(values, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
+    require_rows(values, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
     return values[~values["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
 
 

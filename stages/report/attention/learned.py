@@ -14,13 +14,11 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.distance import pdist
 
-from stages.engine.statistics import interval
-from stages.report.claims import Claim
-from stages.report.drawing import label
-from stages.report.effects import side, statistic
-from stages.report.items import Table
-from stages.report.results import COLOURED, MENDED_3_2, SECTION_3_2, NotRun, Results, dataset_text, some
-from stages.report.tables import (
+from stages.charts.datasets import COLOURED, MENDED_3_2, SECTION_3_2, dataset_text
+from stages.charts.drawing import label
+from stages.charts.items import Table
+from stages.charts.results import NotRun, Results, require_rows
+from stages.charts.tables import (
     Ranking,
     everywhere,
     grouped,
@@ -32,6 +30,9 @@ from stages.report.tables import (
     signed,
     with_interval,
 )
+from stages.engine.statistics import interval
+from stages.report.claims import Claim
+from stages.report.effects import side, statistic
 
 from .claims import ALONE, GAIN, MEAN, OURS, gain
 
@@ -50,7 +51,7 @@ ORDER = {name: place for place, name in enumerate([*AREA, *TRAINING, *VALIDATION
 def table_3_1(results: Results) -> Table:
     """How like each channel's map is to the ground truth's, and how near its brightest places are."""
     rows = _gaze_first(results, "weight", "no weights learned from ground truth")
-    rows = some(rows[rows["method"].isin(KINDS)], "no weights learned from ground truth", "weights")
+    rows = require_rows(rows[rows["method"].isin(KINDS)], "no weights learned from ground truth", "weights")
     frame = pd.DataFrame([
         {"method": method, "channel": channel, **_over_objects(group), "dataset": dataset}
         for (dataset, method, channel), group in grouped(rows, ["dataset", "method", "channel"])
@@ -272,7 +273,7 @@ def nested(results: Results) -> Table:
     """NSS and AUC of the glance with its choices made once, and made anew without the object; the difference paired."""
     rows = results.rows("attention_checks", "gaze")
     values = {way: rows[rows["method"] == f"{OURS}_{way}"] for way in (ONCE, NESTED)}
-    some(values[NESTED], "no glance with nested choices", "attention_checks", runnable=False)
+    require_rows(values[NESTED], "no glance with nested choices", "attention_checks", runnable=False)
     tables = {way: part.pivot_table(index="item", columns="metric", values="value") for way, part in values.items()}
     entries, line = [], {"model": label(OURS)}
     for metric, words in ALONE.items():

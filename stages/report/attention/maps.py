@@ -11,12 +11,14 @@ from contextlib import suppress
 import numpy as np
 from matplotlib.axes import Axes
 
+from haptic_glance.base.files import read_arrays
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.points import COMBINATIONS, fuse
+from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.look.weights.svm import SALIENT_LEVEL
 from haptic_glance.mesh.mesh import Mesh
-from stages.report.drawing import (
+from stages.charts.drawing import (
     CYCLE,
     GREY,
     MAP,
@@ -31,9 +33,11 @@ from stages.report.drawing import (
     square_grid,
     vivid,
 )
-from stages.report.items import Figure
-from stages.report.pareto import attention_seconds, pareto_chart
-from stages.report.results import NotRun, Results, some
+from stages.charts.items import Figure
+from stages.charts.pareto import attention_seconds, pareto_chart
+from stages.charts.results import NotRun, Results, require_rows
+from stages.conspicuity.measure import read_maps
+from stages.salient_points.measure import read_saliency
 from stages.weights.ground_truth import gts_map, visible_points
 
 from .claims import CLASSICAL, HUMAN, agreement, method_text, scores
@@ -44,6 +48,30 @@ FADED = 0.78  # of what lies outside of the regions
 MACHINES = ("svm_object", "svm")  # the thesis's, one for the object itself; and one that has not seen it
 MARGIN = 4  # pixels kept round the object
 RED = "#D81B1B"
+
+
+def maps_of(
+    results: Results, name: str, channels: Sequence[str] | None = None
+) -> tuple[np.ndarray, np.ndarray, list[Viewpoint], list[str]]:
+    """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of an object.
+
+    channels: the channels, in this order; NotRun where one was not computed. None: those that were.
+    """
+    maps, mask, viewpoints, computed = read_maps(results.file("conspicuity", f"{name}.npz"))
+    if channels is None:
+        return maps, mask, viewpoints, computed
+    missing = [channel for channel in channels if channel not in computed]
+    if missing:
+        raise NotRun(f"no maps of {', '.join(missing)}", "conspicuity", runnable=False)
+    return maps[:, [computed.index(channel) for channel in channels]], mask, viewpoints, list(channels)
+
+
+def objects_with_truth(results: Results, preferred: Sequence[str], count: int) -> list[str]:
+    """Up to `count` objects that have ground truth and salient points: the preferred ones first."""
+    truths = {path.stem for path in (results.folder("weights") / "ground_truth").glob("*.npz")}
+    require_rows(truths, "no object has ground truth", "weights")
+    names = [name for name in results.choose(preferred, len(results.objects)) if name in truths]
+    return require_rows(names, "no object with ground truth has salient points", "salient_points")[:count]
 
 
 def figure_3_3(results: Results) -> Figure:
@@ -63,7 +91,7 @@ def figure_3_3(results: Results) -> Figure:
 
 def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
     """Draws one object; returns the share of the regions without colour that stay regions with it."""
-    maps, masks, viewpoints, channels = results.maps(name, COMBINATIONS["VisAttAll"])
+    maps, masks, viewpoints, channels = maps_of(results, name, COMBINATIONS["VisAttAll"])
     view = _nearest(viewpoints, masks, range(len(viewpoints)))
     mask, part = masks[view], _window(masks[view], square=True)
     render = _render(results.mesh(name), viewpoints[view], mask)[part]
@@ -84,7 +112,7 @@ def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
 def figure_3_10(results: Results) -> Figure:
     """The nine conspicuity maps of one object beside its render, in the view in which most channels answer."""
     name = results.choose(results.settings.figure_objects, 1, stage="conspicuity")[0]
-    maps, masks, viewpoints, map_channels = results.maps(name)
+    maps, masks, viewpoints, map_channels = maps_of(results, name)
     channels = [channel for channel in CHANNELS if channel in map_channels]
     answers = (maps.max(axis=(2, 3)) > 0.02).sum(axis=1)  # below it a map shows nothing
     answers[~masks.any(axis=(1, 2))] = -1
@@ -110,11 +138,17 @@ def figure_3_10(results: Results) -> Figure:
 
 def figure_3_12(results: Results) -> Figure:
     """Saliency by the classical model, by equal and learned weights, and by our model, beside the truth."""
-    names = results.with_ground_truth(results.settings.figure_objects, 4)
-    methods = results.saliency(names[0]).those_of(["itti", "VisAttAll", "guided_ed", "guided_ssim", "glance"])
+    names = objects_with_truth(results, results.settings.figure_objects, 4)
+    methods = results.by_method("salient_points", read_saliency, names[0]).those_of(
+        ["itti", "VisAttAll", "guided_ed", "guided_ssim", "glance"]
+    )
     figure, grid = square_grid(len(names), len(methods) + 1, side=1.7, right=0.9)
     for row, name in zip(grid, names, strict=True):
-        mesh, ground_truth, saliency = results.mesh(name), results.ground_truth(name), results.saliency(name)
+        mesh, ground_truth, saliency = (
+            results.mesh(name),
+            read_arrays(results.file("weights", f"ground_truth/{name}.npz")),
+            results.by_method("salient_points", read_saliency, name),
+        )
         for axes, method in zip(row, methods, strict=False):
             show(axes, mesh, vivid(saliency[method]))
         show(row[-1], mesh, vivid(ground_truth["density"]), points=ground_truth["points"])
@@ -125,12 +159,12 @@ def figure_3_12(results: Results) -> Figure:
 
 def figure_3_13(results: Results) -> Figure:
     """The binarised ground truth of a view, and what the SVM makes of its nine maps."""
-    name = results.with_ground_truth(results.settings.figure_objects, 1)[0]
-    mesh, ground_truth = results.mesh(name), results.ground_truth(name)
-    maps, masks, viewpoints, _ = results.maps(name, list(ground_truth["channels"]))
-    svms = results.learned(name, mesh).svms
+    name = objects_with_truth(results, results.settings.figure_objects, 1)[0]
+    mesh, ground_truth = results.mesh(name), read_arrays(results.file("weights", f"ground_truth/{name}.npz"))
+    maps, masks, viewpoints, _ = maps_of(results, name, list(ground_truth["channels"]))
+    svms = read_learned_weights(results.file("weights", "weights.csv").parent, name, mesh).svms
     machines = [machine for machine in MACHINES if machine in svms]
-    some(machines, f"no SVM was trained for {name}", "weights", runnable=False)
+    require_rows(machines, f"no SVM was trained for {name}", "weights", runnable=False)
     spots = [visible_points(mesh, ground_truth["points"], viewpoint, masks.shape[1:])[:2] for viewpoint in viewpoints]
     counts = np.array([len(rows) for rows, _ in spots])
     view = _nearest(viewpoints, masks, np.flatnonzero(counts >= 0.6 * counts.max()))  # such views show points enough
@@ -194,7 +228,7 @@ def build(results: Results) -> Figure:
     """The median over the objects and the quartiles, a line a set of views."""
     rows = results.measured("views", metric="seen_share")
     sets = {method: name for method, name in NAMES.items() if method in set(rows["method"])}
-    some(sets, f"none of {', '.join(NAMES)} among the sets of views", "views", runnable=False)
+    require_rows(sets, f"none of {', '.join(NAMES)} among the sets of views", "views", runnable=False)
     figure, axes = plt.subplots(figsize=(7.2, 4.2))
     for (method, name), tint, mark in zip(sets.items(), CYCLE, MARKERS, strict=False):
         table = rows[rows["method"] == method].pivot(index="item", columns="views", values="value")

@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 
 from haptic_glance.base.timing import CLOCK
 from haptic_glance.know.split import Split
+from stages.charts.drawing import CYCLE, GREY, PALE, label, plain_logarithm, plt
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import NOISE, ON, placed
+from stages.charts.results import Results, require_rows
+from stages.charts.tables import everywhere, interval_columns, interval_text, number, percent, records, signed, within
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, GREY, PALE, label, plain_logarithm, plt
-from stages.report.items import Figure, Table
-from stages.report.pareto import NOISE, ON, placed
-from stages.report.results import Results, some
-from stages.report.tables import everywhere, interval_columns, interval_text, number, percent, records, signed, within
 
 PANELS = {"regions": "one of six shapes, by unseen regions", "objects": "the class of an unseen object"}
 SIX = 6  # shapes of one question
@@ -187,7 +187,7 @@ def front_rows(results: Results) -> pd.DataFrame:
 def of_rung(rows: pd.DataFrame, rung: str) -> pd.DataFrame:
     """One row a choice: its options, `words`, the accuracies with low and high, seconds with their parts, training."""
     lines = []
-    for choice, group in some(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
+    for choice, group in require_rows(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
         first = group.iloc[0]
         line: dict[str, Any] = {"number": choice, "words": words(first)} | {name: first[name] for name in CHOICES}
         for split, name in SPLITS.items():
@@ -218,7 +218,7 @@ def brief(value: float) -> str:
 
 def named(rows: pd.DataFrame, role: str) -> int:
     """The number of the confirmed choice with a role, `smallest` or `default`."""
-    return int(some(rows[rows["role"] == role], f"no {role} choice was confirmed", STAGE)["number"].iloc[0])
+    return int(require_rows(rows[rows["role"] == role], f"no {role} choice was confirmed", STAGE)["number"].iloc[0])
 
 
 TABLES = {"front": front_table, "front_changed": changed}

@@ -8,12 +8,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from haptic_glance.know.split import Split, shared_by
+from stages.charts.drawing import CYCLE, GREY, label, plt
+from stages.charts.items import Figure, Table
+from stages.charts.results import Results
+from stages.charts.tables import grouped, interval_columns, interval_text, number, percent, records, within
 from stages.report.claims import Claim, Side
-from stages.report.drawing import CYCLE, GREY, label, plt
 from stages.report.effects import side, statistic
-from stages.report.items import Figure, Table
-from stages.report.results import Results
-from stages.report.tables import grouped, interval_columns, interval_text, number, percent, records, within
 
 STAGE, GROUP = "exploration", "six"
 WAYS = {"gain": "where the belief gains most", "saliency": "most salient first", "random": "in random order"}

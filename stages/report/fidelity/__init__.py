@@ -1,7 +1,8 @@
 """How faithful the project is to the thesis: each section, formula, table and figure, and where it is done."""
 
-from stages.report.items import Table
-from stages.report.results import NotRun, Results, dataset_text
+from stages.charts.datasets import dataset_text
+from stages.charts.items import Table
+from stages.charts.results import NotRun, Results
 
 PRINTED = "as printed"
 RUNS = (PRINTED, "differs", "no data", "not measured", "illustration")  # all but the first say what differs

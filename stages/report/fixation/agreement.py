@@ -16,15 +16,16 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import CYCLE, GREY, INK, MAP, PALE, colours, label, plain_logarithm, plt
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import pareto_chart
+from stages.charts.results import Results
+from stages.charts.tables import Ranking, everywhere, grouped, number, records, signed, with_interval, within
 from stages.engine.statistics import interval
 from stages.fixation.tasks import SHAPE_MEASURES
 from stages.report.claims import Claim
-from stages.report.drawing import CYCLE, GREY, INK, MAP, PALE, colours, label, plain_logarithm, plt
 from stages.report.effects import side, statistic
-from stages.report.items import Figure, Table
-from stages.report.pareto import pareto_chart
-from stages.report.results import Results, dataset_text
-from stages.report.tables import Ranking, everywhere, grouped, number, records, signed, with_interval, within
 
 from .rows import (
     FUSED,

@@ -10,11 +10,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from stages.charts.datasets import GAZED
 from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
-from stages.report.results import GAZED
 
 from .agreement import MEDIAN, UPPER_QUARTILE
 from .rows import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, WHOLE, network_text, task_text, with_random_weights

@@ -9,15 +9,16 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure as Drawing
 
-from haptic_glance.base.files import object_files
+from haptic_glance.base.files import object_files, read_arrays
 from haptic_glance.deep.resize import GRIDS, resize_cams
 from haptic_glance.mesh.mesh import Mesh
+from stages.charts.drawing import colour_bar, colour_map, label, name_panels, picture, square_grid, squared, vivid
+from stages.charts.items import Figure, Kept, add_words, last_drawn
+from stages.charts.results import NotRun, Results, require_rows
 from stages.fixation.fusion import fuse
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
-from stages.report.drawing import colour_bar, colour_map, label, name_panels, picture, square_grid, squared, vivid
-from stages.report.items import Figure, Kept, add_words, last_drawn
-from stages.report.results import NotRun, Results, some
+from stages.salient_points.measure import read_saliency
 
 from .rows import LEE, NARROWED, OURS, RIVALS, TASKS, VIEWPOINTS, network_text, stored, task_text
 
@@ -45,7 +46,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
     """Draws where a network looks for the object itself, from three sides."""
     mesh, _, maps, words = _look(results, dataset)
     by_method = {method: views for method, views in maps.items() if ITSELF in views[0]}
-    some(by_method, f"no network named {words['name']} itself", "fixation", runnable=False)
+    require_rows(by_method, f"no network named {words['name']} itself", "fixation", runnable=False)
     renders = [picture(mesh, viewpoint=viewpoint, rows=ROWS) for viewpoint in VIEWPOINTS]
     images = {
         network_text(method): [_veiled(render, layers[ITSELF]) for render, layers in zip(renders, views, strict=True)]
@@ -58,7 +59,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
 def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
     """Draws where a network looks on one object in each of its tasks."""
     mesh, visible, maps, words = _look(results, dataset)
-    some(maps, f"no network looked at {words['name']}", "fixation", runnable=False)
+    require_rows(maps, f"no network looked at {words['name']}", "fixation", runnable=False)
     view = int((visible @ mesh.vertex_areas).argmax())  # what shows most of the object
     render = picture(mesh, viewpoint=VIEWPOINTS[view], rows=ROWS)
     images, layers = {}, {}
@@ -76,16 +77,20 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     names, marked = _ready(results, dataset), {}
     for name in names:
         with suppress(NotRun):
-            marked[name] = results.ground_truth(name, dataset)["density"]
+            marked[name] = read_arrays(results.file("weights", f"ground_truth/{name}.npz", dataset))["density"]
     names = list(marked or names)[:4]
     files = {name: stored(results, name, dataset) for name in names}
     methods = _networks(files[names[0]], NARROWED)
-    some(methods, f"no fused maps of {names[0]}", "fixation", runnable=False)
+    require_rows(methods, f"no fused maps of {names[0]}", "fixation", runnable=False)
     truth = "human gaze" if results.folder("fixation", dataset).parent.name == "gaze" else "marks"
     models = (LEE.task, *RIVALS.values(), OURS.task)
-    rivals, images, columns = results.saliency(names[0], dataset).those_of(models), {}, {}
+    rivals, images, columns = (
+        results.by_method("salient_points", read_saliency, names[0], dataset).those_of(models),
+        {},
+        {},
+    )
     for name, arrays in files.items():
-        mesh, saliency = results.mesh(name, dataset), results.saliency(name, dataset)
+        mesh, saliency = results.mesh(name, dataset), results.by_method("salient_points", read_saliency, name, dataset)
         columns = {truth: marked[name]} if marked else {}
         columns |= {
             f"{task_text(NARROWED)}\n{network_text(method)}": arrays[f"{method}.{NARROWED}"] for method in methods
@@ -121,7 +126,7 @@ def _look(results: Results, dataset: str | None) -> tuple[Mesh, np.ndarray, View
 def _ready(results: Results, dataset: str | None) -> list[str]:
     """Names of the objects of a set at which networks looked, the settings' own first."""
     names = object_files(results.folder("fixation", dataset))
-    some(names, "no objects in fixation", "fixation")
+    require_rows(names, "no objects in fixation", "fixation")
     return sorted(names, key=lambda name: [*results.settings.figure_objects, name].index(name))
 
 

@@ -12,10 +12,11 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import read_arrays
+from stages.charts.datasets import GAZED
+from stages.charts.drawing import CYCLE, GREY, label
+from stages.charts.results import Results, require_file, require_rows
 from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.tasks import LEVELS, SHAPE_MEASURES, viewpoint_sphere
-from stages.report.drawing import CYCLE, GREY, label
-from stages.report.results import GAZED, Results, some, there
 
 FUSED, NARROWED = "ewigc", "ewigc_l4"  # T eq. 3.24 and 3.25
 NAMES = {FUSED: "EWIGC", NARROWED: "EWIGC_L4", "random": "noise"}
@@ -83,7 +84,7 @@ def sources(results: Results, metric: str = "pcc") -> dict[str, pd.DataFrame]:
         name = "marks" if dataset == MARKED and metric != "pcc_tasks" else dataset
         if count:
             truths[f"human gaze, {count} {gazed[dataset]}" if dataset in gazed else f"{name}, {count} objects"] = rows
-    return some(truths, "no object of this run has ground truth", "fixation", runnable=False)
+    return require_rows(truths, "no object of this run has ground truth", "fixation", runnable=False)
 
 
 def no_people(truths: Iterable[str]) -> str:
@@ -115,4 +116,4 @@ def networks(rows: pd.DataFrame) -> list[str]:
 def stored(results: Results, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
     """Arrays of data/SET/fixation/NAME.npz, as stages.fixation.__main__ describes them."""
     path = results.folder("fixation", dataset) / f"{name}.npz"
-    return read_arrays(there(path, f"no fixation/{name}.npz", "fixation"))
+    return read_arrays(require_file(path, f"no fixation/{name}.npz", "fixation"))

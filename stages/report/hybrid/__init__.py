@@ -7,14 +7,15 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import plt
+from stages.charts.items import Figure, Table
+from stages.charts.results import NotRun, Results
+from stages.charts.tables import Ranking, grid, grouped, number, percent, with_interval, within
 from stages.engine.settings import conf_folder, load_params
 from stages.report.claims import POINTS, Claim, Side, reading
-from stages.report.drawing import plt
 from stages.report.effects import difference, statistic
-from stages.report.items import Figure, Table
 from stages.report.networks import PASSES, SEEN, SETS, SPLITS, accuracy, both, draw_matrices, everywhere, mean, seen
-from stages.report.results import NotRun, Results, dataset_text
-from stages.report.tables import Ranking, grid, grouped, number, percent, with_interval, within
 from stages.report.validity import UNMEASURED
 
 SENSES = {"vision": "sight", "touch": "touch"}

@@ -2,8 +2,8 @@
 
 from functools import partial
 
-from stages.report.items import as_printed
-from stages.report.results import SECTION_3_1, SECTION_3_2
+from stages.charts.datasets import SECTION_3_1, SECTION_3_2
+from stages.charts.items import as_printed
 
 from . import backends, errors, tables
 from .claims import CLAIMS as CLAIMS

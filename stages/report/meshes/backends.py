@@ -13,12 +13,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
+from stages.charts.drawing import GREY, INK, Spot, colours, label, place_names, plain_logarithm, plt
+from stages.charts.items import Figure, Table, shared_notes
+from stages.charts.pareto import ON, noise_of, placed
+from stages.charts.results import NotRun, Results
+from stages.charts.tables import interval_columns, percent, with_interval
 from stages.engine.statistics import interval
-from stages.report.drawing import GREY, INK, Spot, colours, label, place_names, plain_logarithm, plt
-from stages.report.items import Figure, Table, shared_notes
-from stages.report.pareto import ON, noise_of, placed
-from stages.report.results import NotRun, Results
-from stages.report.tables import interval_columns, percent, with_interval
 
 REFERENCE, OURS = "pymeshlab", "fast"
 CELL, TASK = ["mesh", "full", "target", "with_points"], ["backend", "with_points"]

@@ -11,11 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.engine.statistics import interval
-from stages.report.claims import Claim, Methods, highest_of, in_sums, lowest_of, reading
-from stages.report.drawing import label
-from stages.report.effects import invalid_pairs, reasons_of, side, statistic
-from stages.report.results import (
+from stages.charts.datasets import (
     COLOURED,
     GAZED,
     MENDED_3_2,
@@ -25,11 +21,12 @@ from stages.report.results import (
     SECTION_3_2,
     SETS_3_1,
     SETS_3_1_FOUR,
-    NotRun,
-    Results,
-    listed,
-    some,
 )
+from stages.charts.drawing import label
+from stages.charts.results import NotRun, Results, listed, require_rows
+from stages.engine.statistics import interval
+from stages.report.claims import Claim, Methods, highest_of, in_sums, lowest_of, reading
+from stages.report.effects import invalid_pairs, reasons_of, side, statistic
 
 from .tables import (
     BY_AREA,
@@ -125,7 +122,7 @@ def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
     rows = results.measured(claim.stage, claim.sets[0], **claim.where, **claim.first).sort_values("faces")
     rows = _valid(results, claim, rows)
     rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1]
-    some(rows, "no object that is taken to two face counts", claim.stage, runnable=False)
+    require_rows(rows, "no object that is taken to two face counts", claim.stage, runnable=False)
     errors = rows.groupby("item")["value"]
     return errors.first() - errors.last()
 
@@ -183,7 +180,7 @@ def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: o
     """Frame (object, target) x methods, where all of the methods that were run reach the target."""
     rows = results.measured(claim.stage, claim.sets[0], **{**claim.where, **where}, method=methods)
     table = _valid(results, claim, rows).pivot(index=CELL, columns="method", values="value").dropna()
-    return some(table, f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
+    return require_rows(table, f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
 
 
 def _valid(results: Results, claim: Claim, rows: pd.DataFrame) -> pd.DataFrame:

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-from stages.engine.statistics import interval
-from stages.report.drawing import (
+from stages.charts.datasets import SECTION_3_1, dataset_text
+from stages.charts.drawing import (
     CYCLE,
     GREY,
     INK,
@@ -27,10 +27,11 @@ from stages.report.drawing import (
     plain_logarithm,
     plt,
 )
-from stages.report.items import Figure
-from stages.report.pareto import ON, attention_seconds, noise_by, placed
-from stages.report.results import SECTION_3_1, NotRun, Results, dataset_text, some
-from stages.report.tables import means
+from stages.charts.items import Figure
+from stages.charts.pareto import ON, attention_seconds, noise_by, placed
+from stages.charts.results import NotRun, Results, require_rows
+from stages.charts.tables import means
+from stages.engine.statistics import interval
 
 from .tables import (  # fmt: skip
     CLASSICAL,
@@ -117,7 +118,9 @@ def figure_3_23(results: Results) -> Figure:
     by_set = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, PROPOSED)}
     by_set = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in by_set.items()}
     groups = {name: rows for name, rows in by_set.items() if PLAIN in set(rows["method"])}
-    some(groups, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
+    require_rows(
+        groups, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False
+    )
     boxes = {name: [method for method in BOXES if method in set(rows["method"])] for name, rows in groups.items()}
     heights = [0.9 + 0.17 * len(methods) for methods in boxes.values()]  # of a title, the boxes and an axis
     drawing, grid = plt.subplots(

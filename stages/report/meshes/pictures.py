@@ -14,7 +14,8 @@ from haptic_glance.base.packing import ERROR_COLOURS
 from haptic_glance.lod.errors import vertex_errors
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
-from stages.report.drawing import (
+from stages.charts.datasets import SECTION_3_2, dataset_text
+from stages.charts.drawing import (
     GREY,
     THIN,
     VIEWPOINT,
@@ -26,8 +27,10 @@ from stages.report.drawing import (
     square_grid,
     squared,
 )
-from stages.report.items import Figure
-from stages.report.results import SECTION_3_2, NotRun, Results, dataset_text, some
+from stages.charts.items import Figure
+from stages.charts.results import NotRun, Results, require_rows
+from stages.lod.levels import levels_of
+from stages.salient_points.measure import read_strong_points
 
 from .tables import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, short, size, target_text
 
@@ -48,7 +51,7 @@ ROWS = {"figure_3_7": 330, "figure_3_8": 330, "figure_3_21": 300, "figure_3_22":
 def figure_3_6(results: Results) -> Figure:
     """The points of every detector on one object."""
     name = results.choose(results.settings.figure_objects, 1)[0]
-    points, mesh = results.strong_points(name), results.mesh(name)
+    points, mesh = results.by_method("salient_points", read_strong_points, name), results.mesh(name)
     methods = points.those_of([method for method in NAMES if method != "thesis_ed"])
     drawing, grid = square_grid(-(-len(methods) // COLUMNS), COLUMNS, side=1.6, right=1.1, gap=0.3)
     ratios = against_the_mean(mesh, {method: points[method] for method in methods})
@@ -70,12 +73,12 @@ def figure_3_7(results: Results) -> Figure:
     candidates = []
     for name, target, meshes in _simplified(results, DIFFERING, _preferred(results)):
         with suppress(NotRun):
-            points = results.strong_points(name)
+            points = results.by_method("salient_points", read_strong_points, name)
             most, middle, fewest = (len(points[method]) for method in DIFFERING)
             contrast = min(most / max(middle, 1), middle / max(fewest, 1), ENOUGH)
             near = 1 / NEAR < len(meshes[DIFFERING[0]].faces) / FACES < NEAR
             candidates.append(((near and filled(results.mesh(name)) > THIN, contrast), name, target, meshes, points))
-    some(candidates, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
+    require_rows(candidates, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
     _, name, target, meshes, points = max(candidates, key=lambda entry: entry[0])  # of equals the first
     drawing, grid = square_grid(1, len(DIFFERING), side=2.9, right=1.1, gap=0.3)
     for axes, method in zip(grid[0], DIFFERING, strict=True):
@@ -92,9 +95,13 @@ def figure_3_8(results: Results) -> Figure:
     for method in KEEPING:
         pairs += islice(_levels(results, (method, PLAIN), objects), 1)
     message = f"no levels of detail of {' or '.join(KEEPING)} beside plain QEM"
-    name, levels = some(pairs, message, "lod", runnable=False)[0]
+    name, levels = require_rows(pairs, message, "lod", runnable=False)[0]
     (method, salient), (_, even) = levels.items()
-    mesh, points, rows = results.mesh(name), results.strong_points(name)[method], ROWS["figure_3_8"]
+    mesh, points, rows = (
+        results.mesh(name),
+        results.by_method("salient_points", read_strong_points, name)[method],
+        ROWS["figure_3_8"],
+    )
     targets = sorted(set(salient) & set(even), key=lambda target: -len(salient[target].faces))[-LEVELS:]
     fields = [[errors(mesh, level[target]) for target in targets] for level in (salient, even)]
     top = float(np.quantile(np.concatenate(sum(fields, [])), TOP)) or 1.0
@@ -129,9 +136,9 @@ def figure_3_21(results: Results) -> Figure:
         # Area for wires, and the most targets within reach of kept points.
         score = (filled(results.mesh(name)) > THIN, len(set(face_counts) & set(levels[keeping])))
         candidates.append((score, name, face_counts, levels))
-    some(candidates, f"no simplified mesh with the points of {keeping} kept", "lod", runnable=False)
+    require_rows(candidates, f"no simplified mesh with the points of {keeping} kept", "lod", runnable=False)
     _, name, targets, levels = max(candidates, key=lambda entry: entry[0])
-    original, points = results.mesh(name), results.strong_points(name)[keeping]
+    original, points = results.mesh(name), results.by_method("salient_points", read_strong_points, name)[keeping]
     drawing, grid = square_grid(2, len(targets) + 1, side=2.0, gap=0.3)
     show(grid[0, 0], original, rows=rows)
     show(grid[1, 0], original, points=points, rows=rows)
@@ -155,7 +162,7 @@ def figure_3_22(results: Results) -> Figure:
     printed = {unseen: name for name, unseen in UNSEEN.items()} if results.sets[0] == SECTION_3_2 else {}
     methods = [printed.get(method, method) for method in FIXED_ADAPTIVE]
     examples = list(islice(_simplified(results, methods, results.settings.figure_objects), 2))
-    some(examples, f"no object simplified by all of {', '.join(methods)}", "lod", runnable=False)
+    require_rows(examples, f"no object simplified by all of {', '.join(methods)}", "lod", runnable=False)
     drawing, grid = square_grid(len(examples), len(methods), side=1.6, gap=0.15)
     for row, (*_, meshes) in zip(grid, examples, strict=True):
         for axes, mesh in zip(row, meshes.values(), strict=True):
@@ -181,7 +188,7 @@ def _levels(results: Results, methods: Sequence[str], preferred: Sequence[str], 
     """(object, {method: {target: Mesh}}) of the objects, or the first `count`, that all methods simplified."""
     for name in results.choose(preferred, count or len(results.objects), stage="lod"):
         with suppress(NotRun):
-            yield name, {method: dict(results.lods(name, method)) for method in methods}
+            yield name, {method: dict(levels_of(results, name, method)) for method in methods}
 
 
 def _preferred(results: Results) -> list[str]:

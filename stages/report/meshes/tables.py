@@ -14,22 +14,12 @@ import pandas as pd
 
 from haptic_glance.look.points.methods import METHODS, SUMMED
 from haptic_glance.look.weights.weights import GLANCE
+from stages.charts.datasets import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, dataset_text
+from stages.charts.drawing import WAYS, label
+from stages.charts.items import Table, shared_notes
+from stages.charts.results import OWN_FOLDER, NotRun, Results, either, require_rows
+from stages.charts.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.engine.statistics import interval
-from stages.report.drawing import WAYS, label
-from stages.report.items import Table, shared_notes
-from stages.report.results import (
-    ON_GREY,
-    ON_WHITE,
-    OWN_FOLDER,
-    SECTION_3_1,
-    SECTION_3_2,
-    NotRun,
-    Results,
-    dataset_text,
-    either,
-    some,
-)
-from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.report.validity import UNIT, as_plain
 
 SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
@@ -47,7 +37,7 @@ def build(results: Results) -> Table:
     part = frame[frame["data"] == dataset_text(first)]
     rows = results.rows("lod", first)
     targets = face_counts(rows[rows["target"].isin(part["target"])])[:2]  # no object may have so many faces
-    some(targets, "no target is a number of faces", "lod", runnable=False)
+    require_rows(targets, "no target is a number of faces", "lod", runnable=False)
     return Table(
         frame, _wide(part, targets), {"set": dataset_text(first)}
     )  # no ranking: numbers of points do not compete
@@ -57,7 +47,7 @@ def counted(rows: pd.DataFrame) -> pd.DataFrame:
     """The table's numbers for the rows of one set: a row a method and target, over the objects that have a mesh."""
     units = rows[rows["value"].notna() & (rows["metric"] == "metro_mean")]
     units = units[[is_drawn(name) and name not in (PLAIN, QSLIM) for name in units["method"]]]
-    some(units, "no method of lod.methods keeps points", "lod", runnable=False)
+    require_rows(units, "no method of lod.methods keeps points", "lod", runnable=False)
     units = units.assign(
         without_points=units["points"] == 0,
         three_rings=(units["points"] > 0) & ~units["shrunk"].astype(bool),
@@ -112,8 +102,8 @@ def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
         and (not methods or {*methods} & {*results.rows("lod", name)["method"].replace(UNSEEN)})
     ]  # fmt: skip
     if names and methods:
-        return some(sets, f"no mesh was simplified by {either(methods)}", "lod", runnable=False)
-    return some(sets, "no measurements of lod", "lod")
+        return require_rows(sets, f"no mesh was simplified by {either(methods)}", "lod", runnable=False)
+    return require_rows(sets, "no measurements of lod", "lod")
 
 
 def paired_cells(
@@ -283,7 +273,9 @@ def every_detector(results: Results) -> Table:
     """Errors and numbers of points of every method, on every data set."""
     by_set = {dataset_text(name): paired_cells(results, dataset=name) for name in data_sets(results)}
     by_set = {data: rows for data, rows in by_set.items() if PLAIN in set(rows["method"])}
-    some(by_set, "no face count that plain QEM and all other methods reach on one object", "lod", runnable=False)
+    require_rows(
+        by_set, "no face count that plain QEM and all other methods reach on one object", "lod", runnable=False
+    )
     parts = {data: _by_method(rows) for data, rows in by_set.items()}
     frame = pd.concat(parts, names=["data", None]).reset_index("data")
     frame.insert(3, "objects", frame.pop("objects"))
@@ -319,7 +311,9 @@ def _methods_wide(frame: pd.DataFrame) -> pd.DataFrame:
 
 def table_3_2(results: Results) -> Table:
     """Errors by method and face count, on all objects and where nothing shrank, beside the thesis's."""
-    parts = some(list(_parts(results)), "no face count that all methods of the table reach", "lod", runnable=False)
+    parts = require_rows(
+        list(_parts(results)), "no face count that all methods of the table reach", "lod", runnable=False
+    )
     frame = compared(pd.concat(parts), ["data", "nothing_shrunk", "target", "method", "metric"])
     thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
     thesis = thesis[:0] if results.own_meshes else thesis

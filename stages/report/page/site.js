@@ -1,5 +1,5 @@
 "use strict";
-// Tables that sort and filter, and charts whose values can be read with pointer or keyboard. The page is whole without it.
+// Tables that sort and filter. The page is whole without it.
 window.site = (() => {
   const LONG = 8;  // rows from which a table gets a filter
   const number = (text) => {
@@ -50,48 +50,7 @@ window.site = (() => {
     });
   }
 
-  const tip = document.createElement("div");
-  tip.id = "tip";
-  tip.setAttribute("role", "status");
-  document.body.append(tip);
-  let shown = null;
-  function point(circle) {
-    if (shown) shown.classList.remove("on");
-    shown = circle;
-    tip.classList.toggle("on", Boolean(circle));
-    if (!circle) return;
-    circle.classList.add("on");
-    tip.textContent = circle.dataset.text;
-    const at = circle.getBoundingClientRect(), size = tip.getBoundingClientRect();
-    const left = Math.max(4, Math.min(at.x + at.width / 2 - size.width / 2, innerWidth - size.width - 4));
-    tip.style.left = `${left}px`;
-    tip.style.top = `${at.y > size.height + 12 ? at.y - size.height - 6 : at.bottom + 6}px`;
-  }
-
-  function readable(chart) {
-    const hits = [...chart.querySelectorAll(".hits circle")];
-    for (const hit of hits) {
-      hit.dataset.text = hit.firstChild.textContent;
-      hit.firstChild.remove();  // the browser's own tip would cover ours
-      hit.addEventListener("pointerenter", () => point(hit));
-      hit.addEventListener("pointerleave", () => point(null));
-    }
-    const box = chart.closest("[tabindex]");
-    if (!hits.length || !box) return;
-    box.setAttribute("aria-label", `${box.getAttribute("aria-label")}: the arrow keys read its values`);
-    box.addEventListener("keydown", (event) => {
-      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-      if (step) point(hits.at((hits.indexOf(shown) + (shown || step > 0 ? step : 0)) % hits.length));
-      else if (event.key === "Escape") point(null);
-      else return;
-      event.preventDefault();
-    });
-    box.addEventListener("blur", () => point(null));
-  }
-
   document.querySelectorAll(".scroll").forEach(enhance);
-  document.querySelectorAll("svg.chart").forEach(readable);
-  addEventListener("scroll", () => point(null), { passive: true });
   const opened = () => {  // a link to what is folded unfolds it
     const target = location.hash && document.getElementById(location.hash.slice(1));
     for (let fold = target && target.closest("details:not([open])"); fold; fold = fold.parentElement.closest("details:not([open])")) {

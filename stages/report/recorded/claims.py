@@ -7,11 +7,11 @@ from typing import Any
 import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
+from stages.charts.results import NUMBERS, Results
 from stages.recorded.pressure_images import UNREDUCED
 from stages.report.claims import NO_SVM, SCALE, SCALED, TRAINED, Claim, Side, highest_of, reading
 from stages.report.effects import difference, side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED, WORDS
-from stages.report.results import NUMBERS, Results
 
 from .networks import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
 from .networks import SIMULATIONS as KINDS

@@ -14,13 +14,11 @@ from matplotlib.axes import Axes
 
 from haptic_glance.base.timing import CLOCK
 from haptic_glance.know.split import Split, shared_by
-from stages.engine.statistics import interval
-from stages.report.drawing import INK, label, place_names, plain_logarithm, plt
-from stages.report.items import Figure, Table
-from stages.report.networks import MODES, PASSES, PRINTED, STARTS, of_passes, origin
-from stages.report.pareto import NOISE, ON, lines, placed, ticks
-from stages.report.results import NotRun, Results, some
-from stages.report.tables import (
+from stages.charts.drawing import INK, label, place_names, plain_logarithm, plt
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import NOISE, ON, lines, placed, ticks
+from stages.charts.results import NotRun, Results, require_rows
+from stages.charts.tables import (
     Ranking,
     everywhere,
     grid,
@@ -32,6 +30,8 @@ from stages.report.tables import (
     with_interval,
     within,
 )
+from stages.engine.statistics import interval
+from stages.report.networks import MODES, PASSES, PRINTED, STARTS, of_passes, origin
 
 STAGE = "recorded_networks"
 DATA = {
@@ -178,7 +178,7 @@ def chart(results: Results) -> Figure:
     lines = measured_lines(results)
     frame = lines[(lines[list(SETTING)] == pd.Series(SETTING)).all(axis=1)].rename(columns={"method": "network"})
     frame = frame.merge(results.bench("networks"), on=["network", "size"])
-    some(frame, "no frozen network on the pressure images", "transfer", runnable=False)
+    require_rows(frame, "no frozen network on the pressure images", "transfer", runnable=False)
     near_best = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
     smallest = label(near_best.loc[near_best["parameters"].idxmin(), "network"])
     figure, panels = plt.subplots(1, len(COSTS), figsize=(11.4, 3.8), sharey=True)

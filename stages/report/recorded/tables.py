@@ -13,11 +13,10 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
-from stages.engine.statistics import interval
-from stages.report.drawing import label
-from stages.report.items import Table
-from stages.report.results import Results
-from stages.report.tables import (
+from stages.charts.drawing import label
+from stages.charts.items import Table
+from stages.charts.results import Results
+from stages.charts.tables import (
     READINGS,
     Ranking,
     blocks,
@@ -34,6 +33,7 @@ from stages.report.tables import (
     with_printed_means,
     within,
 )
+from stages.engine.statistics import interval
 
 CLASSES = {
     "four": "first four classes", "four_drawn": "four classes at random", "four_alike": "four most alike",

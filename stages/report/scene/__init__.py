@@ -4,9 +4,9 @@ from functools import partial
 
 import pandas as pd
 
+from stages.charts.results import Results
 from stages.report.claims import Claim, reading
 from stages.report.effects import side, statistic
-from stages.report.results import Results
 
 from . import counts, scene
 from .counts import STAGE, TASKS

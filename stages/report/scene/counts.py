@@ -13,11 +13,12 @@ from matplotlib.figure import SubFigure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from haptic_glance.base.files import read_arrays
+from stages.charts.datasets import SECTION_3_1
+from stages.charts.drawing import CYCLE, GREY, INK, MARKERS, plain_logarithm, plt
+from stages.charts.items import Figure, Table
+from stages.charts.results import Results, require_file
+from stages.charts.tables import interval_columns, number, records, with_interval
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, GREY, INK, MARKERS, plain_logarithm, plt
-from stages.report.items import Figure, Table
-from stages.report.results import SECTION_3_1, Results, there
-from stages.report.tables import interval_columns, number, records, with_interval
 
 from .scene import COLOURS, NAMES, OURS, scene_rows
 
@@ -228,7 +229,7 @@ SMALL = {"fontsize": 9, "fontweight": "normal", "loc": "center"}  # titles
 
 def frames(results: Results) -> Figure:
     """Rendered frames with their displacement, above the faces and errors of all frames."""
-    path = there(results.folder("scene") / "pictures.npz", "no data/scene/pictures.npz", "scene")
+    path = require_file(results.folder("scene") / "pictures.npz", "no data/scene/pictures.npz", "scene")
     arrays = read_arrays(path)
     rows, scene, tolerance, unit = scene_rows(results, metric=["faces", "error"], factor=1, item=None)
     rows = rows[rows["matched"].isin(["", "error"])]  # plans equal to ours, or for themselves

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from stages.charts.drawing import GREY
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import pareto_chart
+from stages.charts.results import NotRun, Results, require_rows
+from stages.charts.tables import grouped, interval_columns, number, percent, records, with_interval
 from stages.engine.statistics import interval
-from stages.report.drawing import GREY
-from stages.report.items import Figure, Table
-from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results, some
-from stages.report.tables import grouped, interval_columns, number, percent, records, with_interval
 
 # Two of the thirty random scenes share so much of their objects, in the mean: they count as repeated splits of the same
 # objects with that share, as random sets of objects do (stages.report.touch.tables).
@@ -139,7 +139,7 @@ def random_table(results: Results) -> Table:
 def plans(results: Results) -> tuple[pd.DataFrame, pd.Series]:
     """(frame scenes x (metric, method, matched) over all frames, the first row) of the random scenes."""
     rows = results.measured("scene", RANDOM, frame="all", factor=1, item=None).fillna({"matched": ""})
-    rows = some(rows[rows["kind"].notna()], "no random scenes", "scene")
+    rows = require_rows(rows[rows["kind"].notna()], "no random scenes", "scene")
     columns = ["metric", "method", "matched"]
     return rows.pivot_table(index="group", columns=columns, values="value", sort=False), rows.iloc[0]
 

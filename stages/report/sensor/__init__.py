@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.know.split import Split
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import CYCLE, GREY, MARKERS, label, plt
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import NORMAL, noise_by
+from stages.charts.results import Results
+from stages.charts.tables import Ranking, blocks, everywhere, grid, grouped, means, over_items, records
 from stages.engine.statistics import interval
 from stages.report.claims import Claim, highest_of, reading
-from stages.report.drawing import CYCLE, GREY, MARKERS, label, plt
-from stages.report.items import Figure, Table
-from stages.report.pareto import NORMAL, noise_by
-from stages.report.results import Results, dataset_text
-from stages.report.tables import Ranking, blocks, everywhere, grid, grouped, means, over_items, records
 
 EMPTY = {"fine": "", "extent": ""}  # of one array and one touch a sample
 EXTENTS = {

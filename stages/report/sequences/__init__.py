@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from stages.report.items import as_printed
+from stages.charts.items import as_printed
 
 from . import contours, tables
 

@@ -16,12 +16,13 @@ from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from haptic_glance.touch import SectionCurve, contour
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import CYCLE, INK, PALE, VIEWPOINT, label, name_panels, picture, plt, squared
+from stages.charts.items import Figure
+from stages.charts.pareto import pareto_chart
+from stages.charts.results import NotRun, Results, require_rows
 from stages.contours.contours import Sequences, read_sequences
-from stages.report.drawing import CYCLE, INK, PALE, VIEWPOINT, label, name_panels, picture, plt, squared
-from stages.report.items import Figure
 from stages.report.networks import draw_matrices
-from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results, dataset_text, some
 
 from .tables import BLIND, CLASSIFIERS, GUIDED, METRICS, PRINTED_METHODS, SIZE, SPLITS, STAGE, accuracy
 
@@ -138,7 +139,7 @@ def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Seq
     Blind contours and, where there is one, the thesis's guided strategy or else another.
     """
     folder = results.folder("contours")
-    names = some(object_files(folder), "no data/contours", "contours")
+    names = require_rows(object_files(folder), "no data/contours", "contours")
     first = [name for name in results.settings.figure_objects if name in names]
     other_names = [name for name in names if name not in first]
     places = np.linspace(0, len(other_names) - 1, OBJECTS).round().astype(int) if other_names else []

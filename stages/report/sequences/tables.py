@@ -15,12 +15,13 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.know.split import Split
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import label
+from stages.charts.items import Table
+from stages.charts.results import Results
+from stages.charts.tables import Ranking, blocks, everywhere, grid, percent, records, within
 from stages.report.claims import Claim, highest_of, reading
-from stages.report.drawing import label
 from stages.report.effects import difference, statistic
-from stages.report.items import Table
-from stages.report.results import Results, dataset_text
-from stages.report.tables import Ranking, blocks, everywhere, grid, percent, records, within
 
 KEYS = ["objects", "split", "classifier"]
 THESIS_WORDS = {

@@ -15,12 +15,12 @@ from matplotlib.figure import Figure as Drawing
 from haptic_glance.base.files import read_arrays
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.mesh.mesh import Mesh
+from stages.charts.drawing import GREY, INK, MARKERS, colours, label, name_panels, plt, show, square_grid, start
+from stages.charts.items import Figure, Table
+from stages.charts.results import Results, require_rows
+from stages.charts.tables import grouped, interval_columns, number, percent, records, within
 from stages.engine.statistics import BROKEN, breaking_point, lead_left
-from stages.report.drawing import GREY, INK, MARKERS, colours, label, name_panels, plt, show, square_grid, start
-from stages.report.items import Figure, Table
 from stages.report.networks import FINE, MODES, NETWORK, STARTS, mean, measured
-from stages.report.results import Results, some
-from stages.report.tables import grouped, interval_columns, number, percent, records, within
 from stages.stability.simplification import breaking_points, mean_repeatability, middle_severity
 
 ACROSS = 4
@@ -177,7 +177,7 @@ def _worst(results: Results) -> dict[str, dict[str, Any]]:
             cases.setdefault(method, {}).setdefault(path.stem, {"item": path.stem})[name] = values
     return {
         method: min(objects.values(), key=lambda case: np.nan_to_num(case["repeatability"]))
-        for method, objects in some(cases, "no data/stability", STAGE).items()
+        for method, objects in require_rows(cases, "no data/stability", STAGE).items()
     }
 
 
@@ -218,7 +218,7 @@ def networks_table(results: Results) -> Table:
                 entries.append(
                     (name, NETWORK_UNITS[name], *kind, whole, *ends, severities[-1], points["accuracy"].iloc[-1])
                 )
-    frame = pd.DataFrame(some(entries, "no disturbed imprints", "transfer"), columns=OF_NETWORKS)
+    frame = pd.DataFrame(require_rows(entries, "no disturbed imprints", "transfer"), columns=OF_NETWORKS)
     heads = [f"{start(row.weights)}, {label(row.mode)} ({100 * row.clean:.0f} % clean)" for row in records(frame)]
     return Table(frame, broken(frame, heads, NETWORK_UNHARMED))
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pandas as pd
 
-from stages.report.drawing import CYCLE, MARKERS, plain_logarithm, plt
-from stages.report.items import Figure
-from stages.report.results import Results
+from stages.charts.drawing import CYCLE, MARKERS, plain_logarithm, plt
+from stages.charts.items import Figure
+from stages.charts.results import Results
 
 
 def kernels(results: Results) -> Figure:

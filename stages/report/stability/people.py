@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.disturb.objects import PERTURBATIONS
-from stages.engine.statistics import interval
-from stages.report.drawing import label
-from stages.report.items import Table
-from stages.report.results import GAZED, Results, some
-from stages.report.tables import (
+from stages.charts.datasets import GAZED
+from stages.charts.drawing import label
+from stages.charts.items import Table
+from stages.charts.results import Results, require_rows
+from stages.charts.tables import (
     grouped,
     interval_columns,
     interval_text,
@@ -17,6 +17,7 @@ from stages.report.tables import (
     signed,
     with_interval,
 )
+from stages.engine.statistics import interval
 from stages.stability.disturbance import AND
 from stages.stability.simplification import middle_severity
 from stages.stability.subject import UNPERTURBED
@@ -28,7 +29,7 @@ REFERENCE = "glance"  # Itti's attention was not disturbed on these sets
 
 def people_table(results: Results) -> Table:
     """A row a disturbance: per method the share of points found again, and the NSS and AUC that are lost."""
-    sets = some([name for name in GAZED if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
+    sets = require_rows([name for name in GAZED if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
     rows = pd.concat([results.measured(STAGE, name) for name in sets])
     plain = rows.loc[rows["perturbation"] == UNPERTURBED].set_index(["item", "method", "metric"])["value"]
     disturbed = rows.loc[rows["perturbation"] != UNPERTURBED]
@@ -96,7 +97,7 @@ def pairs_table(results: Results) -> Table:
     rows = results.rows(STAGE, results.printed(BENCHMARK, STAGE), metric=["repeatability", "chance"])
     lost_shares = points_lost(rows)
     pairs = [name for name in dict.fromkeys(lost_shares["perturbation"]) if AND in name]
-    pairs = some(pairs, "no pairs of disturbances: stability.pairs is empty", STAGE, runnable=False)
+    pairs = require_rows(pairs, "no pairs of disturbances: stability.pairs is empty", STAGE, runnable=False)
     methods = [method for method in dict.fromkeys(lost_shares["method"]) if method != "random"]
     middle = middle_of(rows)
     frame = pd.DataFrame([

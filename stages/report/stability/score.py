@@ -12,13 +12,13 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.disturb.objects import PERTURBATIONS
+from stages.charts.drawing import label
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import attention_seconds, pareto_chart
+from stages.charts.results import NotRun, Results, require_rows
+from stages.charts.tables import interval_columns, interval_text, number, percent, records, with_interval
 from stages.engine.rows import unit
 from stages.engine.statistics import expanded_levels, interval, resampled_means, resamples
-from stages.report.drawing import label
-from stages.report.items import Figure, Table
-from stages.report.pareto import attention_seconds, pareto_chart
-from stages.report.results import NotRun, Results, some
-from stages.report.tables import interval_columns, interval_text, number, percent, records, with_interval
 from stages.stability.simplification import breaking_points
 from stages.stability.subject import UNPERTURBED
 
@@ -113,7 +113,7 @@ def _gathered(errors: pd.DataFrame, rows: pd.DataFrame) -> Errors:
     members = [name for names in KINDS.values() for name in names]
     cases = rows.loc[rows["perturbation"].isin(members), ["perturbation", "severity"]].drop_duplicates()
     cases = sorted(cases.itertuples(index=False, name=None), key=lambda case: members.index(case[0]))
-    some(cases, "no disturbed points", STAGE)
+    require_rows(cases, "no disturbed points", STAGE)
     pairs = list(zip(errors["perturbation"], errors["severity"], strict=True))
     errors = errors.assign(case=pd.Series(pairs, index=errors.index, dtype=object))
     disturbed, clean = (errors[errors["perturbation"].isin(names)] for names in (members, [UNPERTURBED]))
@@ -152,7 +152,7 @@ def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.Data
     count = len(errors.objects)
     whole, draws = np.ones((1, count)), resamples(count, seed)
     ce, names = corruption_errors(errors, reference, whole)
-    some(names, f"nothing disturbs {reference}", STAGE, runnable=False)
+    require_rows(names, f"nothing disturbs {reference}", STAGE, runnable=False)
     samples = corruption_errors(errors, reference, draws)[0]
     frame = pd.DataFrame({"method": errors.methods, **_with_ends("mce", ce.mean(axis=2), samples.mean(axis=2), count)})
     for kind, members in KINDS.items():
@@ -222,7 +222,7 @@ def chart(results: Results) -> Figure:
     """The share of points found again against the seconds of a look, coloured by the agreement with gaze."""
     _, frame, errors = _scored(results)
     frame = frame[frame["method"] != CHANCE].merge(_accuracy(results), on="method").dropna(subset=["seconds"])
-    some(frame, f"no seconds of a look on {GAZE}", "salient_points", runnable=False)
+    require_rows(frame, f"no seconds of a look on {GAZE}", "salient_points", runnable=False)
     frame = frame.assign(name=frame["method"].map(label), low=frame["found_low"], high=frame["found_high"])
     frame["band"] = [next(text for top, text in BANDS.items() if nss < top) for nss in frame["nss"].fillna(0)]
     frame = frame.sort_values("nss", ascending=False)

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.report.drawing import label
-from stages.report.items import Table
-from stages.report.results import Results
-from stages.report.tables import grouped
+from stages.charts.drawing import label
+from stages.charts.items import Table
+from stages.charts.results import Results
+from stages.charts.tables import grouped
 from stages.stability.simplification import OUTCOMES, SMALLEST
 from stages.stability.surface import LARGEST_ERROR, RUIN
 

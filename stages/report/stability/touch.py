@@ -12,11 +12,11 @@ import pandas as pd
 from haptic_glance.base.files import read_arrays
 from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
 from haptic_glance.know.split import shared_by
+from stages.charts.drawing import GREY, MARKERS, PALE, label, plt
+from stages.charts.items import Figure, Table
+from stages.charts.results import Results
+from stages.charts.tables import grouped
 from stages.engine.statistics import breaking_point, interval, lead_left
-from stages.report.drawing import GREY, MARKERS, PALE, label, plt
-from stages.report.items import Figure, Table
-from stages.report.results import Results
-from stages.report.tables import grouped
 from stages.touch_stability.trial import CLEAN
 
 from .breaking import ACCURACY, Curves, broken, degradation

@@ -2,8 +2,8 @@
 
 from functools import partial
 
-from stages.report.items import as_printed
-from stages.report.results import SECTION_4_2
+from stages.charts.datasets import SECTION_4_2
+from stages.charts.items import as_printed
 
 from . import claims, imprints, pictures, tables
 

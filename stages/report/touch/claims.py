@@ -11,6 +11,12 @@ import pandas as pd
 
 from haptic_glance.know.classifiers import TRAINING
 from haptic_glance.know.split import Split, shared_by
+from stages.charts.datasets import SETS_4_2, SUMS_4_2
+from stages.charts.drawing import label
+from stages.charts.items import Figure
+from stages.charts.pareto import attention_seconds, pareto_chart
+from stages.charts.results import Results
+from stages.charts.tables import means
 from stages.report.claims import (
     ALIVE,
     NO_SVM,
@@ -26,12 +32,7 @@ from stages.report.claims import (
     lowest_of,
     reading,
 )  # fmt: skip
-from stages.report.drawing import label
 from stages.report.effects import statistic
-from stages.report.items import Figure
-from stages.report.pareto import attention_seconds, pareto_chart
-from stages.report.results import SETS_4_2, SUMS_4_2, Results
-from stages.report.tables import means
 
 from .tables import BLIND, EQUAL, METHODS, MODEL, SSIM, STAGE, shared_objects
 

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.charts.drawing import CYCLE, INK, MARKERS, place_names, plain_logarithm, plt
+from stages.charts.items import Figure, Table
+from stages.charts.pareto import ON, noise_of, placed
+from stages.charts.results import NotRun, Results
+from stages.charts.tables import Ranking, records, with_interval
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, INK, MARKERS, place_names, plain_logarithm, plt
-from stages.report.items import Figure, Table
-from stages.report.pareto import ON, noise_of, placed
-from stages.report.results import NotRun, Results
-from stages.report.tables import Ranking, records, with_interval
 
 OURS = "ours"
 NAMES = {

@@ -10,10 +10,14 @@ from haptic_glance.base.files import read_arrays
 from haptic_glance.know.features import SIMILARITY_THRESHOLD, similarity
 from haptic_glance.touch import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
 from haptic_glance.touch.pictures import draw
-from stages.report.drawing import GREY, INK, PALE, colours, label, plt, show, vivid
-from stages.report.items import Figure
-from stages.report.results import OWN_FOLDER, NotRun, Results, dataset_text, some
-from stages.report.tables import CLASSIFIERS
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import GREY, INK, PALE, colours, label, plt, show, vivid
+from stages.charts.items import Figure
+from stages.charts.results import OWN_FOLDER, NotRun, Results, require_rows
+from stages.charts.tables import CLASSIFIERS
+from stages.imprints.imprints import read_images
+from stages.lod.levels import levels_of
+from stages.salient_points.measure import read_points, read_saliency, read_strong_points
 
 from .tables import EQUAL, MODEL, PRINTED, SSIM, STAGE, added, table_4_1, table_4_2
 
@@ -32,9 +36,9 @@ def pipeline(results: Results) -> Figure:
     if results.own_meshes:
         raise NotRun("the whole pipeline is shown on a published object", OWN_FOLDER, runnable=False)
     name = results.choose([results.settings.hero_object], 1, stage="imprints")[0]
-    mesh, (_, coarse) = results.mesh(name), results.lods(name, f"{MODEL}-soft")[-1]
+    mesh, (_, coarse) = results.mesh(name), levels_of(results, name, f"{MODEL}-soft")[-1]
     accuracy, classes = _accuracy(results)
-    points = results.strong_points(name)[MODEL]
+    points = results.by_method("salient_points", read_strong_points, name)[MODEL]
     figure = plt.figure(figsize=SIZE)
     becomes = f"{len(mesh.faces):,} faces become {len(coarse.faces):,}"
     below = (name, "saliency, and where to touch", becomes, "what a pressure array feels (black: first)", "")
@@ -43,10 +47,14 @@ def pipeline(results: Results) -> Figure:
         figure.text(left, 0.03, caption, fontsize=10, color=GREY)
     panels = [figure.add_axes((left, 0.12, WIDTH, WIDTH * SIZE[0] / SIZE[1])) for left in LEFT]
     show(panels[0], mesh, rows=800)
-    show(panels[1], mesh, vivid(results.saliency(name)[MODEL]), points=points, rows=800)
+    show(
+        panels[1], mesh, vivid(results.by_method("salient_points", read_saliency, name)[MODEL]), points=points, rows=800
+    )
     show(panels[2], coarse, wires=True, rows=800)
     panels[3].set_axis_off()
-    for (down, across), image in zip(np.ndindex(SIDE, SIDE), results.imprints(name)[MODEL], strict=False):
+    for (down, across), image in zip(
+        np.ndindex(SIDE, SIDE), results.by_method("imprints", read_images, name)[MODEL], strict=False
+    ):
         _draw_imprint(panels[3].inset_axes((across / SIDE, 1 - (down + 1) / SIDE, 0.94 / SIDE, 0.94 / SIDE)), image)
     places = draw_bars(panels[4], accuracy, ["knn"], chance=1 / classes)
     names = [label(method).partition(" (")[0].replace(" ", "\n") for method in places]
@@ -69,19 +77,19 @@ def _accuracy(results: Results) -> tuple[pd.DataFrame, int]:
 def imprints(results: Results) -> Figure:
     """Draws the imprints at the points of each method, an object a row."""
     names = results.choose(results.settings.figure_objects, COUNT, stage="imprints")
-    methods = results.imprints(names[0]).those_of(METHODS)
+    methods = results.by_method("imprints", read_images, names[0]).those_of(METHODS)
     width = len(methods) * TOUCHES
     figure, grid = plt.subplots(len(names), width, figsize=(0.82 * width + 0.6, 0.92 * len(names) + 0.3), squeeze=False)
     figure.subplots_adjust(wspace=0.06, hspace=0.06)
     for k, (method, block) in enumerate(zip(methods, np.split(grid, len(methods), axis=1), strict=True)):
         for row, name in zip(block, names, strict=True):
-            for axes, image in zip_longest(row, results.imprints(name)[method][:TOUCHES]):
+            for axes, image in zip_longest(row, results.by_method("imprints", read_images, name)[method][:TOUCHES]):
                 _draw_imprint(axes, image)
                 axes.set_position(axes.get_position().translated(0.012 * (k > 0), 0))
         block[0, 0].set_title(f"{label(method)}, first {TOUCHES} points", pad=6)
     for axes, name in zip(grid[:, 0], names, strict=True):
         axes.set_ylabel(name, rotation=0, ha="right", va="center", labelpad=8)
-    rows, columns = results.imprints(names[0])[methods[0]].shape[1:]
+    rows, columns = results.by_method("imprints", read_images, names[0])[methods[0]].shape[1:]
     words = {"names": ", ".join(names), "methods": " beside ".join(map(label, methods))}
     return Figure(figure, words | {"rows": rows, "columns": columns})
 
@@ -101,7 +109,7 @@ def touch_one_mesh(results: Results) -> Figure:
     figure = plt.figure(figsize=(12, 5.4 * len(names)))
     most_points = 0
     for part, name in zip(figure.subfigures(len(names), 1, squeeze=False).flat, names, strict=True):
-        mesh, points = results.mesh(name), results.points(name)[MODEL]
+        mesh, points = results.mesh(name), results.by_method("salient_points", read_points, name)[MODEL]
         points = points[touchable(mesh, points)][:TOUCHES]
         most_points = max(most_points, len(points))
         raw = distances(Surface(mesh), points, CELLS, PITCH)
@@ -168,9 +176,9 @@ def figure_4_4(results: Results) -> Figure:
     dataset = folder.parent.name
     best = EQUAL if dataset == PRINTED else SSIM
     groups = sorted(folder.glob("six.*.npz")) or sorted(folder.glob("four.*.npz"))
-    first = some(groups, "no groups in data/classification", "classification")[0]
+    first = require_rows(groups, "no groups in data/classification", "classification")[0]
     pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
-    images = {name: results.imprints(name, dataset) for pair in pairs for name in pair}
+    images = {name: results.by_method("imprints", read_images, name, dataset) for pair in pairs for name in pair}
     samplings = {method: label(method) for method in ("random", best)}
     likeness = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
     order = np.argsort([np.median(values) for values in likeness[best]], kind="stable")

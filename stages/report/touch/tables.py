@@ -18,10 +18,11 @@ import pandas as pd
 from haptic_glance.know.classifiers import TRAINING
 from haptic_glance.know.split import Split, shared_by
 from haptic_glance.look.weights.weights import GLANCE
-from stages.report.drawing import label
-from stages.report.items import Table, shared_notes
-from stages.report.results import OWN_FOLDER, SECTION_4_2, SETS_4_2, NotRun, Results, some
-from stages.report.tables import (
+from stages.charts.datasets import SECTION_4_2, SETS_4_2
+from stages.charts.drawing import label
+from stages.charts.items import Table, shared_notes
+from stages.charts.results import OWN_FOLDER, NotRun, Results, require_rows
+from stages.charts.tables import (
     CLASSIFIERS,
     MEANS,
     READINGS,
@@ -89,7 +90,7 @@ def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, 
     by_set = everywhere(results, STAGE, **where)
     by_set = {name: part for name, rows in by_set.items() if not (part := scaled(rows, scaling)).empty}
     by_set = {name: rows for name, rows in by_set.items() if on_sets or name not in SETS_4_2}
-    some(by_set, f"no rows of the scaling {scaling}", STAGE)
+    require_rows(by_set, f"no rows of the scaling {scaling}", STAGE)
     if PRINTED in by_set:
         yield Protocol(PRINTED, by_set.pop(PRINTED), "as printed", EQUAL)
     if printed_sets := {name: by_set.pop(name) for name in SETS_4_2 if name in by_set}:
@@ -233,7 +234,7 @@ def table_4_6(results: Results) -> Table:
     where = {"group": "six", "variant": variants or ["touches"]}  # sets of single touches alone do not count
     versions = [*protocols(results, on_sets=True, **where), *readings(results, **where)]
     frame = pd.concat([_by_touches(version, thesis) for version in versions], ignore_index=True)
-    some(frame, "no several touches", STAGE)
+    require_rows(frame, "no several touches", STAGE)
     scaled = frame["protocol"].str.contains(": ")
     plain = frame["best"] & (frame["way"] == "") & ~scaled
     is_judged = (scaled | frame["way"].isin(MIXED)) & frame["best"] & frame["classifier"].isin(JUDGED)

@@ -6,9 +6,13 @@ from matplotlib.axes import Axes
 
 from haptic_glance.base.timing import CLOCK
 from haptic_glance.know.split import shared_by
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import CYCLE, GREY, INK, MARKERS, PALE, label, plt, start
+from stages.charts.items import Figure
+from stages.charts.pareto import pareto_chart
+from stages.charts.results import Results, require_rows
+from stages.charts.tables import grouped, means
 from stages.engine.statistics import interval
-from stages.report.drawing import CYCLE, GREY, INK, MARKERS, PALE, label, plt, start
-from stages.report.items import Figure
 from stages.report.networks import (
     COARSE,
     FINE,
@@ -24,9 +28,6 @@ from stages.report.networks import (
     of_passes,
     shared,
 )
-from stages.report.pareto import pareto_chart
-from stages.report.results import Results, dataset_text, some
-from stages.report.tables import grouped, means
 
 GAIN_TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",
          ("objects", COARSE): "#E69F00"}  # fmt: skip
@@ -37,7 +38,7 @@ MARKS = {"printed": "o", "converged": "s", "printed_rate": "^"}
 def figure_5_3(results: Results) -> Figure:
     """Accuracy of fine-tuned minus frozen networks, a panel for each set."""
     by_set = {source: frame for source, rows in everywhere(results, *PASSES).items() if len(frame := gains(rows))}
-    some(by_set, "no network was both fine-tuned and frozen", "transfer")
+    require_rows(by_set, "no network was both fine-tuned and frozen", "transfer")
     networks = list(pd.concat(by_set)["network"].unique())
     size = (4.6 * len(by_set) + 2.2, len(networks) + 1.9)
     figure, [panels] = plt.subplots(1, len(by_set), figsize=size, squeeze=False, sharey=True)
@@ -200,7 +201,7 @@ def training_curves(results: Results) -> Figure:
     order = {name: k for k, name in enumerate((*STARTS, *MODES))}
     kinds = sorted(set(zip(rows["method"], rows["weights"], rows["mode"], strict=True)),
                    key=lambda kind: (order[kind[1]], kind[0], order.get(kind[2], 9), kind[2]))  # fmt: skip
-    some(kinds, "no curve of a training until nothing improves", "transfer")
+    require_rows(kinds, "no curve of a training until nothing improves", "transfer")
     columns = min(4, len(kinds))
     height = -(-len(kinds) // columns)
     size = (2.7 * columns + 0.6, 2.3 * height + 0.7)

@@ -15,11 +15,14 @@ import pandas as pd
 from scipy.stats import spearmanr
 
 from haptic_glance.know.split import shared_by
+from stages.charts.datasets import dataset_text
+from stages.charts.drawing import label
+from stages.charts.items import Table, shared_notes
+from stages.charts.results import NotRun, Results
+from stages.charts.tables import Ranking, cell_texts, grid, grouped, percent, signed
 from stages.engine.statistics import interval
 from stages.report.claims import Claim, Pick, Reading, highest_of, lowest_of, reading
-from stages.report.drawing import label
 from stages.report.effects import statistic
-from stages.report.items import Table, shared_notes
 from stages.report.networks import (
     COARSE,
     FINE,
@@ -42,8 +45,6 @@ from stages.report.networks import (
     origin,
     seen,
 )  # fmt: skip
-from stages.report.results import NotRun, Results, dataset_text
-from stages.report.tables import Ranking, cell_texts, grid, grouped, percent, signed
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 OTHERS = list(PASSES)[1:]

@@ -17,9 +17,8 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, TRAINING, TWICE
+from stages.charts.results import NotRun, Results
 from stages.engine.statistics import interval
-
-from .results import NotRun, Results
 
 READINGS = {  # beside ours, TRAINING
     BEFOREHAND: "all data standardised beforehand (T4.2.4)", TWICE: "components standardised, too",

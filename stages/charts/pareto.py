@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 
 from haptic_glance.base.timing import CLOCK, WALL
 from haptic_glance.look.points import METHODS
+from stages.charts.results import NotRun, Results
 
 from .drawing import CYCLE, INK, MARKERS, SETTINGS, Spot, colours, label, place_names, plain_logarithm, plt
 from .items import Figure
-from .results import NotRun, Results
 from .tables import number
 
 ON, PERHAPS, OFF = "yes", "perhaps", "no"  # of a choice: whether it is on the front

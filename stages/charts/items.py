@@ -23,10 +23,10 @@ import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import read_json, write_json, write_table, write_text
+from stages.charts.results import NotRun, Results, require_file
 
 from .cells import filled
 from .drawing import save
-from .results import NotRun, Results, there
 from .tables import Ranking, as_text, markdown_table
 
 
@@ -34,14 +34,15 @@ from .tables import Ranking, as_text, markdown_table
 class Item:
     """The fields that tables and figures share.
 
-    sets: the data sets that it was read from; record: see `records`; paths: its files; html: its section of the page.
+    kind: its folder of reports/; page: that it is shown on; sets: the data sets that it was read from; paths: its
+    files; html: its section of the page.
     """
 
     name: str = ""
-    topic: str = ""
+    kind: str = ""
+    page: str = ""
     title: str = ""
     sets: list[str] = field(default_factory=list)
-    record: dict[str, Any] = field(default_factory=dict)
     paths: list[Path] = field(default_factory=list)
     html: str = ""
 
@@ -106,7 +107,7 @@ class Table(Item):
 class Figure(Item):
     """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside the PNG.
 
-    alt: text for blind readers; element: the picture or chart alone, as a page shows it.
+    alt: text for blind readers.
     """
 
     drawing: Drawing
@@ -115,7 +116,6 @@ class Figure(Item):
     dpi: int = 130
     alt: str = ""
     caption: str = ""
-    element: str = ""
 
     def write(self, folder: Path) -> None:
         """Writes NAME.png and, with a frame, NAME.csv; the drawing is closed."""
@@ -123,18 +123,6 @@ class Figure(Item):
         if self.frame is not None:
             self.paths.append(folder / f"{self.name}.csv")
             write_table(self.paths[1], self.frame)
-
-
-@dataclass
-class Built:
-    """Items of one kind that were built, and one line for each that lacks its measurement.
-
-    no_data: {name: stage} of the items that lack the stage's folder in data/; their files of an earlier run stay.
-    """
-
-    items: list = field(default_factory=list)
-    not_run: dict[str, str] = field(default_factory=dict)
-    no_data: dict[str, str] = field(default_factory=dict)
 
 
 def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
@@ -200,8 +188,8 @@ def last_drawn(results: Results, name: str, stage: str) -> Kept:
     folder = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
     words = folder / f"figures/{name}.json"
     reason = f"no figures/{name}.png: run the stage {stage} on its data set"
-    there(words.with_suffix(".png"), reason, stage, runnable=False)
-    return Kept(Drawing(), read_json(there(words, reason, stage, runnable=False)))
+    require_file(words.with_suffix(".png"), reason, stage, runnable=False)
+    return Kept(Drawing(), read_json(require_file(words, reason, stage, runnable=False)))
 
 
 def as_printed(build: Callable[[Results], Figure], dataset: str, results: Results, stage: str = "lod") -> Figure:
