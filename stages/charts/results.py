@@ -141,7 +141,9 @@ class Results:
             return []
         chosen = (frame["value"].isna() & frame["note"].notna()).to_numpy()
         for column in where.keys() & frame.columns:
-            chosen &= self._equal(stage, dataset, column, where[column]) | self._equal(stage, dataset, column, None)
+            chosen = chosen & (
+                self._equal(stage, dataset, column, where[column]) | self._equal(stage, dataset, column, None)
+            )
         return list(dict.fromkeys(frame.loc[chosen, "note"]))
 
     def left_out(self, stage: str, dataset: str | None = None, **where: object) -> str:
