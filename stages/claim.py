@@ -40,7 +40,7 @@ def run(argv: Sequence[str]) -> int:
     options = parser.parse_args(argv)
     workspace = Workspace(Path("."))
     with from_extra():
-        from stages.report.topics import CLAIMS
+        from stages.report.parts import CLAIMS
     verdicts = workspace.published / "claims.csv"
     if not verdicts.exists():
         raise ValueError(f"no {verdicts}: run it in a clone of the project")
@@ -108,10 +108,10 @@ def judged_again(workspace: Workspace, claim: Any, anew: bool = False) -> dict[s
 
     anew: from the rows of the run that params.yaml describes, not from the published ones.
     """
+    from stages.charts.commands import command
     from stages.charts.results import Results
     from stages.report import Params
     from stages.report.claims_page import open_text, over_text, sets_read, sets_text
-    from stages.report.records import command
     from stages.report.verdict import judged
 
     results = (Results if anew else Results.published)(workspace, workspace.settings(Params))

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import hydra
+from hydra.core.config_store import ConfigStore
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
@@ -37,9 +38,10 @@ from stages.engine.settings import (
     check_names,
     check_section,
     conf_folder,
+    defaults_of,
     nearest,
-    schema_of,
 )
+from stages.pipeline import STAGES, schema_of
 
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()
@@ -81,7 +83,7 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         for override in (*general, *special):  # the names in conf/ exist
             section, _, key = override.lstrip("+~").partition("=")[0].partition(".")
             if key in values[dataset].get(section, {}):
-                check_names(section, {key: values[dataset][section][key]})
+                check_names(schema_of(section), {key: values[dataset][section][key]})
         if any(word in override for override in overrides for word in ("methods", "channels")):
             check_maps(values[dataset])
         for stage in config["stages"]:
@@ -142,8 +144,16 @@ def composed(overrides: Sequence[str]) -> dict[str, Any]:
     return OmegaConf.to_container(config)  # type: ignore[return-value]  # the root of a config is a dict
 
 
+@cache
+def store_defaults() -> None:
+    """Tells Hydra the defaults of all stages: conf/config.yaml begins with them."""
+    defaults = {name: defaults_of(stage.Params) for name, stage in STAGES.items()}
+    ConfigStore.instance().store("stages", defaults, package="_global_")
+
+
 @cache  # Hydra takes a third of a second, and one call of `compose` asks for the published settings three times
 def _config(overrides: tuple[str, ...]) -> DictConfig:
+    store_defaults()
     with hydra.initialize_config_dir(str(CONF), version_base=None):
         config = hydra.compose("config", list(overrides))
     OmegaConf.resolve(config)

@@ -45,7 +45,8 @@ from haptic_glance.touch import press_many, touchable
 from stages.charts.tables import with_interval, within
 from stages.compose import composed, quoted
 from stages.conspicuity.measure import read_view_maps
-from stages.engine.settings import FILE, ParamsError, check_clone, check_section, conf_folder, load_params, schema_of
+from stages.engine.settings import FILE, ParamsError, check_clone, check_section, conf_folder, load_params
+from stages.pipeline import schema_of
 
 OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs

@@ -5,6 +5,7 @@ import shlex
 import subprocess
 import sys
 from contextlib import nullcontext
+from dataclasses import fields
 from importlib import import_module
 from itertools import zip_longest
 from pathlib import Path
@@ -14,16 +15,15 @@ from omegaconf import OmegaConf
 
 from stages.compose import CONF, _sections, compose, composed, groups, main, own_folder
 from stages.engine.settings import (
-    NAMES,
     ParamsError,
     Workspace,
     check_common,
     check_names,
     check_section,
     load_params,
-    schema_of,
     workspace_of_arguments,
 )
+from stages.pipeline import STAGES, schema_of
 from stages.views import Params
 
 ROOT = Path(__file__).parents[1]
@@ -61,16 +61,18 @@ def test_every_option_composes_and_fits_the_schemas(dataset, overrides):
     sections = _sections(composed([f"data={dataset}", *overrides]), dataset)
     assert sections
     for section, values in sections.items():
-        check_names(section, values)
+        check_names(schema_of(section), values)
 
 
-@pytest.mark.parametrize("setting", [f"{section}.{key}" for section, keys in NAMES.items() for key in keys])
+NAMED = [f"{name}.{each.name}" for name in STAGES for each in fields(schema_of(name)) if each.metadata.get("names")]
+
+
+@pytest.mark.parametrize("setting", NAMED)
 def test_a_name_that_a_setting_does_not_know_is_refused(setting):
     section, key = setting.split(".")
-    assert key in schema_of(section).__dataclass_fields__
     for value, words in ((["xyzzy"], "xyzzy"), (12.5, "12.5"), (True, "True")):
         with pytest.raises(ParamsError, match=f"^{setting}: .*{words}"):
-            check_names(section, {key: value})
+            check_names(schema_of(section), {key: value})
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from stages.report.records import HEADLINES, write_headlines
+from stages.report.headlines import HEADLINES, write_headlines
 
 pytest.importorskip("dvc")
 ROOT = Path(__file__).parents[1]

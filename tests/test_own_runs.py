@@ -29,7 +29,7 @@ import sys
 import dvc.cli
 import dvc.stage.run
 from stages.engine import code, statistics
-from stages.report import items
+from stages.charts import items
 
 def run(executable, cmd, **options):
     before = sys.argv

@@ -10,10 +10,10 @@ import pandas as pd
 import yaml
 
 from stages.charts.cells import number_of, rows_of
+from stages.charts.commands import COMPOSE, switch
 from stages.engine.rows import SUFFIX
 from stages.report.claims import Claim
-from stages.report.records import COMPOSE, switch
-from stages.report.topics import CLAIMS
+from stages.report.parts import CLAIMS
 
 from .measured import REPORTS
 

@@ -1,21 +1,22 @@
-"""All settings of conf/config.yaml with their defaults and meaning, as one table a stage.
+"""All settings of the stages with their defaults and meaning, as one table a stage.
 
 ```{settings}
 ```
 """
 
-import re
-from pathlib import Path
+from dataclasses import fields
 
 import yaml
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from stages.engine.settings import defaults_of
+from stages.pipeline import STAGES
+
 from .tables import made_table
 
-FOREIGN = ("defaults", "hydra")  # sections that Hydra itself reads
-CONF = Path(__file__).resolve().parents[2] / "conf" / "config.yaml"
+BY_OPTION = "set by an option or a data set"
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -25,25 +26,20 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 def settings() -> dict[str, dict[str, tuple[str, str]]]:
-    """{section: {setting: (default, meaning; empty where a group of conf/ says it)}} of conf/config.yaml."""
-    sections: dict[str, dict[str, tuple[str, str]]] = {}
-    section, text = "", CONF.read_text(encoding="utf-8")
-    values = yaml.safe_load(text)
-    for line in text.splitlines():
-        if head := re.match(r"(\w+):(?:\s*#.*)?$", line):
-            section = head[1]
-        elif section in FOREIGN:
-            continue
-        elif setting := re.match(r"  (\w+):(.*)$", line):
-            default, _, meaning = setting[2].partition(" # ")
-            value = default.strip() or flow(values[section][setting[1]])
-            sections.setdefault(section, {})[setting[1]] = value, meaning.strip()
+    """{stage: {setting: (default, meaning)}} of all stages."""
+    sections = {}
+    for name, stage in STAGES.items():
+        defaults = defaults_of(stage.Params)
+        sections[name] = {
+            each.name: (flow(defaults[each.name]) if each.name in defaults else BY_OPTION, each.metadata["meaning"])
+            for each in fields(stage.Params)
+        }
     return sections
 
 
 def flow(value: object) -> str:
-    """A default that stands on lines of its own, in one line."""
-    return yaml.safe_dump(value, default_flow_style=True, width=10**6, sort_keys=False).strip()
+    """A default in one line of YAML."""
+    return yaml.safe_dump(value, default_flow_style=True, width=10**6, sort_keys=False).removesuffix("...\n").strip()
 
 
 class SettingsTable(SphinxDirective):

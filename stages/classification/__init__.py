@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+from stages.engine.names import classifiers
+from stages.engine.settings import REQUIRED, setting
+
 COLUMNS = {
     "variant": "plain, or the name of a further experiment: see stages/classification/trials.py",
     "set": "number of a random set of objects, of those that are drawn",
@@ -16,10 +19,24 @@ COLUMNS = {
 class Params:
     """Section `classification` of params.yaml."""
 
-    sets: dict[str, list[str]]  # name of the set: its objects, each with imprints in data/SET/imprints
-    drawn: int
-    classifiers: list[str]  # names of haptic_glance.know.CLASSIFIERS
-    repetitions: int
-    closer: list[str]
-    touches: list[int]
-    combinations: int
+    sets: dict[str, list[str]] = setting(
+        REQUIRED,
+        "name of the set: its objects, each with imprints in data/SET/imprints",
+    )
+    drawn: int = setting(
+        0,
+        "number of random sets that replace the named sets, with as many objects each; 0: use the named sets",
+        least=0,
+    )
+    classifiers: list[str] = setting(REQUIRED, "names of haptic_glance.know.CLASSIFIERS", names=classifiers)
+    repetitions: int = setting(
+        20,
+        "random hold-outs and foldings, the same for every sampling and classifier; the intervals are over these",
+        least=1,
+    )
+    closer: list[str] = setting(
+        ["glance", "random"],
+        "samplings studied closer: selection, and several touches of the first set; the first in full",
+    )
+    touches: list[int] = setting([1, 2, 3, 4, 5], "numbers of touches that form one sample (T table 4.6)", least=1)
+    combinations: int = setting(4, "samples of several touches that start with the same imprint", least=1)

@@ -4,16 +4,16 @@ The workspace has the repository root, its settings, and the data set that a sta
 """
 
 import argparse
+import copy
 import difflib
-import importlib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterator
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
 import numpy as np
-from omegaconf import OmegaConf
+from omegaconf import MISSING, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 from yaml import YAMLError
 
@@ -22,86 +22,37 @@ from haptic_glance.base.errors import errors_in_one_line
 FILE = Path("params.yaml")
 COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
 
-ABOVE_0 = np.nextafter(0, 1)
-RANGES = {  # the last part of a setting's name: the least and the greatest of its numbers, in every section
-    **dict.fromkeys(
-        ("azimuths", "batch", "cells", "coarse_cells", "combinations", "copies", "count", "draws", "epochs", "frames",
-         "hybrid_pictures", "image_epochs", "most", "new_object_touches", "normal_epochs", "parallels", "repetitions",
-         "samples", "screen", "search_epochs", "simulated", "size", "steps", "touches", "trainings", "views",
-         "viewer_count", "viewer_faces"), (1, np.inf)
-    ),
-    **dict.fromkeys(("drawn", "hold", "limit", "real", "rings", "slack", "smoothing"), (0, np.inf)),
-    **dict.fromkeys(
-        ("distances", "factors", "finetuned_rates", "frozen_rates", "hybrid_rate", "near", "penalties", "pitch",
-         "pitches", "radius", "rate", "rates", "tolerance", "width"), (ABOVE_0, np.inf)
-    ),
-    **dict.fromkeys(("confidences", "momentum", "train_share", "validation_share"), (0, 1)),
-    "folds": (2, np.inf), "angle": (ABOVE_0, 180),
-}  # fmt: skip
-
-NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, or of a function that refuses others}
-    "attention_checks": {"views": "stages.attention_checks.__main__:VIEWS"},
-    "classification": {"classifiers": "haptic_glance.know.classifiers:CLASSIFIERS"},
-    "coarse_imprints": {"variants": "stages.coarse_imprints.__main__:VARIANTS"},
-    "conspicuity": {
-        "background": "haptic_glance.look.channels.cropped_view:BACKGROUNDS",
-        "channels": "haptic_glance.look.channels.channels:MAPS",
-        "formulas": "haptic_glance.look.channels.printed:FORMULAS",
-        "symmetry": "haptic_glance.look.channels.channels:SYMMETRIES",
-    },
-    "exploration": {"methods": "haptic_glance.look.points.methods:method_named"},
-    "fixation": {
-        "methods": "stages.fixation.backbone:method_named",
-        "projection": "stages.fixation.places:PROJECTIONS",
-    },
-    "imprints": {
-        "contact": "haptic_glance.touch.quasi_tangent:SENSORS",
-        "methods": "haptic_glance.look.points.methods:method_named",
-    },
-    "lod": {
-        "backend": "haptic_glance.lod.simplify:BACKENDS",
-        "methods": "haptic_glance.lod.task:variant",
-        "targets": "haptic_glance.lod.export:face_count",
-        "viewpoints": "haptic_glance.look.views.viewpoints:VIEWPOINTS",
-    },
-    "meshes": {"colours": "haptic_glance.mesh.materials:COLOURS", "source": "stages.meshes.sources:SOURCES"},
-    "salient_points": {
-        "methods": "haptic_glance.look.points.methods:method_named",
-        "selection": "haptic_glance.look.points.options:SELECTIONS",
-    },
-    "sensor_size": {
-        "classifiers": "stages.sensor_size.protocol:CLASSIFIERS",
-        "extents": "stages.sensor_size.protocol:EXTENTS",
-    },
-    "simulated_to_real": {"simulations": "stages.simulated_to_real.__main__:SIMULATIONS"},
-    "stability": {
-        "methods": "haptic_glance.look.points.methods:method_named",
-        "perturbations": "haptic_glance.disturb.objects:PERTURBATIONS",
-        "severities": "haptic_glance.disturb.objects:PERTURBATIONS",
-    },
-    "touch_stability": {
-        "classifiers": "haptic_glance.know.classifiers:CLASSIFIERS",
-        "denoisers": "stages.touch_stability.denoisers:DENOISERS",
-        "severities": "haptic_glance.disturb.touches:TOUCH_PERTURBATIONS",
-    },
-    "transfer": {
-        "hybrid_severities": "haptic_glance.disturb.picture:KNOWN",
-        "networks": "haptic_glance.deep.network:NETWORKS",
-        "severities": "haptic_glance.disturb.imprint:KNOWN",
-        "splits": "stages.transfer.plan:SPLITS",
-        "uncontrolled": "haptic_glance.deep.network:NETWORKS",
-        "weights": "haptic_glance.deep.network:WEIGHTS",
-    },
-    "views": {
-        "background": "haptic_glance.look.views.view:BACKGROUNDS",
-        "renderer": "haptic_glance.look.views.renderer:resolve_renderer",
-        "viewpoints": "haptic_glance.look.views.viewpoints:VIEWPOINTS",
-    },
-    "weights": {"method": "stages.weights.training:CHOICES", "svm": "stages.weights.training:PIXELS"},
-}
 REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false",
             "ListConfig": "write a list in brackets", "subclass of str": "write such a name in quotes"}  # fmt: skip
 Settings = TypeVar("Settings")
+
+
+REQUIRED: Any = MISSING  # in place of a default: an option of conf/ or a data set gives the value
+Names = Callable[[], Container[str] | Callable[[str], object]]  # imports names late, or a function that refuses others
+
+
+def setting(
+    default: Any,
+    meaning: str,
+    least: float | None = None,
+    above: float | None = None,
+    most: float | None = None,
+    names: Names | None = None,
+) -> Any:
+    """A field of a stage's `Params`: its default and its meaning, a sentence that the documentation shows.
+
+    least, above, most: bounds of its numbers, which may stand in lists or by name; names: what its texts may be.
+    """
+    rules = {"meaning": meaning, "least": least, "above": above, "most": most, "names": names}
+    if isinstance(default, list | dict):
+        return field(default_factory=lambda: copy.deepcopy(default), metadata=rules)
+    return field(default=default, metadata=rules)
+
+
+def defaults_of(schema: type) -> dict[str, Any]:
+    """{setting: default} of a schema, without those that are REQUIRED, as plain dicts and lists."""
+    values: Any = OmegaConf.to_container(OmegaConf.structured(schema))
+    return {key: value for key, value in values.items() if value != MISSING}
 
 
 class ParamsError(ValueError):
@@ -127,11 +78,6 @@ def section_of(schema: type) -> str:
     return schema.__module__.split(".")[-1]
 
 
-def schema_of(section: str) -> type:
-    """The typed schema of a section: the dataclass `Params` of stages/SECTION/__init__.py."""
-    return importlib.import_module(f"stages.{section}").Params
-
-
 def check_section(schema: type[Settings], values: Any) -> Settings:
     """Checks the values of a section against its schema and returns them as an instance of it."""
     section = section_of(schema)
@@ -143,7 +89,7 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     _check_texts(schema, values)
     try:
         merged = OmegaConf.merge(typed, values)
-        _check_ranges(section, OmegaConf.to_container(merged))  # type: ignore[arg-type]  # a dict; `nan` may be a name
+        _check_bounds(schema, OmegaConf.to_container(merged))  # type: ignore[arg-type]  # a dict; `nan` may be a name
         return OmegaConf.to_object(merged)  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
@@ -179,28 +125,29 @@ def check_common(values: dict[str, Any]) -> None:
         raise ParamsError(f"seed: {values['seed']} is negative")
 
 
-def check_names(section: str, values: dict[str, Any]) -> None:
-    """ParamsError for a value that is not among the NAMES of its setting; imports the modules that have the names."""
-    for key, place in NAMES.get(section, {}).items():
-        if key not in values:
+def check_names(schema: type, values: dict[str, Any]) -> None:
+    """ParamsError for a value that is not among the names of its setting; imports the modules that have the names."""
+    section = section_of(schema)
+    for each in fields(schema):
+        names = each.metadata.get("names")
+        if names is None or each.name not in values:
             continue
-        module, _, name = place.partition(":")
         try:
-            known = getattr(importlib.import_module(module), name)
+            known = names()
         except ModuleNotFoundError:  # the stage says which package it needs
             continue
-        parts = values[key] if isinstance(values[key], list | dict) else [values[key]]
-        names = list(map(str, parts))  # YAML reads 12 as a number
-        if twice := [value for value in dict.fromkeys(names) if names.count(value) > 1]:
-            raise ParamsError(f"{section}.{key} names {', '.join(twice)} twice")
-        for value in names:
+        value = values[each.name]
+        texts = list(map(str, value if isinstance(value, list | dict) else [value]))  # YAML reads 12 as a number
+        if twice := [text for text in dict.fromkeys(texts) if texts.count(text) > 1]:
+            raise ParamsError(f"{section}.{each.name} names {', '.join(twice)} twice")
+        for text in texts:
             try:
                 if callable(known):
-                    known(value)
-                elif value not in known:
-                    raise ValueError(f"unknown name {value!r}: {nearest(value, list(known))}")
+                    known(text)
+                elif text not in known:
+                    raise ValueError(f"unknown name {text!r}: {nearest(text, list(known))}")
             except ValueError as error:
-                raise ParamsError(f"{section}.{key}: {error}") from None
+                raise ParamsError(f"{section}.{each.name}: {error}") from None
 
 
 def nearest(name: str, options: list[str], where: str = "") -> str:
@@ -209,20 +156,21 @@ def nearest(name: str, options: list[str], where: str = "") -> str:
     return f"did you mean {where}{matches[0]}?" if matches else f"known: {', '.join(dict.fromkeys(options))}"
 
 
-def _check_ranges(where: str, values: dict[str, Any]) -> None:
-    """ParamsError for a number outside the range of its setting; numbers may stand in lists, or one a name."""
-    for key, value in values.items():
-        if isinstance(value, dict) and key not in RANGES:
-            _check_ranges(f"{where}.{key}", value)
-            continue
-        if key == "size" and isinstance(value, list) and len(value) != 2:
-            raise ParamsError(f"{where}.{key}: {value} must be [rows, columns]")
-        lowest, highest = RANGES.get(key, (-np.inf, np.inf))
+def _check_bounds(schema: type, values: dict[str, Any]) -> None:
+    """ParamsError for a number outside the bounds of its setting."""
+    for each in fields(schema):
+        value, rules = values.get(each.name), each.metadata
+        where = f"{section_of(schema)}.{each.name}"
+        if each.name == "size" and isinstance(value, list) and len(value) != 2:
+            raise ParamsError(f"{where}: {value} must be [rows, columns]")
+        least, above, most = (rules.get(name) for name in ("least", "above", "most"))
         for number in _numbers(value):
-            if not lowest <= number <= highest:
-                low = "above 0" if lowest == ABOVE_0 else f"{lowest:g} or more"
-                bounds = low if highest == np.inf else f"between {0 if lowest == ABOVE_0 else lowest:g} and {highest:g}"
-                raise ParamsError(f"{where}.{key}: {number:g} must be {bounds}")
+            low = (least is None or number >= least) and (above is None or number > above)
+            if not (low and (most is None or number <= most)):
+                bounds = f"{least:g} or more" if above is None else f"above {above:g}"
+                if most is not None:
+                    bounds = f"between {least if above is None else above:g} and {most:g}"
+                raise ParamsError(f"{where}: {number:g} must be {bounds}")
 
 
 def _numbers(value: Any) -> Iterator[float]:
@@ -360,7 +308,7 @@ class Workspace:
                 remedy += f", with {section} among the stages of conf/data/{self.dataset}.yaml"
             raise ParamsError(f"{self.root / FILE} has no section {where}: {remedy}")
         settings = check_section(schema, values[section])
-        check_names(section, values[section])
+        check_names(schema, values[section])
         return settings
 
 

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+from stages.engine.names import method_name
+from stages.engine.settings import setting
+
 COLUMNS = {
     "likelihood": "what the belief is computed from: a name of haptic_glance.know.LIKELIHOODS",
     "way": "how the next place is chosen: a name of haptic_glance.know.STRATEGIES",
@@ -18,8 +21,17 @@ COLUMNS = {
 class Params:
     """Section `exploration` of params.yaml."""
 
-    sets: list[str]
-    methods: list[str]
-    confidences: list[float]
-    most: int
-    repetitions: int
+    sets: list[str] = setting(["six", "four"], "names of classification.sets whose objects are explored")
+    methods: list[str] = setting(
+        ["thesis_ssim", "glance", "random"],
+        "of imprints.methods: where the objects may be touched",
+        names=method_name,
+    )
+    confidences: list[float] = setting(
+        [0.6, 0.8, 0.9, 0.95, 0.99],
+        "belief in one object at which touching stops",
+        least=0,
+        most=1,
+    )
+    most: int = setting(12, "touches after which it stops in any case", least=1)
+    repetitions: int = setting(20, "random hold-outs of places", least=1)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from stages.engine.settings import setting
+
 COLUMNS = {
     "classifier": "a name of haptic_glance.know.CLASSIFIERS, or majority: always the commonest answer",
     "scaling": "of pressure images before the classifier: a name of haptic_glance.know.classifiers.SCALINGS",
@@ -30,9 +32,17 @@ COLUMNS = {
 class Params:
     """Section `recorded` of params.yaml; also what the other stages on recorded touches read."""
 
-    kind: str
-    folder: str
-    repetitions: int
+    kind: str = setting(
+        "",
+        "what was recorded: pressure_images, biotac_grasps, vitac, vt60, bigs, schunk or touch_events; "
+        "conf/data says so",
+    )
+    folder: str = setting("", "the folder or zip archive of the recordings")
+    repetitions: int = setting(
+        20,
+        "number of random splits, of random sets of classes, and of foldings for touches over time",
+        least=1,
+    )
 
     def path(self, root: Path) -> Path:
         """The folder of the recordings; a relative folder counts from the repository root."""

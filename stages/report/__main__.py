@@ -71,7 +71,7 @@ def write_parts(results: Results, stages: Sequence[str]) -> None:
     """Draws the tables, figures and charts of some stages into the report; prints their files and what was not run."""
     results.out = results.reports
     for stage in stages:
-        built = build_part(stage, results)
+        built = build_part(PARTS[stage], results)
         for item in built.items:
             print("\n".join(str(path) for path in item.paths))
         for name, reason in built.not_run.items():
@@ -135,7 +135,7 @@ def build_parallel(results: Results) -> tuple[Built, tuple[pd.DataFrame, pd.Data
     if where.get("backend") == "dask":  # the files that a part reads are here alone
         where["backend"] = "loky"
     jobs = [partial(by_claim, CLAIMS, results), partial(viewer_or_reason, results)]
-    jobs += [partial(build_part, stage, results) for stage in PARTS]
+    jobs += [partial(build_part, part, results) for part in PARTS.values()]
     claims, meshes, *parts = parallel_map(call, jobs, "report", **where)
     return sum(parts, Built()), tabled(CLAIMS, claims), meshes
 

@@ -1,5 +1,6 @@
 """The parts of the report: what each stage shows, in reading order, and how a part is built."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from types import ModuleType
 
@@ -51,16 +52,16 @@ class Built:
         return Built(self.items + other.items, self.not_run | other.not_run, self.no_data | other.no_data)
 
 
-def build_part(stage: str, results: Results) -> Built:
-    """Builds and writes the tables, charts and figures of one stage; what lacks its measurement is noted.
+def build_part(part: ModuleType, results: Results, kinds: Iterable[str] = KINDS) -> Built:
+    """Builds and writes the tables, figures and charts of one part; what lacks its measurement is noted.
 
     On a folder of one's own, only where its stage ran there: the rest needs other data sets.
     """
     built = Built()
-    for kind, names in KINDS.items():
-        for name in getattr(PARTS[stage], names):
+    for kind in kinds:
+        for name in getattr(part, KINDS[kind]):
             try:
-                item = build_item(stage, kind, name, results)
+                item = build_item(part, kind, name, results)
             except NotRun as missing:
                 if results.concerns(missing):
                     built.not_run[f"{kind}/{name}"] = str(missing)
@@ -74,9 +75,8 @@ def build_part(stage: str, results: Results) -> Built:
     return built
 
 
-def build_item(stage: str, kind: str, name: str, results: Results) -> Table | Figure:
+def build_item(part: ModuleType, kind: str, name: str, results: Results) -> Table | Figure:
     """One table, figure or chart, with its words, written to OUT/KIND; NotRun where it lacks its measurement."""
-    part = PARTS[stage]
     results.read.clear()
     with plt.rc_context(SETTINGS):
         item = getattr(part, KINDS[kind])[name](results)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from stages.engine.settings import REQUIRED, setting
+
 COLUMNS = {
     "place": "the object's number in the scene",
     "kind": "what the tolerance is of: pixels or ssim",
@@ -40,17 +42,31 @@ class Keyframe:
 class Params:
     """Section `scene` of params.yaml."""
 
-    name: str  # of the scene, for the tables
-    objects: list[Item]  # what stands where
-    camera: list[Keyframe]  # where the camera goes, at equal times
-    frames: int  # frames along the path
-    screen: list[int]  # rows, columns of the screen in pixels
-    angle: float  # vertical view angle in degrees
-    tolerance: float  # of the error on the screen: pixels, or with kind ssim a share of the structure lost
-    kind: str  # what the tolerance is of: pixels or ssim
-    limit: int
-    hold: int
-    method: str
-    factors: list[float]
-    random: int
-    msft_lod: bool
+    name: str = setting(REQUIRED, "of the scene, for the tables")
+    objects: list[Item] = setting(REQUIRED, "what stands where")
+    camera: list[Keyframe] = setting(REQUIRED, "where the camera goes, at equal times")
+    frames: int = setting(REQUIRED, "frames along the path", least=1)
+    screen: list[int] = setting(REQUIRED, "rows, columns of the screen in pixels", least=1)
+    angle: float = setting(REQUIRED, "vertical view angle in degrees", above=0, most=180)
+    tolerance: float = setting(
+        REQUIRED,
+        "of the error on the screen: pixels, or with kind ssim a share of the structure lost",
+        above=0,
+    )
+    kind: str = setting(REQUIRED, "what the tolerance is of: pixels or ssim")
+    limit: int = setting(0, "faces that all objects in view may have together; 0 for no limit", least=0)
+    hold: int = setting(3, "frames that a level stays at least, so that nothing flickers", least=0)
+    method: str = setting(
+        "glance-soft",
+        "how levels spare the salient places: a name of lod.methods, for example glance-soft",
+    )
+    factors: list[float] = setting(
+        [0.5, 1.0, 2.0, 4.0],
+        "multiples of the tolerance at which the chart of faces against error is measured",
+        above=0,
+    )
+    random: int = setting(
+        0,
+        "scenes to draw at random from all objects of the set, in place of objects and camera; 0 for none",
+    )
+    msft_lod: bool = setting(True, "also write one GLB per object that holds all its levels (MSFT_lod)")

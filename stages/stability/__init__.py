@@ -5,6 +5,9 @@ Also: what happens to broken meshes when they are simplified.
 
 from dataclasses import dataclass
 
+from stages.engine.names import method_name, perturbations
+from stages.engine.settings import setting
+
 COLUMNS = {
     "perturbation": "how the object, the light or the image was disturbed, or how the mesh was broken; none: as it is",
     "severity": "how much, in the perturbation's unit; of a simplification the number of faces asked for",
@@ -20,14 +23,76 @@ COLUMNS = {
 class Params:
     """Section `stability` of params.yaml."""
 
-    broken: list[str]
-    objects: list[str]
-    most: int
-    methods: list[str]
-    count: int
-    size: list[int]
-    perturbations: list[str]
-    severities: dict[str, list[float]]
-    draws: int
-    pairs: list[str]
-    used: list[str]
+    broken: list[str] = setting(["cup", "eyeglasses"], "objects whose broken copies are simplified, of those below")
+    objects: list[str] = setting(
+        ["elephant", "hand", "cup", "eyeglasses"],
+        "objects to disturb; the first objects of the set if it has none of these",
+    )
+    most: int = setting(4, "how many objects at most", least=1)
+    methods: list[str] = setting(
+        ["glance", "glance_any_pose", "itti", "thesis_ssim", "mesh_saliency", "harris", "random"],
+        "names of METHODS in haptic_glance/look/points/methods.py",
+        names=method_name,
+    )
+    count: int = setting(
+        30,
+        "points an object and method: the same number for all, since chance hits grow with it",
+        least=1,
+    )
+    size: list[int] = setting(
+        [450, 600],
+        "rows, columns of the views: half the thesis's, a fourth of the time",
+        least=1,
+    )
+    perturbations: list[str] = setting(
+        [
+            "noise",
+            "decimation",
+            "remeshing",
+            "missing_faces",
+            "scan",
+            "vertex_order",
+            "winding",
+            "turn",
+            "tilt",
+            "scale",
+            "light",
+            "background",
+            "background_left_in",
+            "paint",
+            "pattern",
+            "image_size",
+        ],
+        "names of haptic_glance.disturb.objects.PERTURBATIONS",
+        names=perturbations,
+    )
+    severities: dict[str, list[float]] = setting(
+        {
+            "noise": [0.001, 0.0025, 0.005, 0.01],  # sigma, share of the diagonal
+            "decimation": [0.5, 0.25, 0.1],  # share of the faces kept
+            "remeshing": [0.02, 0.04],  # edge length, share of the diagonal
+            "missing_faces": [0.02, 0.05, 0.1],  # share of the faces
+            "scan": [90.0, 180.0, 360.0],  # degrees between the depth cameras around the object: four, two, one
+            "vertex_order": [1.0],  # share of the vertices
+            "winding": [0.5, 1.0],  # share of the faces
+            "turn": [5.0, 15.0, 45.0],  # degrees about the vertical
+            "tilt": [15.0, 45.0, 90.0],  # degrees about a level axis
+            "scale": [1000.0],  # factor
+            "light": [15.0, 30.0, 60.0],  # degrees off the camera
+            "background": [1.0],  # brightness, kept out of the maps
+            "background_left_in": [0.0, 0.5, 1.0],  # brightness, black, grey, white
+            "paint": [0.5, 1.0],  # saturation
+            "pattern": [0.25, 1.0],  # saturation
+            "grey": [1.0],  # share of the hue taken away, of objects that have colours
+            "clay": [1.0],  # share of the colour taken away, brightness included
+            "image_size": [0.75, 0.5, 0.33],  # share of the rows
+        },
+        "of each perturbation, in its own unit, from mild to harsh",
+        names=perturbations,
+    )
+    draws: int = setting(1, "of a disturbance that draws random numbers; what is measured is their mean", least=1)
+    pairs: list[str] = setting(
+        [],
+        "perturbations one after the other, at their middle severities, in one draw: noise+tilt",
+    )
+    used: list[str] = setting([], "methods whose points are used to simplify and to touch the undisturbed object")

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from stages.engine.settings import setting
+
 COLUMNS = {
     "channel": "channel, or feature of the glance, that the weight is of",
     "area": "where the pixels were drawn: on the `object`, or from the whole `image` as in the thesis",
@@ -12,9 +14,30 @@ COLUMNS = {
 }
 
 
+def _method():
+    from stages.weights.training import CHOICES
+
+    return CHOICES
+
+
+def _svm():
+    from stages.weights.training import PIXELS
+
+    return PIXELS
+
+
 @dataclass
 class Params:
     """The weights that the methods `glance` and `glance_any_pose` take, and what the SVMs are trained on."""
 
-    method: str
-    svm: str
+    method: str = setting(
+        "gaze",
+        "what `glance` takes: gaze (learned from human gaze) or fixations (learned from this data set)",
+        names=_method,
+    )
+    svm: str = setting(
+        "object",
+        "what an object's own SVMs are trained on: object (pixels on it) or picture (the whole picture, as in "
+        "the thesis)",
+        names=_svm,
+    )

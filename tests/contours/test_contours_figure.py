@@ -12,8 +12,8 @@ from stages.charts.results import Results
 from stages.contours.contours import sample_contours, write_sequences
 from stages.engine.settings import Workspace
 from stages.report import Params, sequences
+from stages.report.parts import build_item
 from stages.report.sequences.contours import followed
-from stages.report.topics import build_one
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)
@@ -40,7 +40,7 @@ def write(root, names, strategies):
 
 
 def figure(name, results):
-    return build_one(sequences, "figures", name, results)
+    return build_item(sequences, "figures", name, results)
 
 
 @pytest.mark.slow

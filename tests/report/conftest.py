@@ -12,11 +12,12 @@ from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.weights.svm import fit_svm
 from haptic_glance.look.weights.weights import write_models
 from haptic_glance.mesh.mesh import Mesh
+from stages.charts import items
 from stages.charts.drawing import save
 from stages.charts.results import Results
 from stages.engine import statistics
 from stages.engine.settings import Workspace
-from stages.report import Params, items
+from stages.report import Params
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run

@@ -19,9 +19,9 @@ from stages.engine.statistics import interval
 from stages.report import attention
 from stages.report.attention import maps
 from stages.report.attention.claims import agreement, difference, rivals
-from stages.report.page import pack_viewer
-from stages.report.topics import CLAIMS, build_one
+from stages.report.parts import CLAIMS, build_item
 from stages.report.verdict import judge
+from stages.report.viewer import pack_viewer
 from tests.report.frames import only, verdicts
 
 
@@ -33,8 +33,8 @@ def seen(tmp_path_factory, small):
     return small.results(root)
 
 
-table_of = partial(build_one, attention, "tables")
-figure_of = partial(build_one, attention, "figures")
+table_of = partial(build_item, attention, "tables")
+figure_of = partial(build_item, attention, "figures")
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from stages.charts.results import NotRun
 from stages.report import meshes
 from stages.report.meshes.backends import growth
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 
 SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]
 LEVELS = {0.5: 1.0, 0.1: 2.0}  # seconds of a share, beside the other's
@@ -38,7 +38,7 @@ def bench(measure):
     return partial(measure, "bench/simplification")
 
 
-table = partial(build_one, meshes, "tables", "backends")
+table = partial(build_item, meshes, "tables", "backends")
 
 
 def by_backend(results):
@@ -139,6 +139,6 @@ def test_growth_needs_large_meshes():
 def test_rows_without_the_reference_or_outcomes_are_not_run(bench):
     rows = benched()
     with pytest.raises(NotRun, match="pymeshlab"):
-        build_one(meshes, "tradeoff", "backends", bench(rows[rows["backend"] == "fast"]))
+        build_item(meshes, "tradeoff", "backends", bench(rows[rows["backend"] == "fast"]))
     with pytest.raises(NotRun, match="make bench"):
         table(bench(rows.drop(columns="outcome")))

@@ -8,8 +8,8 @@ import pytest
 
 from stages.charts.results import NotRun
 from stages.report import touch
+from stages.report.parts import build_item
 from stages.report.stability import costs
-from stages.report.topics import build_one
 
 RATES = {"ours": 4000.0, "trimesh_embree": 2000.0, "depth_picture": 1000.0, "tacto_32x32": 50.0, "tacto_160x120": 20.0}
 ERRORS = {"ours": 1e-16, "trimesh_embree": 1e-15, "depth_picture": 2e-3, "tacto_32x32": 1e-3, "tacto_160x120": 2e-4}
@@ -38,8 +38,8 @@ def benched(ours=4000.0, tacto=True):
     return pd.DataFrame(rows)
 
 
-table = partial(build_one, touch, "tables", "imprint_rates")
-chart = partial(build_one, touch, "tradeoff", "imprints")
+table = partial(build_item, touch, "tables", "imprint_rates")
+chart = partial(build_item, touch, "tradeoff", "imprints")
 
 
 @pytest.fixture

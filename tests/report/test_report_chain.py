@@ -6,7 +6,7 @@ import pytest
 
 from stages.report import chain
 from stages.report.chain import smallest_kept
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 
 BLIND = {"method": "random", "points": 40, "cells": 8, "level": "500", "touches": 3, "classifier": "knn"}
 LOOKING = BLIND | {"method": "thesis_ssim", "viewpoints": "twelve", "image_rows": 900, "level": "100%", "touches": 1}
@@ -40,14 +40,14 @@ def measured(measure):
 
 @pytest.mark.slow
 def test_confirmed_choices_stand_beside_what_the_search_found(measured):
-    table = build_one(chain, "tables", "front", measured)
+    table = build_item(chain, "tables", "front", measured)
     assert list(table.frame["number"]) == [1, 0, 5]  # the quickest first
     small = table.frame.iloc[1]
     assert small["regions"] == pytest.approx(0.5) and small["regions_searched"] == pytest.approx(0.6)
     assert small["regions_low"] < 0.5 < small["regions_high"] and np.isnan(table.frame.iloc[2]["regions_searched"])
     assert small["regions_over"] == pytest.approx(-5) and small["regions_over_low"] < -5 < small["regions_over_high"]
     assert "takes 10 ms, the default 1,000 ms" in " ".join(table.notes)
-    assert "takes 10 ms" in build_one(chain, "tradeoff", "front", measured).caption
+    assert "takes 10 ms" in build_item(chain, "tradeoff", "front", measured).caption
 
 
 def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both_accuracies():
@@ -60,7 +60,7 @@ def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both
 
 
 def test_each_changed_choice_has_its_paired_effect_and_its_cost(measured):
-    frame = build_one(chain, "tables", "front_changed", measured).frame.set_index("stage")
+    frame = build_item(chain, "tables", "front_changed", measured).frame.set_index("stage")
     assert list(frame.index) == ["points", "classifier"]
     assert frame.loc["points", "regions"] == pytest.approx(-10) and frame.loc["points", "times"] == pytest.approx(0.5)
     assert frame.loc["classifier", "objects"] == pytest.approx(2) and frame.loc["classifier", "times"] == 2

@@ -9,12 +9,12 @@ import pytest
 from stages.charts.datasets import SECTION_3_1
 from stages.charts.results import NotRun
 from stages.engine.statistics import interval, p_value
-from stages.report import effects, topics
+from stages.report import effects, parts
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.effects import STATISTICS, differences
-from stages.report.topics import CLAIMS
+from stages.report.parts import CLAIMS
 from stages.report.verdict import counted, holding, judge, judged, over_readings, sentences, verdict
 from tests.report.frames import verdicts
 
@@ -415,7 +415,7 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
 
 
 def test_a_process_that_imported_no_topic_loads_the_statistic_of_a_claim(values, monkeypatch):
-    known = {topics.__name__: dict(STATISTICS)}
+    known = {parts.__name__: dict(STATISTICS)}
     monkeypatch.setattr(effects, "import_module", lambda name: STATISTICS.update(known[name]))
     monkeypatch.delitem(STATISTICS, "difference")
     assert differences(values(item=list("ab"), value=[1.0, 2.0]), claim(second=0)).tolist() == [1, 2]

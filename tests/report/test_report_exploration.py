@@ -8,8 +8,8 @@ import pytest
 
 from stages.report import exploration, stability
 from stages.report.exploration import needed
+from stages.report.parts import build_item
 from stages.report.stability.touch import DENOISED, breaking, curve, harmless
-from stages.report.topics import build_one
 from tests.report.frames import verdicts
 
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
@@ -84,7 +84,7 @@ def test_half_of_the_lead_is_lost_where_the_rows_say_so_and_severities_go_from_m
     assert points["severity"].tolist() == [400, 100] and harmless(points) == 400
 
 
-touch_stability = partial(build_one, stability, "tables", "touch_stability")
+touch_stability = partial(build_item, stability, "tables", "touch_stability")
 
 
 def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(measure):

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from stages.report.fidelity import PRINTED, RUNS
-from stages.report.topics import KINDS, TOPICS
+from stages.report.parts import KINDS, PARTS
 from tests.fidelity.agreements import is_printed, matches
 
 ROOT = Path(__file__).parents[2]
@@ -19,7 +19,7 @@ FIDELITY = ROOT / "tests/fidelity"
 NUMBERED = {  # what the thesis numbers: chapter -> the last number of each
     "eq.": {3: 25}, "table": {3: 2, 4: 9, 5: 6}, "figure": {3: 36, 4: 19, 5: 6},
 }  # fmt: skip
-TWINS = {name for topic in TOPICS for kind in KINDS.values() for name in getattr(topic, kind)}
+TWINS = {name for topic in PARTS.values() for kind in KINDS.values() for name in getattr(topic, kind)}
 
 
 def numbers(kind):

@@ -20,7 +20,7 @@ from stages.report import fixation as topic
 from stages.report.effects import differences
 from stages.report.fixation import maps
 from stages.report.fixation import rows as _fixation
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from tests.report.frames import has_ink, only, verdicts
 
 NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "vgg16-last_block",
@@ -35,8 +35,8 @@ ALIKE = {"vgg16-last_block": 0.5, "resnet50-last_block": 0.7}  # mean correlatio
 VIEWED = ["figure_3_29", "figure_3_30", "figure_3_34"]
 
 
-table = partial(build_one, topic, "tables", "fixation")
-figure = partial(build_one, topic, "figures")
+table = partial(build_item, topic, "tables", "fixation")
+figure = partial(build_item, topic, "figures")
 
 
 def rows(dataset="gaze", count=6, resnet=0.0, **means):

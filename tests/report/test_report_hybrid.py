@@ -8,7 +8,7 @@ import pytest
 
 from stages.report import hybrid, stability
 from stages.report.hybrid import JOINED, NEW_OBJECTS
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from tests.report import frames
 
 FIRST = "18:139"
@@ -64,7 +64,7 @@ verdicts = partial(frames.verdicts, hybrid.CLAIMS)
 
 
 def test_a_network_breaks_where_half_of_its_lead_is_lost(run):
-    row = build_one(stability, "tables", "transfer_stability", run).frame.set_index("perturbation").loc["noise"]
+    row = build_item(stability, "tables", "transfer_stability", run).frame.set_index("perturbation").loc["noise"]
     assert row["breaking_point"] == pytest.approx(0.1775)  # 0.39 at 0.1, 0.29 at 0.2; half way from 0.5 to 0.125
     assert row["low"] < row["breaking_point"] < row["high"] or np.isnan(row["high"])
 
@@ -114,13 +114,13 @@ def two_middles(measure):
 
 @pytest.mark.slow
 def test_other_shared_layers_stand_by_their_gain_on_the_same_items(two_middles):
-    table = build_one(hybrid, "tables", "section_5_5", two_middles)
+    table = build_item(hybrid, "tables", "section_5_5", two_middles)
     gains = table.frame.groupby("shared_layers", sort=False)[["vision_gain", "touch_gain"]].agg(["min", "max"])
     assert list(gains.index) == [FIRST, "18:147"]  # the one with more repetitions first
     assert gains.to_numpy() == pytest.approx(np.array([[0.0] * 4, [2.0] * 4]), abs=1e-9)
     shown = table.shown.set_index("shared layers").filter(like="gain by sight")
     assert set(shown.loc[FIRST].stack()) == {"–"} and set(shown.loc["18:147"].stack()) == {"+2.0"}
-    chart = build_one(hybrid, "tradeoff", "hybrid", two_middles)
+    chart = build_item(hybrid, "tradeoff", "hybrid", two_middles)
     first = table.frame[(table.frame["shared_layers"] == FIRST) & (table.frame["network"] == "hybrid")]
     for axes, (_, row) in zip(chart.drawing.axes, first.iterrows(), strict=True):
         hollow = {round(line.get_xdata()[0], 6) for line in axes.lines if line.get_markerfacecolor() == "white"}

@@ -15,7 +15,7 @@ from stages.report.effects import differences
 from stages.report.meshes import pictures
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.tables import data_sets, face_counts, paired_cells
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from stages.report.verdict import judge
 from tests.report.frames import has_ink
 
@@ -48,8 +48,8 @@ def measured(dataset="test", seed=0, objects=OBJECTS):
     return pd.DataFrame(rows)
 
 
-table = partial(build_one, meshes, "tables")
-figure = partial(build_one, meshes, "figures")
+table = partial(build_item, meshes, "tables")
+figure = partial(build_item, meshes, "figures")
 
 
 @pytest.fixture

@@ -14,16 +14,16 @@ import pytest
 import yaml
 
 from haptic_glance.base.files import write_json, write_table, write_text
+from stages.charts import items
+from stages.charts.commands import command
 from stages.charts.drawing import save
 from stages.charts.results import NotRun
 from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
-from stages.report import items, reuse
 from stages.report.__main__ import write_report
 from stages.report.claims_page import sets_read
-from stages.report.records import command
-from stages.report.topics import CLAIMS, TOPICS
+from stages.report.parts import CLAIMS, PARTS
 
 pytestmark = pytest.mark.slow
 
@@ -49,14 +49,6 @@ def note(event, arguments):
 
 
 sys.addaudithook(note)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def code_unread():
-    """The search for the imports of all topics would take as long as the report itself."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reuse, "files_behind", sorted)
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -188,7 +180,7 @@ def test_no_page_shows_raw_names_or_what_is_not_escaped(run):
 
 
 def test_no_published_table_shows_raw_names():
-    names = [name for topic in TOPICS if not topic.__name__.endswith(CODED) for name in topic.TABLES]
+    names = [name for topic in PARTS.values() if not topic.__name__.endswith(CODED) for name in topic.TABLES]
     paths = [path for name in names if (path := ROOT / f"reports/tables/{name}.md").exists()]
     assert len(paths) > 30
     for path in paths:

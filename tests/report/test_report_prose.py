@@ -11,8 +11,8 @@ from matplotlib.figure import Figure as Drawing
 from haptic_glance.base.files import read_json, write_table
 from stages.charts.cells import CLAIMS, PLACE, filled
 from stages.charts.items import Figure, Table, add_words, findings
-from stages.report import topics
-from stages.report.records import write_headlines
+from stages.report import parts
+from stages.report.headlines import write_headlines
 from stages.report.site import topic_main
 
 REPORTS = Path(__file__).parents[2] / "reports"
@@ -21,8 +21,8 @@ SETTINGS = (  # the numbers that a finding may have of its own
     r"\b\d+ x \d+\b", r"\b(?:19|20)\d\d\b", r"\bT\d+(?:\.\d+)*", r"\bSection \d+(?:\.\d+)*", r"\b\d+ degrees\b",
     r"\b[Ll]ayers \d+ to \d+\b", r"\bnoise of [\d.]+ % of the diagonal", r"\b(?:VGG|ResNet|MobileNetV)\d+\b",
 )  # fmt: skip
-MADE = {f"{kind}/{name}" for topic in topics.TOPICS for kind in ("tables", "tradeoff")
-        for name in getattr(topic, topics.KINDS[kind])}  # fmt: skip
+MADE = {f"{kind}/{name}" for topic in parts.PARTS.values() for kind in ("tables", "tradeoff")
+        for name in getattr(topic, parts.KINDS[kind])}  # fmt: skip
 PROSE = """# tables/one: One of {count}
 
 - The first note
@@ -89,23 +89,23 @@ def test_a_word_or_section_that_is_missing_is_an_error(topic):
         add_words(table(), topic, "tables", "two")
 
 
-@pytest.mark.parametrize("topic", topics.TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+@pytest.mark.parametrize("topic", parts.PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
 def test_each_item_has_its_section_and_each_section_its_item(topic):
     text = (Path(topic.__file__).parent / "prose.md").read_text()
-    items = {f"{kind}/{name}" for kind, attribute in topics.KINDS.items() for name in getattr(topic, attribute)}
+    items = {f"{kind}/{name}" for kind, attribute in parts.KINDS.items() for name in getattr(topic, attribute)}
     sections = [name for name in re.findall(r"^# (\S+):", text, re.MULTILINE) if not name.startswith("shared/")]
     assert sorted(sections) == sorted(items)
 
 
 def test_every_topic_is_in_the_reading_order_and_an_output_belongs_to_one():
-    folders = sorted(path.parent.name for path in Path(topics.__file__).parent.glob("*/__init__.py"))
-    assert sorted(topic.__name__.rpartition(".")[2] for topic in topics.TOPICS) == folders
-    for kind in topics.KINDS.values():
-        names = [name for topic in topics.TOPICS for name in getattr(topic, kind)]
+    folders = sorted(path.parent.name for path in Path(parts.__file__).parent.glob("*/__init__.py"))
+    assert sorted(topic.__name__.rpartition(".")[2] for topic in parts.PARTS.values()) == folders
+    for kind in parts.KINDS.values():
+        names = [name for topic in parts.PARTS.values() for name in getattr(topic, kind)]
         assert len(names) == len(set(names)) > 0
 
 
-@pytest.mark.parametrize("topic", topics.TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+@pytest.mark.parametrize("topic", parts.PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
 def test_each_table_has_a_sentence_with_a_figure_of_its_own(topic):
     for name in topic.TABLES:
         item = Table(pd.DataFrame(), words=Anything())
@@ -128,7 +128,7 @@ def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, met
     assert "<details><summary>How to read it</summary>\n\n- a note\n\n</details>" in text
 
 
-@pytest.mark.parametrize("topic", topics.TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+@pytest.mark.parametrize("topic", parts.PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
 def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
     """A row that is gone would leave the paragraph out without a word."""
     for text in (Path(topic.__file__).parent / "findings.md").read_text().strip().split("\n\n"):

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 from haptic_glance.base.files import read_json, read_table, write_table
+from stages.charts import items
 from stages.charts.drawing import SETTINGS, plt
 from stages.charts.results import Results
 from stages.engine.settings import Workspace
-from stages.report import Params, items, meshes, topics
-from stages.report.topics import CLAIMS, TOPICS, build_all, name_of
-from stages.report.topics import KINDS as DICTS
+from stages.report import Params, meshes
+from stages.report.parts import CLAIMS, PARTS, build_part
+from stages.report.parts import KINDS as DICTS
 from stages.report.verdict import COLUMNS, by_claim, tabled
 
 ROOT = Path(__file__).parents[2]
@@ -73,7 +74,7 @@ def assert_unchanged(name, text, expected):
 
 def assert_items_unchanged(kind, results, topic):
     records = read_json(REPORTS / kind / "records.json")["items"]
-    built = build_all(kind, results, [topic])
+    built = build_part(topic, results, [kind])
     assert set(built.not_run) <= FROM_DATA, f"of reports/{kind}, {built.not_run} is no longer built; {REMEDY}"
     for path in (path for item in built.items for path in item.paths if path.suffix in (".csv", ".md")):
         name = path.relative_to(results.out)
@@ -97,16 +98,18 @@ def assert_claims_unchanged(results, topic):
 
 @pytest.mark.parametrize(("kind", "dictionary"), DICTS.items())
 def test_every_item_of_the_topics_is_published_and_no_other(kind, dictionary):
-    names = {name for topic in TOPICS for name in getattr(topic, dictionary)} - {"recognition"}  # of own folders alone
+    names = {name for topic in PARTS.values() for name in getattr(topic, dictionary)} - {
+        "recognition"
+    }  # of own folders alone
     assert names == read_json(REPORTS / kind / "records.json")["items"].keys()
 
 
 def named(value):
-    return value if value in KINDS else name_of(value)
+    return value if value in KINDS else value.__name__.rpartition(".")[2]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "topic"), product(KINDS, TOPICS), ids=named)
+@pytest.mark.parametrize(("kind", "topic"), product(KINDS, PARTS.values()), ids=named)
 def test_committed_rows_give_the_published_report(published, kind, topic):
     if kind == "claims":
         assert_claims_unchanged(published, topic)

@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 from stages.report import recorded as topic
+from stages.report.parts import build_item
 from stages.report.recorded.claims import RECORDED_CLASSES, SERIES, shared_classes
 from stages.report.recorded.claims import TOUCHES as CLAIMS
 from stages.report.recorded.tables import CLASSES
-from stages.report.topics import build_one
 from tests.report.frames import verdicts
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
@@ -93,7 +93,7 @@ def every(measure):
     return measure("recorded", pd.concat([frame.assign(dataset=name) for name, frame in sets.items()]), results=results)
 
 
-table = partial(build_one, topic, "tables")
+table = partial(build_item, topic, "tables")
 
 
 def test_table_4_4_has_the_readings_of_the_scale_behind(measure):

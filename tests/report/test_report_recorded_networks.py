@@ -10,9 +10,9 @@ import pytest
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
 from stages.report import recorded as topic
+from stages.report.parts import build_item
 from stages.report.recorded.claims import NETWORKS as CLAIMS
 from stages.report.recorded.claims import SETTINGS
-from stages.report.topics import build_one
 from tests.report.frames import only, verdicts
 
 LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exact, the splits differ by far more
@@ -72,7 +72,7 @@ def majority():
     return pd.DataFrame([*rows, *(rows[0] | other | {"value": 1.0} for other in others)])
 
 
-real_networks = partial(build_one, topic, "tables", "real_networks")
+real_networks = partial(build_item, topic, "tables", "real_networks")
 judge = partial(verdicts, CLAIMS)
 
 

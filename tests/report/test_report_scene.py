@@ -8,9 +8,9 @@ import pytest
 
 from stages.engine.settings import check_section, conf_folder, load_params
 from stages.report import scene as topic
+from stages.report.parts import build_item
 from stages.report.scene import CLAIMS
 from stages.report.scene.scene import COMMON, planning
-from stages.report.topics import build_one
 from stages.report.verdict import judge
 from stages.scene import Params, online
 
@@ -43,7 +43,7 @@ def table(measure):
 
     def build(*groups):
         results = measure("bench/scenes", pd.DataFrame([row for group in groups for row in group]))
-        return build_one(topic, "tables", "scenes", results)
+        return build_item(topic, "tables", "scenes", results)
 
     return build
 
@@ -59,7 +59,7 @@ def test_both_tables_say_why_there_is_no_network(measure, table):
     assert "no object" not in "".join(built.notes[1:]) and "network" not in set(built.frame["method"][:6])
     common = {"dataset": "test", "frame": "all", "factor": 1.0, "item": None, "seconds": 1.0, "note": None}
     staged = pd.DataFrame([common | row for row in (*scene("shelf"), ABSENT)]).rename(columns={"scene": "group"})
-    built = build_one(topic, "tables", "scene", measure("scene", staged))
+    built = build_item(topic, "tables", "scene", measure("scene", staged))
     assert "the thesis's network: no object to learn from." in built.notes
 
 
@@ -96,7 +96,7 @@ def measured(measure):
 def test_the_saving_is_the_mean_of_the_scenes_with_an_interval_over_them(measured):
     spread = np.linspace(-0.1, 0.1, 12)
     results = measured(uniform__displacement=lambda k: (1000 + 10 * k) / (0.7 + spread[k]))
-    table = build_one(topic, "tables", "random_scenes", results)
+    table = build_item(topic, "tables", "random_scenes", results)
     line = table.frame.set_index(["method", "matched"]).loc[("uniform", "displacement")]
     assert line["saved"] == pytest.approx(0.3, abs=1e-5) and 0.2 < line["saved_low"] < 0.3 < line["saved_high"] < 0.4
     claims = judge([BY_KEY["saves_uniform_displacement"]], results).iloc[0]
@@ -108,7 +108,7 @@ def test_the_saving_is_the_mean_of_the_scenes_with_an_interval_over_them(measure
 def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verdict):
     results = measured(online=lambda k: (1000 + 10 * k) * (1 + more + 0.001 * (k % 3)))
     assert judge([BY_KEY["online_faces"]], results).iloc[0]["verdict"] == verdict
-    notes = " ".join(build_one(topic, "tables", "random_scenes", results).notes)
+    notes = " ".join(build_item(topic, "tables", "random_scenes", results).notes)
     assert f"Without a frame ahead: {100 * more + 0.1:.1f} [" in notes
 
 
@@ -124,7 +124,7 @@ def test_the_time_of_drawing_stands_beside_the_faces(measure, measured):
               "ratio": ratio + 0.001 * k, "device": "llvmpipe (LLVM 15)"}
              for k in range(12) for name, (faces, ratio) in ways.items()]  # fmt: skip
     results = measure("bench/frame_times", pd.DataFrame(bench), results=results)
-    less = build_one(topic, "tables", "random_scenes", results).frame.set_index("method")["less"]
+    less = build_item(topic, "tables", "random_scenes", results).frame.set_index("method")["less"]
     assert less["beforehand"] == pytest.approx(0.2, abs=0.001) and 0.3 < less["every_level"] < 0.4
     assert less["full"] != less["full"]  # not at an equal displacement
     text = planning(results)  # 40 ms times 0.3 - 0.25 are saved by 20 ms of planning
@@ -149,7 +149,7 @@ def needs(measure):
 
 
 def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
-    assert build_one(topic, "tables", "faces_by_task", needs).frame["median"].tolist() == [104, 204, 1004, 3004, 304]
+    assert build_item(topic, "tables", "faces_by_task", needs).frame["median"].tolist() == [104, 204, 1004, 3004, 304]
     judged = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
     assert judged["verdict"].tolist() == ["supported", "supported"] and (judged["pairs"] == 9).all()
 

@@ -6,7 +6,7 @@ import pytest
 
 from stages.engine.statistics import interval
 from stages.report import sensor
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from tests.report.frames import verdicts
 
 
@@ -34,7 +34,7 @@ def test_a_cost_has_the_interval_of_its_objects(measure):
     timed = rows[rows["metric"] == "seconds_a_touch"]
     objects = [timed.assign(item=f"o{k}", value=timed["value"] * factor) for k, factor in enumerate((0.9, 1.0, 1.1))]
     results = measure("sensor_size", pd.concat([rows[rows["metric"] != "seconds_a_touch"], *objects]))
-    axes = build_one(sensor, "tradeoff", "sensor_size", results).drawing.axes[-1]
+    axes = build_item(sensor, "tradeoff", "sensor_size", results).drawing.axes[-1]
     assert max(line.get_ydata().max() for line in axes.lines) == pytest.approx(1.2)  # milliseconds of 32 cells
     low, high = axes.collections[-1].get_segments()[0][:, 1]
     assert [low, high] == pytest.approx(interval([0.09, 0.1, 0.11])[1:])

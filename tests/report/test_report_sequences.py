@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from stages.report import sequences
+from stages.report.parts import build_item
 from stages.report.sequences.tables import MORE, PRINTED_SET
-from stages.report.topics import build_one
 from tests.report.frames import verdicts
 
 CLASSES = ("car", "chair", "vase")
@@ -43,7 +43,7 @@ def rows(guided=0.08, unseen=-0.2, splits=("random", "objects"), dataset="furnit
     return pd.DataFrame(entries).assign(seed=0, note=None)
 
 
-table_4_9 = partial(build_one, sequences, "tables", "table_4_9")
+table_4_9 = partial(build_item, sequences, "tables", "table_4_9")
 
 
 @pytest.mark.slow

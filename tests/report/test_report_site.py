@@ -12,11 +12,11 @@ from matplotlib.figure import Figure as Drawing
 from PIL import Image
 
 from stages.charts.cells import CLAIMS as OF_CLAIMS
+from stages.charts.html import frame_html, item_html, prose, small_picture
 from stages.charts.items import Built, Figure, Table
 from stages.charts.tables import Ranking
-from stages.report.page import frame_html, item_html, prose, small_picture
+from stages.report.parts import CLAIMS, KINDS, PARTS
 from stages.report.site import FINDINGS, findings_html, front_main, page, questions, questions_html
-from stages.report.topics import CLAIMS, KINDS, TOPICS
 
 REPORTS = Path(__file__).parents[2] / "reports"
 ASKED = 10
@@ -148,7 +148,7 @@ def of_claim(claim_of_page, effect=10.0, low=5.0, high=15.0):
 
 
 def test_findings_are_claims_of_their_topics_with_the_stored_verdicts_and_two_of_them_fail():
-    of_topic = {claim.key: topic.__name__.rpartition(".")[2] for topic in TOPICS for claim in topic.CLAIMS}
+    of_topic = {claim.key: topic.__name__.rpartition(".")[2] for topic in PARTS.values() for claim in topic.CLAIMS}
     stored = pd.read_csv(REPORTS / "claims.csv").set_index("key")["verdict"]
     assert [(of_topic[finding.key], stored[finding.key]) for finding in FINDINGS] == [
         (finding.topic, finding.verdict) for finding in FINDINGS
@@ -175,7 +175,9 @@ def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
 
 
 def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
-    names = {f"{kind}/{name}" for topic in TOPICS for kind, held in KINDS.items() for name in getattr(topic, held)}
+    names = {
+        f"{kind}/{name}" for topic in PARTS.values() for kind, held in KINDS.items() for name in getattr(topic, held)
+    }
     keys = {f"key={claim.key}" for claim in CLAIMS}
 
     def link(source, where):

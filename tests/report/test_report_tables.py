@@ -25,10 +25,10 @@ from stages.charts.tables import (
 )
 from stages.report import touch
 from stages.report.meshes.tables import paired_cells
-from stages.report.topics import build_all, build_one
+from stages.report.parts import build_item, build_part
 from stages.report.touch.tables import METHODS, SSIM
 
-table_4_1 = partial(build_one, touch, "tables", "table_4_1")
+table_4_1 = partial(build_item, touch, "tables", "table_4_1")
 
 
 def test_table_holds_every_cell_of_the_thesis(results):
@@ -66,7 +66,7 @@ def test_table_maps_the_methods_and_says_what_was_not_run(root, results, small):
 def test_left_out_sampling_is_a_note_of_its_table(root, small):
     frame = small.left_out(small.classification(), "too few touches", group="six", method="itti")
     small.write(root, "classification", small.left_out(frame, "no cup", group="four"))
-    built = build_all("tables", small.results(root), [touch])
+    built = build_part(touch, small.results(root), ["tables"])
     table = next(table for table in built.items if table.name == "table_4_1")
     assert "Not run: too few touches." in table.notes
     assert np.isnan(table.frame.set_index(["sampling", "classifier"]).loc[("itti", "knn"), "accuracy"])

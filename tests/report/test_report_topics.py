@@ -5,17 +5,17 @@ import re
 import pytest
 
 from stages.report.claims import tested_on as words_on
-from stages.report.topics import CLAIMS, KINDS, TOPICS, build_all
+from stages.report.parts import CLAIMS, KINDS, PARTS, build_part
 from tests.report.frames import verdicts
 
 UNMEASURED = {"table_3_1_5_combinations", "fidelity", "recognition"}  # of the thesis, or of one's own meshes
 REMEDY = "no measurements of|`dvc repro |`make bench`|run the stage"
 
 
-@pytest.mark.parametrize("topic", TOPICS, ids=lambda topic: topic.__name__.rpartition(".")[2])
+@pytest.mark.parametrize("topic", PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
 def test_a_topic_without_measurements_names_what_is_missing_of_each_item(topic, empty):
     for kind, items in KINDS.items():
-        missing = build_all(kind, empty, [topic]).not_run
+        missing = build_part(topic, empty, [kind]).not_run
         assert set(missing) == set(getattr(topic, items)) - UNMEASURED
         assert all(re.search(REMEDY, reason) for reason in missing.values()), missing
 
@@ -37,6 +37,6 @@ def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(empty):
 def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone(root, small):
     small.write(root, "classification", small.classification().assign(group="mine"))
     small.write(root, "salient_points", small.judged(), "test")
-    missing = build_all("tables", small.own(root)).not_run
+    missing = build_part("tables", small.own(root)).not_run
     assert missing["table_4_1"] == "group six is not among those that classification measured"
     assert not {"table_4_4", "table_4_9", "attention_gaze", "recognition"} & set(missing)

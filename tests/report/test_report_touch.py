@@ -13,7 +13,7 @@ from stages.charts.results import NotRun
 from stages.charts.tables import CLASSIFIERS
 from stages.report import touch
 from stages.report.effects import differences
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from stages.report.touch import claims, pictures, tables
 from stages.report.touch.tables import COMMON, METHODS, PRINTED, accuracies, shared_objects
 from tests.report.frames import verdicts
@@ -63,7 +63,7 @@ def drawn(dataset):
     return pd.concat([frame.dropna(subset=["repetition"]).assign(set=lambda row: row["repetition"] + 1), *sets])
 
 
-table = partial(build_one, touch, "tables")
+table = partial(build_item, touch, "tables")
 
 
 @pytest.mark.slow
@@ -158,7 +158,7 @@ def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(
         frame = table(name, results).frame
         cells = frame[(frame["classifier"] == "centroid") & (frame["sampling"] == "glance")]
         assert cells["accuracy"].notna().any() and cells["thesis"].isna().all()
-    build_one(touch, "figures", "table_4_1", results)
+    build_item(touch, "figures", "table_4_1", results)
     assert bars == [[*CLASSIFIERS, "centroid"]]
 
 

@@ -13,7 +13,7 @@ from stages.report import networks as _transfer
 from stages.report import recorded as recorded_topic
 from stages.report import transfer
 from stages.report.effects import differences
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from stages.report.transfer.figures import gains as gains_of
 from tests.report.frames import has_ink, only, verdicts
 
@@ -102,7 +102,7 @@ def test_tables_compare_all_trainings_on_the_splits_of_the_printed_ones():
 
 @pytest.mark.slow
 def test_the_gains_of_one_set_alone_are_drawn(run):
-    assert has_ink(build_one(transfer, "figures", "figure_5_3", run))
+    assert has_ink(build_item(transfer, "figures", "figure_5_3", run))
 
 
 @pytest.mark.slow
@@ -190,5 +190,5 @@ def test_the_smallest_network_that_is_enough_is_named(measure):
     ]
     results = measure("recorded_networks", pd.DataFrame(entries), "pressure_images")
     results = measure("bench/networks", pd.DataFrame(costs), results=results)
-    made = build_one(recorded_topic, "tradeoff", "network_sizes", results)
+    made = build_item(recorded_topic, "tradeoff", "network_sizes", results)
     assert "best on average is MobileNetV2." in made.caption

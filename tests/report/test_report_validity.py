@@ -15,7 +15,7 @@ from stages.report import meshes
 from stages.report.claims import POINTS, Claim, highest_of, reading
 from stages.report.effects import Effect, differences, effect_of, invalid
 from stages.report.meshes import tables
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from stages.report.validity import (
     AS_PLAIN,
     BACKGROUND,
@@ -112,7 +112,7 @@ def test_the_numbers_of_points_and_rings(made):
 def test_the_table_shows_the_printed_set_and_holds_all(made, measure):
     rows = made.assign(asked=1, faces=1, seconds=np.nan)
     results = measure("lod", pd.concat(rows.assign(dataset=name) for name in ("test", "a", SECTION_3_1)))
-    table = build_one(meshes, "tables", "lod_points", results)
+    table = build_item(meshes, "tables", "lod_points", results)
     assert list(table.frame["data"].unique()) == ["household as in T3.1", "test", "a"]
     shown = table.shown.set_index("kept points")
     assert list(shown.index) == ["3DH", "VisAtt", "SymRad"]
@@ -124,7 +124,7 @@ def test_the_table_shows_the_printed_set_and_holds_all(made, measure):
 def test_the_table_leaves_out_a_count_that_no_mesh_has_so_many_faces_for(made, measure):
     rows = made.assign(asked=1, faces=1, seconds=np.nan, dataset="test", target=made["target"].replace("3000", "50%"))
     rows.loc[rows["target"] == "1500", "value"] = np.nan
-    columns = list(build_one(meshes, "tables", "lod_points", measure("lod", rows)).shown)
+    columns = list(build_item(meshes, "tables", "lod_points", measure("lod", rows)).shown)
     assert "rings, 50%" in columns and not any("1,500" in name for name in columns)
 
 

@@ -13,8 +13,8 @@ from haptic_glance.base.files import write_mesh
 from haptic_glance.base.packing import SHADES, STEPS, Store, ordered, viewer_data
 from haptic_glance.gallery.page import as_script
 from haptic_glance.mesh.mesh import Mesh
-from stages.report.page import FINEST, apart, pack_object, pack_viewer, part
-from stages.report.site import page
+from stages.report.site import page_file, page_html
+from stages.report.viewer import FINEST, apart, pack_object, pack_viewer
 
 
 class Reader:
@@ -110,7 +110,7 @@ def test_level_equal_to_the_original_has_no_error_and_levels_nearly_as_fine_are_
     write_mesh(results.data / "test/lod/ball/qem_90pct.npz", small.ball(11))
     faces = [level["faces"] for level in pack_object(results, "ball")["ladders"]["qem"]["levels"]]
     assert max(faces) <= FINEST * len(small.ball().faces)
-    monkeypatch.setattr("stages.report.page.FINEST", 1.0)
+    monkeypatch.setattr("stages.report.viewer.FINEST", 1.0)
     write_mesh(results.data / "test/lod/ball/qem_90pct.npz", small.ball())
     packed = pack_object(results, "ball")
     level = packed["ladders"]["qem"]["levels"][0]
@@ -155,10 +155,10 @@ def shown(request, browser, levels, tmp_path):
 
 
 def opened(browser, results, tmp_path, width):
-    front = Template(part("front.html"))
-    parts = {"meshes": as_script(pack_viewer(results)), "viewer": part("viewer.html")}
+    front = Template(page_file("front.html"))
+    parts = {"meshes": as_script(pack_viewer(results)), "viewer": page_file("viewer.html")}
     main = front.substitute(dict.fromkeys(front.get_identifiers(), "") | parts)
-    (tmp_path / "page.html").write_text(page([], "", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
+    (tmp_path / "page.html").write_text(page_html([], "", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
     tab = browser.new_page(viewport={"width": width, "height": 900})
     viewer = Page(tab)
     tab.goto((tmp_path / "page.html").as_uri())

@@ -7,8 +7,8 @@ from haptic_glance.base.files import write_table, write_text
 from stages.charts.results import NotRun, Results
 from stages.engine.settings import Workspace
 from stages.report import scene
+from stages.report.parts import build_item
 from stages.report.scene import counts as table
-from stages.report.topics import build_one
 
 
 def rows():
@@ -48,7 +48,7 @@ def test_metric_that_was_not_measured_is_a_dash(written):
 def test_figure_is_drawn_without_all_conditions(written):
     frame = rows()
     frame = frame[frame["condition"].isin(["left_out", "larger"])]
-    assert build_one(scene, "figures", "face_counts", written(frame)).paths[0].stat().st_size > 10_000
+    assert build_item(scene, "figures", "face_counts", written(frame)).paths[0].stat().st_size > 10_000
 
 
 def test_without_a_judgement_it_is_not_run(written):

@@ -7,7 +7,7 @@ from haptic_glance.look.agreement import GroundTruth
 from haptic_glance.look.points.options import Options
 from haptic_glance.mesh.mesh import Mesh
 from stages.report import stability
-from stages.report.topics import build_one
+from stages.report.parts import build_item
 from stages.stability.disturbance import Disturbance
 from stages.stability.subject import Subject
 
@@ -57,7 +57,7 @@ def test_faces_that_point_inwards_are_turned_first(looked_at):
 def test_the_table_has_what_is_found_again_and_what_agreement_is_lost(tmp_path, rows, monkeypatch):
     monkeypatch.setattr(stability.people, "GAZED", ("test",))
     kept = [row | {"item": item} for item in ("pear", "apple") for row in rows if row["method"] == "height"]
-    built = build_one(stability, "tables", "stability_people", results(tmp_path, kept))
+    built = build_item(stability, "tables", "stability_people", results(tmp_path, kept))
     shown = built.shown.set_index("disturbance")
     assert list(shown.index) == ["winding", "noise", "tilt"]
     assert shown.loc["winding", "height, %"] == "100" and shown.loc["winding", "height, NSS"].lstrip("+-") == "0.00"

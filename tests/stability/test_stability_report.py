@@ -9,8 +9,8 @@ from stages.charts.results import Results
 from stages.engine.rows import write_rows
 from stages.engine.settings import Workspace
 from stages.report import Params, stability
+from stages.report.parts import build_item
 from stages.report.stability import simplification
-from stages.report.topics import build_one
 from stages.stability import COLUMNS
 
 SETTINGS = Params(
@@ -31,11 +31,11 @@ def results(root, rows):
 @pytest.mark.slow
 def test_report_shows_what_breaks_a_method_and_the_pictures_of_it(disturbed):
     measured = results(disturbed.root, disturbed.rows)
-    built = build_one(stability, "tables", "stability", measured)
+    built = build_item(stability, "tables", "stability", measured)
     shown = built.shown.set_index("perturbation")
     assert shown.loc["vertex order", label("harris")] == "> 1" and float(shown.loc["noise", label("harris")]) < 0.02
     assert label("random") not in shown and any("no surface" in note for note in built.notes)
-    figure = build_one(stability, "figures", "stability_failures", measured)
+    figure = build_item(stability, "figures", "stability_failures", measured)
     assert figure.paths[0].stat().st_size > 5000 and "missing faces" in figure.caption
 
 

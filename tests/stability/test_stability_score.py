@@ -9,10 +9,10 @@ import pytest
 from stages.charts.results import NotRun
 from stages.engine.statistics import breaking_interval
 from stages.report import stability
+from stages.report.parts import build_item
 from stages.report.stability.breaking import cell
 from stages.report.stability.people import compared, verdict
 from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores
-from stages.report.topics import build_one
 from stages.report.verdict import judge
 from stages.stability.simplification import breaking_points
 
@@ -89,7 +89,7 @@ def test_what_costs_the_reference_nothing_is_left_out_and_named(tmp_path):
     lost = LOST | {"itti": (0.4, 0.8, 0.0)}
     frame = scored(rows(lost=lost))
     assert frame["mce"]["glance"] == pytest.approx(0.5) and frame["picture"].isna().all()
-    built = build_one(stability, "tables", "stability_score", results(tmp_path, rows(lost=lost)))
+    built = build_item(stability, "tables", "stability_score", results(tmp_path, rows(lost=lost)))
     assert "Without light" in " ".join(built.notes)
     assert built.summary.startswith("The most stable method, 3D-Harris, loses 25 [")
 
@@ -166,7 +166,7 @@ def pairs(both, first=0.2, second=0.3, objects=10):
 
 @pytest.mark.parametrize(("both", "word"), [(0.5, "additive"), (0.35, "milder"), (0.7, "worse")])
 def test_a_pair_is_compared_with_the_sum_of_its_parts(tmp_path, both, word):
-    built = build_one(stability, "tables", "stability_pairs", results(tmp_path, pairs(both)))
+    built = build_item(stability, "tables", "stability_pairs", results(tmp_path, pairs(both)))
     line = built.shown.iloc[0]
     assert line["is"] == word and line["disturbances"] == "noise and tilt"
     assert [line[f"{part}, %"] for part in ("first alone", "second alone", "both")] == ["20", "30", f"{100 * both:.0f}"]

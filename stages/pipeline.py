@@ -1,0 +1,67 @@
+"""The stages in the order of their data; each package has the settings of its stage as `Params`."""
+
+from types import ModuleType
+
+from . import (
+    annotations,
+    attention_checks,
+    classification,
+    coarse_imprints,
+    conspicuity,
+    contours,
+    exploration,
+    face_needs,
+    fixation,
+    imprints,
+    lod,
+    meshes,
+    recorded,
+    recorded_networks,
+    report,
+    salient_points,
+    scene,
+    sensor_size,
+    sequences,
+    simulated_to_real,
+    stability,
+    touch_stability,
+    transfer,
+    views,
+    weights,
+)
+
+STAGES: dict[str, ModuleType] = {
+    module.__name__.rpartition(".")[2]: module
+    for module in (
+        meshes,
+        views,
+        conspicuity,
+        weights,
+        salient_points,
+        attention_checks,
+        annotations,
+        lod,
+        scene,
+        fixation,
+        imprints,
+        classification,
+        exploration,
+        touch_stability,
+        face_needs,
+        sensor_size,
+        contours,
+        sequences,
+        transfer,
+        coarse_imprints,
+        recorded,
+        simulated_to_real,
+        recorded_networks,
+        stability,
+        report,
+    )
+}
+
+
+def schema_of(section: str) -> type:
+    """The settings of a stage, a dataclass whose fields have default, type and meaning."""
+    return STAGES[section].Params
