@@ -13,7 +13,8 @@ from stages.charts.cells import CLAIMS, PLACE, filled
 from stages.charts.items import Figure, Table, add_words, findings
 from stages.report import parts
 from stages.report.headlines import write_headlines
-from stages.report.site import topic_main
+from stages.report.parts import Built
+from stages.report.site import page_main
 
 REPORTS = Path(__file__).parents[2] / "reports"
 LONGEST = 200  # letters of a table's sentence
@@ -141,10 +142,14 @@ def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
 
 
 @pytest.mark.parametrize("of_folder", [False, True])
-def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(topic, tmp_path, of_folder):
+def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(
+    topic, tmp_path, of_folder, small, bare, monkeypatch
+):
     assert findings(topic, tmp_path) == ["Without a figure, it stays.", "It has 2.50."]
-    parts = {"claims": pd.DataFrame({"key": []}), "sets": ["household"], "own": of_folder}
-    text = topic_main(topic, parts, [Table(pd.DataFrame(), title="T", paths=[Path("tables/t.csv")])], tmp_path)
+    monkeypatch.setattr("stages.report.site.PARTS", {"one": topic})
+    monkeypatch.setattr("stages.charts.results.Results.own_meshes", of_folder)
+    item = Table(pd.DataFrame(), title="T", kind="tables", page="a_topic", paths=[Path("tables/t.csv")])
+    text = page_main("a_topic", small.results(bare), Built([item]), pd.DataFrame({"key": []}), tmp_path)
     assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not of_folder)
 
 

@@ -8,15 +8,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure as Drawing
 from PIL import Image
 
 from stages.charts.cells import CLAIMS as OF_CLAIMS
 from stages.charts.html import frame_html, item_html, prose, small_picture
-from stages.charts.items import Built, Figure, Table
+from stages.charts.items import Table
 from stages.charts.tables import Ranking
-from stages.report.parts import CLAIMS, KINDS, PARTS
-from stages.report.site import FINDINGS, findings_html, front_main, page, questions, questions_html
+from stages.report.parts import CLAIMS, KINDS, PARTS, Built, page_of
+from stages.report.site import FINDINGS, findings_html, front_main, page_html, questions_html
 
 REPORTS = Path(__file__).parents[2] / "reports"
 ASKED = 10
@@ -24,30 +23,13 @@ ASKED = 10
 
 def show(tab, tmp_path, main):
     """Opens a page of the site with this text."""
-    (tmp_path / "page.html").write_text(page([], "", "", main, ["site.js"]), encoding="utf-8")
+    (tmp_path / "page.html").write_text(page_html([], "", "", main, ["site.js"]), encoding="utf-8")
     tab.goto((tmp_path / "page.html").as_uri())
 
 
 def column(tab, number):
     """The visible cells of a column."""
     return tab.locator(f"tbody tr:visible td:nth-child({number})").all_inner_texts()
-
-
-def chart(tmp_path):
-    """A figure of three points with one interval, written and with its words."""
-    drawing = Drawing()
-    axes = drawing.subplots()
-    axes.plot([1, 2, 3], [0.1, 0.2, 0.3], "o-", label="kNN")
-    axes.plot([2, 2], [0.15, 0.25])
-    item = Figure(drawing, name="chart", title="A chart", alt="What it shows to all", caption="See `this`.")
-    item.write(tmp_path / "figures")
-    return item
-
-
-def test_a_chart_has_its_numbers_behind_it(tmp_path):
-    text = item_html(chart(tmp_path))
-    assert "<svg" in text and "<img" not in text
-    assert text.count("<tr><td") == 3 and "<td>[0.150, 0.250]</td>" in text.replace(' class="number"', "")
 
 
 def test_the_summary_stands_over_a_table_and_the_notes_are_folded():
@@ -94,26 +76,6 @@ def test_a_filter_shows_the_rows_that_hold_all_words(tab, tmp_path):
     assert len(column(tab, 1)) == 10
 
 
-@pytest.mark.slow
-def test_a_chart_tells_its_values_to_pointer_and_keyboard(tab, tmp_path):
-    show(tab, tmp_path, item_html(chart(tmp_path)))
-    tab.locator(".hits circle").nth(1).hover()
-    assert tab.locator("#tip").inner_text() == "kNN · 2 · 0.200 [0.150, 0.250]"
-    tab.mouse.move(0, 0)
-    assert tab.locator("#tip").is_hidden()
-    box = tab.locator(".wide")
-    for key, value in (
-        ("ArrowRight", "0.100"),
-        ("ArrowRight", "0.200"),
-        ("ArrowLeft", "0.100"),
-        ("ArrowLeft", "0.300"),
-    ):
-        box.press(key)
-        assert value in tab.locator("#tip").inner_text()
-    box.press("Escape")
-    assert tab.locator("#tip").is_hidden()
-
-
 def test_a_picture_of_many_colours_is_shrunk(tmp_path):
     noise = np.random.default_rng(0).integers(0, 255, (400, 1200, 3), dtype=np.uint8)
     Image.fromarray(noise).save(tmp_path / "noise.png")
@@ -122,56 +84,38 @@ def test_a_picture_of_many_colours_is_shrunk(tmp_path):
 
 
 @pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
-def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole):
-    table = Table(pd.DataFrame({"x": [cell]}), name="gaps", topic="none", paths=[Path("tables/t.csv")])
-    parts = {kind: Built() for kind in ("figures", "tradeoff")} | {"tables": Built([table]), "claims": pd.DataFrame()}
-    parts |= {"first": [], "not_run": {}, "meshes": None, "own": True, "dataset": ""}
-    page = front_main(parts, {}, {}, Path("reports"))
+def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole, small, bare):
+    table = Table(pd.DataFrame({"x": [cell]}), name="gaps", kind="tables", page="none", paths=[Path("tables/t.csv")])
+    page = front_main(small.results(bare), Built([table]), {}, pd.DataFrame(), None, {}, Path("reports"))
     assert ("Everything that this report knows was measured" in page) == whole
     assert ("<code>tables/gaps</code>: in part" in page) != whole
 
 
-def of_claim(claim_of_page, effect=10.0, low=5.0, high=15.0):
-    """(claims, differences) of a single finding with its verdict."""
+def of_claim(finding, effect=10.0, low=5.0, high=15.0):
+    """The claims of a single finding with its verdict."""
     verdict = "supported" if low > 0 else "contradicted" if high < 0 else "open"
-    row = {
-        "key": claim_of_page.key,
-        "claim": "The sentence.",
-        "verdict": verdict,
-        "effect": effect,
-        "low": low,
-        "high": high,
-    }
-    pairs = pd.DataFrame({"key": claim_of_page.key, "pair": ["a<b", "c", "other set"], "difference": [low, high, 1.0]})
-    row |= {"pairs": 2, "over": "objects", "section": "ours", "of": ""}
-    return pd.DataFrame([row]), pairs.assign(judged=[True, True, False])
+    row = {"key": finding.key, "claim": "The sentence.", "verdict": verdict, "effect": effect, "low": low, "high": high}
+    return pd.DataFrame([row | {"pairs": 2, "over": "objects", "section": "ours", "of": ""}])
 
 
-def test_findings_are_claims_of_their_topics_with_the_stored_verdicts_and_two_of_them_fail():
-    of_topic = {claim.key: topic.__name__.rpartition(".")[2] for topic in PARTS.values() for claim in topic.CLAIMS}
+def test_findings_are_claims_of_their_pages_with_the_stored_verdicts_and_two_of_them_fail():
+    page = {claim.key: page_of(part) for part in PARTS.values() for claim in part.CLAIMS}
     stored = pd.read_csv(REPORTS / "claims.csv").set_index("key")["verdict"]
-    assert [(of_topic[finding.key], stored[finding.key]) for finding in FINDINGS] == [
-        (finding.topic, finding.verdict) for finding in FINDINGS
+    assert [(page[finding.key], stored[finding.key]) for finding in FINDINGS] == [
+        (finding.page, finding.verdict) for finding in FINDINGS
     ]
     assert sum(finding.verdict != "supported" for finding in FINDINGS) >= 2
 
 
-def test_a_card_has_its_figure_its_chart_and_its_pairs():
-    text = findings_html(*of_claim(FINDINGS[0], 1.0, 0.5, 1.5))
+def test_a_card_has_its_number_and_gives_way_to_the_claim_where_a_run_does_not_bear_it_out():
+    text = findings_html(of_claim(FINDINGS[0], 1.0, 0.5, 1.5))
     assert FINDINGS[0].title in text and "+1.00 [0.50, 1.50]" in text
-    assert re.findall(r"<title>(.*?) · ", text) == ["a&lt;b", "c", "mean"]
     assert f'href="site/claims.html#{FINDINGS[0].key}"' in text
-
-
-@pytest.mark.slow
-def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
-    text = findings_html(*of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
+    text = findings_html(of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
     assert FINDINGS[0].title not in text and "The sentence. (open)" in text
-    kept = next(
-        finding for finding in FINDINGS if finding.shown == "times:"
-    )  # whose ends are ordered after they are turned
-    assert "3.00 [1.00, 4.00]" in findings_html(*of_claim(kept, -100.0, -120.0, 0.0))
-    assert findings_html(pd.DataFrame(columns=["key", "low", "verdict"]), pd.DataFrame()) == ""
+    turned = next(finding for finding in FINDINGS if finding.shown == "times:")  # its ends change places
+    assert "3.00 [1.00, 4.00]" in findings_html(of_claim(turned, -100.0, -120.0, 0.0))
+    assert findings_html(pd.DataFrame(columns=["key", "low", "verdict"])) == ""
 
 
 def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
@@ -180,12 +124,11 @@ def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
     }
     keys = {f"key={claim.key}" for claim in CLAIMS}
 
-    def link(source, where):
+    def address(source, where):
         assert source in names or (source == OF_CLAIMS and where in keys)
         return source
 
-    answers = questions(REPORTS, link)
+    answers = re.findall("<h3>.*?</h3><p>(.*?)</p>", questions_html(REPORTS, address))
     assert len(answers) == ASKED
-    assert all(re.search(r"\d", answer) and "{" not in answer for _, answer, _ in answers)
-    assert questions_html(answers).count("<h3>") == ASKED
-    assert questions(tmp_path, link) == [] and questions_html([]) == ""  # without measurements
+    assert all(re.search(r"\d", answer) and "{" not in answer for answer in answers)
+    assert questions_html(tmp_path, address) == ""  # without measurements
