@@ -37,6 +37,7 @@ def test_the_words_on_what_a_claim_is_tested_on_have_no_gap(empty):
 def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone(root, small):
     small.write(root, "classification", small.classification().assign(group="mine"))
     small.write(root, "salient_points", small.judged(), "test")
-    missing = sum((build_part(part, small.own(root), ["tables"]) for part in PARTS.values()), Built()).not_run
+    results = small.own(root)
+    missing = sum((build_part(part, results, ["tables"]) for part in PARTS.values()), Built()).not_run
     assert missing["tables/table_4_1"] == "group six is not among those that classification measured"
     assert not {f"tables/{name}" for name in ("table_4_4", "table_4_9", "attention_gaze", "recognition")} & set(missing)
