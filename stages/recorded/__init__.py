@@ -16,13 +16,6 @@ COLUMNS = {
     "scaled": "of grasps: by mean and deviation of the training part, or each part by its own",
     "components": "of grasps: principal components, or electrodes where there is no reduction",
     "count": "of grasps: grasps tested on",
-    "part": "of touches over time: test (the publisher's own test part) or training (held out within the other part)",
-    "bins": "of touches over time: parts of equal length that a touch is divided into",
-    "parameter": "of touches over time: what the classifier was set to",
-    "heard": "of touches over time: share of the touch, from its beginning",
-    "cells": "of touches over time: taxels, or cells of an array, that are read",
-    "disturbance": "of touches over time: what happens to the test touches: dead taxels, dropped events or jitter",
-    "severity": "of the disturbance: share of the taxels or events, or deviation in steps",
 }
 
 

@@ -55,7 +55,6 @@ DATASETS = {
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "furniture_splits": "furniture, 20 splits",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
-    "touch_events": "recorded events of a fingertip",
     "household_denoised": "household, denoised", "princeton_denoised": "psb, denoised",
     "furniture_denoised": "furniture, denoised", "household_stability": "household shapes, disturbed",
     "furniture_hands": "furniture, several arrays or touches",
