@@ -26,7 +26,7 @@ Answer = TypeVar("Answer")
 # Sets with the settings of a section of the thesis.
 SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
 SETS_3_1 = SECTION_3_1, "princeton_3_1"  # the protocol of T3.1 on objects of our own and on published ones
-SETS_3_1_FOUR = tuple(f"{name}_four" for name in SETS_3_1)  # from the four principal viewpoints of T3.1.2
+FOUR_3_1 = "household_3_1_four"  # from the four principal viewpoints of T3.1.2
 MENDED_3_2 = "gaze_3_2_mended"  # T3.2 with mended formulas
 GREY_3_1 = "gaze_3_1"  # T3.1 on grey meshes with human gaze
 SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets", "catalogue_4_2_sets"  # random sets of six objects
@@ -41,7 +41,7 @@ NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects th
 
 DATASETS = {
     SECTION_3_1: "household as in T3.1", SETS_3_1[1]: "psb as in T3.1",
-    SETS_3_1_FOUR[0]: "household as in T3.1, four viewpoints", SETS_3_1_FOUR[1]: "psb as in T3.1, four viewpoints",
+    FOUR_3_1: "household as in T3.1, four viewpoints",
     GREY_3_1: "meshes with human gaze as in T3.1",
     SECTION_3_2: "meshes with human gaze as in T3.2", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
     SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
@@ -55,10 +55,7 @@ DATASETS = {
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "furniture_splits": "furniture, 20 splits",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
-    "household_denoised": "household, denoised", "princeton_denoised": "psb, denoised",
-    "furniture_denoised": "furniture, denoised", "household_stability": "household shapes, disturbed",
-    "furniture_hands": "furniture, several arrays or touches",
-    "princeton_other_hands": "psb's other 11 classes, several arrays or touches",
+    "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
     "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
 }  # fmt: skip
 
