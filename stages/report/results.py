@@ -33,7 +33,7 @@ SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets", "catalogue_4_2_sets"  # r
 SUMS_4_2 = "household_4_2_sums", "princeton_4_2_sums"
 GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
-ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
+ON_GREY, ON_WHITE = "household_on_grey", "household_on_white"  # other backgrounds
 ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
 BENCH = "bench"
 OWN_FOLDER = "own"  # in place of a stage: of what only a folder of one's own has, or what it never has
@@ -48,12 +48,11 @@ DATASETS = {
     SETS_4_2[1]: "random sets of psb as in T4.2", SETS_4_2[2]: "random sets of furniture as in T4.2",
     SUMS_4_2[0]: "random sets of household shapes as in T4.2, sums of maps",
     SUMS_4_2[1]: "random sets of psb as in T4.2, sums of maps", COLOURED: "furniture in colour",
-    ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
+    ON_GREY: "on grey", ON_WHITE: "on white",
     "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
     "princeton_touched": "psb, 8 classes of 6 objects", "princeton_hands": "psb, several arrays or touches",
     "princeton_4_3_sets": "random sets of psb as in T4.3",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
-    "furniture_splits": "furniture, 20 splits",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
     "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
