@@ -6,7 +6,6 @@ from . import claims, networks, tables
 
 TABLES = {
     "table_4_4": tables.table_4_4,
-    "grasps": tables.grasps,
     "simulated_to_real": networks.build_table,
     "real_networks": networks.build,
     "table_5_1": partial(networks.printed, "vt60", "table_5_1_vt60_bathtip"),
