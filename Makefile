@@ -4,7 +4,6 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
 psb ?= ../shared/data/psb.zip
-gaze ?= ../shared/data/gaze.zip
 newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
@@ -50,22 +49,14 @@ docs: $(VENV)/ready ## the documentation, to build/docs/index.html; a warning is
 	python -m sphinx -E -W --keep-going --quiet docs build/docs # -E: numbers come from reports/, which may have changed
 	@echo "Open build/docs/index.html."
 
-# Each is one process on one core, but the pipeline and cluster; scenes and cluster read what `make repro` made.
-bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, scenes, imprints (tacto=PYTHON), ... (an hour)
+# Each is one process on one core, but the pipeline.
+bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, simplification, tactile, ...
 	OMP_NUM_THREADS=1 python -m benchmarks.kernels
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb) $(newest)
-	OMP_NUM_THREADS=1 python -m benchmarks.salient_simplification $(gaze) $(newest)
-	python -m benchmarks.large_simplification
-	python -m benchmarks.scenes
-	python -m benchmarks.frame_times
-	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
 	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
 	OMP_NUM_THREADS=1 python -m benchmarks.up_axis
 	OMP_NUM_THREADS=1 python -m benchmarks.deep_gaze
-	OMP_NUM_THREADS=1 python -m benchmarks.invariance
-	OMP_NUM_THREADS=1 python -m benchmarks.unknown $(psb)
 	python -m benchmarks.networks
-	python -m benchmarks.cluster
 	python -m benchmarks.pipeline
 
 lock: ## pin in constraints.txt all that pyproject.toml asks for

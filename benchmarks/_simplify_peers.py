@@ -1,4 +1,4 @@
-"""Simplifiers of others, for the benchmarks of simplification, where they are installed.
+"""Simplifiers of others, for benchmarks.simplification, where they are installed.
 
 `meshoptimizer` is the newest, which npm alone carries (1.3.0), as WebAssembly that `wasmtime` compiles for this
 processor; `meshoptimizer_native` the newest that PyPI carries as machine code (0.2.30a0), through ctypes. Both take
@@ -14,7 +14,7 @@ import numpy as np
 
 from haptic_glance.mesh.mesh import Mesh
 
-LOCK, PRIORITY = 1, 4  # bits of a vertex in meshoptimizer
+LOCK = 1  # the bit of a vertex that meshoptimizer keeps
 NO_LIMIT = 1e30  # of the error: the target alone decides
 UNABLE = ("vtk", "pyfqmr", "fast_simplification")  # to keep vertices
 PAGE = 65_536  # bytes of a WebAssembly memory page
@@ -64,11 +64,9 @@ class Meshoptimizer:
         self.exports = wasmtime.Instance(self.store, module, []).exports(self.store)
         self._call("__wasm_call_ctors")
 
-    def __call__(self, mesh, faces, frozen, bits=None):
-        """bits (n,) u1: LOCK, PRIORITY or neither of each vertex; None: LOCK for the corners of frozen faces."""
-        return self._simplified(mesh, faces, locks(mesh, frozen) if bits is None else bits)
-
-    def _simplified(self, mesh, faces, bits):
+    def __call__(self, mesh, faces, frozen):
+        """The mesh with so many faces, the corners of frozen faces locked."""
+        bits = locks(mesh, frozen)
         ids, points = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32)
         start = self._call("sbrk", 0)
         at, place, byte, error = (self._put(array) for array in (ids, points, bits, np.zeros(1, np.float32)))

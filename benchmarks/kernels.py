@@ -29,7 +29,6 @@ from haptic_glance.mesh.mesh import Mesh
 
 from ._history import HISTORY, TOLERANCE, committed, machine, slower, updated, version
 from ._simplify_peers import fresh
-from .imprints import by_trimesh
 
 SECONDS = 1.0  # of the processor for the pairs of a kernel
 PAIRS = (7, 25)  # but at least and at most so many
@@ -118,6 +117,21 @@ def picture_error() -> tuple[Call, Call]:
         lambda: perceptual(fresh(mesh), fresh(small), views),
         lambda: [caster.intersects_first(*ray) for caster in casters for ray in rays],
     )
+
+
+def by_trimesh(rays, positions, axes, cells, pitch):
+    """(k, rows, cols) distances by trimesh: rays from the reach above, one call for all."""
+    rows, columns = cells
+    right, up, normal = axes.transpose(1, 0, 2)[:, :, None, None]
+    down = (((rows - 1) / 2 - np.arange(rows)) * pitch)[:, None, None]
+    along = ((np.arange(columns) - (columns - 1) / 2) * pitch)[None, :, None]
+    reach = max(cells) * pitch
+    starts = (positions[:, None, None] + down * up + along * right + reach * normal).reshape(-1, 3)
+    ways = np.broadcast_to(-normal, (len(axes), rows, columns, 3)).reshape(-1, 3)
+    places, ray, _ = rays.intersects_location(starts, ways, multiple_hits=False)
+    distances = np.full(len(starts), reach)
+    distances[ray] = np.einsum("ij,ij->i", places - starts[ray], ways[ray]) - reach
+    return np.clip(distances, -reach, reach).reshape(len(axes), rows, columns)
 
 
 def imprints() -> tuple[Call, Call]:

@@ -1,7 +1,7 @@
 """Force images a second, ours beside MuJoCo's tactile sensor: `python -m benchmarks.tactile [PSB.zip]`
 
-Objects 0.1 m across: spheres of three face counts, and the meshes of benchmarks.imprints (the least, the middle and the
-most faces of data/household/meshes and of psb.zip). An array of 32 x 32 taxels, 1 mm apart, under 2 mm of foam, pressed
+Objects 0.1 m across: spheres of three face counts, and the meshes of the least, the middle and the most faces of
+data/household/meshes and of psb.zip. An array of 32 x 32 taxels, 1 mm apart, under 2 mm of foam, pressed
 0.5 mm deep at 40 random vertices, the same for all. Methods: `ours`, press_forces to that depth, all touches in one
 call; `ours_load`, to the load of that depth; `ours_single`, a call a touch; `ours_layout`, the same taxels as a layout;
 `mujoco`, the tactile sensor on a mesh of 32 x 32 vertices, below a box that collides: mj_fwdPosition, mj_fwdVelocity
@@ -17,6 +17,7 @@ MuJoCo is no dependency: without `pip install mujoco` its rows say so.
 
 import os
 import statistics
+import time
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +25,10 @@ import pandas as pd
 import trimesh
 
 from benchmarks import arguments
-from benchmarks.imprints import PSB, meshes, timed
-from haptic_glance.base.files import write_table
+from haptic_glance.base.files import read_mesh, write_table
 from haptic_glance.base.rng import rng
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import (
     Layer,
@@ -40,8 +42,9 @@ from haptic_glance.touch import (
     touchable,
     warm_up,
 )
+from stages.meshes.sources import PRINCETON, collection_files
 
-OUT = Path("reports/bench/tactile.csv")
+OUT, MESHES, PSB = Path("reports/bench/tactile.csv"), Path("data/household/meshes"), "../shared/data/psb.zip"
 SIDE, PITCH, DEPTH, TOUCHES, ROUNDS = 32, 0.001, 0.0005, 40, 7
 DIAMETER = 0.1
 LAYER = Layer()
@@ -96,8 +99,28 @@ def objects(archive):
     for name, subdivisions in SPHERES.items():
         ball = trimesh.creation.icosphere(subdivisions)
         yield name, Mesh(ball.vertices * DIAMETER / 2, ball.faces)
-    for _, name, mesh in meshes(archive):
+    for name, mesh in meshes(archive):
         yield name, Mesh(mesh.vertices * DIAMETER, mesh.faces)
+
+
+def meshes(archive):
+    """(name, Mesh): the least, middle and most faces of the household objects and of psb."""
+    groups = [{path.stem: read_mesh(path) for path in sorted(MESHES.glob("*.npz"))}]
+    if Path(archive).exists():
+        files = collection_files(archive, *PRINCETON)
+        first = {path.split("/")[1]: path for path in reversed(sorted(files)) if path.endswith(".off")}
+        groups.append({name: normalise(parse(files[path](), ".off")) for name, path in sorted(first.items())})
+    for named in groups:
+        by_size = sorted(named, key=lambda name: len(named[name].faces))
+        for place in dict.fromkeys((0, len(by_size) // 2, len(by_size) - 1)) if by_size else ():
+            yield by_size[place], named[by_size[place]]
+
+
+def timed(work):
+    """The processor seconds of the work."""
+    start = time.process_time()
+    work()
+    return time.process_time() - start
 
 
 def taxels():
@@ -111,14 +134,14 @@ def object_rows(name, mesh):
     """Rows `build` and `rate` of one object."""
     vertices = rng(0, name).permutation(np.flatnonzero(touchable(mesh, np.arange(len(mesh.vertices)))))[:TOUCHES]
     axes, cells, layout = sensor_axes(sensor_normals(mesh, vertices)), (SIDE, SIDE), taxels()
-    built, peer, note = {"ours": timed(lambda: Surface(mesh))()["seconds"]}, None, ""
+    built, peer, note = {"ours": timed(lambda: Surface(mesh))}, None, ""
     surface, centres = Surface(mesh), mesh.vertices[vertices]
     gaps = gaps_at(surface, centres, axes, DEPTH, cells, PITCH)
     centres = centres - (gaps.min(axis=(1, 2)) + DEPTH)[:, None] * axes[:, 2]
     loads = press_forces(surface, centres, axes, LAYER, cells, PITCH, depth=DEPTH).sum(axis=(1, 2))
     try:
         kept = []
-        built["mujoco"] = timed(lambda: kept.append(Peer(mesh)))()["seconds"]
+        built["mujoco"] = timed(lambda: kept.append(Peer(mesh)))
         peer = kept[0]
     except (ImportError, ValueError) as error:
         note = f"not run: {error}"
@@ -138,7 +161,7 @@ def object_rows(name, mesh):
     taken = {method: [] for method in works}
     for turn in range(ROUNDS + 1):
         for method, work in works.items():
-            seconds = timed(work)()["seconds"] / len(centres)
+            seconds = timed(work) / len(centres)
             taken[method] += [seconds] if turn else []  # the first round warms up
     common = {"object": name, "faces": len(mesh.faces), "taxels": SIDE * SIDE, "touches": len(centres)}
     rows = [common | {"what": "build", "method": method, "seconds": seconds} for method, seconds in built.items()]

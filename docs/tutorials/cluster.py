@@ -16,10 +16,7 @@ Needs a clone and ``pip install '.[cluster]'``; its code runs without a network.
 import os
 import shutil
 
-import pandas as pd
 from dask.distributed import Client
-
-from haptic_glance.gallery.demo import sample
 
 # sphinx_gallery_thumbnail_path = "../reports/figures/pipeline.png"
 
@@ -65,13 +62,3 @@ if shutil.which("sbatch"):
 # .. code-block:: sh
 #
 #    python -m stages.sweep -m hydra/launcher=submitit_slurm classifier=knn,svm
-#
-# Costs
-# -----
-#
-# One scheduler feeds a limited number of workers, because the inputs and results of all items pass through the
-# scheduler. The table has the measured costs per item, and the number of workers at which the scheduler becomes the
-# limit.
-
-costs = pd.read_csv(sample().parents[1] / "reports/bench/cluster.csv")
-print(costs[["stage", "seconds", "scheduler_ms", "network_ms", "limit"]].to_string(index=False))

@@ -18,13 +18,6 @@ COLUMNS = {
     "scaled": "of grasps: by mean and deviation of the training part, or each part by its own",
     "components": "of grasps: principal components, or electrodes where there is no reduction",
     "count": "of grasps: grasps tested on",
-    "part": "of touches over time: test (the publisher's own test part) or training (held out within the other part)",
-    "bins": "of touches over time: parts of equal length that a touch is divided into",
-    "parameter": "of touches over time: what the classifier was set to",
-    "heard": "of touches over time: share of the touch, from its beginning",
-    "cells": "of touches over time: taxels, or cells of an array, that are read",
-    "disturbance": "of touches over time: what happens to the test touches: dead taxels, dropped events or jitter",
-    "severity": "of the disturbance: share of the taxels or events, or deviation in steps",
 }
 
 
@@ -34,13 +27,12 @@ class Params:
 
     kind: str = setting(
         "",
-        "what was recorded: pressure_images, biotac_grasps, vitac, vt60, bigs, schunk or touch_events; "
-        "conf/data says so",
+        "what was recorded: pressure_images, biotac_grasps, vitac, vt60 or bigs; conf/data says so",
     )
     folder: str = setting("", "the folder or zip archive of the recordings")
     repetitions: int = setting(
         20,
-        "number of random splits, of random sets of classes, and of foldings for touches over time",
+        "number of random splits, and of random sets of classes",
         least=1,
     )
 

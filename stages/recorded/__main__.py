@@ -1,22 +1,18 @@
 """Recognises touches that others recorded: by the thesis's protocol, and where it flatters (T4.2.4, table 4.4).
 
 Reads the archive that recorded.folder names. Writes reports/measurements/SET/recorded.csv.gz: what was measured, never
-the recordings. A data set is one kind of recording, recorded.kind: images of a pressure array, grasps of a hand, events
-of a fingertip, or grasps by pressure arrays over time.
+the recordings. A data set is one kind of recording, recorded.kind: images of a pressure array, or grasps of a hand.
 """
 
 from stages.classification.recorded import read_grasps, read_pressure_images
 from stages.engine.run import StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
-from . import COLUMNS, Params, biotac_grasps, pressure_images, series, touch_events
-from .series import read_grasp_series, read_touch_events
+from . import COLUMNS, Params, biotac_grasps, pressure_images
 
 KINDS = {  # kind: how it is read, and what measures it
     "pressure_images": (read_pressure_images, pressure_images),
     "biotac_grasps": (read_grasps, biotac_grasps),
-    "touch_events": (read_touch_events, touch_events),
-    "schunk": (read_grasp_series, series),
 }
 
 

@@ -61,6 +61,6 @@ class Params:
     repetitions: int = setting(12, "random hold-outs of places", least=1)
     denoisers: list[str] = setting(
         [],
-        "filters that also clean all touches first: median, autoencoder (T6.3), see experiment=denoised",
+        "filters that also clean all touches first: autoencoder (T6.3), see experiment=denoised",
         names=_denoisers,
     )

@@ -103,23 +103,6 @@ def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(ben
     assert len(notes) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in notes)
 
 
-@pytest.mark.slow
-def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, measure):
-    cells = [("a", 0.5, 0.5), ("a", 0.1, 0.5), ("b", 0.5, 1.0), ("b", 0.1, 1.0)]
-    row = {"outcome": "reached", "bar": 1}
-    rows = [row | {"mesh": mesh, "share": share, "method": "fast_weights", "salient_ratio": ratio}
-            for mesh, share, ratio in cells]  # fmt: skip
-    rows += [entry | {"method": "meshoptimizer", "salient_ratio": 1.3} for entry in rows]
-    results = measure("bench/salient_simplification", pd.DataFrame(rows), results=bench(benched()))
-    notes = [note for note in table(results).notes if "gaze" in note]
-    assert (
-        len(notes) == 1
-        and "2 meshes" in notes[0]
-        and "has 0.707" in notes[0]
-        and "0.71 at 10%, 0.71 at 50%" in notes[0]
-    )
-
-
 @pytest.mark.parametrize("power", [0.8, 1.4])
 def test_growth_finds_the_power_though_large_meshes_have_one_share(power):
     rows = benched(power).assign(with_points=False)

@@ -1,4 +1,4 @@
-"""Real touches in the report: the readings of table 4.4, grasps counted one by one, and the claims."""
+"""Real touches in the report: the readings of table 4.4, and the claims."""
 
 from functools import partial
 from itertools import combinations, product
@@ -8,15 +8,13 @@ import pandas as pd
 import pytest
 
 from stages.report import recorded as topic
-from stages.report.parts import build_item
-from stages.report.recorded.claims import RECORDED_CLASSES, SERIES, shared_classes
+from stages.report.recorded.claims import RECORDED_CLASSES, shared_classes
 from stages.report.recorded.claims import TOUCHES as CLAIMS
 from stages.report.recorded.tables import CLASSES
 from tests.report.frames import verdicts
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
 GAIN = {"all": 0.0, "selected": 0.05, "selected_control": 0.0, "selected_training": -0.05}
-EVENTS = {"discriminant": 0.96, "linear_svm": 0.9, "knn": 0.6}
 LOSS = {"random": 0.0, "blocks": 0.1, "folds": 0.02}
 
 
@@ -59,38 +57,11 @@ def transferred(help=0.1):
     return pd.DataFrame(rows)
 
 
-def event_rows(levels=EVENTS):
-    """Ten objects that differ alike in all methods, and the accuracies of EVENTS."""
-    rows = []
-    for group, (method, level), k in product(("objects", "containers"), levels.items(), range(10)):
-        common = {"dataset": "touch_events", "group": group, "method": method, "item": f"{k:02}", "metric": "accuracy"}
-        common |= {"bins": 10, "parameter": 0.1, "heard": 1.0, "cells": 39, "value": level + 0.004 * (k - 4.5)}
-        rows.append(common | {"part": "test"})
-        folded = common | {"part": "training", "split": "folds"}
-        rows += [folded | {"heard": heard, "value": common["value"] * heard} for heard in (0.25, 1.0)]
-        rows += [folded | {"cells": 20, "value": common["value"] - 0.01 - 0.001 * k}]
-        rows += [folded | {"disturbance": "jitter", "severity": 5.0, "value": common["value"] / 2}]
-    return pd.DataFrame(rows)
-
-
-def grasp_rows():
-    """Twenty grasps, of which the discriminant knows all but one and kNN every other; of the list all and none."""
-    rows = []
-    for method, k in product(("discriminant", "knn"), range(20)):
-        right = float(k > 0 if method == "discriminant" else k % 2)
-        row = {"dataset": "schunk", "group": "grasps", "method": method, "item": f"cup/{k}", "metric": "accuracy"}
-        rows.append(row | {"part": "training", "split": "objects", "value": right})
-        if k < 5:
-            rows.append(row | {"part": "test", "split": "objects", "value": float(method == "discriminant")})
-    return pd.DataFrame(rows)
-
-
 @pytest.fixture(scope="module")
 def every(measure):
     """The results of a root with rows of all kinds."""
     results = measure("simulated_to_real", transferred(), "pressure_images")
-    sets = {"pressure_images": recorded(), "touch_events": event_rows(), "schunk": grasp_rows()}
-    return measure("recorded", pd.concat([frame.assign(dataset=name) for name, frame in sets.items()]), results=results)
+    return measure("recorded", recorded(), "pressure_images", results=results)
 
 
 table = partial(build_item, topic, "tables")
@@ -118,24 +89,6 @@ def test_selection_simulation_and_the_best_classifier_are_judged_on_real_touches
     assert judged.loc["real_selection_training", "verdict"] == "contradicted"
     assert judged.loc["real_knn_best_all", "effect"] == pytest.approx(5, abs=0.5)
     assert judged.loc["real_blocked", "verdict"] == "supported"
-
-
-def test_grasps_are_counted_one_by_one(every):
-    assert table("grasp_series", every).text["published test list"].tolist() == ["5 of 5", "0 of 5"]
-    key = "grasp_series_over_components"
-    assert verdicts(SERIES, every, key).loc[key, "effect"] == pytest.approx(45)
-
-
-@pytest.mark.slow
-def test_claims_on_events_turn_with_the_rows(every, measure):
-    events = [claim for claim in SERIES if claim.dataset == "touch_events"]
-    words = verdicts(events, every)["verdict"]
-    assert words["events_discriminant_over_network_objects"] == "supported"
-    assert words["events_linear_svm_over_network_containers"] == "supported"
-    assert words["events_quarter_enough"] == "contradicted" and words["events_half_the_taxels_objects"] == "supported"
-    worse = measure("recorded", event_rows(dict.fromkeys(EVENTS, 0.5)))
-    words = verdicts(events, worse, "events_discriminant_over_network_objects")["verdict"]
-    assert words.tolist() == ["contradicted"]
 
 
 def test_drawn_sets_of_classes_are_as_much_alike_as_their_number_says():

@@ -9,11 +9,10 @@ import pandas as pd
 import pytest
 import yaml
 
-from benchmarks import scenes
 from haptic_glance.base.files import read_arrays, read_table, write_arrays, write_mesh, write_table
-from stages.engine.rows import read_rows, write_rows
+from stages.engine.rows import read_rows
 from stages.engine.settings import check_section
-from stages.scene import COLUMNS, Params, __main__
+from stages.scene import Params, __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
 from stages.scene.compare import MethodPlan, SceneSetup
@@ -244,24 +243,3 @@ def test_random_scenes_are_measured_one_by_one(settings, workspace, make_workspa
     assert cost == 32 and rows.loc[rows["metric"] == "profile", "item"].tolist() == ["one", "third", "two"]
     assert sorted(path.stem for path in (random.data / "scene/plans").iterdir()) == ["random_00_1", "random_01_1"]
     assert not (random.data / "scene/export").exists()
-
-
-def test_the_benchmark_keeps_what_is_about_all_frames_of_a_scene(workspace, monkeypatch):
-    row = {"group": "small", "method": "ours", "frame": "all", "metric": "faces", "value": 7}
-    others = ({"frame": 3}, {"item": "one"}, {"group": None, "condition": "counts"})
-    rows = [row, *(row | {"value": 8} | other for other in others)]
-    file = workspace.measurements / "scene.csv.gz"
-    monkeypatch.setattr(scenes, "run", lambda space: write_rows(file, rows, COLUMNS, space.dataset, 0))
-    (kept,) = scenes.measured(workspace).to_dict("records")
-    wanted = {"scene": "small", "method": "ours", "value": 7, "objects": 2, "shapes": 2, "frames": 4}
-    assert {name: kept[name] for name in wanted} == wanted
-
-
-def test_a_case_of_the_benchmark_has_the_scene_it_names_and_the_data_of_the_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(scenes, "FOLDER", tmp_path / "scenes")
-    for stage in scenes.INPUTS:
-        write_table(tmp_path / stage / "one.csv", pd.DataFrame({"a": [1]}))
-    workspace = scenes.workspace_of("table_ssim", "household", tmp_path)
-    settings = workspace.settings(Params)
-    assert (settings.name, settings.kind, settings.factors) == ("table", "ssim", [1.0])
-    assert all((workspace.data / stage / "one.csv").exists() for stage in scenes.INPUTS)

@@ -71,14 +71,14 @@ def test_a_run_measures_every_severity_by_every_split(run, tmp_path):
 
 @pytest.mark.slow
 def test_denoised_touches_are_asked_about_beside_the_others(run):
-    rows, other = run(denoisers=["median"], severities={"noise": [0.2]}), run(severities={"noise": [0.2]})
-    cleaned = rows["features"] == "imprint_median"
+    rows, other = run(denoisers=["autoencoder"], severities={"noise": [0.2]}), run(severities={"noise": [0.2]})
+    cleaned = rows["features"] == "imprint_autoencoder"
     assert set(rows.loc[cleaned, "perturbation"]) == {CLEAN, "noise"}
     pd.testing.assert_frame_equal(
         rows[~cleaned].drop(columns="seconds").reset_index(drop=True), other.drop(columns="seconds")
     )
     means = rows[rows["perturbation"] == "noise"].groupby("features")["value"].mean()
-    assert means["imprint_median"] != means["imprint"]
+    assert means["imprint_autoencoder"] != means["imprint"]
 
 
 def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessing():
@@ -137,13 +137,6 @@ def domes(count, seed):
     random, grid = np.random.default_rng(seed), np.mgrid[:16, :16]
     middle, width = random.uniform(4, 12, (2, count, 1, 1)), random.uniform(3, 8, (count, 1, 1))
     return (1 - np.exp(-((grid[0] - middle[0]) ** 2 + (grid[1] - middle[1]) ** 2) / width**2)).astype(np.float32)
-
-
-def test_the_median_restores_single_dead_cells():
-    flat = np.full((1, 16, 16), 0.5, dtype=np.float32)
-    worn = flat.copy()
-    worn[0, 3::4, 3::4] = 1
-    assert np.array_equal(DENOISERS["median"](flat, 0)(worn), flat)
 
 
 @pytest.fixture(scope="module")

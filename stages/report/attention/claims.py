@@ -13,7 +13,7 @@ from typing import Any
 import pandas as pd
 
 from stages.bench import PER_OBJECT, has_seen
-from stages.charts.datasets import COLOURED, GAZED, GREY_3_1, MENDED_3_2, ON_BLACK, SECTION_3_2
+from stages.charts.datasets import COLOURED, GAZED, GREY_3_1, MENDED_3_2, SECTION_3_2
 from stages.charts.drawing import label
 from stages.charts.items import Table, shared_notes
 from stages.charts.pareto import attention_seconds
@@ -25,7 +25,6 @@ from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"
 NO_RIVALS = (OURS, ANY_POSE, HUMAN)  # our models, and the ceiling
-BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
 SAME = ("VisAtt",)  # the classical model under the thesis's name
 NAMES = {"random": "random points", "svm": "thesis, SVM"}  # elsewhere blind touch, and a classifier
 ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval, and in which ours is compared with each other method
@@ -34,8 +33,6 @@ MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # colum
 
 def method_text(method: str) -> str:
     """A method's name as a person says it, with a star where it has seen the object."""
-    if method.endswith(BLACK):
-        return f"{label(method.removesuffix(BLACK))}, black background"
     name = NAMES.get(method) or label(method)
     return f"{name} *" if has_seen(method) else name
 
@@ -114,7 +111,6 @@ MARKED = "household"  # the data set whose marks come with the project
 OF_3_2 = (SECTION_3_2, "gaze_clouds")  # the printed protocol first; elsewhere a method has not seen the object
 UNSEEN = {"guided_ed_seen": "guided_ed", "guided_ssim_seen": "guided_ssim", "svm_object": "svm"}
 MENDED = reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1]))
-BLACK_FILTERED = "our formulas, black background filtered"
 CHANNELS = (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))  # key, name, method
 about = partial(Claim, section="ours", over=("item",), phrases=PHRASES)
 closer = partial(about, stage="salient_points", where={"metric": "nss"}, dataset=GAZED, scale=1, unit="NSS")
@@ -143,8 +139,6 @@ def learned_to_gaze(key: str, section: str, first: str, sentence: str) -> Claim:
         reading("nine channels with equal weights", second={"method": "equal"}),
         reading("our formulas, learned from other objects", **unseen, dataset=GAZED),
     ]  # fmt: skip
-    if first != "svm_object":  # gaze_on_black has no SVM
-        readings.append(reading(BLACK_FILTERED, **unseen, dataset=(ON_BLACK, OF_3_2[1])))
     return closer(key=key, section=section, sentence=sentence, first={"method": first}, second={"method": "VisAttAll"},
                   dataset=OF_3_2, elsewhere=UNSEEN, readings=tuple(readings),
                   note="learned from the gaze that judges it, too, as in the thesis")  # fmt: skip
@@ -163,12 +157,10 @@ CLAIMS = [
     closer(key="equal_over_itti_gaze", first={"method": "VisAttAll"}, second={"method": CLASSICAL}, dataset=OF_3_2,
            sentence="All channels with equal weights (VisAttAll) predict where people look better than the classical "
                     "model.",
-           printed=1, readings=(*in_sums("VisAttAll", CLASSICAL), MENDED, reading("our formulas", dataset=GAZED),
-                                reading(BLACK_FILTERED, dataset=(ON_BLACK, OF_3_2[1])))),
+           printed=1, readings=(*in_sums("VisAttAll", CLASSICAL), MENDED, reading("our formulas", dataset=GAZED))),
     closer(key="grey_colour", section="T3.1.1", first={"method": "VisAttAll"}, second={"method": "VisAttAllNoColour"},
            sentence="Although the objects are grey, the colour channels improve the detection of regions of interest.",
-           dataset=GREY_3_1, readings=(reading("our formulas", dataset=ON_BLACK),
-                                       *in_sums("VisAttAll", "VisAttAllNoColour"))),
+           dataset=GREY_3_1, readings=in_sums("VisAttAll", "VisAttAllNoColour")),
     learned_to_gaze("guided_ed_gaze", "T3.2.2", "guided_ed_seen",
                     "Weights learned by Euclidean distance predict attention better than equal ones."),
     learned_to_gaze("guided_ssim_gaze", "T3.2.2", "guided_ssim_seen",
@@ -179,10 +171,6 @@ CLAIMS = [
            first={"method": "svm_object"}, second={"method": highest_of("guided_ed_seen", "guided_ssim_seen")},
            sentence="The SVM finds more salient points than the weighted maps do.", unit="points", readings=(MENDED,),
            note="at most 32 of the SVM's, and all of the others"),
-    *(closer(key=f"background_{key}", dataset="gaze", where={"metric": "nss", "method": method},
-             first={"dataset": "gaze"}, second={"dataset": ON_BLACK},
-             sentence=f"Where the background is kept out of the filters, maps are closer to gaze ({name}).")
-      for key, name, method in (*CHANNELS, ("ssim", "weights of table 3.1", "thesis_ssim"))),
     colour(key="colour_parts_dkl", stage="conspicuity", where={"metric": "intensity_likeness"},
            first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity",
            sentence="Even where objects have several hues, DKL is as close to intensity as in one hue."),
@@ -248,16 +236,12 @@ MEANS = {
 }  # fmt: skip
 NAMED = 5  # methods that a sentence names at most
 PEEKED = {"guided_ssim": "guided_ssim_seen", "guided_ed": "guided_ed_seen", "svm": "svm_object"}
-FILTERED = (CLASSICAL, THESIS, "thesis_ssim", "thesis_ed", "guided_ssim", "guided_ed")  # the thesis's, on black too
 
 
 def against_gaze(results: Results) -> Table:
     """The meshes with human gaze, each left out of the learning."""
-    rows, black = results.rows("salient_points", "gaze"), None
-    with suppress(NotRun):
-        black = results.rows("salient_points", ON_BLACK, method=list(FILTERED))
-        black = black.assign(method=black["method"] + BLACK)
-    return _table(results, rows, list(MEANS), {"count": rows["item"].nunique()}, black)
+    rows = results.rows("salient_points", "gaze")
+    return _table(results, rows, list(MEANS), {"count": rows["item"].nunique()})
 
 
 def against_clouds(results: Results) -> Table:
@@ -275,19 +259,15 @@ def against_marks(results: Results) -> Table:
     return _table(results, rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
 
 
-def _table(
-    results: Results, rows: pd.DataFrame, beside: Sequence[str], words: dict, more: pd.DataFrame | None = None
-) -> Table:
+def _table(results: Results, rows: pd.DataFrame, beside: Sequence[str], words: dict) -> Table:
     """The judged rows, with those of MEANS that stand beside NSS and AUC; words: without those that the numbers say.
 
-    more: rows that stand in the table too, of which nothing is said. The seconds are those from the pictures to the
-    points; of a set without rows of pictures or maps there are none.
+    The seconds are those from the pictures to the points; of a set without rows of pictures or maps there are none.
     """
     cost: dict[str, float] = {}
     with suppress(NotRun):
         cost = attention_seconds(results, rows["dataset"].iloc[0])
-    table_rows = rows if more is None else pd.concat([rows, more])
-    frame = agreement(table_rows, [*ALONE, *beside])
+    frame = agreement(rows, [*ALONE, *beside])
     names, lines = list(ALONE.values()), {}
     columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside)]
     columns += ["seconds"] if cost else []

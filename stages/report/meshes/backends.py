@@ -4,7 +4,6 @@
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,7 +94,7 @@ def backends_table(results: Results) -> Table:
     lines = [_sentence(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
         "measured": shared_notes(__package__, "timed"),
-        "findings": "\n".join([*lines, *against_meshoptimizer(rows, results)]),
+        "findings": "\n".join([*lines, *against_meshoptimizer(rows)]),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -263,8 +262,8 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
 OTHER = "meshoptimizer"
 
 
-def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> Iterator[str]:
-    """A sentence a task, of the rows of bench/simplification.csv.gz, and one on gaze; none where not measured."""
+def against_meshoptimizer(rows: pd.DataFrame) -> Iterator[str]:
+    """A sentence a task, of the rows of bench/simplification.csv.gz; none where not measured."""
     for with_points, group in rows[rows["outcome"] == "reached"].groupby("with_points"):
         if OTHER in set(group["backend"]):
             pairs = group.pivot(index=CELL, columns="backend", values=["metro_mean", "seconds"])
@@ -273,26 +272,9 @@ def against_meshoptimizer(rows: pd.DataFrame, results: Results) -> Iterator[str]
                 f"{label(OURS)}, {'points' if with_points else 'nothing'} kept: {with_interval(*error)} times "
                 f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
             )
-    with suppress(NotRun):
-        yield from _salient(results.bench("salient_simplification"))
 
 
 def over_meshes(ratios: pd.Series) -> tuple[float, float, float]:
     """(mean, low, high) of ratios with a level `mesh`: geometric, over the meshes; of positive ratios alone."""
     mean, low, high = np.exp(interval(ratios[ratios > 0].apply(np.log).groupby("mesh").mean()))
     return float(mean), float(low), float(high)
-
-
-def _salient(rows: pd.DataFrame) -> Iterator[str]:
-    """A sentence on the error weighted by gaze; none where no rival was measured."""
-    if rows["bar"].isna().all():
-        return
-    ours = rows[(rows["outcome"] == "reached") & (rows["method"] == f"{OURS}_weights")].set_index("mesh")
-    ratio, meshes = over_meshes(ours["salient_ratio"]), ours["salient_ratio"].dropna().index.nunique()
-    means = ours["salient_ratio"].apply(np.log).groupby(ours["share"]).mean().apply(np.exp)
-    shares = ", ".join(f"{mean:.2f} at {share:.0%}" for share, mean in means.items())
-    yield (
-        f"Error weighted by recorded gaze, {meshes} meshes: ours, with the gaze as weights, has "
-        f"{with_interval(*ratio)} times that of {label(OTHER)} with its priority bit, its lock bit or neither, the "
-        f"best in each cell ({shares} of the faces)."
-    )

@@ -6,10 +6,6 @@ from . import claims, networks, tables
 
 TABLES = {
     "table_4_4": tables.table_4_4,
-    "grasps": tables.grasps,
-    "touch_events": tables.touch_events,
-    "touch_events_conditions": tables.touch_events_conditions,
-    "grasp_series": tables.grasp_series,
     "simulated_to_real": networks.build_table,
     "real_networks": networks.build,
     "table_5_1": partial(networks.printed, "vt60", "table_5_1_vt60_bathtip"),
@@ -18,4 +14,4 @@ TABLES = {
 }
 FIGURES = {}
 CHARTS = {"network_sizes": networks.chart}
-CLAIMS = [*claims.TOUCHES, *claims.NETWORKS, *claims.SERIES]
+CLAIMS = [*claims.TOUCHES, *claims.NETWORKS]

@@ -1,4 +1,4 @@
-"""Claims on recorded touches: the real sensor of T4.2.4, networks of sight (T5.4), and ours on touches over time."""
+"""Claims on recorded touches: the real sensor of T4.2.4, networks of sight (T5.4)."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -10,12 +10,12 @@ from haptic_glance.know.split import Split, shared_by
 from stages.charts.results import NUMBERS, Results
 from stages.recorded.pressure_images import UNREDUCED
 from stages.report.claims import NO_SVM, SCALE, SCALED, TRAINED, Claim, Side, highest_of, reading
-from stages.report.effects import difference, side, statistic
+from stages.report.effects import side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED, WORDS
 
 from .networks import CLASSICAL, DATA, OVER, SPLITS, STAGE, commonest
 from .networks import SIMULATIONS as KINDS
-from .tables import CLASSES, GROUPS, OURS, SELECTIONS, SET, SPIKING
+from .tables import CLASSES, SELECTIONS
 
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
 ALL = {"metric": "accuracy", "split": Split.RANDOM} | SCALE  # the mean of all classifiers
@@ -213,66 +213,4 @@ NETWORKS = [
             {"method": NETWORK}, None, ARRAY, section="ours", statistic="over_classifiers", note=BEST),
     *claims("frozen_over_electrodes", "Frozen visual filters beat a classifier of the bare readings of the electrodes.",
             {"method": NETWORK}, None, (*FINGERS, SLIP), section="ours", statistic="over_classifiers", note=BEST),
-]  # fmt: skip
-
-
-OF_SERIES = {
-    **{("group", group): words for group, words in GROUPS.items()},
-    ("method", OURS): "linear discriminant of bins", ("method", "linear_svm"): "linear SVM of bins",
-    ("method", "knn"): "kNN", ("heard", 0.25): "the first quarter of a touch", ("heard", 1.0): "all of it",
-    ("cells", 20): "20 taxels", ("cells", 39): "all 39",
-}  # fmt: skip
-TESTED = {"part": "test", "metric": "accuracy"}
-FOLDED = {"part": "training", "metric": "accuracy", "method": OURS, "disturbance": None}
-
-
-def on_events(key: str, sentence: str, **fields: Any) -> Claim:
-    """A claim on touch events, its pairs the objects."""
-    return Claim(
-        key=f"events_{key}", section="ours", sentence=sentence, stage="recorded", dataset=SET, over=("item",),
-        phrases=OF_SERIES, **fields,
-    )  # fmt: skip
-
-
-@statistic("of_grasped_objects")
-def of_grasped_objects(results: Results, claim: Claim) -> pd.Series:
-    """First side minus second, grasp by grasp; the objects are the units: a grasp is called OBJECT/NUMBER."""
-    values = difference(results, claim)
-    objects = values.index.str.partition("/").get_level_values(0)
-    return values.set_axis(pd.MultiIndex.from_arrays([objects, values.index], names=["object", "item"]))
-
-
-SERIES = [
-    *(
-        on_events(
-            f"{method}_over_network_{group}",
-            f"Time-binned event counts and a linear {name} recognise {group} better than the published spiking graph "
-            "network.",
-            where=TESTED | {"group": group}, first={"method": method}, second=SPIKING[group],
-            note="the network's figure is a constant here: it has no interval",
-        )
-        for method, name in ((OURS, "discriminant"), ("linear_svm", "SVM")) for group in GROUPS
-    ),
-    *(
-        on_events(f"bins_over_components_{group}", "A linear discriminant of all bins recognises more than kNN on "
-                  "twelve components of them.",
-                  where=TESTED | {"group": group}, first={"method": OURS}, second={"method": "knn"})
-        for group in GROUPS
-    ),
-    on_events("quarter_enough", "The first quarter of a touch is enough to know an object nearly as well.",
-              where=FOLDED | {"group": "objects", "cells": 39}, first={"heard": 0.25}, second={"heard": 1.0},
-              margin=5.0, note="within five points"),
-    *(
-        on_events(f"half_the_taxels_{group}", "Half of the taxels are enough to know nearly as well.",
-                  where=FOLDED | {"group": group, "heard": 1.0}, first={"cells": 20}, second={"cells": 39}, margin=5.0,
-                  note="within five points")
-        for group in GROUPS
-    ),
-    Claim(
-        key="grasp_series_over_components", section="ours", stage="recorded", dataset="schunk", over=("item",),
-        sentence="A linear discriminant of binned pressure recognises more grasps than kNN on twelve components.",
-        where={"part": "training", "metric": "accuracy", "split": Split.OBJECTS}, first={"method": OURS},
-        second={"method": "knn"}, phrases={**OF_SERIES, ("over", "item"): "objects, each with its grasps"},
-        statistic="of_grasped_objects",
-    ),
 ]  # fmt: skip

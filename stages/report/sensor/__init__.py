@@ -166,7 +166,7 @@ claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset="princeton_4_3_set
                 over=("group", "item"), phrases=PHRASES, note=ALL)  # fmt: skip
 ours = partial(claim, section="ours", dataset=MORE)
 larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
-HANDS = ("furniture_hands", "princeton_hands", "princeton_other_hands")
+HANDS = "princeton_hands"
 EQUAL = {"cells": 20, "fine": None, "extent": None}  # as many cells as 16 x 16 and 12 x 12
 AROUND = {"cells": SMALL, "pitch": COARSE}
 hands = partial(claim, section="T6.3", dataset=HANDS, printed=0, note="mean of both classifiers")

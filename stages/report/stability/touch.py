@@ -23,7 +23,7 @@ from .breaking import ACCURACY, Curves, broken, degradation
 
 STAGE = "touch_stability"
 DENOISED = "household_denoised"  # the set whose touches are also denoised
-DENOISERS = {"": "", "_median": "after a median filter", "_autoencoder": "after an autoencoder"}  # behind `imprint`
+DENOISERS = {"": "", "_autoencoder": "after an autoencoder"}  # behind `imprint`
 KEYS = ["split", "features", "classifier"]
 PLAIN = "imprint"
 LINES = {  # (split, features, classifier): how a person says it

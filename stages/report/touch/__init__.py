@@ -5,7 +5,7 @@ from functools import partial
 from stages.charts.datasets import SECTION_4_2
 from stages.charts.items import as_printed
 
-from . import claims, imprints, pictures, tables
+from . import claims, pictures, tables
 
 TABLES = {
     "recognition": tables.recognition,
@@ -15,7 +15,6 @@ TABLES = {
     "table_4_5": tables.table_4_5,
     "table_4_6": tables.table_4_6,
     "section_4_2_4": tables.section_4_2_4,
-    "imprint_rates": imprints.table,
 }
 FIGURES = {
     "pipeline": pictures.pipeline,
@@ -28,6 +27,5 @@ CHARTS = {
     "touch": claims.by_classifier,
     "touches": claims.by_features,
     "saliency": claims.by_saliency,
-    "imprints": imprints.chart,
 }
 CLAIMS = claims.CLAIMS

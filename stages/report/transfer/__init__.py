@@ -15,7 +15,6 @@ TABLES = {
 FIGURES = {
     "figure_5_3": figures.figure_5_3,
     "figure_5_4": figures.figure_5_4,
-    "training_curves": figures.training_curves,
 }
 CHARTS = {"networks": figures.networks_chart}
 CLAIMS = tables.CLAIMS
