@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from stages.report import recorded as topic
+from stages.report.parts import build_item
 from stages.report.recorded.claims import RECORDED_CLASSES, shared_classes
 from stages.report.recorded.claims import TOUCHES as CLAIMS
 from stages.report.recorded.tables import CLASSES

@@ -21,9 +21,6 @@ from stages.charts.datasets import (
     SECTION_3_1,
     SECTION_3_2,
     SETS_3_1,
-    NotRun,
-    Results,
-    listed,
 )
 from stages.charts.drawing import label
 from stages.charts.results import NotRun, Results, listed, require_rows
