@@ -56,8 +56,6 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, scenes, impr
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb) $(newest)
 	OMP_NUM_THREADS=1 python -m benchmarks.salient_simplification $(gaze) $(newest)
 	python -m benchmarks.large_simplification
-	python -m benchmarks.scenes
-	python -m benchmarks.frame_times
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
 	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
 	OMP_NUM_THREADS=1 python -m benchmarks.up_axis

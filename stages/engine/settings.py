@@ -25,24 +25,22 @@ COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": lis
 ABOVE_0 = np.nextafter(0, 1)
 RANGES = {  # the last part of a setting's name: the least and the greatest of its numbers, in every section
     **dict.fromkeys(
-        ("azimuths", "batch", "cells", "coarse_cells", "combinations", "copies", "count", "draws", "epochs", "frames",
+        ("azimuths", "batch", "cells", "coarse_cells", "combinations", "copies", "count", "epochs", "frames",
          "hybrid_pictures", "image_epochs", "most", "new_object_touches", "normal_epochs", "parallels", "repetitions",
-         "samples", "screen", "search_epochs", "simulated", "size", "steps", "touches", "trainings", "views",
+         "samples", "screen", "search_epochs", "simulated", "size", "steps", "touches", "trainings",
          "viewer_count", "viewer_faces"), (1, np.inf)
     ),
     **dict.fromkeys(("drawn", "hold", "limit", "real", "rings", "slack", "smoothing"), (0, np.inf)),
     **dict.fromkeys(
-        ("distances", "factors", "finetuned_rates", "frozen_rates", "hybrid_rate", "near", "penalties", "pitch",
-         "pitches", "radius", "rate", "rates", "tolerance", "width"), (ABOVE_0, np.inf)
+        ("factors", "finetuned_rates", "frozen_rates", "hybrid_rate", "penalties", "pitch",
+         "pitches", "radius", "rate", "rates", "tolerance"), (ABOVE_0, np.inf)
     ),
     **dict.fromkeys(("confidences", "momentum", "train_share", "validation_share"), (0, 1)),
     "folds": (2, np.inf), "angle": (ABOVE_0, 180),
 }  # fmt: skip
 
 NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, or of a function that refuses others}
-    "attention_checks": {"views": "stages.attention_checks.__main__:VIEWS"},
     "classification": {"classifiers": "haptic_glance.know.classifiers:CLASSIFIERS"},
-    "coarse_imprints": {"variants": "stages.coarse_imprints.__main__:VARIANTS"},
     "conspicuity": {
         "background": "haptic_glance.look.channels.cropped_view:BACKGROUNDS",
         "channels": "haptic_glance.look.channels.channels:MAPS",
@@ -87,7 +85,6 @@ NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, o
     "transfer": {
         "hybrid_severities": "haptic_glance.disturb.picture:KNOWN",
         "networks": "haptic_glance.deep.network:NETWORKS",
-        "severities": "haptic_glance.disturb.imprint:KNOWN",
         "splits": "stages.transfer.plan:SPLITS",
         "uncontrolled": "haptic_glance.deep.network:NETWORKS",
         "weights": "haptic_glance.deep.network:WEIGHTS",

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import files_below, object_files, read_arrays, read_mesh, read_table
-from haptic_glance.base.timing import CLOCK, WALL
+from haptic_glance.base.timing import WALL
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.mesh.mesh import Mesh
@@ -34,7 +34,6 @@ SUMS_4_2 = "household_4_2_sums", "princeton_4_2_sums"
 GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
-ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
 BENCH = "bench"
 OWN_FOLDER = "own"  # in place of a stage: of what only a folder of one's own has, or what it never has
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
@@ -57,10 +56,9 @@ DATASETS = {
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "touch_events": "recorded events of a fingertip",
     "household_denoised": "household, denoised", "princeton_denoised": "psb, denoised",
-    "furniture_denoised": "furniture, denoised", "household_stability": "household shapes, disturbed",
-    "furniture_hands": "furniture, several arrays or touches",
+    "furniture_denoised": "furniture, denoised", "furniture_hands": "furniture, several arrays or touches",
     "princeton_other_hands": "psb's other 11 classes, several arrays or touches",
-    "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
+    "schunk": "recorded hand with arrays",
 }  # fmt: skip
 
 
@@ -114,7 +112,7 @@ class ByMethod(dict):
 RECENT = 128  # answers that are kept: the two sides of a claim are asked for again and again
 
 
-def clock_of(rows: pd.DataFrame, stage: str) -> str:
+def clock_of(rows: pd.DataFrame) -> str:
     """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time of older rows.
 
     If rows have both clocks, the clock is wall time, the less precise one.
@@ -123,7 +121,7 @@ def clock_of(rows: pd.DataFrame, stage: str) -> str:
     clocks = timed.get("clock", pd.Series(dtype=str)).dropna()
     if len(clocks) and len(clocks) == len(timed):
         return clocks.iloc[0]
-    return CLOCK if stage in ALWAYS_PROCESSOR else WALL
+    return WALL
 
 
 class Results:
@@ -228,7 +226,7 @@ class Results:
 
     def clock(self, stage: str, dataset: str | None = None) -> str:
         """The `clock_of` a stage's rows."""
-        return clock_of(self._read(stage, dataset), stage)
+        return clock_of(self._read(stage, dataset))
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""

@@ -167,7 +167,7 @@ def questions_html(answers: Sequence[tuple[str, str, str]]) -> str:
 
 
 HOME, FOLDER = "index.html", "site"
-CHARTS = ("front", "touch", "attention")  # the chart of the front page: the first of these that was drawn
+CHARTS = ("touch", "attention")  # the chart of the front page: the first of these that was drawn
 WIDE = 1700  # pixels of the first picture
 INTRODUCTION = """A person glances at an object, knows which few places matter, touches only those, and knows what it
 is. Haptic Glance does the same for 3D meshes: it predicts where people look, keeps the mesh fine there, presses a

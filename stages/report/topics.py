@@ -8,7 +8,6 @@ from matplotlib.figure import Figure as Drawing
 
 from . import (
     attention,
-    chain,
     exploration,
     fidelity,
     fixation,
@@ -30,7 +29,7 @@ from .results import NoData, NotRun, Results
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,
-    chain, fidelity,
+    fidelity,
 )  # fmt: skip
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a topic
 CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]

@@ -7,7 +7,7 @@ COLUMNS = {
     "kind": "what the tolerance is of: pixels or ssim",
     "tolerance": "the tolerated error of a frame",
     "factor": "the same over the scene's own tolerance",
-    "matched": "the quantity in which a method equals ours, or limit, or asked; empty for a plan of its own",
+    "matched": "the quantity in which a method equals ours, or asked; empty for a plan of its own",
     "frame": "the number of a frame, or all",
     "condition": "what the models of the face count are tested on",
     "setting": "the number of objects that they are trained on",
@@ -52,5 +52,4 @@ class Params:
     hold: int
     method: str
     factors: list[float]
-    random: int
     msft_lod: bool

@@ -52,7 +52,6 @@ class Params:
     batch: int
     momentum: float
     device: str
-    severities: dict[str, list[float]]
     hybrid_middles: list[str]
     hybrid_pictures: int
     hybrid_colour: bool

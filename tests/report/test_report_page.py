@@ -63,15 +63,14 @@ def code_unread():
 def run(tmp_path_factory, small):
     """A small run with a report: its `root`, the `opened` files and the text of its `pages` by path.
 
-    A method has an odd name, and marks are of a set that is switched off.
+    A method has an odd name, and rows are of a set that is switched off.
     """
     root, opened = small.root(tmp_path_factory.mktemp("run")), []
     small.write_attention(root)
     for name in (OLD, OLD_PAGE, OTHERS):
         write_text(root / "reports" / name, "old")
     small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
-    marks = small.agreed_marks()
-    small.write(root, "annotations", marks.assign(item=marks["item"] + " elsewhere"), "elsewhere")
+    small.write(root, "lod", small.lod(), "elsewhere")
     WATCHED.append(opened)
     write_report(small.results(root))
     WATCHED.pop()
