@@ -219,7 +219,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("parallel.workers=many", "parallel.workers=many must be 1 or more, or -1"),
         ("out=/", "out=/ is no folder for results"),
         ("out=.", "out=. is no folder for results"),
-        ("stages=[meshes,report]", "stages=['meshes', 'report'] must name stages: annotations, "),
+        ("stages=[meshes,report]", "stages=['meshes', 'report'] must name stages: classification, "),
         ("out=reports/../stages/new", "out=stages/new is no folder for results"),
         ("household.lod.targets=[50%,1500,1500]", "lod.targets names 1500 twice"),
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
