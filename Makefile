@@ -56,7 +56,6 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, simplificati
 	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
 	OMP_NUM_THREADS=1 python -m benchmarks.up_axis
 	OMP_NUM_THREADS=1 python -m benchmarks.deep_gaze
-	python -m benchmarks.networks
 	python -m benchmarks.pipeline
 
 lock: ## pin in constraints.txt all that pyproject.toml asks for

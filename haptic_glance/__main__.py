@@ -27,7 +27,7 @@ COMMANDS = {**MESH_COMMANDS, **SHELL_COMMANDS}
 ABOUT = """\
 exit status: 0 done; 1 an input or an option cannot be used, which the last lines name; 2 the command line cannot be
 parsed; 130 stopped by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
-PIPELINE = ("bench", "claim", "front", "gate", "scene")  # modules of stages that a person runs alone
+PIPELINE = ("bench", "claim", "gate", "scene")  # modules of stages that a person runs alone
 
 
 def main() -> None:

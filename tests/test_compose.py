@@ -77,7 +77,7 @@ def test_a_name_that_a_setting_does_not_know_is_refused(setting):
 
 @pytest.mark.parametrize(
     "command",
-    ["claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "front.__main__", "engine.settings"],
+    ["claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "engine.settings"],
 )
 def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monkeypatch, command):
     name, *arguments = command.split()
@@ -221,7 +221,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("parallel.workers=many", "parallel.workers=many must be 1 or more, or -1"),
         ("out=/", "out=/ is no folder for results"),
         ("out=.", "out=. is no folder for results"),
-        ("stages=[meshes,report]", "stages=['meshes', 'report'] must name stages: annotations, "),
+        ("stages=[meshes,report]", "stages=['meshes', 'report'] must name stages: classification, "),
         ("out=reports/../stages/new", "out=stages/new is no folder for results"),
         ("household.lod.targets=[50%,1500,1500]", "lod.targets names 1500 twice"),
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),

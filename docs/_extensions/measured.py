@@ -1,7 +1,7 @@
 """Numbers in the text that are read from the tables in reports/ when the pages are built, never typed.
 
     {measured}`claims key=glance_over_best_gaze: effect low high +.2f`      +0.96 [0.75, 1.19]
-    {measured}`tables/scenes scene=shelf method=uniform: faces .0f`         2,803
+    {measured}`tables/scene method=uniform matched=error: faces .0f`         2,803
 
 Asked for as in the report's prose: stages.charts.cells.
 """

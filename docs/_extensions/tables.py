@@ -3,10 +3,10 @@
 ```{claims} key_one, key_two          claims with their verdict, effect and interval
 ```
 
-```{rows} tables/scenes               rows of a table
-:where: scene=shelf
-:columns: method; faces .0f; 100*saved 100*saved_low 100*saved_high .0f
-:titles: way; faces per frame; saved, %
+```{rows} tables/scene                rows of a table
+:where: matched=error
+:columns: method; faces .0f; 100*held .0f
+:titles: way; faces per frame; frames within the tolerance, %
 ```
 
 ```{notes} tables/backends            the notes below a table that contain a text

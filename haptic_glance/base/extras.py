@@ -14,7 +14,6 @@ MODULES = {
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
     "cluster": ("dask", "distributed"),
     "studio": ("viser",),
-    "front": ("optuna",),
     "agents": ("gymnasium",),
     "robots": ("collada",),
 }  # fmt: skip

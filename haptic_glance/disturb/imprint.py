@@ -1,16 +1,13 @@
-"""Perturbations of imprints by a worse sensor or a less steady hand, which are not in the training data."""
+"""Perturbations of imprints by a worse sensor."""
 
 from functools import partial
 
 import numpy as np
 
-from haptic_glance.base.lazy import cv2
 from haptic_glance.touch import Skin
 from haptic_glance.touch.skin import as_shares
 
 from .perturbed import in_range
-
-FEW_TOUCHES = "few_touches"  # not a perturbation of the test touches: fewer touches are used for training
 
 
 def _skin(images, severity, random, effect):
@@ -33,33 +30,12 @@ def with_square(images: np.ndarray, severity: float, random: np.random.Generator
     return damaged
 
 
-def rotation(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
-    """Each imprint rotated about its centre by `severity` degrees to either side; its border pixels are repeated."""
-    in_range(severity, 0, 180, "the turn in degrees")
-    rows, columns = images.shape[1:]
-    centre, rotated = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
-    for i, side in enumerate(random.choice([-1, 1], len(images))):
-        turn = cv2.getRotationMatrix2D(centre, float(side * severity), 1.0)
-        rotated[i] = cv2.warpAffine(images[i], turn, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
-    return rotated
-
-
-def resolution(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
-    """The imprint of an array as wide with `severity` sensels a side, each the mean of those it replaces."""
-    cells = int(in_range(severity, 1, min(images.shape[1:]), "the sensels a side"))
-    coarse = [cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images]
-    return np.reshape(coarse, (-1, cells, cells))
-
-
 PERTURBATIONS = {
     "noise": partial(_skin, effect="noise"),  # sigma, share of full scale
     "blur": partial(_skin, effect="blur"),  # sigma in cells
     "dead_cells": partial(_skin, effect="dead"),  # share of the cells
     "occlusion": occlusion,  # share of the area
-    "rotation": rotation,  # degrees
-    "resolution": resolution,  # cells a side
 }
-KNOWN = (*PERTURBATIONS, FEW_TOUCHES)
 
 
 def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:

@@ -39,13 +39,12 @@ class Perturbation:
 
     unit: of the severity; unharmed: the severity that changes nothing. The generator starts anew for each severity, so
     that severities differ in strength alone. apply raises ValueError for a severity out of range, or a mesh that cannot
-    be changed in this way. random_draws: whether it asks the generator.
+    be changed in this way.
     """
 
     unit: str
     unharmed: float
     apply: Callable[[Mesh, float, np.random.Generator], Perturbed]
-    random_draws: bool = False
 
 
 def in_range(severity: float, low: float, high: float, name: str) -> float:

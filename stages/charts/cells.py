@@ -1,6 +1,6 @@
 """Cells of the tables in reports/, quoted in prose by one query language.
 
-    {tables/scenes scene=shelf method=uniform: 100*saved 100*saved_low 100*saved_high .0f}      12 [8, 17]
+    {tables/stability perturbation=tilt method=glance: breaking_point low high .0f}      14 [10, 30]
 
 A query names a CSV file below reports/ without its suffix, selects rows, and lists the columns with a format. The
 topics' prose, the README, the documentation and the headlines use the same language; `filled` explains the syntax.

@@ -27,8 +27,8 @@ DATASETS = {
     "princeton_4_3_sets": "random sets of psb as in T4.3",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
-    "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
-    "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
+    "household_denoised": "household, denoised",
+    "schunk": "recorded hand with arrays",
 }  # fmt: skip
 
 

@@ -15,8 +15,6 @@ HEADLINES = {  # name: (file and rows, as stages.charts.cells has them, of which
     "salient_error_qem_25": ("tradeoff/simplification", "metric=salient_error method=qem target=25%", "mean"),
     "salient_error_soft_25": ("tradeoff/simplification", "metric=salient_error method=glance-soft target=25%", "mean"),
     "metro_mean_qem_25": ("tradeoff/simplification", "metric=metro_mean method=qem target=25%", "mean"),
-    "places_found_again": ("tradeoff/stability", "method=glance", "found"),
-    "corruption_error": ("tradeoff/stability", "method=glance", "mce"),
     "scene_faces": ("tradeoff/scene", "method=ours tolerance=1 pixel", "faces"),
     "contour_accuracy_cnn": ("tradeoff/sequences", "classifier=cnn", "mean"),
     "seconds_glance": ("tradeoff/attention", "method=glance metric=nss", "seconds"),

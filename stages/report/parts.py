@@ -13,7 +13,6 @@ from stages.charts.results import NoData, NotRun, Results
 
 from . import (
     attention,
-    chain,
     exploration,
     fidelity,
     fixation,
@@ -31,7 +30,7 @@ from . import (
 PARTS: dict[str, ModuleType] = {
     module.__name__.rpartition(".")[2]: module
     for module in (attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid,
-                   recorded, stability, chain, fidelity)
+                   recorded, stability, fidelity)
 }  # fmt: skip
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a part
 CLAIMS = [claim for part in PARTS.values() for claim in part.CLAIMS]

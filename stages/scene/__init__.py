@@ -9,7 +9,7 @@ COLUMNS = {
     "kind": "what the tolerance is of: pixels or ssim",
     "tolerance": "the tolerated error of a frame",
     "factor": "the same over the scene's own tolerance",
-    "matched": "the quantity in which a method equals ours, or limit, or asked; empty for a plan of its own",
+    "matched": "the quantity in which a method equals ours, or asked; empty for a plan of its own",
     "frame": "the number of a frame, or all",
     "condition": "what the models of the face count are tested on",
     "setting": "the number of objects that they are trained on",
@@ -64,9 +64,5 @@ class Params:
         [0.5, 1.0, 2.0, 4.0],
         "multiples of the tolerance at which the chart of faces against error is measured",
         above=0,
-    )
-    random: int = setting(
-        0,
-        "scenes to draw at random from all objects of the set, in place of objects and camera; 0 for none",
     )
     msft_lod: bool = setting(True, "also write one GLB per object that holds all its levels (MSFT_lod)")

@@ -9,12 +9,9 @@ rendered is not rendered again, but for the network, which starts anew. Settings
 """
 
 import functools
-from dataclasses import asdict
 from pathlib import Path
 
-from haptic_glance.base.files import write_arrays
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.lod.scene.beforehand import profile
 from haptic_glance.lod.scene.chain import build_lod_chain
 from haptic_glance.lod.task import variant
 from stages.engine.objects import KeptRows
@@ -22,7 +19,7 @@ from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
 from . import COLUMNS, Params
-from .compare import OURS, PLAIN, PROFILE, write_chain
+from .compare import OURS, PLAIN, write_chain
 from .export import export
 from .measure import (
     CURVE,
@@ -35,7 +32,6 @@ from .measure import (
     read_object,
     report_missing,
     scene_of,
-    scenes_of,
 )
 from .rows import summary
 
@@ -43,7 +39,7 @@ LEVELS, PLAN = "scene/levels", "scene/plans/{}.npz"  # what earlier items of the
 
 
 def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Rows:
-    """Builds the chains of one object, and the profile of ours; returns one row for each, with the seconds."""
+    """Builds the chains of one object; returns one row for each, with the seconds."""
     mesh, options, _ = read_object(data, name, method)
     rows = []
     for kind, arguments in ((OURS, options), (PLAIN, {})):
@@ -52,11 +48,6 @@ def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Ro
         write_chain(folder / "levels" / name, kind, levels)
         row = {"item": name, "method": kind, "frame": "all", "metric": "levels", "value": len(levels)}
         rows.append(row | {"seconds": watch.seconds})
-        if kind == OURS:
-            with Stopwatch() as watch:
-                lod_profile = profile(levels)
-            write_arrays(folder / "levels" / name / PROFILE, **asdict(lod_profile))
-            rows.append(row | {"metric": "profile", "value": len(lod_profile.directions), "seconds": watch.seconds})
     return rows
 
 
@@ -65,27 +56,24 @@ def run(workspace: Workspace) -> None:
     settings, data = workspace.settings(Params), workspace.data
     variant(settings.method)
     with StageRun(workspace, "scene", COLUMNS, inputs=("meshes", "salient_points", "lod")) as stage:
-        scenes = scenes_of(settings, stage.objects, data, stage.seed)
-        scene, missing = scene_of(scenes[0], stage.objects)
-        report_missing(scenes[0], scene, missing)
-        names = sorted({placed.name for single in scenes for placed in scene_of(single, stage.objects)[0].objects})
+        scene, missing = scene_of(settings, stage.objects)
+        report_missing(settings, scene, missing)
+        names = sorted({placed.name for placed in scene.objects})
         other_objects = [name for name in stage.objects if name not in names]
         chains = functools.partial(levels_of, data=data, method=settings.method, seed=stage.seed)
         stage.each(chains, names, reads=(MESH, POINTS))
         factors = dict.fromkeys([1.0, *settings.factors])
-        cases = {case.name: case for case in (Case(single, factor) for single in scenes for factor in factors)}
+        cases = {case.name: case for case in (Case(settings, factor) for factor in factors)}
         values = {name: repr(case) for name, case in cases.items()}
         files = [pattern.format(name) for name in names for pattern in (MESH, POINTS)]
         learned_from = [pattern.format(name) for name in other_objects for pattern in (MESH, CURVE)]
-        learned_from += [CURVE.format(name) for name in names if settings.random]  # a scene has not all that are shown
         common = {"data": data, "made": stage.folder, "shown": names, "seed": stage.seed}
         rows = [*stage.each(functools.partial(measure, **common), cases, [*files, LEVELS], values)]
         network = functools.partial(measure_network, **common, others=other_objects)
         rows += stage.each(network, cases, [*files, *learned_from, LEVELS, PLAN], values)
         stage.rows = KeptRows([{"group": settings.name} | row for row in stage.rows])
-        if not settings.random:
-            stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
-            export(stage.folder, data, scene, settings)
+        stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
+        export(stage.folder, data, scene, settings)
         numbers = summary(rows)
         stage.metrics(numbers)
     print(

@@ -11,28 +11,25 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_mesh, write_table
+from haptic_glance.base.files import read_mesh, read_table, write_mesh, write_table
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.lod.scene.beforehand import Profile, by_profiles, by_sums, rendered_sums
-from haptic_glance.lod.scene.budget import budget, cheapest
+from haptic_glance.lod.scene.budget import budget
 from haptic_glance.lod.scene.camera import Scene
-from haptic_glance.lod.scene.chain import ERRORS, Level, finest
+from haptic_glance.lod.scene.chain import Level, finest
 from haptic_glance.lod.scene.frames import Frames, Plan
 from haptic_glance.mesh.mesh import Mesh
 
-from . import online as rivals
-from .online import online
+from . import rivals
 
 OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without
-PROFILE = f"{OURS}_profile.npz"
 MATCHED, ASKED = ("error", "displacement", "held"), "asked"  # see MethodPlan
 
 
 @dataclass(frozen=True, eq=False)
 class MethodPlan:
     """A plan by a method. matched: the quantity made equal to ours, `error` (mean over the frames of the frame error),
-    `displacement` (mean over the pixels), `held` (every frame within the tolerance), or ""; `limit`: under a face limit
-    of half of our fullest frame; `asked`: the network's own counts, not tuned.
+    `displacement` (mean over the pixels), `held` (every frame within the tolerance), or ""; `asked`: the network's own
+    counts, not tuned.
     """
 
     method: str
@@ -45,13 +42,12 @@ class MethodPlan:
 
 @dataclass(frozen=True, eq=False)
 class SceneSetup:
-    """A scene, its meshes and frames, and for its objects the LOD chains of each kind and the profiles of ours."""
+    """A scene, its meshes and frames, and for its objects the LOD chains of each kind."""
 
     scene: Scene
     meshes: dict[str, Mesh]
     frames: Frames
     chains: dict[str, dict[str, tuple[Level, ...]]] = field(repr=False)
-    profiles: dict[str, Profile] = field(repr=False, default_factory=dict)
 
     def of(self, kind: str) -> tuple[tuple[Level, ...], ...]:
         """The LOD chain of each object of the scene."""
@@ -64,44 +60,11 @@ def load_setup(scene: Scene, meshes: Mapping[str, Mesh], folder: Path) -> SceneS
     chains = {kind: {name: read_chain(folder / name, kind, level) for name, level in full.items()}
               for kind in (OURS, PLAIN)}  # fmt: skip
     frames = Frames(scene, meshes, [full[placed.name] for placed in scene.objects])
-    profiles = {name: Profile(**read_arrays(folder / name / PROFILE)) for name in full}
-    return SceneSetup(scene, dict(meshes), frames, chains, profiles)
+    return SceneSetup(scene, dict(meshes), frames, chains)
 
 
 def _budget(setup, kind):
     return budget(setup.meshes, setup.scene, chains=setup.chains[kind], frames=setup.frames)
-
-
-def _online(setup, ours):
-    """Planned on frames of their own, so that they render all that they ask about; measured on those of the others."""
-    plans = []
-    for method, rendered in (("online", True), ("online_unrendered", False)):
-        fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
-        method_plan = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
-        plans.append(replace(method_plan, plan=Plan(method_plan.plan.levels, method_plan.plan.chains, setup.frames)))
-    return plans
-
-
-def _beforehand(setup, ours):
-    """At our mean displacement: by errors rendered beforehand, and by those of every level in every frame.
-
-    The second renders on frames of its own, within its time.
-    """
-    chains = setup.of(OURS)
-    profiles = [setup.profiles[placed.name] for placed in setup.scene.objects]
-    fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
-    with Stopwatch() as watch:
-        sums = rendered_sums(fresh, chains)
-    ways = {
-        "beforehand": (lambda coarseness: by_profiles(setup.frames, chains, profiles, 1 / coarseness), 0.0),
-        "every_level": (lambda coarseness: by_sums(setup.frames, chains, sums, 1 / coarseness), watch.seconds),
-    }
-    plans = []
-    for method, (plan_of, before) in ways.items():
-        (tuned,) = _tuned(setup, method, plan_of, ours, ("displacement",))
-        single_plan = _planned(method, lambda plan_of=plan_of: plan_of(1.0))  # the price changes nothing of the cost
-        plans.append(replace(tuned, planning=before + single_plan.seconds))
-    return plans
 
 
 def _uniform(setup, by_size):
@@ -110,19 +73,6 @@ def _uniform(setup, by_size):
 
 def _network(setup, counts):
     return lambda coarseness: rivals.by_counts(setup.frames, setup.of(OURS), counts / coarseness)
-
-
-def _limited(setup, ours):
-    """Half of the faces of our fullest frame, distributed by error, and equally."""
-    coarsest = [chain[-1].faces for chain in ours.chains]
-    smallest = int((setup.frames.in_view * coarsest).sum(axis=1).max())
-    limit = max(int(ours.faces.sum(axis=1).max()) // 2, smallest, 1)
-    scene = replace(setup.scene, limit=limit)
-    plans = {
-        OURS: lambda: budget(setup.meshes, scene, chains=setup.chains[OURS], frames=setup.frames),
-        "equal": lambda: rivals.equal(ours, limit),
-    }
-    return [replace(_timed(name, "limit", make), note=f"limit of {limit:,} faces") for name, make in plans.items()]
 
 
 MEASURES: dict[str, Callable[[Plan], float]] = {  # mean error over the frames, mean displacement over all pixels
@@ -145,26 +95,6 @@ def _tuned(setup, method, plan_of, ours, matched):
     return plans
 
 
-def _unrendered(setup, ours):
-    """Plans by one error of the levels' own surfaces, without rendering: do these predict the errors of the frames?"""
-    chains = setup.of(OURS)
-    plans = []
-    for name in ERRORS:
-        with Stopwatch() as watch:
-            levels = [_by_surface(setup, item, chain, name) for item, chain in enumerate(chains)]
-        plan = Plan(np.stack(levels, axis=1), chains, setup.frames)
-        plans.append(MethodPlan(f"unrendered_{name}", "", plan, watch.seconds))
-    return plans
-
-
-def _by_surface(setup, item, chain, name):
-    errors = np.array([level.error[name] for level in chain]) * setup.frames.scale[:, item, None]
-    faces = np.array([level.faces for level in chain]) * setup.frames.in_view[:, item, None]
-    # The distance of two levels is at most the sum of their errors; for random directions about their root sum square.
-    jumps = np.hypot(errors[:, :, None], errors[:, None, :])
-    return cheapest(faces, errors, jumps, setup.scene.tolerance, setup.scene.hold)
-
-
 def _planned(method, make: Callable[[], Plan]) -> MethodPlan:
     with Stopwatch() as watch:
         plan = make()
@@ -178,27 +108,17 @@ def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:
     return MethodPlan(method, matched, plan, watch.seconds)
 
 
-# Plans beside ours and uniform levels: without salience, all faces, by the levels' own errors without rendering, under
-# a face limit, by planners that see no frame ahead, and by the mean displacement, rendered beforehand or in each frame.
-OTHERS = {
-    "plain": lambda setup, _: [_timed("ours_plain", "", lambda: _budget(setup, PLAIN))],
-    "full": lambda setup, _: [_timed("full", "", lambda: rivals.full(setup.frames))],
-    "unrendered": _unrendered, "limited": _limited, "online": _online, "beforehand": _beforehand,
-}  # fmt: skip
-
-
-def compare(
-    setup: SceneSetup, matched: Sequence[str] = MATCHED, others: Sequence[str] = tuple(OTHERS)
-) -> list[MethodPlan]:
+def compare(setup: SceneSetup, matched: Sequence[str] = MATCHED, with_full: bool = True) -> list[MethodPlan]:
     """The plan of each method but the thesis's network, ours first.
 
-    matched: in what the uniform levels are made equal to ours. others: names of OTHERS, further plans.
+    matched: in what the uniform levels are made equal to ours. with_full: also all faces.
     """
     plans = [_planned(OURS, lambda: _budget(setup, OURS))]
     ours = plans[0].plan
     for method, by_size in (("uniform", False), ("uniform_size", True)):
         plans += _tuned(setup, method, _uniform(setup, by_size), ours, matched)
-    return [*plans, *(planned for name in others for planned in OTHERS[name](setup, ours))]
+    plans.append(_timed("ours_plain", "", lambda: _budget(setup, PLAIN)))
+    return [*plans, _timed("full", "", lambda: rivals.full(setup.frames))] if with_full else plans
 
 
 def compare_network(

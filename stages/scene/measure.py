@@ -18,7 +18,7 @@ from haptic_glance.lod.scene.camera import Placed, Scene, fly
 from haptic_glance.lod.scene.frames import Frames, Plan
 from haptic_glance.lod.scene.pictures import displacement_picture, shaded
 from haptic_glance.lod.task import variant
-from haptic_glance.mesh.mesh import Mesh, bounding_box
+from haptic_glance.mesh.mesh import Mesh
 from stages.engine.run import Rows
 from stages.lod.cell import ObjectInputs, keep_rule
 from stages.salient_points.measure import read_saliency, read_strong_points
@@ -36,13 +36,11 @@ from .compare import (
 )
 from .counts.evaluate import COMBINED, Map, evaluate_counts
 from .counts.models import Counts, fit_counts, read_curves
-from .online import draw_scene
 from .rows import frame_rows, object_rows, plan_rows, saved_rows
 
 SHOWN = ("full", "uniform", OURS)  # methods of the pictures for the report
 FRAMED = ("full", "uniform", "uniform_size", "network", OURS, "ours_plain")  # with rows of every frame
 MAIN = ("", "error")  # plans of their own, and those at the same mean error
-FIXED = ("plain", "full", "unrendered", "limited", "online")  # compared in a scene that is not drawn at random
 TABLE, PLAN_FILE = (
     "plan.csv",
     "plans/{}.npz",
@@ -64,19 +62,12 @@ class Case:
     @property
     def matched(self) -> tuple[str, ...]:
         """In what rivals are made equal to ours."""
-        return ("displacement", "error") if self.settings.random else MATCHED if self.factor == 1 else ("error",)
-
-    @property
-    def others(self) -> tuple[str, ...]:
-        """Names of compare.OTHERS: what is compared besides."""
-        if self.settings.random:
-            return "full", "online", "beforehand"
-        return FIXED if self.factor == 1 else ("plain",)
+        return MATCHED if self.in_detail else ("error",)
 
     @property
     def in_detail(self) -> bool:
         """Whether its frames and objects have rows, and its plan a table and pictures."""
-        return self.factor == 1 and not self.settings.random
+        return self.factor == 1
 
 
 def measure(case: Case, folder: Path, data: Path, made: Path, shown: Sequence[str], seed: int) -> Rows:
@@ -86,7 +77,7 @@ def measure(case: Case, folder: Path, data: Path, made: Path, shown: Sequence[st
     also writes the table of our plan and pictures.
     """
     setup, saliency = _setup(case, data, made, shown)
-    plans = compare(setup, case.matched, case.others)
+    plans = compare(setup, case.matched, with_full=case.in_detail)
     levels = {f"{planned.method}.{planned.matched}".rstrip("."): planned.plan.levels for planned in plans}
     write_arrays(folder / PLAN_FILE.format(case.name), **levels)
     if case.in_detail:
@@ -115,7 +106,7 @@ def measure_network(
     ours = MethodPlan(
         OURS, "", Plan(read_arrays(made / PLAN_FILE.format(case.name))[OURS], setup.of(OURS), setup.frames), 0.0
     )
-    matched = case.matched[:1] if case.settings.random else (*case.matched, *([ASKED] if case.in_detail else []))
+    matched = (*case.matched, *([ASKED] if case.in_detail else []))
     plans = compare_network(setup, _counts(setup, data, model), ours.plan, matched)
     return _rows(setup, ours, plans, saliency, case, seed)
 
@@ -183,7 +174,6 @@ def pictures(setup: SceneSetup, entries: Sequence[MethodPlan]) -> dict[str, np.n
 
 
 MESH, POINTS = "meshes/{}.npz", "salient_points/{}.npz"  # of an object, below data/SET
-SIZES = "meshes/manifest.csv"  # in metres, of all objects
 
 
 def scene_of(settings: Params, names: Sequence[str], factor: float = 1.0) -> tuple[Scene, list[str]]:
@@ -211,16 +201,6 @@ def _place(item):
         raise ValueError(f"{item.name} stands at {item.position}: give x, y, z in metres")
     x, y, z = item.position
     return x, y, z
-
-
-def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> list[Params]:
-    """The settings of each scene: the one that they are of, or as many as they let be drawn at random from `names`."""
-    if not settings.random:
-        return [settings]
-    boxes = {name: bounding_box(read_mesh(data / MESH.format(name))) for name in names}
-    table = read_table(data / SIZES)
-    sizes = dict(zip(table["object"], table["size"].astype(float), strict=True))
-    return [draw_scene(settings, number, boxes, sizes, seed) for number in range(settings.random)]
 
 
 def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> None:

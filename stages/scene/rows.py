@@ -122,15 +122,12 @@ def salient_displacement(setup: SceneSetup, plan: Plan, saliency: Mapping[str, n
 
 
 def summary(rows: Sequence[dict]) -> dict[str, float]:
-    """dict for the gate: faces, errors and frames within the tolerance of the main methods at the scene's tolerance.
-
-    Of several scenes the mean.
-    """
+    """dict for the gate: faces, errors and frames within the tolerance of the main methods at the scene's tolerance."""
     rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all" and row["value"] is not None]
     pairs = []
     for row in rows:
         method, matched, metric = row["method"], row["matched"], row["metric"]
-        if metric in ("faces", "error", "held") and matched in ("", "error") and "unrendered" not in method:
+        if metric in ("faces", "error", "held") and matched in ("", "error"):
             pairs.append((f"{metric}_{method}", row["value"]))
         if metric.startswith("saved_"):
             pairs.append((f"{metric}_{matched}", row["value"]))

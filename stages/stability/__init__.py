@@ -1,7 +1,4 @@
-"""Stability: what each method still finds when the mesh, the light or the image changes, and where it breaks.
-
-Also: what happens to broken meshes when they are simplified.
-"""
+"""Stability: what each method still finds when the mesh, the light or the image changes, and where it breaks."""
 
 from dataclasses import dataclass
 
@@ -9,13 +6,8 @@ from stages.engine.names import method_name, perturbations
 from stages.engine.settings import setting
 
 COLUMNS = {
-    "perturbation": "how the object, the light or the image was disturbed, or how the mesh was broken; none: as it is",
-    "severity": "how much, in the perturbation's unit; of a simplification the number of faces asked for",
-    "budget": "of a simplification: the target, a number or share of faces, or the smallest one that is feasible",
-    "kept": "of a simplification: how many vertices are kept",
-    "soft": "of a simplification: the weights of the vertices",
-    "outcome": "of a simplification: valid, refused, ruined or crash",
-    "limit": "of a simplification: the largest mean error that is not ruin, in diagonals",
+    "perturbation": "how the object, the light or the image was disturbed; none: as it is",
+    "severity": "how much, in the perturbation's unit",
 }
 
 
@@ -23,7 +15,6 @@ COLUMNS = {
 class Params:
     """Section `stability` of params.yaml."""
 
-    broken: list[str] = setting(["cup", "eyeglasses"], "objects whose broken copies are simplified, of those below")
     objects: list[str] = setting(
         ["elephant", "hand", "cup", "eyeglasses"],
         "objects to disturb; the first objects of the set if it has none of these",
@@ -90,9 +81,3 @@ class Params:
         "of each perturbation, in its own unit, from mild to harsh",
         names=perturbations,
     )
-    draws: int = setting(1, "of a disturbance that draws random numbers; what is measured is their mean", least=1)
-    pairs: list[str] = setting(
-        [],
-        "perturbations one after the other, at their middle severities, in one draw: noise+tilt",
-    )
-    used: list[str] = setting([], "methods whose points are used to simplify and to touch the undisturbed object")

@@ -2,8 +2,8 @@
 
 Reads meshes, imprints, salient_points and lod of the objects of one group (classification.sets) in data/SET.
 Classifiers train on clean touches and recognise disturbed ones of other places; where the model is coarse, or touches
-are few, the training touches are disturbed. Writes data/SET/touch_stability/NAME.npz (features and imprints, of
-disturbed touches only the first ones where nothing is denoised) and reports/measurements/SET/touch_stability.csv.gz:
+are few, the training touches are disturbed. Writes data/SET/touch_stability/NAME.npz (features, and the imprints
+that are denoised) and reports/measurements/SET/touch_stability.csv.gz:
 one row per split, features, classifier, perturbation, severity and repetition; `none` is clean touches, severity 0.
 The metrics hold the breaking points: the severity at which half of the lead over guessing is lost.
 """

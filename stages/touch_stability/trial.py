@@ -73,7 +73,6 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
 
 
 DRAWS = 3  # of a random perturbation; the repetitions use them in turn
-STORED_IMPRINTS = 4  # touches per perturbation whose imprints are stored for the figure
 
 
 def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
@@ -90,7 +89,7 @@ def process(name: str, folder: Path, data: Path, settings: Params, count: int, s
     """Writes all disturbed touches of one object; returns a row per severity that is not available."""
     touches, rows = touches_of(name, data, settings, count, seed), []
     arrays = {"clean": features(touches.images), "positions": touches.positions}
-    arrays |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
+    arrays["images.clean"] = touches.images
     for key, severity in perturbation_severities(settings.severities):
         perturbation = TOUCH_PERTURBATIONS[key]
         for draw in range(DRAWS if perturbation.random_draws else 1):
@@ -108,8 +107,6 @@ def process(name: str, folder: Path, data: Path, settings: Params, count: int, s
                 arrays[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
             if perturbed.positions is not None:
                 arrays[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
-            if draw == 0:
-                arrays[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
     write_arrays(folder / f"{name}.npz", **arrays)
     return rows
 

@@ -130,19 +130,6 @@ class Params:
     batch: int = setting(16, "images a step (T table 5.4)", least=1)
     momentum: float = setting(0.9, "of the stochastic gradient descent (T5.3)", least=0, most=1)
     device: str = setting("auto", "where networks are trained: auto (a CUDA card where there is one), cpu, cuda")
-    severities: dict[str, list[float]] = setting(
-        {
-            "noise": [0.02, 0.05, 0.1, 0.2],  # sigma, share of full scale
-            "blur": [1.0, 2.0, 4.0, 8.0],  # sigma in cells, of 128
-            "dead_cells": [0.01, 0.03, 0.1, 0.3],  # share of the cells
-            "occlusion": [0.02, 0.05, 0.1, 0.25],  # share of the area
-            "rotation": [5.0, 15.0, 45.0, 90.0],  # degrees
-            "resolution": [64.0, 32.0, 16.0, 8.0],  # cells a side
-            "few_touches": [0.25],  # share of the touches trained on
-        },
-        "of each perturbation of the test touches, from mild to harsh",
-        names=_severities,
-    )
     hybrid_middles: list[str] = setting(
         ["18:139", "18:147"],
         "layers that both senses share in a hybrid network (T5.5): the thesis's, and longer",

@@ -17,7 +17,7 @@ from . import Params
 
 @dataclass(frozen=True, eq=False)
 class Touches:
-    """Imprints of classes of objects: images (k, r, c) u1, of coarse_imprints f4; labels (k,) i8 into classes.
+    """Imprints of classes of objects: images (k, r, c) u1; labels (k,) i8 into classes.
 
     vertices (k,) i8; ranks (k,) i8: the index in its class of each touch's object.
     """

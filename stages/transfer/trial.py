@@ -11,12 +11,11 @@ from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.deep.device import choose_device, explain_out_of_memory
 from haptic_glance.deep.images import normalise, to_images
-from haptic_glance.deep.modes import MODES, Task, mode_named
+from haptic_glance.deep.modes import Task, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
 from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     CONVERGED,
-    PRINTED,
     Diverged,
     Learning,
     accuracy,
@@ -24,12 +23,11 @@ from haptic_glance.deep.training import (
     search_rate,
     train_model,
 )
-from haptic_glance.disturb.imprint import FEW_TOUCHES, PERTURBATIONS, disturb
-from stages.engine.statistics import Split, stratified_split
+from stages.engine.statistics import Split
 
 from . import Params
 from .export import network_parts, weight_changes
-from .plan import PRINTED_RATE, Trial, by_objects, by_touches, main_data, printed_rate
+from .plan import PRINTED_RATE, Trial, by_objects, by_touches, printed_rate
 from .touches import Touches, read_touches
 
 
@@ -67,9 +65,6 @@ def process(
                 return [{"trial": name, "metric": "accuracy", "value": None, "note": str(error)}]
         scores = predict_probabilities(model, task.inputs, split.test)
         rows = [*change_rows(network, model)] if task.model is network else []
-        if is_disturbed(trial, settings):
-            rows += disturbed_rows(trial, task, model, touches, split, settings, seed)
-            rows += fewer_touches_rows(task, touches, split, rate, settings, training_seed)
         if learning.validation is not None:
             validation_accuracy = _accuracy_on(task, model, touches, split.validation)
         train_accuracy = _accuracy_on(task, model, touches, learned)
@@ -154,44 +149,6 @@ def learning_rate(
     return read_json(searched)
 
 
-def is_disturbed(trial: Trial, settings: Params) -> bool:
-    """Whether a trial is tested on disturbed touches: the fine array, the random split, no layer range, as printed."""
-    whole = trial.mode in MODES and trial.passes == PRINTED
-    return trial.data == main_data(settings) and trial.split == "random" and whole
-
-
-def disturbed_rows(
-    trial: Trial, task: Task, model: torch.nn.Module, touches: Touches, split: Split, settings: Params, seed: int
-) -> Iterator[dict]:
-    """Rows of the accuracy on disturbed test touches.
-
-    The disturbance of a touch depends on repetition and severity alone, not on the network.
-    """
-    truth = touches.labels[split.test]
-    for name, severities in settings.severities.items():
-        for severity in severities if name in PERTURBATIONS else ():
-            random = rng(seed, f"{name} {severity} {trial.repetition}")
-            images = to_images(disturb(touches.images[split.test], name, severity, random), settings.size)
-            scores = predict_probabilities(
-                model, lambda ids, images=images: task.encode(images[ids]), np.arange(len(truth))
-            )
-            yield _row(name, severity, accuracy(scores, truth))
-
-
-def fewer_touches_rows(
-    task: Task, touches: Touches, split: Split, rate: float, settings: Params, seed: int
-) -> Iterator[dict]:
-    """Rows of the accuracy after training on fewer touches of every object, at the same learning rate."""
-    for share in settings.severities.get(FEW_TOUCHES, ()):
-        part, _ = stratified_split(touches.objects[split.train], share, rng(seed, f"{FEW_TOUCHES} {share}"))
-        model = train_model(task, touches.labels, split.train[part], rate, **_settings(settings, settings.epochs, seed))
-        yield _row(
-            FEW_TOUCHES,
-            share,
-            accuracy(predict_probabilities(model, task.inputs, split.test), touches.labels[split.test]),
-        )
-
-
 def change_rows(network: torch.nn.Module, model: torch.nn.Module) -> Iterator[dict]:
     """Rows of the change of the weights of each convolution."""
     belongs = network_parts(network)
@@ -205,7 +162,3 @@ def _accuracy_on(task, model, touches, ids):
 
 def _settings(settings, epochs, seed):
     return {"epochs": epochs, "batch": settings.batch, "momentum": settings.momentum, "seed": seed}
-
-
-def _row(perturbation, severity, value):
-    return {"perturbation": perturbation, "severity": severity, "metric": "disturbed_accuracy", "value": value}

@@ -168,17 +168,6 @@ def svm_accuracies():
     return pd.DataFrame(rows)
 
 
-def agreed_marks():
-    """Rows of three marked objects, on the first of which the passes agree least."""
-    values = {"found": {"passes": 0.8, "random": 0.1}, "nss": {"passes": 0.9, "one": 0.7, "height": 0.4}}
-    return pd.DataFrame(
-        {"dataset": "gaze", "item": name, "method": method, "metric": metric, "value": value + 0.1 * k}
-        for k, name in enumerate(("cup", "duck", "pan"))
-        for metric, group in values.items()
-        for method, value in group.items()
-    )
-
-
 def views_seen():
     """Rows of two objects; the greedy choice sees all of the second with one view less."""
     shares = {("ball", "greedy"): [0.5, 0.9, 1.0], ("cube", "greedy"): [0.6, 1.0], ("ball", "four"): [0.3, 0.5]}
@@ -200,7 +189,6 @@ def write_attention(root):
     weights = table.rename(columns={"weight": "value", "left_out": "item"}).assign(metric="weight")
     frames = {
         "salient_points": judged(), "weights": pd.concat([svm_accuracies(), weights]),
-        "annotations": agreed_marks(),
         "conspicuity": pd.DataFrame(seconds),
         "views": pd.DataFrame([{"item": "a", "method": "raster", "metric": "coverage", "value": 0.5, "seconds": 2.0}]),
     }  # fmt: skip
@@ -283,7 +271,6 @@ def small():
         classification=classification, write=write_measurements,
         write_set=write_set, root=make_root,
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
-        agreed_marks=agreed_marks,
     )  # fmt: skip
 
 

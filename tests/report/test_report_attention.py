@@ -3,7 +3,6 @@
 import re
 import shutil
 from functools import partial
-from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -19,9 +18,8 @@ from stages.engine.statistics import interval
 from stages.report import attention
 from stages.report.attention import maps
 from stages.report.attention.claims import agreement, difference, rivals
+from stages.report.page import pack_viewer
 from stages.report.parts import CLAIMS, build_item
-from stages.report.verdict import judge
-from stages.report.viewer import pack_viewer
 from tests.report.frames import only, verdicts
 
 
@@ -223,29 +221,6 @@ def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root, sma
     for path in (root / "data/test/salient_points").glob("*.npz"):
         write_arrays(path, **{key: values for key, values in read_arrays(path).items() if key.startswith("height")})
     assert list(pack_viewer(small.results(root))["objects"][0]["saliency"]) == ["height"]
-
-
-def nested_rows():
-    """The glance on six objects: nesting costs it a tenth of NSS each."""
-    rows = []
-    for way, k in product(("once", "nested"), range(6)):
-        lost = 0.1 * (1 + 0.01 * k) if way == "nested" else 0.0
-        numbers = {"nss": 1.5 + 0.1 * k - lost, "auc": 0.8 + 0.01 * k, "ridge": 0.03}
-        numbers["features"] = 3 if way == "once" else 1 + k % 2
-        names = ["rank", "seen", "detail"][: int(numbers["features"])]
-        common = {"dataset": "gaze", "method": f"glance_{way}", "item": f"o{k}", "chosen": ", ".join(names)}
-        rows += [common | {"metric": metric, "value": value} for metric, value in numbers.items()]
-    return rows
-
-
-def test_nested_choices_stand_beside_those_made_once(measure):
-    rows = pd.DataFrame(nested_rows())
-    results = measure("attention_checks", rows)
-    assert table_of("attention_nested", results).text["flattered by, NSS"].str[:5].tolist() == ["+0.10"]
-    claims = [claim for claim in attention.CLAIMS if claim.key.startswith("gaze_choices")]
-    assert judge(claims, results).set_index("key")["verdict"].tolist() == ["supported"]
-    with pytest.raises(NotRun):
-        table_of("attention_nested", measure("attention_checks", rows.head(1).assign(method="equal")))
 
 
 def test_a_view_that_shows_a_sheet_from_its_edge_is_not_drawn():

@@ -33,7 +33,7 @@ OLD_PAGE = "site/gone.html"
 RESAMPLES = statistics.RESAMPLES  # before `few_pixels_and_resamples` lowers it
 ODD = "<b>&qem</b>"
 RAW = re.compile(r"\b[A-Za-z][A-Za-z0-9]*_\w+\b|\b(?:hks|knn|svm|dkl|qem|qslim|leifman|tasse|alexnet|vgg16|resnet50)\b")
-NAMED = {"EWIGC_L4", "x86_64", "lod_points"}  # names of their own: the thesis's, a processor's, and a table's
+NAMED = {"EWIGC_L4", "x86_64"}  # names of their own: the thesis's, and a processor's
 CODED = ("fidelity", "scene", "stability")  # topics whose code names stay for now
 DRAWN = {"figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen",
          "table_4_1", "touch_one_mesh"}  # fmt: skip
@@ -55,15 +55,14 @@ sys.addaudithook(note)
 def run(tmp_path_factory, small):
     """A small run with a report: its `root`, the `opened` files and the text of its `pages` by path.
 
-    A method has an odd name, and marks are of a set that is switched off.
+    A method has an odd name, and rows are of a set that is switched off.
     """
     root, opened = small.root(tmp_path_factory.mktemp("run")), []
     small.write_attention(root)
     for name in (OLD, OLD_PAGE, OTHERS):
         write_text(root / "reports" / name, "old")
     small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
-    marks = small.agreed_marks()
-    small.write(root, "annotations", marks.assign(item=marks["item"] + " elsewhere"), "elsewhere")
+    small.write(root, "lod", small.lod(), "elsewhere")
     WATCHED.append(opened)
     write_report(small.results(root))
     WATCHED.pop()

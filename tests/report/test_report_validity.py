@@ -10,12 +10,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.charts.datasets import SECTION_3_1
-from stages.report import meshes
 from stages.report.claims import POINTS, Claim, highest_of, reading
 from stages.report.effects import Effect, differences, effect_of, invalid
-from stages.report.meshes import tables
-from stages.report.parts import build_item
 from stages.report.validity import (
     AS_PLAIN,
     BACKGROUND,
@@ -99,33 +95,6 @@ def test_the_numbers_of_points_and_rings(made):
     causes = invalid_units(made)
     assert causes.index.names == UNIT and causes.index.is_unique
     assert causes.value_counts().to_dict() == {NO_POINT: 6, NO_RING: 2}
-    counts = tables.counted(made).set_index(["method", "target"])
-    assert list(dict.fromkeys(counts.index.get_level_values("method"))) == ["harris", "itti", "SymRad"]
-    assert counts.loc[("SymRad", "1500")].to_dict() == {
-        "objects": 4, "points": 0.0, "rings": 3.0, "without_points": 0.75, "three_rings": 0.25, "as_plain": 0.75,
-    }  # fmt: skip
-    assert counts.loc[("harris", "1500"), ["points", "rings", "three_rings", "as_plain"]].tolist() == [100, 0.75, 0, 0]
-    assert counts.loc[("harris", "3000"), "rings"] == 2.5
-    assert counts.loc[("itti", "1500"), ["points", "rings", "three_rings"]].tolist() == [21.5, 3, 0.75]
-
-
-def test_the_table_shows_the_printed_set_and_holds_all(made, measure):
-    rows = made.assign(asked=1, faces=1, seconds=np.nan)
-    results = measure("lod", pd.concat(rows.assign(dataset=name) for name in ("test", "a", SECTION_3_1)))
-    table = build_item(meshes, "tables", "lod_points", results)
-    assert list(table.frame["data"].unique()) == ["household as in T3.1", "test", "a"]
-    shown = table.shown.set_index("kept points")
-    assert list(shown.index) == ["3DH", "VisAtt", "SymRad"]
-    assert float(shown.loc["SymRad", "without a point, %"]) == 75
-    assert float(shown.loc["3DH", "rings, 3,000 faces"]) == 2.5 and shown.loc["3DH", "rings, 1,500 faces"] == "0.8"
-    assert float(shown.loc["SymRad", "as plain, %, 1,500 faces"]) == 75
-
-
-def test_the_table_leaves_out_a_count_that_no_mesh_has_so_many_faces_for(made, measure):
-    rows = made.assign(asked=1, faces=1, seconds=np.nan, dataset="test", target=made["target"].replace("3000", "50%"))
-    rows.loc[rows["target"] == "1500", "value"] = np.nan
-    columns = list(build_item(meshes, "tables", "lod_points", measure("lod", rows)).shown)
-    assert "rings, 50%" in columns and not any("1,500" in name for name in columns)
 
 
 OVER = Claim(

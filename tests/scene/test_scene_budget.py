@@ -8,7 +8,7 @@ from haptic_glance.lod.scene import Frames, Level, Placed, budget
 from haptic_glance.lod.scene.chain import ERRORS, finest
 from haptic_glance.lod.scene.pictures import picture_error
 from haptic_glance.mesh.mesh import Mesh
-from stages.scene import online
+from stages.scene import rivals
 from stages.scene.rows import saved
 
 
@@ -25,7 +25,7 @@ def plan(meshes, chains, scene):
 def test_every_rendered_frame_holds_the_tolerance_and_uses_it(plan, scene):
     assert 0.3 * scene.tolerance < plan.errors.max() <= scene.tolerance
     assert plan.jumps and max(jump for _, _, jump in plan.jumps) <= scene.tolerance
-    coarser = online.by_counts(plan.frames, plan.chains, np.maximum(plan.faces // 2, 1))
+    coarser = rivals.by_counts(plan.frames, plan.chains, np.maximum(plan.faces // 2, 1))
     assert coarser.errors.max() > scene.tolerance
     total = plan.faces.sum(axis=1)  # far frames need fewer
     assert total[0] < total[-1] < 0.5 * sum(chain[0].faces for chain in plan.chains)
@@ -106,7 +106,7 @@ def test_a_plate_moved_towards_the_eye_is_off_by_its_shift_in_pixels(make_scene)
 
 def test_the_full_scene_has_no_error(frames_of, make_scene):
     frames = frames_of(make_scene(frames=2))
-    assert online.full(frames).errors.tolist() == [0, 0]
+    assert rivals.full(frames).errors.tolist() == [0, 0]
     assert picture_error(frames, 1, frames.full) == 0
     assert frames.check(1, frames.full).displacements.max() == 0
 
@@ -135,39 +135,26 @@ def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, chains):
     scene = make_scene()
     frames = frames_of(scene)
     ladders = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    planned = online.uniform(frames, ladders, 1.0)
+    planned = rivals.uniform(frames, ladders, 1.0)
     expected = np.maximum(np.rint(2 * np.log2(frames.distance)), 0)
     assert np.array_equal(planned.levels, expected) and len(np.unique(expected)) > 2
-    assert (online.uniform(frames, ladders, 1e3).levels == 0).all()
-    assert (online.uniform(frames, ladders, 1e-3).levels == [len(chain) - 1 for chain in ladders]).all()
+    assert (rivals.uniform(frames, ladders, 1e3).levels == 0).all()
+    assert (rivals.uniform(frames, ladders, 1e-3).levels == [len(chain) - 1 for chain in ladders]).all()
 
 
 def test_uniform_levels_by_size_show_a_larger_copy_finer(frames_of, make_scene, chains):
     objects = (Placed("one", (-0.3, 0, 0), 0.0, 0.2), Placed("one", (0.3, 0, 0), 0.0, 0.4))
     frames = frames_of(make_scene(objects=objects))
     ladders = tuple((full, *chains["one"][1:]) for full in frames.full)
-    planned = online.uniform(frames, ladders, 2.0, by_size=True)
+    planned = rivals.uniform(frames, ladders, 2.0, by_size=True)
     assert (planned.levels[:, 1] < planned.levels[:, 0]).all()
 
 
-def test_a_limit_shared_equally_gives_all_the_same_count(plan):
-    limit = int(plan.faces.sum(axis=1).max() * 0.6)
-    shared = online.equal(plan, limit)
-    over = plan.faces.sum(axis=1) > limit
-    assert over.any() and (shared.faces.sum(axis=1) <= limit).all()
-    assert np.array_equal(shared.levels[~over], plan.levels[~over])
-    counts = [[level.faces for level in chain] for chain in plan.chains]
-    for levels in shared.levels[over]:
-        common = max(faces[k] for faces, k in zip(counts, levels, strict=True))
-        expected = [next(k for k, n in enumerate(faces) if n <= common) for faces in counts]
-        assert levels.tolist() == expected
-
-
-def test_a_limit_holds_costs_error_and_hurts_less_than_shared_equally(meshes, chains, make_scene, plan):
+def test_a_limit_holds_and_costs_error(meshes, chains, make_scene, plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.6)
     limited = budget(meshes, make_scene(limit=limit), chains=chains)
     assert limited.faces.sum(axis=1).max() <= limit
-    assert plan.errors.max() < limited.errors.max() < online.equal(plan, limit).errors.max()
+    assert plan.errors.max() < limited.errors.max()
 
 
 def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(chains, make_scene, frames_of):
@@ -193,11 +180,11 @@ def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, chains)
     scene = make_scene()
     frames = frames_of(scene)
     ladders = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    plan_of = lambda factor: online.uniform(frames, ladders, 1 / factor)  # noqa: E731
+    plan_of = lambda factor: rivals.uniform(frames, ladders, 1 / factor)  # noqa: E731
     wanted = 0.6 * plan_of(1e3).errors.mean()  # the coarsest has more
-    tuned = online.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
+    tuned = rivals.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
     assert wanted <= tuned.errors.mean() < 1.6 * wanted
-    assert online.tune(plan_of, lambda plan: plan.errors.max(), wanted, below=True).errors.max() <= wanted
+    assert rivals.tune(plan_of, lambda plan: plan.errors.max(), wanted, below=True).errors.max() <= wanted
 
 
 def test_copies_of_an_object_are_one_object_to_the_interval():

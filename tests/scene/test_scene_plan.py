@@ -1,7 +1,6 @@
-"""The cheapest sequence of levels, checked against all sequences, the shared limit, and a planner without foresight."""
+"""The cheapest sequence of levels, checked against all sequences, and the shared limit."""
 
 import itertools
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ import pytest
 from haptic_glance.lod.scene import Frames, Level, budget
 from haptic_glance.lod.scene.budget import VIOLATION_COST, cheapest, share_limit
 from haptic_glance.mesh.mesh import Mesh
-from stages.scene.online import choose, online
 
 FACES = np.array([100.0, 40.0, 10.0])
 
@@ -77,85 +75,15 @@ def test_no_sharing_has_a_smaller_worst_error():
         assert worst[shared] == min(worst[levels] for levels in all_levels if total[levels] <= limit)
 
 
-PRICES = np.array([100.0, 50.0, 25.0, 12.0])
-
-
-def chosen(errors, jumps=None, approach=None, seen=None, hold=2):
-    """The levels that are chosen by a table of errors (f, levels)."""
-    errors = np.asarray(errors, dtype=float)
-    jumps = np.zeros((*errors.shape, errors.shape[1])) if jumps is None else jumps
-    approach = np.ones(len(errors)) if approach is None else np.asarray(approach)
-    seen = np.ones(len(errors), dtype=bool) if seen is None else np.asarray(seen)
-    return choose(lambda f, k: errors[f, k], lambda f, a, b: jumps[f, a, b], approach, seen, errors.shape[1], 1.0, hold)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_what_stands_still_gets_what_the_planner_that_knows_the_path_gives_it(seed):
-    error = np.sort(np.random.default_rng(seed).random(4) * 2)
-    error[0] = 0
-    errors = np.tile(error, (7, 1))
-    known = cheapest(np.tile(PRICES, (7, 1)), errors, np.zeros((7, 4, 4)), 1.0, 2)
-    assert chosen(errors).tolist() == known.tolist()
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_later_frames_change_no_earlier_choice(seed):
-    draw = np.random.default_rng(seed)
-    errors = np.sort(draw.random((9, 4)) * 2, axis=1) * [0, 1, 1, 1]
-    other = errors.copy()
-    other[5:] = np.sort(draw.random((4, 4)) * 2, axis=1)
-    assert chosen(errors)[:5].tolist() == chosen(other)[:5].tolist()
-
-
-def test_a_finer_level_follows_at_once_and_a_coarser_one_when_the_present_one_has_stayed():
-    errors = [[0, 0.4, 0.9, 2]] * 2 + [[0, 0.4, 1.2, 2]] + [[0, 0.4, 0.9, 2]] * 4
-    assert chosen(errors, hold=3).tolist() == [2, 2, 1, 1, 1, 2, 2]
-
-
-def test_an_error_that_will_be_too_large_at_this_speed_is_left_before_it_is():
-    errors, still = [[0, 0.3, 0.95, 2]] * 3, [1.0, 1.0, 1.0]
-    assert chosen(errors, approach=still).tolist() == [2, 2, 2]
-    assert chosen(errors, approach=[1.0, 1.1, 1.1]).tolist() == [2, 1, 1]
-
-
-def test_a_coarser_level_waits_while_the_picture_would_jump():
-    errors, jumps = [[0, 0.9, 2, 3], [0, 0.4, 0.9, 2], [0, 0.4, 0.9, 2], [0, 0.4, 0.9, 2]], np.zeros((4, 4, 4))
-    jumps[:3, 1, 2] = 1.5
-    assert chosen(errors, jumps, hold=1).tolist() == [1, 1, 1, 2]
-
-
-def test_what_comes_into_view_is_chosen_anew():
-    errors = [[0, 0.4, 2, 2], [0] * 4, [0, 0.4, 0.9, 0.95]]
-    assert chosen(errors, seen=[True, False, True], hold=5).tolist() == [1, 1, 3]
-
-
-@pytest.fixture(scope="module")
-def moving(make_scene, frames_of, chains):
+@pytest.mark.slow
+def test_the_order_of_vertices_and_faces_changes_no_plan(make_scene, meshes, chains):
     scene = make_scene(frames=6, hold=2)
-    return scene, frames_of(scene), tuple(chains[placed.name] for placed in scene.objects)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("rendered", [True, False])
-def test_a_path_cut_short_gets_the_same_beginning(moving, frames_of, rendered):
-    scene, frames, chains = moving
-    whole = online(frames, chains, rendered)
-    short = frames_of(replace(scene, cameras=scene.cameras[:3]))
-    assert np.array_equal(online(short, chains, rendered).levels, whole.levels[:3])
-    assert len(np.unique(whole.levels, axis=0)) > 1  # the path asks for more than one choice
-
-
-@pytest.mark.slow
-def test_the_order_of_vertices_and_faces_changes_no_plan(moving, meshes, chains):
-    scene, _, ladders = moving
     mixed = {name: tuple(shuffled(level, k) for k, level in enumerate(chain)) for name, chain in chains.items()}
     full = [mixed[placed.name][0] for placed in scene.objects]
     frames = Frames(scene, {name: chain[0].mesh for name, chain in mixed.items()}, full)
     assert np.array_equal(
         budget(meshes, scene, chains=chains).faces, budget(meshes, scene, chains=mixed, frames=frames).faces
     )
-    again = online(frames, tuple(mixed[placed.name] for placed in scene.objects))
-    assert np.array_equal(again.faces, online(moving[1], ladders).faces)
 
 
 def shuffled(level, seed):

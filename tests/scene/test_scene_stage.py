@@ -18,14 +18,14 @@ from stages.scene.__main__ import levels_of
 from stages.scene.compare import MethodPlan, SceneSetup
 from stages.scene.export import export
 from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
-from stages.scene.online import full
+from stages.scene.rivals import full
 from stages.scene.rows import summary
 from tests.scene.conftest import bumpy
 
 pytestmark = pytest.mark.slow
 
 SCENES = sorted((Path(__file__).parents[2] / "conf/scene").glob("*.yaml"))
-COMMON = {"limit": 0, "hold": 2, "method": "glance-soft", "factors": [1.0], "msft_lod": True, "random": 0}
+COMMON = {"limit": 0, "hold": 2, "method": "glance-soft", "factors": [1.0], "msft_lod": True}
 
 
 def settings_of(path, **changes):
@@ -78,9 +78,6 @@ def run(run_in, root):
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_every_scene_is_sound(path):
     settings = settings_of(path)
-    if settings.random:
-        assert not settings.objects and not settings.camera and settings.name == path.stem
-        return
     names = {item.name for item in settings.objects}
     scene, missing = scene_of(settings, names)
     assert settings.name == path.stem and not missing
@@ -130,9 +127,7 @@ def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
     assert value(rows, "ours", "error_worst") <= 1.0 and value(rows, "full", "error") == 0
     assert value(rows, "ours", "step_worst") <= 1.0
     assert value(rows, "ours", "faces", factor=2.0) <= value(rows, "ours", "faces") < value(rows, "full", "faces") / 2
-    for method in ("online", "online_unrendered"):
-        assert 0 < value(rows, method, "faces") < value(rows, "full", "faces")
-        assert value(rows, method, "planning_ms") >= 0
+    assert value(rows, "ours", "planning_ms") >= 0
     metrics = summary(rows)
     assert {"faces_ours", "faces_full", "held_ours", "error_uniform", "saved_uniform_error"} <= set(metrics)
     assert all(np.isfinite(number) for number in metrics.values())
@@ -218,28 +213,3 @@ def test_an_object_outside_the_scene_runs_the_network_again_and_nothing_else(wor
     write_curve(workspace.data, "fourth")
     __main__.run(workspace)
     assert calls == ["compare_network"]
-
-
-def test_random_scenes_are_measured_one_by_one(settings, workspace, make_workspace):
-    changes = {"name": "random", "random": 2, "objects": [], "camera": [], "factors": []}
-    table = pd.DataFrame({"object": ["one", "two", "third"], "size": [0.1, 0.15, 0.2]})
-    write_table(workspace.data / "meshes/manifest.csv", table)
-    random = make_workspace({"scene": dataclasses.asdict(dataclasses.replace(settings, **changes))})
-    __main__.run(random)
-    rows = read_rows(random.measurements / "scene.csv.gz")
-    faces = rows[(rows["metric"] == "faces") & (rows["frame"] == "all")]
-    wide = faces.pivot(index="group", columns=["method", "matched"], values="value")
-    assert wide.index.tolist() == ["random_00", "random_01"]
-    assert set(wide["uniform"]) == {"displacement", "error"} and not wide[["ours", "uniform", "online"]].isna().any(
-        axis=None
-    )
-    assert (wide["ours"].squeeze() < wide["full"].squeeze()).all()
-    moved = rows[(rows["metric"] == "displacement_mean") & (rows["frame"] == "all")]
-    moved = moved.pivot(index="group", columns=["method", "matched"], values="value")
-    for method in ("beforehand", "every_level"):  # equal in displacement, or coarser: then no fewer faces at equality
-        assert (moved[method, "displacement"] >= moved["ours"].squeeze()).all()
-        assert (wide[method, "displacement"] <= wide["uniform", "displacement"]).all()
-    (cost,) = set(rows.loc[rows["metric"] == "profile", "value"])
-    assert cost == 32 and rows.loc[rows["metric"] == "profile", "item"].tolist() == ["one", "third", "two"]
-    assert sorted(path.stem for path in (random.data / "scene/plans").iterdir()) == ["random_00_1", "random_01_1"]
-    assert not (random.data / "scene/export").exists()

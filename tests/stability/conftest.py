@@ -1,4 +1,4 @@
-"""The stage on one small object, and the simplifications of a few broken balls: run for all tests of the stage."""
+"""The stage on one small object, run for all tests of the stage."""
 
 from types import SimpleNamespace
 
@@ -8,10 +8,8 @@ import trimesh
 
 from haptic_glance.base.files import write_mesh, write_table
 from haptic_glance.mesh import normalise
-from haptic_glance.mesh.mesh import Mesh
 from stages.stability import Params
 from stages.stability.__main__ import process
-from stages.stability.simplification import simplification_rows
 from stages.weights.training import weight_table
 from tests.shapes import raised_ball
 
@@ -21,8 +19,8 @@ SEVERITIES = {"vertex_order": [1.0], "noise": [0.001, 0.02], "light": [60.0], "m
 @pytest.fixture(scope="session")
 def settings():
     return Params(
-        broken=[], objects=["pear"], most=1, methods=["itti", "harris", "random"], count=8, size=[120, 160],
-        perturbations=list(SEVERITIES), severities=SEVERITIES, draws=1, pairs=[], used=[],
+        objects=["pear"], most=1, methods=["itti", "harris", "random"], count=8, size=[120, 160],
+        perturbations=list(SEVERITIES), severities=SEVERITIES,
     )  # fmt: skip
 
 
@@ -41,12 +39,3 @@ def disturbed(tmp_path_factory, pear, settings):
     write_mesh(data / "meshes/pear.npz", pear)
     write_table(data / "weights/weights.csv", weight_table({}, "gaze"))
     return SimpleNamespace(root=root, rows=process("pear", data / "stability", data, settings, 0))
-
-
-@pytest.fixture(scope="session")
-def simplified():
-    """The rows of three kinds of damage to a ball, simplified by one backend."""
-    ball = trimesh.creation.icosphere(subdivisions=3)
-    return simplification_rows(
-        Mesh(ball.vertices * [0.3, 0.4, 0.5], ball.faces), "ball", 0, ("sound", "pin_holes", "soup"), ("pymeshlab",)
-    )

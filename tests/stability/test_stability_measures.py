@@ -8,8 +8,8 @@ from haptic_glance.disturb.perturbed import Perturbed
 from haptic_glance.look.weights.svm import select_far_points
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.statistics import breaking_point
+from stages.stability.breaking import breaking_points, middle_severity, summarise
 from stages.stability.measures import at_original_vertices, chance_repeatability, drift, repeatability
-from stages.stability.simplification import breaking_points, middle_severity, summarise
 
 GRID = np.stack([*np.mgrid[:4, :5].reshape(2, -1), np.zeros(20)], axis=1).astype(float)
 

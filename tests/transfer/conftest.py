@@ -14,7 +14,7 @@ SETTINGS = {
     "frozen_rates": [0.003, 0.01], "finetuned_rates": [0.003], "search_epochs": 2, "epochs": 4, "batch": 8,
     "passes": ["printed"], "patience": 2, "most_epochs": 6,
     "momentum": 0.9, "device": "cpu",
-    "severities": {"noise": [0.01, 0.5], "few_touches": [0.5]}, "hybrid_middles": [],
+    "hybrid_middles": [],
     "hybrid_passes": "printed", "hybrid_size": 32,
     "hybrid_pictures": 4, "hybrid_colour": False, "hybrid_rate": 0.003, "hybrid_onnx": False,
     "hybrid_severities": {"picture_noise": [0.1]}, "new_object_touches": [1, 2],

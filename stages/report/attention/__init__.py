@@ -4,10 +4,8 @@ from . import claims, learned, maps
 
 TABLES = {
     "attention_gaze": claims.against_gaze,
-    "attention_nested": learned.nested,
     "attention_clouds": claims.against_clouds,
     "attention_marks": claims.against_marks,
-    "annotations": learned.annotations,
     "table_3_1": learned.table_3_1,
     "section_3_2_3": learned.section_3_2_3,
 }

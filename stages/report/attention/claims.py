@@ -114,7 +114,6 @@ MENDED = reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1]))
 CHANNELS = (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))  # key, name, method
 about = partial(Claim, section="ours", over=("item",), phrases=PHRASES)
 closer = partial(about, stage="salient_points", where={"metric": "nss"}, dataset=GAZED, scale=1, unit="NSS")
-checked = partial(closer, stage="attention_checks")
 colour = partial(about, dataset=COLOURED)
 learned = partial(about, stage="weights", dataset=OF_3_2)
 GAIN_OF_PICTURE = {"metric": "information_gain", "area": "image"}
@@ -215,13 +214,6 @@ CLAIMS = [
         section="T3.2.9.2", statistic="differs_with", first=GAIN_OF_PICTURE, second={"metric": "convexity"},
         note="rank correlation over pairs of objects: distance of the channels' shares in the gain, and of convexities",
         readings=(reading("pixels of the object alone", first=ON_OBJECT), MENDED_GAIN)),
-    *(checked(key=f"best_over_{fixed}", where={"method": "equal", "metric": "nss"}, first={"views": "best"},
-              second={"views": fixed}, of="best_over_four" if fixed != "four" else "",
-              sentence=f"The most salient of 62 viewpoints show where people look better than {views} do.")
-      for fixed, views in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))),
-    checked(key="gaze_choices_flatter_glance", dataset="gaze", first={"method": "glance_once"},
-            second={"method": "glance_nested"},
-            sentence="Features and ridge that were chosen on the judged objects flatter the glance."),
     closer(key="glance_over_best_gaze", first={"method": OURS}, second={"method": BEST_RIVAL}, readings=OTHER_METRICS,
            sentence="Our glance predicts where people look better than its best rival."),
     closer(key="any_pose_over_best_gaze", first={"method": ANY_POSE}, second={"method": BEST_RIVAL},

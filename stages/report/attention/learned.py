@@ -1,16 +1,9 @@
-"""Attention learned from ground truth (T table 3.1, T3.2.3), and the quality of the marks that serve as truth.
+"""Attention learned from ground truth: channel weights and SVMs beside the thesis's (T table 3.1, T3.2.3)."""
 
-`table_3_1` and `section_3_2_3` set learned channel weights and SVMs beside the thesis's. `nested` measures the share of
-the glance's lead that comes from choosing its features and its ridge on the judged objects. `annotations` compares the
-passes of marks in data/annotations with each other and with human gaze.
-"""
-
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from scipy.spatial.distance import pdist
 
@@ -22,19 +15,17 @@ from stages.charts.tables import (
     Ranking,
     everywhere,
     grouped,
-    interval_columns,
     number,
     over_items,
     percent,
     records,
-    signed,
     with_interval,
 )
 from stages.engine.statistics import interval
 from stages.report.claims import Claim
 from stages.report.effects import side, statistic
 
-from .claims import ALONE, GAIN, MEAN, OURS, gain
+from .claims import MEAN
 
 KINDS = {"guided_ssim": "SSIM", "guided_ed": "1 − ED", "guided_ssim_object": "SSIM, object"}
 PRINTED = {"ssim": "guided_ssim", "one_minus_ed": "guided_ed"}  # columns of the thesis's weights
@@ -264,85 +255,3 @@ def _shown(row: Any) -> dict[str, str | int]:
         "left out for testing": VALIDATION[row.validation], "ours, %": ours if row.low == row.low else deviations[0],
         "background alone, %": percent(row.background_alone, 1), "thesis, %": deviations[1], "number": row.svms,
     }  # fmt: skip
-
-
-ONCE, NESTED = "once", "nested"
-
-
-def nested(results: Results) -> Table:
-    """NSS and AUC of the glance with its choices made once, and made anew without the object; the difference paired."""
-    rows = results.rows("attention_checks", "gaze")
-    values = {way: rows[rows["method"] == f"{OURS}_{way}"] for way in (ONCE, NESTED)}
-    require_rows(values[NESTED], "no glance with nested choices", "attention_checks", runnable=False)
-    tables = {way: part.pivot_table(index="item", columns="metric", values="value") for way, part in values.items()}
-    entries, line = [], {"model": label(OURS)}
-    for metric, words in ALONE.items():
-        once, nested = (tables[way][metric] for way in (ONCE, NESTED))
-        numbers = {"once": interval(once), "nested": interval(nested), "once_over_nested": interval(once - nested)}
-        entries += [
-            {"model": OURS, "metric": metric, "what": kind, "objects": len(once)}
-            | interval_columns("mean", ends, prefix="")
-            for kind, ends in numbers.items()
-        ]
-        line[f"chosen once, {words}"] = with_interval(*numbers["once"], places=3)
-        line[f"without the object, {words}"] = with_interval(*numbers["nested"], places=3)
-        line[f"flattered by, {words}"] = signed(*numbers["once_over_nested"], places=3)
-    features = tables[NESTED]["features"]
-    line["features"] = f"{features.min():.0f} to {features.max():.0f} (once: {tables[ONCE]['features'].max():.0f})"
-    line["ridge"] = number(tables[NESTED]["ridge"].median())
-    line["in every choice"] = ", ".join(_always(values[NESTED]))
-    return Table(pd.DataFrame(entries), pd.DataFrame([line]), {"count": len(features)})
-
-
-def _always(rows: pd.DataFrame) -> list[str]:
-    """The features that are chosen for each object."""
-    feature_lists = rows[rows["metric"] == "features"]["chosen"].str.split(", ")
-    counts = Counter(name for names in feature_lists for name in names)
-    return [label(name) for name, count in counts.items() if count == len(feature_lists)]
-
-
-METRICS = {"found": "marks found again by another pass, %", "nss": "NSS against gaze", "auc": "AUC against gaze"}
-BESIDE = {"random": "as many random points", "height": "height alone"}
-
-
-def annotations(results: Results) -> Table:
-    """Agreement of the passes beside random points, and with gaze beside height; intervals over the objects."""
-    sets = results.datasets("annotations") or [None]  # without any, the reader says what is missing
-    rows = pd.concat([results.rows("annotations", dataset) for dataset in sets])
-    entries, text_rows = [], []
-    for (dataset, metric), group in grouped(rows, ["dataset", "metric"]):
-        table = group.pivot(index="item", columns="method", values="value")
-        control = "random" if metric == "found" else "height"
-        cells = {
-            name: interval_columns("mean", interval(table[name]), prefix="") | gain(table, name, control)
-            for name in map(str, table)
-        }
-        keys = {"dataset": dataset, "metric": metric}
-        entries += [keys | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
-        text_rows.append({
-            "objects": f"{len(table)} {'household objects' if dataset == 'household' else dataset_text(dataset)}",
-            "measure": METRICS[metric],
-            "three passes": _text(cells.get("passes", {}), metric),
-            "one pass alone": _text(cells["one"], metric) if "one" in cells else "–",
-            "beside": BESIDE[control],
-            "gets": _text(cells.get(control, {}), metric),
-            "passes − that": _text(cells.get("passes", {}), metric, GAIN),
-        })  # fmt: skip
-    # no ranking: a row is a question, not a method
-    return Table(pd.DataFrame(entries), pd.DataFrame(text_rows), {"extremes": _extremes(rows)})
-
-
-def _text(cell: dict[str, float], metric: str, names: Sequence[str] = MEAN) -> str:
-    scale, places = (100, 0) if metric == "found" else (1, 2)
-    return with_interval(*(cell.get(name, np.nan) for name in names), scale=scale, places=places)
-
-
-def _extremes(rows: pd.DataFrame) -> str:
-    """The objects on which the passes agree least, and most; nothing where they were not compared."""
-    passes = rows[(rows["metric"] == "found") & (rows["method"] == "passes")].set_index("item")["value"]
-    if passes.empty:
-        return ""
-    return (
-        f"The passes agree least on {passes.idxmin()} ({100 * passes.min():.0f} %); on {(passes == 1).sum()} of "
-        f"{len(passes)} objects each mark was found again by every other pass."
-    )

@@ -5,7 +5,7 @@ from functools import partial
 from stages.charts.datasets import SECTION_3_1, SECTION_3_2
 from stages.charts.items import as_printed
 
-from . import backends, errors, tables
+from . import backends, errors
 from .claims import CLAIMS as CLAIMS
 from .errors import figure_3_4, figure_3_5, figure_3_23
 from .pictures import figure_3_6, figure_3_7, figure_3_8, figure_3_21, figure_3_22
@@ -15,7 +15,6 @@ TABLES = {
     "dataset": dataset,
     "table_3_1_5_combinations": combinations,
     "lod_detectors": every_detector,
-    "lod_points": tables.build,
     "table_3_2": table_3_2,
     "backends": backends.backends_table,
 }

@@ -1,7 +1,6 @@
-"""Tables of the objects, the kept points and the errors of simplified meshes (T3.1.5, T table 3.2, T figure 3.6).
+"""Tables of the objects and the errors of simplified meshes (T3.1.5, T table 3.2, T figure 3.6).
 
-Errors are compared on the same objects and targets only. `combinations`, `every_detector` and `table_3_2` show errors
-by method, `build` the number of points and the rings of faces kept about them. The constants hold the methods' groups,
+Errors are compared on the same objects and targets only. The constants hold the methods' groups,
 short names and the order of T figure 3.6.
 """
 
@@ -20,64 +19,6 @@ from stages.charts.items import Table, shared_notes
 from stages.charts.results import OWN_FOLDER, NotRun, Results, either, require_rows
 from stages.charts.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.engine.statistics import interval
-from stages.report.validity import UNIT, as_plain
-
-SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
-
-
-def build(results: Results) -> Table:
-    """A row a data set, method and target: median points, median rings, shares of objects without or with all."""
-    sets = data_sets(results)
-    first = results.printed(SECTION_3_1, "lod") or sets[0]
-    if "rings" not in results.rows("lod", first):
-        raise NotRun("no rings in the rows of lod", "lod")
-    frames = {name: counted(results.rows("lod", name)) for name in sorted(sets, key=lambda name: name != first)}
-    frame = pd.concat({dataset_text(name): counts for name, counts in frames.items()}, names=["data", None])
-    frame = frame.reset_index("data").reset_index(drop=True)
-    part = frame[frame["data"] == dataset_text(first)]
-    rows = results.rows("lod", first)
-    targets = face_counts(rows[rows["target"].isin(part["target"])])[:2]  # no object may have so many faces
-    require_rows(targets, "no target is a number of faces", "lod", runnable=False)
-    return Table(
-        frame, _wide(part, targets), {"set": dataset_text(first)}
-    )  # no ranking: numbers of points do not compete
-
-
-def counted(rows: pd.DataFrame) -> pd.DataFrame:
-    """The table's numbers for the rows of one set: a row a method and target, over the objects that have a mesh."""
-    units = rows[rows["value"].notna() & (rows["metric"] == "metro_mean")]
-    units = units[[is_drawn(name) and name not in (PLAIN, QSLIM) for name in units["method"]]]
-    require_rows(units, "no method of lod.methods keeps points", "lod", runnable=False)
-    units = units.assign(
-        without_points=units["points"] == 0,
-        three_rings=(units["points"] > 0) & ~units["shrunk"].astype(bool),
-        as_plain=pd.MultiIndex.from_frame(units[UNIT]).isin(as_plain(rows)),
-    )
-    grouped = units.groupby(["method", "target"], sort=False)
-    summary = grouped.agg(objects=("item", "nunique"), points=("points", "median"), rings=("rings", "median"))
-    summary = summary.join(grouped[list(SHARES)].mean()).reset_index()
-    summary["method"] = pd.Categorical(summary["method"], ordered(summary["method"].unique()))
-    return summary.sort_values("method", kind="stable").astype({"method": str})
-
-
-def _wide(frame: pd.DataFrame, targets: list[str]) -> pd.DataFrame:
-    """A row a method: its points at the fewest faces, then rings and shares by face count, most faces first."""
-    cells = frame.set_index(["method", "target"])
-    methods = frame["method"].unique()
-    text_table = pd.DataFrame({"kept points": [short(name) for name in methods]})
-
-    def column(name: str, target: str, text: str = "{:.1f}", factor: float = 1.0) -> list[str]:
-        values = factor * cells.xs(target, level="target")[name].reindex(methods)
-        return ["–" if np.isnan(value) else text.format(value) for value in values]
-
-    text_table["points"] = column("points", targets[-1])
-    text_table[SHARES["without_points"]] = column("without_points", targets[-1], "{:.0f}", 100)
-    for target in targets:
-        text_table[f"rings, {target_text(target)}"] = column("rings", target)
-        for name in ("three_rings", "as_plain"):
-            text_table[f"{SHARES[name]}, {target_text(target)}"] = column(name, target, "{:.0f}", 100)
-    return text_table
-
 
 CELL = ["item", "target"]
 ERRORS = {  # metric -> name, with its unit

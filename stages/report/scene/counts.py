@@ -1,9 +1,8 @@
-"""Faces of objects: the needs of tasks, the counts that models predict (T3.1.3), and frames at the chosen levels.
+"""Faces of objects: the counts that models predict (T3.1.3), and frames at the chosen levels.
 
-`needs` and its figure have the faces that an object needs to be seen, felt and recognised. The thesis's networks, two
-simpler models and a lookup of the object's own curve predict the count; the table and the figure show their waste,
-their failures and their cost. `frames` draws full, uniform and our levels side by side, with the displacement from the
-full levels, above charts of all frames of the path; it reads data/scene/pictures.npz.
+The thesis's networks, two simpler models and a lookup of the object's own curve predict the count; the table and the
+figure show their waste, their failures and their cost. `frames` draws full, uniform and our levels side by side, with
+the displacement from the full levels, above charts of all frames of the path; it reads data/scene/pictures.npz.
 """
 
 import numpy as np
@@ -17,82 +16,9 @@ from stages.charts.datasets import SECTION_3_1
 from stages.charts.drawing import CYCLE, GREY, INK, MARKERS, plain_logarithm, plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results, require_file
-from stages.charts.tables import interval_columns, number, records, with_interval
-from stages.engine.statistics import interval
+from stages.charts.tables import number, records, with_interval
 
 from .scene import COLOURS, NAMES, OURS, scene_rows
-
-STAGE = "face_needs"
-TASKS = {  # words, what the condition is multiplied by in them, colour
-    "seen": ("seen from {:g} m", 1, CYCLE[0]), "felt": ("felt, within {:g} % of full scale", 100, CYCLE[1]),
-    "recognised": ("recognised by touch, within {:g} points", 100, CYCLE[2]),
-}  # fmt: skip
-
-
-def needs(results: Results) -> Table:
-    """A line for each task: the median over the objects with its interval, and the range of nine in ten."""
-    rows, lines, frame = _rows(results), [], []
-    full = rows[rows["task"] == "full"].set_index("item")["value"]
-    for (task, condition), group in _tasks(rows):
-        faces = group.set_index("item")["value"]
-        share = 100 * faces / full[faces.index]
-        median, (least, most) = interval(faces, statistic=np.median), np.quantile(faces, [0.05, 0.95])
-        frame.append({"task": task, "condition": condition, "objects": len(faces),
-                      **interval_columns("median", median, prefix=""), "q05": least, "q95": most,
-                      "share": share.median()})  # fmt: skip
-        lines.append({
-            "task": words_of(task, condition), "faces, median": with_interval(*median, places=0),
-            "nine in ten objects": f"{least:,.0f} to {most:,.0f}",
-            "of the full mesh, %": with_interval(*interval(share, statistic=np.median), places=1),
-        })  # fmt: skip
-    accuracy = 100 * _rows(results, "accuracy")["value"]
-    together = _rows(results, "faces_together")["value"].iloc[0]
-    words = {"objects": len(full), "full": f"{full.median():,.0f}", "together": f"{together:,.0f}",
-             "accuracy": with_interval(*interval(accuracy), places=0)}  # fmt: skip
-    return Table(pd.DataFrame(frame), pd.DataFrame(lines), words)
-
-
-def needs_figure(results: Results) -> Figure:
-    """A dot an object and task, sorted by the faces that it needs, with the median and its interval."""
-    rows = _rows(results)
-    tasks = [(("full", np.nan), rows[rows["task"] == "full"]), *_tasks(rows)]
-    drawing, axes = plt.subplots(figsize=(7.4, 0.42 * len(tasks) + 1.2))
-    for place, ((task, _), group) in enumerate(reversed(tasks)):
-        faces = np.sort(group["value"])
-        tint = TASKS[task][-1] if task in TASKS else INK
-        axes.plot(
-            faces, place + 0.5 * (np.arange(len(faces)) / len(faces) - 0.5), "o", ms=3.5, mew=0, color=tint, alpha=0.6
-        )
-        median, low, high = interval(faces, statistic=np.median)
-        axes.plot([low, high], [place] * 2, color=INK, lw=1.6)
-        axes.plot(median, place, "|", color=INK, ms=11, mew=2)
-    axes.set_yticks(range(len(tasks)), [words_of(*key) for key, _ in reversed(tasks)])
-    axes.set(xscale="log", xlabel="faces")
-    plain_logarithm(axes.xaxis)
-    axes.tick_params(axis="y", length=0)
-    axes.grid(axis="x")
-    drawing.tight_layout()
-    return Figure(drawing, {"objects": rows["item"].nunique()})
-
-
-def words_of(task: str, condition: float) -> str:
-    """A task in words: seen from 1 m."""
-    if task not in TASKS:
-        return "the full mesh"
-    words, scale, _ = TASKS[task]
-    return words.format(scale * condition)
-
-
-def _rows(results: Results, metric: str = "faces") -> pd.DataFrame:
-    return results.measured(STAGE, metric=metric)
-
-
-def _tasks(rows: pd.DataFrame) -> list[tuple[tuple[str, float], pd.DataFrame]]:
-    """[((task, condition), rows)] in the order of TASKS, from few faces to many."""
-    rows, order = rows.dropna(subset=["condition"]), list(TASKS)
-    keys = sorted({*zip(rows["task"], rows["condition"], strict=True)}, key=lambda key: (order.index(key[0]), -key[1]))
-    return [(key, rows[(rows["task"] == key[0]) & (rows["condition"] == key[1])]) for key in keys]
-
 
 MODELS = {
     "network": "the thesis's networks",

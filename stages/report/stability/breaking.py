@@ -1,10 +1,9 @@
-"""Breaking points of salient points and of networks: tables, charts against severity, and the worst cases.
+"""Breaking points of salient points: the table, and charts against severity.
 
 A panel stands for each perturbation, and one more for the legend. `degradation` and `broken` serve touches, too.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,16 +11,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from haptic_glance.base.files import read_arrays
 from haptic_glance.disturb.objects import PERTURBATIONS
-from haptic_glance.mesh.mesh import Mesh
-from stages.charts.drawing import GREY, INK, MARKERS, colours, label, name_panels, plt, show, square_grid, start
+from stages.charts.drawing import GREY, INK, MARKERS, colours, label, plt
 from stages.charts.items import Figure, Table
-from stages.charts.results import Results, require_rows
-from stages.charts.tables import grouped, interval_columns, number, percent, records, within
-from stages.engine.statistics import BROKEN, breaking_point, lead_left
-from stages.report.networks import FINE, MODES, NETWORK, STARTS, mean, measured
-from stages.stability.simplification import breaking_points, mean_repeatability, middle_severity
+from stages.charts.results import Results
+from stages.charts.tables import interval_columns, number, percent, records, within
+from stages.engine.statistics import BROKEN
+from stages.stability.breaking import breaking_points, mean_repeatability, middle_severity
 
 ACROSS = 4
 ENDS = ("breaking_point", "low", "high")
@@ -149,100 +145,3 @@ def points_figure(results: Results) -> Figure:
     drawing.tight_layout(h_pad=1.2, w_pad=0.6)
     words = {"perturbations": len(perturbations), "methods": ", ".join(map(label, methods))}
     return Figure(drawing, words | {"objects": ", ".join(dict.fromkeys(rows["item"]))})
-
-
-def failures(results: Results) -> Figure:
-    """Each method's worst case: before and after."""
-    worst = _worst(results)
-    drawing, grid = square_grid(2, len(worst), side=1.9, right=0.2, gap=0.5)
-    for (before, after), (method, case) in zip(grid.T, worst.items(), strict=True):
-        show(before, results.mesh(case["item"]), case["before_saliency"], points=case["before_points"])
-        show(after, Mesh(case["vertices"], case["faces"]), case["after_saliency"], points=case["after_points"])
-        damage = f"{label(case['perturbation'])} {float(case['severity']):g}"
-        share_text = f"{100 * float(case['repeatability']):.0f} % found again"
-        for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{damage}\n{share_text}")):
-            axes.set_title(title, fontsize=9, fontweight="normal", loc="center")
-    name_panels(grid, beside=("before", "after"))
-    names = dict.fromkeys(str(case["perturbation"]) for case in worst.values())
-    units = "; ".join(f"{label(name)}: {PERTURBATIONS[name].unit}" for name in names)
-    return Figure(drawing, {"methods": ", ".join(map(label, worst)), "units": units})
-
-
-def _worst(results: Results) -> dict[str, dict[str, Any]]:
-    """{method: its arrays on the object where the fewest points were found again}."""
-    cases: dict[str, dict[str, dict[str, Any]]] = {}
-    for path in sorted(results.folder(STAGE).glob("*.npz")):
-        for key, values in read_arrays(path).items():
-            method, _, name = key.rpartition(".")
-            cases.setdefault(method, {}).setdefault(path.stem, {"item": path.stem})[name] = values
-    return {
-        method: min(objects.values(), key=lambda case: np.nan_to_num(case["repeatability"]))
-        for method, objects in require_rows(cases, "no data/stability", STAGE).items()
-    }
-
-
-NETWORK_TINTS = dict(zip(product(STARTS[:2], MODES), ("#0072B2", "#56B4E9", "#767676", "#c4c4c4"), strict=True))
-NETWORK_UNITS = {
-    "noise": "sigma, share of full scale",
-    "blur": "sigma in cells of 128",
-    "dead_cells": "share of the cells",
-    "occlusion": "share of the area",
-    "rotation": "degrees",
-    "resolution": "cells a side",
-    "few_touches": "share of the touches trained on",
-}
-NETWORK_UNHARMED = dict.fromkeys(NETWORK_UNITS, 0.0) | {"resolution": 128.0, "few_touches": 1.0}
-OF_NETWORKS = [
-    "perturbation",
-    "unit",
-    "weights",
-    "mode",
-    "clean",
-    "breaking_point",
-    "low",
-    "high",
-    "harshest",
-    "accuracy",
-]
-
-
-def networks_table(results: Results) -> Table:
-    """Breaking points; of networks that were measured and have a lead to lose."""
-    (curves, chance), entries = _network_curves(results), []
-    for name, lines in curves.items():
-        for kind, points in lines.items():
-            whole, severities = points["clean"].iloc[0], list(points["severity"])
-            if whole > chance:
-                left = lead_left(points[ACCURACY].to_numpy().T, whole, chance)
-                ends = [breaking_point(severities, list(end), NETWORK_UNHARMED[name]) for end in left]
-                entries.append(
-                    (name, NETWORK_UNITS[name], *kind, whole, *ends, severities[-1], points["accuracy"].iloc[-1])
-                )
-    frame = pd.DataFrame(require_rows(entries, "no disturbed imprints", "transfer"), columns=OF_NETWORKS)
-    heads = [f"{start(row.weights)}, {label(row.mode)} ({100 * row.clean:.0f} % clean)" for row in records(frame)]
-    return Table(frame, broken(frame, heads, NETWORK_UNHARMED))
-
-
-def networks_figure(results: Results) -> Figure:
-    """Accuracy of MobileNetV2 on disturbed imprints, against severity: a panel a perturbation."""
-    curves, chance = _network_curves(results)
-    looks = {
-        kind: {"label": f"{start(kind[0])}, {label(kind[1])}", "color": tint, "marker": "o"}
-        for kind, tint in NETWORK_TINTS.items()
-    }
-    return Figure(degradation(curves, NETWORK_UNITS, looks, chance, 2.4)[0], {"perturbations": len(curves)})
-
-
-def _network_curves(results: Results) -> tuple[Curves, float]:
-    """(curves by weights and mode, accuracy of guessing)."""
-    rows = results.measured("transfer", method=NETWORK, metric="disturbed_accuracy", perturbation=list(NETWORK_UNITS))
-    undisturbed = grouped(measured(results, method=NETWORK, data=FINE, split="random"), ["weights", "mode"])
-    clean = {kind: mean(group["value"], "random") for kind, group in undisturbed}
-    groups, curves = dict(grouped(rows, ["perturbation", "weights", "mode"])), {}
-    for name, kind in product(NETWORK_UNITS, NETWORK_TINTS):
-        if (name, *kind) in groups:
-            severities = grouped(groups[name, *kind], ["severity"])
-            points = [(severity, *mean(group["value"], "random"), *clean[kind]) for (severity,), group in severities]
-            points.sort(key=lambda point: abs(point[0] - NETWORK_UNHARMED[name]))
-            curves.setdefault(name, {})[kind] = pd.DataFrame(points, columns=["severity", *ACCURACY, *CLEAN])
-    return curves, results.measured("transfer", metric="chance", data=FINE, split="random")["value"].mean()

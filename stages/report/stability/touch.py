@@ -1,18 +1,16 @@
 """Breaking points of recognition by touch: the severity of each perturbation at which half of its lead is lost.
 
-The lead is the accuracy above guessing. `build` shows imprints at one place under every perturbation of the tested
-touches, from mild to harsh.
+The lead is the accuracy above guessing.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
-from haptic_glance.base.files import read_arrays
 from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
 from haptic_glance.know.split import shared_by
-from stages.charts.drawing import GREY, MARKERS, PALE, label, plt
+from stages.charts.drawing import GREY, MARKERS, label
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results
 from stages.charts.tables import grouped
@@ -136,37 +134,3 @@ def _curves(results: Results, dataset: str | None = None, behind: str = "") -> t
     return rows, {
         name: {line: points for line in _lines(behind) if len(points := curve(rows, name, line))} for name in names
     }
-
-
-MOST = 6  # severities
-
-
-def build(results: Results) -> Figure:
-    """Tactile images of one object's first place, a line a perturbation of what is asked about."""
-    [item] = results.choose(results.settings.figure_objects, 1, "touch_stability")
-    arrays = read_arrays(results.folder("touch_stability") / f"{item}.npz")
-    names = [name for name, entry in TOUCH_PERTURBATIONS.items() if not entry.in_training]
-    severity_levels = {name: levels for name in names if (levels := severities(arrays, name))}
-    half, across = -(-len(severity_levels) // 2), MOST + 2  # beside the images: the name, and no change
-    unmarked = {"xticks": [], "yticks": []}
-    figure, grid = plt.subplots(half, 2 * across, figsize=(12.5, 0.86 * half), squeeze=False, subplot_kw=unmarked)
-    for axes in grid.flat:
-        axes.set_axis_off()
-    for k, (name, levels) in enumerate(severity_levels.items()):
-        words, *row = grid[k % half, across * (k // half) :]
-        words.text(1.0, 0.5, label(name), ha="right", va="center", fontsize=9, transform=words.transAxes)
-        keys = {"none": "shown.clean"} | {severity: f"shown.{name}.{severity}" for severity in levels[:MOST]}
-        for axes, (title, key) in zip(row, keys.items(), strict=False):
-            axes.set_axis_on()
-            axes.imshow(arrays[key][0], cmap="gray", vmin=0, vmax=1)
-            axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
-            axes.set_title(title, fontsize=7, fontweight="normal", loc="center", pad=2)
-    figure.subplots_adjust(wspace=0.06, hspace=0.35)
-    return Figure(figure, {"name": item, "perturbations": ", ".join(map(label, severity_levels))})
-
-
-def severities(keys: Iterable[str], perturbation: str) -> list[str]:
-    """The severities of a perturbation as they stand in the keys of a file, from mild to harsh."""
-    start, unharmed = f"shown.{perturbation}.", TOUCH_PERTURBATIONS[perturbation].unharmed
-    levels = [key.removeprefix(start) for key in keys if key.startswith(start)]
-    return sorted(levels, key=lambda key: np.abs(float(key) - unharmed))

@@ -10,7 +10,6 @@ TABLES = {
     "table_5_3": partial(tables.networks, data=COARSE),
     "table_5_4": partial(tables.networks, data=FINE),
     "table_5_6": tables.frozen_layers,
-    "coarse_imprints": tables.build,
 }
 FIGURES = {
     "figure_5_3": figures.figure_5_3,
