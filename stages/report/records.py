@@ -2,7 +2,7 @@
 
 KIND/records.json has a line for each table, figure or chart: its data sets, files of rows, methods, sizes, number of
 objects and number of rows. provenance.json has the hash of each file of rows, the commit of a file that git knows
-unchanged, the digest of the code that made the rows, the outcome of `stages.recheck`, and the clock of their seconds;
+unchanged, the digest of the code that made the rows, and the clock of their seconds;
 constraints.txt of that commit pins the packages that measured the rows.
 headlines.json has the numbers that `dvc metrics show` and `dvc exp show` list.
 `command` is the shell command that measures the rows of a claim again.
@@ -23,7 +23,8 @@ import pandas as pd
 import yaml
 
 from haptic_glance.base.files import read_json, sha256, write_json, write_text
-from stages.engine.rows import DIGITS, RECHECKED, SUFFIX, agrees
+from stages.engine.rows import DIGITS, SUFFIX
+from stages.engine.settings import CODE, load_params
 
 from .cells import rows_of
 from .items import Built, Figure, Table
@@ -122,8 +123,8 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
     keep the digest that provenance.json has for them.
     """
     dataset, _, stage = name.partition("/")
-    path = results.workspace.build / "code" / stage
-    today = sha256(path)[:DIGITS] if dataset != BENCH and path.is_file() else ""
+    digests = results.once("code", lambda: load_params(results.workspace.root / CODE))
+    today = digests.get(stage, "")[:DIGITS] if dataset != BENCH else ""
     provenance = results.once("provenance", lambda: _read_json(results.reports / PROVENANCE_FILE))
     entry = provenance.get("files", {}).get(name, {})
     in_run = dataset in results.workspace.params.get("graph", {}).get(stage, ()) and today
@@ -132,26 +133,14 @@ def code_of(results: Results, name: str) -> tuple[str, str]:
 
 
 def _older(results: Results, names: Iterable[str]) -> dict[str, list[str]]:
-    """{older: files of rows that were made by other code than today's}; empty if there are none.
-
-    A file does not count where `stages.recheck` with today's code gave rows that agree.
-    """
+    """{older: files of rows that were made by other code than today's}; empty if there are none."""
 
     def is_older(name: str) -> bool:
         code, today = results.once(("code", name), lambda: code_of(results, name))
-        check = rechecked(results, name)
-        is_equal = check.get("code") == today and agrees(check)
-        return bool(code and today) and code != today and not is_equal
+        return bool(code and today) and code != today
 
     older = [name for name in names if is_older(name)]
     return {"older": older} if older else {}
-
-
-def rechecked(results: Results, name: str) -> dict[str, Any]:
-    """The outcome of the last `stages.recheck` of a file of rows; empty where the rows have changed since."""
-    path = results.workspace.published / "measurements" / RECHECKED
-    outcome = results.once("rechecked", lambda: _read_json(path)).get(name, {})
-    return outcome if outcome.get("sha256") == sha256(path_of(results, name))[:DIGITS] else {}
 
 
 def _file(results: Results, name: str, known: Mapping[Path, str]) -> dict[str, str]:
@@ -163,11 +152,6 @@ def _file(results: Results, name: str, known: Mapping[Path, str]) -> dict[str, s
         return {key: value for key, value in entry.items() if value}
     # All columns would take most of the time that the report spends after its parts.
     rows = pd.read_csv(path, usecols=lambda name: name in ("value", "seconds", "clock"), low_memory=False)
-    if check := rechecked(results, name):
-        entry["rechecked"] = (
-            f"{check['close']} of {check['compared']} compared rows, of {len(rows)} in all, agree with code "
-            f"{check['code']}"
-        )
     if "seconds" in rows:
         entry["clock"] = clock_of(rows, stage)
     return {key: value for key, value in entry.items() if value}

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("sphinx")
 from _extensions.settings import settings
 
-from stages.code import stage_names
+from stages.engine.code import stage_names
 from stages.engine.settings import schema_of
 
 ROOT = Path(__file__).parents[2]
