@@ -99,7 +99,7 @@ def _client(workers: int) -> Any:
 
 def _of_worker(function, parent, number, item):
     process_executor._MAX_MEMORY_LEAK_SIZE = GROWTH  # of this worker, which looks at it after each item
-    if parent:
+    if parent not in (0, os.getpid()):  # with one worker, joblib works in this process
         _end_with(parent)
     return _numbered(function, number, item)
 

@@ -107,3 +107,7 @@ def test_a_signal_that_ends_a_stage_ends_its_busy_workers(number, tmp_path):
         finally:
             process.kill()
     assert process.returncode == -number
+
+
+def test_one_worker_is_this_process():
+    assert parallel_map(abs, [-1, 2], "", "loky", 1) == [1, 2]
