@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from multiprocessing import resource_tracker
 from typing import Any, TypeVar
 
-from joblib import Parallel, delayed, parallel_config
+from joblib import Parallel, cpu_count, delayed, parallel_config
 from joblib.externals.loky import process_executor
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from threadpoolctl import threadpool_limits
@@ -81,7 +81,7 @@ def _pairs(function, items, backend, workers):
         tracker.ensure_running()
     # Ctrl-C goes to all processes of a terminal: this one ends its workers, which would each print a traceback.
     work = functools.partial(_of_worker, function, os.getpid() if backend == "loky" else 0)
-    with parallel_config(backend, n_jobs=workers), interrupts_wait():
+    with parallel_config(backend, n_jobs=-1 if backend == "dask" else workers), interrupts_wait():
         return Parallel(return_as="generator_unordered")(delayed(work)(*pair) for pair in enumerate(items))
 
 
@@ -91,8 +91,11 @@ def _client(workers: int) -> Any:
     with from_extra():
         from distributed import Client
 
-    address = os.environ.get(SCHEDULER)
-    client = Client(address) if address else Client(n_workers=max(workers, 0) or None, threads_per_worker=1)
+    if address := os.environ.get(SCHEDULER):
+        client = Client(address)
+    else:
+        local: Any = {"threads_per_worker": 1, "memory_limit": 0, "dashboard_address": "127.0.0.1:0"}
+        client = Client(n_workers=cpu_count() if workers < 1 else workers, **local)
     print(f"dask: dashboard {client.dashboard_link}", file=sys.stderr)
     return client
 

@@ -13,6 +13,7 @@ from joblib.externals.loky import process_executor
 
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import CLOCK, Stopwatch, WallClock, clock
+from stages.engine import parallel
 from stages.engine.parallel import GROWTH, parallel_map
 from stages.engine.rows import read_rows, write_rows
 
@@ -111,3 +112,18 @@ def test_a_signal_that_ends_a_stage_ends_its_busy_workers(number, tmp_path):
 
 def test_one_worker_is_this_process():
     assert parallel_map(abs, [-1, 2], "", "loky", 1) == [1, 2]
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_same_results_and_a_process_starts_one_for_all_its_maps(capsys):
+    pytest.importorskip("distributed", reason="the cluster extra is not installed")
+    names = ["a", "b", "c"]
+    try:
+        for _ in range(2):
+            assert parallel_map(noisy, names, "", "dask", 1) == parallel_map(noisy, names, "", "sequential")
+        assert capsys.readouterr().err.count("dask: dashboard http") == 1
+    finally:
+        client = parallel._client(1)
+        client.close()
+        client.cluster.close()
+        parallel._client.cache_clear()
