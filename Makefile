@@ -8,6 +8,7 @@ newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
 test quick foreign smoke: export OMP_NUM_THREADS = 1 # each core has a process; more threads would spin while they wait
+repro: export OPENBLAS_NUM_THREADS = 1 # a second thread saves no time on small matrices
 .DEFAULT_GOAL := help
 .PHONY: help repro studio test quick foreign smoke lint docs bench clean lock
 
@@ -15,7 +16,7 @@ help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
 
 repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on what params.yaml says
-	python -m stages.repro || { dvc repro --single-item report; exit 1; }
+	dvc repro --keep-going || { dvc repro --single-item report; exit 1; } # the report names what is missing
 
 studio: $(VENV)/ready ## look at a mesh, simplify it, touch and mark it, on a local page (mesh=FILE_OR_FOLDER)
 	haptic-glance studio $(or $(mesh),samples/dromedary.glb)
@@ -37,7 +38,7 @@ smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy
 	rm -rf $(SMOKE) && mkdir -p $(SMOKE)
 	git ls-files -z -co --exclude-standard | xargs -0 sh -c 'for f; do [ -e "$$f" ] && printf "%s\0" "$$f"; done' sh \
 	  | tar --null -T - -cf - | tar -xf - -C $(SMOKE)
-	cd $(SMOKE) && git init -q && rm -f dvc.lock && python -m stages.compose profile=smoke && python -m stages.repro && python -m stages.gate
+	cd $(SMOKE) && git init -q && rm -f dvc.lock && python -m stages.compose profile=smoke && dvc repro && python -m stages.gate
 
 lint: $(VENV)/ready ## ruff: rules and formatting; import-linter: imports run one way; pyright: types
 	ruff check .

@@ -1,12 +1,13 @@
 """Time and memory of the whole pipeline from a fresh copy: `python -m benchmarks.pipeline`
 
-Copies the files that git knows or would add to build/bench, runs all stages of dvc.yaml there, side by side as `make
-repro` does, and writes reports/bench/pipeline.csv: a row a measurement (what, metric, value, unit, limit, machine).
+Copies the files that git knows or would add to build/bench, runs all stages of dvc.yaml there, as `make repro` does,
+and writes reports/bench/pipeline.csv: a row a measurement (what, metric, value, unit, limit, machine).
 `limit` is the figure that the project holds itself to. Results of the run stay in build/bench, to look at or to take
 over; those of the working tree are left alone. Kernels are compiled before: that takes a minute, once a folder and
 state of the code.
 """
 
+import itertools
 import os
 import platform
 import re
@@ -25,7 +26,7 @@ from haptic_glance.base.files import write_table
 
 COPY = Path("build/bench")
 OUT = Path("reports/bench/pipeline.csv")
-TAKEN = re.compile(r"^(\S+): \d+ s, (\d+) s of processor time$", re.MULTILINE)  # what stages.repro says of each
+STAGE = re.compile(r"Running stage '(\S+)':")  # what DVC says before it starts one
 POLL = 1.0  # seconds between two looks at the memory of all processes: ten a second took a sixtieth of the time
 
 
@@ -43,12 +44,13 @@ def fresh_copy():
 
 
 def watch(command, cwd):
-    """(seconds, peak bytes, output) of a command: wall time, and memory of all its processes, shared pages once.
+    """(seconds, peak bytes, {stage: processor seconds}) of a command: wall time, and memory of all its processes.
 
     That is the sum of proportional set sizes, where the system tells them (Linux), else of resident sizes.
     """
     start, peak = time.perf_counter(), 0
-    process = psutil.Popen(command, cwd=cwd, env={**os.environ, "PYTHONPATH": ""}, stdout=subprocess.PIPE, text=True)
+    environment = {**os.environ, "PYTHONPATH": "", "PYTHONUNBUFFERED": "1", "OPENBLAS_NUM_THREADS": "1"}
+    process = psutil.Popen(command, cwd=cwd, env=environment, stdout=subprocess.PIPE, text=True)
     finished = threading.Event()
 
     def look():
@@ -62,12 +64,24 @@ def watch(command, cwd):
 
     looker = threading.Thread(target=look)
     looker.start()
-    output, _ = process.communicate()
+    starts = []
+    for line in process.stdout:
+        if match := STAGE.match(line):
+            starts.append((match[1], processor_seconds(process)))
+    starts.append(("", processor_seconds(process)))
+    process.wait()
     finished.set()
     looker.join()
     if process.returncode:
         sys.exit(f"bench: {' '.join(command)} failed with {process.returncode}")
-    return time.perf_counter() - start, peak, output
+    stages = {name: end - begin for (name, begin), (_, end) in itertools.pairwise(starts)}
+    return time.perf_counter() - start, peak, stages
+
+
+def processor_seconds(process):
+    """Those of the children of a process that have ended; of a process that ended itself they are still known."""
+    times = process.cpu_times()
+    return times.children_user + times.children_system
 
 
 def memory(process):
@@ -84,8 +98,7 @@ def main():
     subprocess.run([sys.executable, "-c", compiling], cwd=COPY, check=True, env={**os.environ, "PYTHONPATH": ""})
     loop = reference_seconds()
     rows = [{"what": "reference loop", "metric": "processor time", "value": loop, "unit": "s"}]
-    total, peak, output = watch([sys.executable, "-m", "stages.repro"], COPY)
-    stages = {name: float(seconds) for name, seconds in TAKEN.findall(output)}
+    total, peak, stages = watch(["dvc", "repro"], COPY)
     rows += [{"what": name, "metric": "processor time", "value": stages[name], "unit": "s"} for name in stages]
     again, _, _ = watch(["dvc", "repro"], COPY)
     size = sum(path.stat().st_size for path in (COPY / "data").rglob("*") if path.is_file())

@@ -70,7 +70,7 @@ def smaller_pictures(_settings: dict, _name: str) -> None:
 sphinx_gallery_conf = {
     "examples_dirs": ["tutorials", "examples"],
     "gallery_dirs": ["generated/tutorials", "generated/examples"],
-    "filename_pattern": r"/(?!cluster)\w+\.py$",  # a cluster is not at hand: shown, and checked by tests/docs
+    "filename_pattern": r"/\w+\.py$",
     "subsection_order": ["examples/look", "examples/simplify", "examples/touch", "examples/scenes"],
     "within_subsection_order": "_extensions.order.ReadingOrder",
     "abort_on_example_error": True,

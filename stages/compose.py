@@ -26,7 +26,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
-from stages.code import stage_names
+from stages.engine.code import stage_names
 from stages.engine.parallel import BACKENDS
 from stages.engine.settings import (
     FILE,
@@ -106,7 +106,7 @@ def own_folder(overrides: Sequence[str]) -> str:
 
 
 def _is_published(values: dict[str, Any]) -> bool:
-    """Whether settings are those of the published configuration; how objects run side by side does not matter."""
+    """Whether settings are those of the published configuration; how objects run in parallel does not matter."""
     common, free = composed([]), {"parallel": None, "out": None}
     if any(values[key] != common[key] for key in ("profile", "sets")):  # before each set is composed again
         return False

@@ -36,6 +36,16 @@ def test_every_plot_has_rows():
     assert len(charts) == 4 and all("seconds" in json.dumps(chart) for chart in charts)
 
 
+@pytest.mark.slow
+def test_a_fresh_clone_knows_what_has_changed_and_what_would_run(tmp_path):
+    subprocess.run(["git", "clone", "-q", str(ROOT), str(tmp_path / "clone")], check=True)
+    for words in (["status", "--json"], ["repro", "--dry", "--force"]):
+        command = [sys.executable, "-m", "dvc", *words]
+        process = subprocess.run(command, cwd=tmp_path / "clone", capture_output=True, text=True)
+        assert process.returncode == 0, process.stderr
+    assert process.stdout.index("python -m stages.code") < process.stdout.index("python -m stages.report")
+
+
 def test_plots_are_those_of_the_run_like_its_metrics():
     plots = yaml.safe_load((ROOT / "dvc.yaml").read_text())["plots"]
     files = [file for plot in plots for chart in plot.values() for axis in "xy" for file in chart[axis]]

@@ -12,7 +12,6 @@ import pytest
 
 from haptic_glance.base.files import read_json, write_json
 from stages import gate
-from stages.engine.rows import RECHECKED
 from stages.engine.tolerances import Rule, Tolerances, compare
 
 ROOT = Path(__file__).parents[1]
@@ -180,7 +179,6 @@ def repository(tmp_path):
     ]
     for name in ("toys", "off"):
         write(tmp_path, name, rows)
-    (tmp_path / gate.ROWS / RECHECKED).write_text("{}")  # lies beside the rows and is none
     for arguments in (
         ["init", "-q"],
         ["add", "."],

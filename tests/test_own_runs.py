@@ -40,7 +40,7 @@ def run(executable, cmd, **options):
 
 save = items.save
 items.save = lambda figure, path, dpi: save(figure, path, dpi // 3)
-code.imported_files, statistics.RESAMPLES, dvc.stage.run._run = lambda path: set(), 400, run
+code._digest_of, statistics.RESAMPLES, dvc.stage.run._run = str, 400, run
 sys.exit(dvc.cli.main(["repro"]))
 """
 

@@ -7,7 +7,7 @@ from pathlib import Path
 MODULES = {
     "pictures": ("cv2", "matplotlib"),
     "pipeline": (
-        "cloudpickle", "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "omegaconf", "pandas",
+        "cloudpickle", "dvc", "filelock", "grimp", "hydra", "joblib", "laspy", "omegaconf", "pandas",
         "point_cloud_utils", "pymeshlab", "pypcd4", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage",
         "sklearn", "threadpoolctl", "tqdm", "yaml",
     ),

@@ -1,8 +1,8 @@
 """Recognises the objects of a data set by touch (T4.2)."""
 
+from collections.abc import Container
 from dataclasses import dataclass
 
-from stages.engine.names import classifiers
 from stages.engine.settings import REQUIRED, setting
 
 COLUMNS = {
@@ -13,6 +13,13 @@ COLUMNS = {
     "repetition": "number of the random split",
     "imprints": "samples that were trained and tested on",
 }
+
+
+def classifier_names() -> Container[str]:
+    """Classifiers of touches."""
+    from haptic_glance.know.classifiers import CLASSIFIERS
+
+    return CLASSIFIERS
 
 
 @dataclass
@@ -28,7 +35,7 @@ class Params:
         "number of random sets that replace the named sets, with as many objects each; 0: use the named sets",
         least=0,
     )
-    classifiers: list[str] = setting(REQUIRED, "names of haptic_glance.know.CLASSIFIERS", names=classifiers)
+    classifiers: list[str] = setting(REQUIRED, "names of haptic_glance.know.CLASSIFIERS", names=classifier_names)
     repetitions: int = setting(
         20,
         "random hold-outs and foldings, the same for every sampling and classifier; the intervals are over these",

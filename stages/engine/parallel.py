@@ -1,23 +1,15 @@
-"""The parallel map with a progress bar, whose result never depends on the workers, and one budget of cores for a run.
-
-An item is worked on while its process holds a core of the budget, so that the workers of several stages take no more
-processors than there are. A core is a locked file, which the system frees when its process is killed.
-"""
+"""The parallel map with a progress bar, by joblib; its result never depends on the workers."""
 
 import functools
 import os
-import random
 import sys
+import threading
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from multiprocessing import resource_tracker
-from pathlib import Path
 from typing import Any, TypeVar
 
-from filelock import FileLock, Timeout
 from joblib import Parallel, cpu_count, delayed, parallel_config
 from joblib.externals.loky import process_executor
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
@@ -25,25 +17,14 @@ from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from haptic_glance.base.errors import interrupts_wait
+from haptic_glance.base.extras import from_extra
 
 BACKENDS = ("loky", "sequential", "dask")  # processes here, one item after the other, or a cluster
+SCHEDULER = "DASK_SCHEDULER"  # the environment variable that holds the address of a cluster's scheduler
 GROWTH = 600_000_000  # bytes by which a worker may grow; joblib allows half, and each new one imports for seconds
+WATCH = 1.0  # seconds between two looks of a worker at the process that it works for
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-
-
-@dataclass(frozen=True)
-class Task:
-    """One item of a map.
-
-    name: for messages, another one for each item. value: what the function works on. files: {path below the root:
-    SHA-256, empty where there is no such file} of all that it may read there. key: the hash of all that it comes from.
-    """
-
-    name: str
-    value: Any
-    files: Mapping[str, str] = field(default_factory=dict)
-    key: str = ""
 
 
 def parallel_map(
@@ -53,33 +34,28 @@ def parallel_map(
     backend: str = "loky",
     workers: int = -1,
 ) -> list[Result]:
-    """[function(item) for item in items], side by side, in the order of the items. backend, workers: as of `finished`.
+    """[function(item) for item in items], in parallel, in the order of the items. backend, workers: as of `finished`.
 
     An exception of an item ends the map: functions that may meet bad input return the reason instead.
     """
-    tasks = [Task(str(k), item) for k, item in enumerate(items)]
-    pairs = finished(functools.partial(_apply, function), tasks, Path(), desc, backend, workers)
-    results = {task.name: result for task, result in pairs}
-    return [results[task.name] for task in tasks]
+    listed = list(items)
+    results = dict(_finished(function, listed, desc, backend, workers))
+    return [results[number] for number in range(len(listed))]
 
 
 def finished(
-    function: Callable[[Task, Path], Result],
-    tasks: Sequence[Task],
-    root: Path,
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
     desc: str,
     backend: str = "loky",
     workers: int = -1,
-    stage: str = "",
-) -> Iterable[tuple[Task, Result]]:
-    """(task, function(task, root)) of all tasks as they finish, in any order, with a progress bar on a terminal.
+) -> Iterator[tuple[Item, Result]]:
+    """(item, function(item)) of all items as they finish, in any order, with a progress bar on a terminal.
 
-    backend: `loky` (processes here), `sequential`, or `dask` (a cluster, see stages.engine.cluster). There the function
-    gets a folder that holds the files of the task and nothing else. workers: how many here, -1 for one a core. stage:
-    where the workers of a cluster must have the same code of a stage.
+    backend: `loky` (processes here), `sequential`, or `dask`: the cluster whose scheduler DASK_SCHEDULER names, else
+    one of processes here. Its machines must share the folder of the run. workers: how many here, -1 for one a core.
     """
-    work = functools.partial(_on_a_core, function)
-    return progress(_finished(work, tasks, root, desc, backend, workers, stage), desc, len(tasks))
+    return ((items[number], result) for number, result in _finished(function, items, desc, backend, workers))
 
 
 def progress(items: Iterable[Item], desc: str, total: int | None = None) -> Iterable[Item]:
@@ -87,69 +63,62 @@ def progress(items: Iterable[Item], desc: str, total: int | None = None) -> Iter
     return tqdm(items, desc=desc, total=total, disable=not sys.stderr.isatty())
 
 
-def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[tuple[Task, Any]]:
-    if backend == "dask" and tasks:
-        from .cluster import cluster_client, finished_on_cluster
-
-        yield from finished_on_cluster(cluster_client(workers), function, tasks, root, desc, stage)
-    elif backend == "sequential" or len(tasks) < 2:
-        yield from ((task, function(task, root)) for task in tasks)
+def _finished(function, items, desc, backend, workers) -> Iterable[tuple[int, Any]]:
+    """(number of the item, result) of all items as they finish."""
+    if backend == "sequential" or len(items) < 2:
+        pairs: Any = (_numbered(function, *pair) for pair in enumerate(items))
     else:
-        # Caches make a worker grow; joblib then renews it between two items, loses none, and warns.
-        warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
-        for tracker in (resource_tracker, loky_tracker):  # their start, inside the block, would let Ctrl-C through
-            tracker.ensure_running()
-        # Ctrl-C goes to all processes of a terminal: this one ends its workers, which would each print a traceback.
-        with parallel_config(backend, n_jobs=workers), interrupts_wait():
-            pairs: Any = Parallel(return_as="generator_unordered")(
-                delayed(_named)(function, task, root) for task in tasks
-            )
-        yield from pairs
+        pairs = _pairs(function, items, backend, workers)
+    return progress(pairs, desc, len(items))
 
 
-def _on_a_core(function, task, root):
-    with core(), threadpool_limits(1):  # as workers of joblib have it: spinning threads would count as its cost
-        return function(task, root)
+def _pairs(function, items, backend, workers):
+    # Caches make a worker grow; joblib then renews it between two items, loses none, and warns.
+    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
+    if backend == "dask":
+        _client(workers)
+    for tracker in (resource_tracker, loky_tracker):  # their start, inside the block, would let Ctrl-C through
+        tracker.ensure_running()
+    # Ctrl-C goes to all processes of a terminal: this one ends its workers, which would each print a traceback.
+    work = functools.partial(_of_worker, function, os.getpid() if backend == "loky" else 0)
+    with parallel_config(backend, n_jobs=-1 if backend == "dask" else workers), interrupts_wait():
+        return Parallel(return_as="generator_unordered")(delayed(work)(*pair) for pair in enumerate(items))
 
 
-def _named(function, task, root):
+@functools.cache
+def _client(workers: int) -> Any:
+    """The one client of this process, which joblib finds; its dashboard is named on stderr."""
+    with from_extra():
+        from distributed import Client
+
+    if address := os.environ.get(SCHEDULER):
+        client = Client(address)
+    else:
+        local: Any = {"threads_per_worker": 1, "memory_limit": 0, "dashboard_address": "127.0.0.1:0"}
+        client = Client(n_workers=cpu_count() if workers < 1 else workers, **local)
+    print(f"dask: dashboard {client.dashboard_link}", file=sys.stderr)
+    return client
+
+
+def _of_worker(function, parent, number, item):
     process_executor._MAX_MEMORY_LEAK_SIZE = GROWTH  # of this worker, which looks at it after each item
-    return task, function(task, root)
+    if parent not in (0, os.getpid()):  # with one worker, joblib works in this process
+        _end_with(parent)
+    return _numbered(function, number, item)
 
 
-def _apply(function, task, root):
-    return function(task.value)
+def _numbered(function, number, item):
+    with threadpool_limits(1):  # as workers of joblib have it: spinning threads would count as its cost
+        return number, function(item)
 
 
-FOLDER = "HAPTIC_GLANCE_CORES"  # names the folder of the locks; without it every process takes what it wants
-POLL = 0.02  # seconds between two looks for a free core
+@functools.cache
+def _end_with(parent: int) -> None:
+    """Ends this worker soon after its parent, which a signal may have ended without a chance to say so."""
 
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(WATCH)
+        os._exit(1)
 
-@contextmanager
-def budget(folder: Path) -> Iterator[None]:
-    """Inside the block, this process and those that it starts share the cores of the machine."""
-    folder.mkdir(parents=True, exist_ok=True)
-    os.environ[FOLDER] = str(folder.resolve())
-    try:
-        yield
-    finally:
-        del os.environ[FOLDER]
-
-
-@contextmanager
-def core() -> Iterator[None]:
-    """Waits for a free core of the budget and holds it inside the block; without a budget it does nothing."""
-    folder = os.environ.get(FOLDER)
-    if folder is None:
-        yield
-        return
-    locks = [FileLock(Path(folder) / str(number)) for number in range(cpu_count())]
-    while True:
-        for lock in random.sample(locks, len(locks)):  # so that not all wait for the first one
-            try:
-                with lock.acquire(timeout=0):
-                    yield
-                    return
-            except Timeout:
-                continue
-        time.sleep(POLL)
+    threading.Thread(target=watch, daemon=True).start()

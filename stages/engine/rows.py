@@ -40,16 +40,7 @@ COMMON = {
 FIRST, LAST = tuple(COMMON)[:5], tuple(COMMON)[5:]  # before and after the columns of a stage
 NEEDED = ("dataset", "value")  # without one of the others, what compares by it is not run, and says so
 SUFFIX = ".csv.gz"
-RECHECKED = "rechecked.json"  # in reports/measurements, by stages.recheck: {SET/STAGE: outcome}
 DIGITS = 12  # of a hash in the records of rows
-
-
-ENOUGH = 0.98  # share of rows; a small network answers a few touches otherwise on another kind of processor
-
-
-def agrees(outcome: Mapping[str, float]) -> bool:
-    """Whether rows that stages.recheck measured again agree with the committed ones: ENOUGH of each method's rows."""
-    return bool(outcome["compared"]) and not outcome["only_committed"] and outcome["least"] >= ENOUGH
 
 
 def write_rows(

@@ -1,7 +1,7 @@
 """Runs a stage over the items of a data set, and caches the archive of each item.
 
-An item is computed in this process, in another process or on another machine. Its function may read only the files that
-it declares, so that its hash misses none. One run at a time works in one place; a killed run leaves the place free.
+An item is computed in this process, in another process or on another machine that shares the folder. Its function may
+read only the files that it declares, so that its hash misses none. A killed run leaves its place free.
 """
 
 import fcntl
@@ -12,8 +12,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
-from itertools import islice
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
@@ -21,14 +20,28 @@ from typing import Any, TypeVar
 from haptic_glance.base.files import files_below, object_files, replace_folder, sha256, write_json
 
 from .code import stage_digest
-from .objects import ItemRows, KeptRows, Objects, archive, item_key, key_of
-from .parallel import Task, finished, parallel_map
+from .objects import Objects, archive, item_key, key_of
+from .parallel import finished, parallel_map
 from .rows import SUFFIX, write_rows
 from .settings import Workspace
 
 Rows = Sequence[dict[str, Any]]
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Task:
+    """An item of a call of `StageRun.each`.
+
+    name: another one for each item. value: what the function works on. files: all that it may read of data/ and of its
+    stage. key: the hash of all that it comes from.
+    """
+
+    name: str
+    value: Any
+    files: tuple[Path, ...]
+    key: str
 
 
 class StageRun:
@@ -59,8 +72,8 @@ class StageRun:
         self.target = workspace.data / stage
         self.inputs = [workspace.data / name for name in inputs]
         self.folder = workspace.build / "partial" / workspace.dataset / stage
-        self._alone = alone(self.folder.with_name(f"{stage}.lock"), f"{stage} {workspace.dataset}")
-        self.rows = KeptRows()
+        self._lock = exclusive_lock(self.folder.with_name(f"{stage}.lock"), f"{stage} {workspace.dataset}")
+        self.rows: list[dict[str, Any]] = []
 
     def __enter__(self) -> "StageRun":
         for folder in self.inputs:
@@ -70,7 +83,7 @@ class StageRun:
         self.target.parent.mkdir(parents=True, exist_ok=True)
         if not os.access(self.target.parent, os.W_OK):  # said before hours of work, not after them
             raise ValueError(f"{self.target.parent} cannot be written to: make it writable, or mount it so")
-        self._alone.__enter__()
+        self._lock.__enter__()
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         return self
@@ -86,8 +99,8 @@ class StageRun:
         names: Iterable[str] | Mapping[str, Any],
         reads: Sequence[str] = (),
         made_of: Mapping[str, str] | None = None,
-    ) -> KeptRows:
-        """Runs process(name, folder) -> rows over the names, side by side; returns all rows in order, from the disk.
+    ) -> list[dict[str, Any]]:
+        """Runs process(name, folder) -> rows over the names, in parallel; returns all rows in order.
 
         names: a mapping hands its values to `process` instead of the names; made_of must then tell the values apart.
 
@@ -102,38 +115,29 @@ class StageRun:
         else tells its input apart, such as the hash of a source file.
         """
         values: Mapping[str, Any] = names if isinstance(names, Mapping) else {name: name for name in names}
-        selection = _few.get()
-        values = selection.of(values) if selection else values
         arguments = process.keywords if isinstance(process, functools.partial) else {}
         function = process.func if isinstance(process, functools.partial) else process
-        stage = self.stage if _is_of_stages(function) else ""
-        call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", arguments)
+        code = stage_digest(self.stage) if _is_of_stages(function) else ""
+        call = key_of(code, f"{function.__module__}.{function.__qualname__}", arguments)
         tasks = self._tasks(call, values, reads, made_of or {})
-        root, desc = self.workspace.root, f"{self.stage} {self.dataset}"
-        work = functools.partial(make, process, root, self.dataset)
-        with Objects(self.workspace.build / "objects") as objects:
-            rows = ItemRows(self.folder.parent, values)
-            missing = [task for task in tasks if not self._taken(task, objects, rows)]  # before any worker starts
-            for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
-                objects.keep(task.key, content)
-                shutil.rmtree(scratch(root, self.dataset, task), ignore_errors=True)
-                if not self._taken(task, objects, rows):
-                    raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
-        self.rows += rows
-        if selection:
-            selection.rows += list(rows)
-        return rows
+        objects = Objects(self.workspace.build / "objects")
+        rows = {task.name: objects.take(task.key, self.folder) for task in tasks}
+        missing = [task for task in tasks if rows[task.name] is None]
+        work = functools.partial(make, process, self.workspace.root, self.dataset)
+        for task, content in finished(work, missing, f"{self.stage} {self.dataset}", **self.workspace.parallel):
+            objects.keep(task.key, content)
+            shutil.rmtree(scratch(self.workspace.root, self.dataset, task), ignore_errors=True)
+            rows[task.name] = objects.take(task.key, self.folder)
+            if rows[task.name] is None:
+                raise OSError(f"{objects.folder} does not keep what is written to it")
+        objects.trim()
+        listed = [row for task in tasks for row in rows[task.name] or ()]
+        self.rows += listed
+        return listed
 
     def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
-        """[function(item) for item in items], side by side as params.yaml says, in the order of the items."""
+        """[function(item) for item in items], in parallel as params.yaml says, in the order of the items."""
         return parallel_map(function, items, f"{self.stage} {self.dataset}", **self.workspace.parallel)
-
-    def _taken(self, task: Task, objects: Objects, rows: ItemRows) -> bool:
-        """Whether an item's files and rows are kept; then they are taken from there."""
-        item_rows = objects.take(task.key, self.folder)
-        if item_rows is not None:
-            rows.put(task.name, item_rows)
-        return item_rows is not None
 
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
@@ -143,8 +147,7 @@ class StageRun:
         for name, value in values.items():
             files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
             key = item_key(call, name, {file: digest(path) for file, path in files.items()}, made_of.get(name, ""))
-            below = {os.path.relpath(path, self.workspace.root): digest(path) for path in files.values()}
-            tasks.append(Task(name, value, below, key))
+            tasks.append(Task(name, value, tuple(files.values()), key))
         return tasks
 
     def _files(self, declared: str) -> Iterator[tuple[str, Path]]:
@@ -170,34 +173,7 @@ class StageRun:
                 write_rows(path, self.rows, self.columns, self.dataset, self.seed)
                 replace_folder(self.folder, self.target)
         finally:
-            self._alone.__exit__(None, None, None)
-
-
-@dataclass
-class Few:
-    """The first `count` items of every call of `StageRun.each`, their rows, and whether a call had more items."""
-
-    count: int
-    rows: list[dict[str, Any]] = field(default_factory=list)
-    cut: bool = False
-
-    def of(self, values: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The first items of a call."""
-        self.cut = self.cut or len(values) > self.count
-        return dict(islice(values.items(), self.count))
-
-
-_few: ContextVar[Few | None] = ContextVar("few", default=None)
-
-
-@contextmanager
-def first_items(few: Few) -> Iterator[None]:
-    """Inside the block, stages run on their first items alone."""
-    token = _few.set(few)
-    try:
-        yield
-    finally:
-        _few.reset(token)
+            self._lock.__exit__(None, None, None)
 
 
 def object_names(workspace: Workspace) -> list[str]:
@@ -212,20 +188,17 @@ def _is_of_stages(function: Callable[..., Any]) -> bool:
 DATA, PARTIAL, SCRATCH = "data", "build/partial", "build/scratch"  # below the root
 
 
-def make(
-    process: Callable[[Any, Path], Sequence[dict[str, Any]]], home: Path, dataset: str, task: Task, root: Path
-) -> bytes:
+def make(process: Callable[[Any, Path], Sequence[dict[str, Any]]], root: Path, dataset: str, task: Task) -> bytes:
     """The archive (stages.engine.objects) of the rows and files of process(task.value, folder).
 
-    home: the root that paths among the arguments of `process` lie below; they are moved to `root`. The folder is named
-    by what the item comes from, so that a killed run finds again what it left there, and by the data set: two sets with
-    an object in common may run the same stage at the same time.
+    The folder is named by what the item comes from, so that a killed run finds again what it left there, and by the
+    data set: two sets with an object in common may run the same stage at the same time.
     """
     folder = scratch(root, dataset, task)
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        with only_reads([root / DATA, root / PARTIAL], [root / path for path in task.files]):
-            rows = _moved(process, home, root)(task.value, folder)
+        with only_reads([root / DATA, root / PARTIAL], task.files):
+            rows = process(task.value, folder)
     except ValueError as error:
         raise ValueError(f"{task.name}: {error}") from error
     return archive(rows, folder)
@@ -234,14 +207,6 @@ def make(
 def scratch(root: Path, dataset: str, task: Task) -> Path:
     """The folder that one item of one data set is made in."""
     return root / SCRATCH / dataset / task.key
-
-
-def _moved(process, home, root):
-    if root == home or not isinstance(process, functools.partial):
-        return process
-    paths = {name: value for name, value in process.keywords.items() if isinstance(value, Path)}
-    new_paths = {name: root / path.relative_to(home) for name, path in paths.items() if path.is_relative_to(home)}
-    return functools.partial(process, **new_paths)
 
 
 _allowed: ContextVar[tuple[list[Path], set[Path]] | None] = ContextVar("allowed", default=None)
@@ -279,10 +244,12 @@ def _check(event: str, arguments: tuple[Any, ...]) -> None:
 
 
 @contextmanager
-def alone(path: Path, who: str) -> Iterator[None]:
+def exclusive_lock(path: Path, owner: str) -> Iterator[None]:
     """Inside the block no other process is in a block of the same lock file; a second one says so, and waits.
 
-    who: names the waiting run on the screen. The system frees the lock when its process and all forks of it have ended.
+    Where DVC was killed, the stage that it started may still run while the next run of DVC starts the same stage.
+    owner: names the waiting run on the screen. The system frees the lock when its process and all forks of it have
+    ended.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)  # not filelock, which lets go of it in forked processes
@@ -290,7 +257,7 @@ def alone(path: Path, who: str) -> Iterator[None]:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            print(f"{who}: waits for another run of the same to end", file=sys.stderr)
+            print(f"{owner}: waits for another run of the same to end", file=sys.stderr)
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield
         fcntl.flock(lock, fcntl.LOCK_UN)

@@ -20,6 +20,7 @@ from yaml import YAMLError
 from haptic_glance.base.errors import errors_in_one_line
 
 FILE = Path("params.yaml")
+CODE = Path("code.yaml")  # {stage: digest of its code}, by stages.code
 COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
 
 REMEDIES = {"Integer": "give a whole number", "Float": "give a number", "bool": "write true or false",
@@ -259,7 +260,7 @@ class Workspace:
 
     @property
     def build(self) -> Path:
-        """The files that may be deleted at any time: digests of code, the cache of objects, unfinished runs."""
+        """The files that may be deleted at any time: the cache of objects, unfinished runs."""
         return self.root / "build"
 
     @cached_property
@@ -279,7 +280,7 @@ class Workspace:
 
     @property
     def parallel(self) -> dict[str, Any]:
-        """How items run side by side: backend and workers."""
+        """How items run in parallel: backend and workers."""
         return self.params.get("parallel", {})
 
     @property

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from stages.engine.names import method_name
 from stages.engine.settings import setting
+from stages.salient_points import method_names
 
 COLUMNS = {
     "likelihood": "what the belief is computed from: a name of haptic_glance.know.LIKELIHOODS",
@@ -25,7 +25,7 @@ class Params:
     methods: list[str] = setting(
         ["thesis_ssim", "glance", "random"],
         "of imprints.methods: where the objects may be touched",
-        names=method_name,
+        names=method_names,
     )
     confidences: list[float] = setting(
         [0.6, 0.8, 0.9, 0.95, 0.99],

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from stages.engine.names import method_name
 from stages.engine.settings import REQUIRED, setting
+from stages.salient_points import method_names
 
 
 def _contact():
@@ -19,7 +19,7 @@ class Params:
     methods: list[str] = setting(
         REQUIRED,
         "of salient_points, at whose points the object is touched",
-        names=method_name,
+        names=method_names,
     )
     cells: list[int] = setting(REQUIRED, "rows and columns of the array; T4.3 has 16 x 16 and 32 x 32", least=1)
     pitch: float = setting(

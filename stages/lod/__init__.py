@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from stages.engine.names import viewpoints
 from stages.engine.settings import REQUIRED, setting
+from stages.views import viewpoint_names
 
 COLUMNS = {
     "target": "the face count asked for, as in the settings",
@@ -60,7 +60,7 @@ class Params:
     viewpoints: str = setting(
         "twelve",
         "named set for the SSIM error: twelve (T figure 3.2) or four",
-        names=viewpoints,
+        names=viewpoint_names,
     )
     size: list[int] = setting([225, 300], "rows, columns of the pictures for the SSIM error", least=1)
     shrink: bool = setting(

@@ -1,8 +1,8 @@
 """Finds the salient points of a data set."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from stages.engine.names import method_name
 from stages.engine.settings import REQUIRED, setting
 
 
@@ -12,6 +12,13 @@ def _selection():
     return SELECTIONS
 
 
+def method_names() -> Callable[[str], object]:
+    """The function that refuses a name that no method of salient points has."""
+    from haptic_glance.look.points.methods import method_named
+
+    return method_named
+
+
 @dataclass
 class Params:
     """The methods that find the points, and their number."""
@@ -19,7 +26,7 @@ class Params:
     methods: list[str] = setting(
         REQUIRED,
         "names of METHODS in haptic_glance/look/points/methods.py",
-        names=method_name,
+        names=method_names,
     )
     count: int = setting(60, "points (touches) an object and method", least=1)
     selection: str = setting(

@@ -14,7 +14,6 @@ from pathlib import Path
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.lod.scene.chain import build_lod_chain
 from haptic_glance.lod.task import variant
-from stages.engine.objects import KeptRows
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
@@ -71,7 +70,7 @@ def run(workspace: Workspace) -> None:
         rows = [*stage.each(functools.partial(measure, **common), cases, [*files, LEVELS], values)]
         network = functools.partial(measure_network, **common, others=other_objects)
         rows += stage.each(network, cases, [*files, *learned_from, LEVELS, PLAN], values)
-        stage.rows = KeptRows([{"group": settings.name} | row for row in stage.rows])
+        stage.rows = [{"group": settings.name} | row for row in stage.rows]
         stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
         export(stage.folder, data, scene, settings)
         numbers = summary(rows)

@@ -1,14 +1,22 @@
 """Stability: what each method still finds when the mesh, the light or the image changes, and where it breaks."""
 
+from collections.abc import Container
 from dataclasses import dataclass
 
-from stages.engine.names import method_name, perturbations
 from stages.engine.settings import setting
+from stages.salient_points import method_names
 
 COLUMNS = {
     "perturbation": "how the object, the light or the image was disturbed; none: as it is",
     "severity": "how much, in the perturbation's unit",
 }
+
+
+def perturbation_names() -> Container[str]:
+    """Disturbances of objects, light and pictures."""
+    from haptic_glance.disturb.objects import PERTURBATIONS
+
+    return PERTURBATIONS
 
 
 @dataclass
@@ -23,7 +31,7 @@ class Params:
     methods: list[str] = setting(
         ["glance", "glance_any_pose", "itti", "thesis_ssim", "mesh_saliency", "harris", "random"],
         "names of METHODS in haptic_glance/look/points/methods.py",
-        names=method_name,
+        names=method_names,
     )
     count: int = setting(
         30,
@@ -55,7 +63,7 @@ class Params:
             "image_size",
         ],
         "names of haptic_glance.disturb.objects.PERTURBATIONS",
-        names=perturbations,
+        names=perturbation_names,
     )
     severities: dict[str, list[float]] = setting(
         {
@@ -79,5 +87,5 @@ class Params:
             "image_size": [0.75, 0.5, 0.33],  # share of the rows
         },
         "of each perturbation, in its own unit, from mild to harsh",
-        names=perturbations,
+        names=perturbation_names,
     )

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from stages.engine.names import classifiers
+from stages.classification import classifier_names
 from stages.engine.settings import setting
 
 COLUMNS = {
@@ -33,7 +33,7 @@ class Params:
 
     set: str = setting("six", "the set of classification.sets whose objects are recognised")
     method: str = setting("glance", "where the objects are touched: a method of imprints.methods")
-    classifiers: list[str] = setting(["knn", "svm"], "names of haptic_glance.know.CLASSIFIERS", names=classifiers)
+    classifiers: list[str] = setting(["knn", "svm"], "names of haptic_glance.know.CLASSIFIERS", names=classifier_names)
     severities: dict[str, list[float]] = setting(
         {
             "localisation": [0.01, 0.02, 0.04, 0.08, 0.16],  # units; the array is 0.16 wide

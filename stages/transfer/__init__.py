@@ -1,8 +1,8 @@
 """Trains networks on the touches of a data set (T chapter 5)."""
 
+from collections.abc import Container
 from dataclasses import dataclass
 
-from stages.engine.names import networks
 from stages.engine.settings import setting
 
 COLUMNS = {
@@ -51,6 +51,13 @@ def _hybrid_severities():
     return KNOWN
 
 
+def network_names() -> Container[str]:
+    """Networks for photographs."""
+    from haptic_glance.deep.network import NETWORKS
+
+    return NETWORKS
+
+
 @dataclass
 class Params:
     """Section `transfer` of params.yaml."""
@@ -73,7 +80,7 @@ class Params:
     networks: dict[str, list[str]] = setting(
         {"mobilenet_v2": ["frozen", "finetuned", "18:139"]},
         "network: trained part: new head (frozen), all (finetuned), all but a range",
-        names=networks,
+        names=network_names,
     )
     weights: list[str] = setting(
         ["imagenet", "random"],
@@ -83,7 +90,7 @@ class Params:
     uncontrolled: list[str] = setting(
         [],
         "networks that are not trained from random weights, for the cost",
-        names=networks,
+        names=network_names,
     )
     source: str = setting(
         "package",

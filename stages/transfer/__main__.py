@@ -16,7 +16,6 @@ from pathlib import Path
 
 from haptic_glance.base.files import read_mesh
 from haptic_glance.deep.weights import imagenet_state
-from stages.engine.objects import KeptRows
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes.collect import read_classes
@@ -59,7 +58,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     rows = stage.each(work, [*(training.name for training in planned.trials), *hybrids], reads=MADE)
     trained = [trial_row(row, planned.pretrained, settings) for row in rows if "trial" in row]
     stitched = [row | seen(of_hybrids(settings)) for row in rows if "trial" not in row]
-    stage.rows = KeptRows(trained, stitched)
+    stage.rows = [*trained, *stitched]
     metrics = summary(trained, stage.seed)
     if hybrids:
         metrics["hybrid"] = hybrid.summary(stitched, settings, stage.seed)

@@ -1,9 +1,9 @@
 """Renders the views of a data set."""
 
+from collections.abc import Container
 from dataclasses import dataclass, field
 
 from haptic_glance.look.views.view import Material
-from stages.engine.names import viewpoints
 from stages.engine.settings import setting
 
 COLUMNS = {"viewpoint": "name of the viewpoint", "views": "how many views together, this one the last"}
@@ -21,6 +21,13 @@ def _background():
     return BACKGROUNDS
 
 
+def viewpoint_names() -> Container[str]:
+    """Named sets of viewpoints."""
+    from haptic_glance.look.views.viewpoints import VIEWPOINTS
+
+    return VIEWPOINTS
+
+
 @dataclass
 class Params:
     """Section `views` of params.yaml."""
@@ -28,7 +35,7 @@ class Params:
     viewpoints: str = setting(
         "twelve",
         "named set: twelve (T figure 3.2), principal (+-y and +-z, T3.1.2) or four (all round)",
-        names=viewpoints,
+        names=viewpoint_names,
     )
     size: list[int] = setting([900, 1200], "rows, columns of an image; the object spans 858.7 of 900 rows", least=1)
     renderer: str = setting(

@@ -1,7 +1,6 @@
 """The tutorials and examples of the documentation: they run, they are short, and they draw something."""
 
 import ast
-import re
 import runpy
 import socket
 import sys
@@ -18,8 +17,6 @@ plt = pytest.importorskip("matplotlib.pyplot")
 DOCS = Path(__file__).parents[2] / "docs"
 EXAMPLES = sorted((DOCS / "examples").glob("*/*.py"))
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.py"))
-SHOWN_ONLY = "cluster"  # needs a cluster; filename_pattern of docs/conf.py leaves it out as well
-RUN = [path for path in EXAMPLES + TUTORIALS if path.stem != SHOWN_ONLY]
 
 
 def name(path):
@@ -47,7 +44,7 @@ def without_network(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", RUN, ids=name)
+@pytest.mark.parametrize("path", EXAMPLES + TUTORIALS, ids=name)
 def test_it_runs_and_draws(path, without_network, monkeypatch, tmp_path):
     drawn = []
     monkeypatch.setattr(plt, "show", lambda: drawn.extend(plt.get_fignums()) or plt.close("all"))
@@ -62,20 +59,11 @@ def test_it_runs_and_draws(path, without_network, monkeypatch, tmp_path):
 
 
 def test_there_are_short_examples_that_begin_with_a_title_and_a_text():
-    assert len(EXAMPLES) >= 20 and len(TUTORIALS) == 7
+    assert len(EXAMPLES) >= 20 and len(TUTORIALS) == 6
     for path in EXAMPLES + TUTORIALS:
         title, rule, empty, *text = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()
         assert set(rule) == {"="} and len(rule) == len(title) and not empty and len(" ".join(text)) > 60, path
     assert all(8 <= len(code_lines(path)) <= 45 for path in EXAMPLES)
-
-
-def test_the_cluster_page_names_settings_that_exist():
-    text = (DOCS / "tutorials" / f"{SHOWN_ONLY}.py").read_text(encoding="utf-8")
-    compile(text, SHOWN_ONLY, "exec")
-    settings = re.findall(r"\b(parallel|classifier)=(\w+)", text)
-    assert settings and all((DOCS.parent / "conf" / group / f"{option}.yaml").is_file() for group, option in settings)
-    conf = (DOCS / "conf.py").read_text(encoding="utf-8")
-    assert f"(?!{SHOWN_ONLY})" in conf
 
 
 @pytest.mark.parametrize("path", TUTORIALS, ids=name)
@@ -85,6 +73,6 @@ def test_a_tutorial_says_what_it_needs(path):
     names += [alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names]
     tops = {module.partition(".")[0] for module in names if module}
     needed = {EXTRAS[top] for top in tops if top in EXTRAS} | ({"pipeline"} if "stages" in tops else set())
-    most = next(extra for extra in ("cluster", "pipeline", "pictures") if extra in needed)  # each includes the next
+    most = next(extra for extra in ("pipeline", "pictures") if extra in needed)  # each includes the next
     text = ast.get_docstring(tree) or ""
     assert f"[{most}]'``" in text and ("Needs a clone" in text) == (most != "pictures") and "without a network" in text

@@ -1,9 +1,7 @@
-"""Faults: full disks, a damaged index, two runs at once, a cut network: nothing is lost, and one line says it."""
+"""Faults: full disks, two runs at once, a cut network: nothing is lost, and one line says it."""
 
 import errno
-import json
 import os
-import sqlite3
 import subprocess
 import sys
 import threading
@@ -16,7 +14,6 @@ from haptic_glance.base import files
 from haptic_glance.base.errors import errors_in_one_line
 from stages.engine.objects import Objects, archive
 from stages.engine.run import StageRun
-from stages.repro import forget_killed, run_alone
 
 
 def full(*_):
@@ -70,23 +67,21 @@ def test_a_broken_pipe_that_is_not_the_output_has_its_line(monkeypatch, capsys):
     assert capsys.readouterr().err == "demo: [Errno 32] Broken pipe\n"
 
 
-@pytest.mark.parametrize(
-    ("code", "number"), [(sqlite3.SQLITE_FULL, errno.ENOSPC), (sqlite3.SQLITE_READONLY, errno.EROFS)]
-)
-def test_a_full_or_read_only_disk_is_no_damage_of_the_cache(code, number, tmp_path, monkeypatch):
-    kept = Objects(tmp_path / "cache")
-    kept.keep("k", archive([{"value": 1}], tmp_path / "none"))
+def test_an_object_that_cannot_be_kept_names_the_full_disk(tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(OSError, match="No space left on device: .*ke/key.zip"):
+        Objects(tmp_path).keep("key", b"")
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
-    def refuse(*_, **__):
-        error = sqlite3.OperationalError("refused")
-        error.sqlite_errorcode = code
-        raise error
 
-    with monkeypatch.context() as patched:
-        patched.setattr("diskcache.Cache.get", refuse)
-        with pytest.raises(OSError, match="cache") as error:
-            kept.take("k", tmp_path / "to")
-    assert error.value.errno == number and kept.take("k", tmp_path / "to") == [{"value": 1}]
+def test_what_was_not_used_for_longest_goes_first_when_the_cache_is_full(tmp_path):
+    objects, content = Objects(tmp_path / "cache"), archive([{"value": 1}], tmp_path / "none")
+    for number, key in enumerate("abc"):
+        objects.keep(key, content)
+        os.utime(objects.folder / key / f"{key}.zip", (number, number))
+    assert objects.take("a", tmp_path) == [{"value": 1}]
+    objects.trim(2 * len(content))
+    assert [objects.take(key, tmp_path) for key in "abc"] == [[{"value": 1}], None, [{"value": 1}]]
 
 
 def test_a_data_folder_that_cannot_be_written_to_is_named_before_any_work(workspace, monkeypatch):
@@ -150,50 +145,3 @@ def test_a_failed_run_leaves_the_place_free(workspace):
     for _ in range(2):
         with pytest.raises(ZeroDivisionError), StageRun(workspace, "views"):  # a lock held twice is a RuntimeError
             raise ZeroDivisionError
-
-
-@pytest.mark.parametrize("text", ['{"write": {', "", "[]", '{"read": {"a": [{"pid": 1}]}}'])
-def test_a_damaged_list_of_dvcs_runs_is_removed(text, tmp_path):
-    (tmp_path / "rwlock").write_text(text)
-    forget_killed(tmp_path / "rwlock", "repro")
-    assert not (tmp_path / "rwlock").exists()
-    forget_killed(tmp_path / "rwlock", "repro")
-
-
-def test_dvc_forgets_the_stages_of_a_killed_run_and_no_others(tmp_path):
-    killed, other = {"pid": 1, "cmd": "repro"}, {"pid": 2, "cmd": "dvc repro"}
-    listed = {"read": {"a": [killed, other], "b": [killed]}, "write": {"c": killed, "d": other}}
-    (tmp_path / "rwlock").write_text(json.dumps(listed))
-    forget_killed(tmp_path / "rwlock", "repro")
-    assert json.loads((tmp_path / "rwlock").read_text()) == {"read": {"a": [other]}, "write": {"d": other}}
-
-
-@pytest.fixture
-def repository(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)  # DVC names stages by their place from here
-    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
-    (tmp_path / ".dvc").mkdir()
-    (tmp_path / ".dvc/config").write_text("[core]\n    analytics = false\n")
-    (tmp_path / "params.yaml").write_text("who: all\n")
-    (tmp_path / "dvc.yaml").write_text('stages:\n  a: {cmd: "echo ${who} > a", outs: [a]}\n')
-    return tmp_path
-
-
-@pytest.mark.slow
-def test_damaged_settings_are_named_with_the_remedy(repository):
-    (repository / "params.yaml").write_bytes(b"\x00garbage: [")
-    with pytest.raises(ValueError, match="params.yaml.*stages.compose"):
-        run_alone(Path("."))
-
-
-@pytest.mark.slow
-def test_half_a_dvc_lock_gives_way_to_the_last_sound_one(repository, capfd):
-    assert run_alone(Path(".")) == []
-    sound = (repository / "dvc.lock").read_text()
-    for damage in (b"", b"schema: '2.0'\nstages:\n  a:\n    cm", b"\xff"):
-        (repository / "dvc.lock").write_bytes(damage)
-        capfd.readouterr()
-        assert run_alone(Path(".")) == [] and (repository / "dvc.lock").read_text() == sound
-        captured = capfd.readouterr()
-        assert "dvc.lock is damaged" in captured.err and captured.out == ""  # no stage ran again
-        assert (repository / "build/damaged.lock").read_bytes() == damage

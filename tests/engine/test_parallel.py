@@ -1,11 +1,13 @@
-"""Work side by side: a budget of cores, one thread an item, seconds of the processor, and results alike."""
+"""Parallel work: one thread an item, seconds of the processor, and workers that end with their parent."""
 
-import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
+import psutil
 import pytest
 from joblib.externals.loky import process_executor
 
@@ -15,51 +17,7 @@ from stages.engine import parallel
 from stages.engine.parallel import GROWTH, parallel_map
 from stages.engine.rows import read_rows, write_rows
 
-PATIENCE = 300  # seconds, on a machine that does much else
-
-
-def hold(inside: Path) -> None:
-    with parallel.core():
-        inside.write_text("in")
-        time.sleep(2 * PATIENCE)
-
-
-def wait_for(condition) -> None:
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
-@pytest.mark.slow
-def test_no_more_processes_work_than_there_are_cores_and_a_killed_one_frees_its_core(tmp_path, monkeypatch):
-    monkeypatch.setattr(parallel, "cpu_count", lambda: 2)
-    with parallel.budget(tmp_path / "cores"):
-        places = [tmp_path / str(number) for number in range(3)]
-        context = multiprocessing.get_context("fork")
-        processes = [context.Process(target=hold, args=(place,)) for place in places]
-        try:
-            for process in processes:
-                process.start()
-            wait_for(lambda: sum(place.exists() for place in places) >= 2)
-            time.sleep(0.2)
-            inside = [place.exists() for place in places]
-            assert sum(inside) == 2
-            os.kill(processes[inside.index(True)].pid or 0, signal.SIGKILL)
-            wait_for(lambda: all(place.exists() for place in places))
-        finally:
-            for process in processes:
-                process.kill()
-                process.join()
-
-
-def test_a_budget_ends_with_its_block_and_without_one_nothing_waits(tmp_path, monkeypatch):
-    with parallel.budget(tmp_path):
-        assert os.environ[parallel.FOLDER] == str(tmp_path)
-    assert parallel.FOLDER not in os.environ
-    monkeypatch.setattr(parallel, "cpu_count", lambda: 0)
-    with parallel.core(), parallel.core():
-        pass
+ROOT = Path(__file__).parents[2]
 
 
 def noisy(name):
@@ -107,3 +65,65 @@ def test_rows_name_the_clock(tmp_path):
     write_rows(path, [{"metric": "faces", "value": 1, "seconds": 0.5}, {"metric": "faces", "value": 2}], {}, "set", 0)
     assert read_rows(path)["clock"].fillna("").tolist() == [clock(), ""]
     assert clock().startswith(CLOCK)
+
+
+PATIENCE = 60  # seconds, on a machine that does much else
+BUSY = """
+import os, sys, time
+from pathlib import Path
+from haptic_glance.base.errors import errors_in_one_line
+from stages.engine.parallel import finished
+
+def work(name):
+    Path(sys.argv[1], str(os.getpid())).touch()
+    time.sleep(600)
+
+if __name__ == "__main__":
+    errors_in_one_line("busy")
+    list(finished(work, [1, 2, 3], "busy", "loky", 2))
+"""
+
+
+def wait_for(condition):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+def test_a_signal_that_ends_a_stage_ends_its_busy_workers(number, tmp_path):
+    (tmp_path / "busy.py").write_text(BUSY)
+    (tmp_path / "workers").mkdir()
+    environment = os.environ | {"PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}"}
+    command = [sys.executable, "-m", "busy", str(tmp_path / "workers")]
+    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            wait_for(lambda: len(list((tmp_path / "workers").iterdir())) == 2)
+            process.send_signal(number)
+            process.wait(PATIENCE)
+            workers = [int(path.name) for path in (tmp_path / "workers").iterdir()]
+            wait_for(lambda: not any(map(psutil.pid_exists, workers)))
+        finally:
+            process.kill()
+    assert process.returncode == -number
+
+
+def test_one_worker_is_this_process():
+    assert parallel_map(abs, [-1, 2], "", "loky", 1) == [1, 2]
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_same_results_and_a_process_starts_one_for_all_its_maps(capsys):
+    pytest.importorskip("distributed", reason="the cluster extra is not installed")
+    names = ["a", "b", "c"]
+    try:
+        for _ in range(2):
+            assert parallel_map(noisy, names, "", "dask", 1) == parallel_map(noisy, names, "", "sequential")
+        assert capsys.readouterr().err.count("dask: dashboard http") == 1
+    finally:
+        client = parallel._client(1)
+        client.close()
+        client.cluster.close()
+        parallel._client.cache_clear()
