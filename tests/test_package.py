@@ -137,7 +137,7 @@ def test_what_a_mesh_of_ones_own_needs_runs_in_a_core_install(ball):
 def test_the_studio_needs_no_picture_table_or_learner():
     pytest.importorskip("viser")
     absent = without([*MODULES["pictures"], "pandas", "pywt", "sklearn"])
-    code = "from haptic_glance.studio import app, guard, mystery, opening, window\n"
+    code = "from haptic_glance.studio import app, guard, opening, window\n"
     process = python(f"{absent}\n{code}mystery.study(mystery.gather([], None, None, True, None)[0], True)")
     assert process.returncode == 0, process.stderr
 
