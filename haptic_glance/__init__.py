@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from haptic_glance.gallery.viewer import Shown, show
     from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, perceptual, to_trimesh, write_any
     from haptic_glance.lod.scene import Camera, Placed, Scene, budget, fly
     from haptic_glance.look.camera import Viewpoint
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
         shear,
     )
 
-    from .doors import Shown, load, repair, show, simplify
+    from .doors import load, repair, simplify
 
 __all__ = [
     "CHANNELS", "Camera", "Cloud", "Detection", "InfeasibleTarget", "Layer", "METHODS", "Mesh", "MeshError", "Placed",
@@ -77,7 +78,8 @@ _NAMES = {
     "haptic_glance.look.points": ("METHODS", "Detection", "detect", "find_points", "saliency"),
     "haptic_glance.lod.scene": ("Camera", "Placed", "Scene", "budget", "fly"),
     "haptic_glance.look.views": ("View", "render"),
-    "haptic_glance.doors": ("Shown", "load", "repair", "show"),
+    "haptic_glance.doors": ("load", "repair"),
+    "haptic_glance.gallery.viewer": ("Shown", "show"),
 }  # fmt: skip
 _MODULES = {name: module for module, names in _NAMES.items() for name in names}
 

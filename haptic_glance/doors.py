@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
-from html import escape
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -17,7 +16,6 @@ from haptic_glance.base.warner import warn_caller
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.lod.export import face_count
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
-from haptic_glance.lod.pictures import coloured
 from haptic_glance.lod.task import repaired
 from haptic_glance.mesh.axes import AUTO, AXES, Axis, axis_named
 from haptic_glance.mesh.files import WITH_UP, MeshLike, as_mesh, as_stated, with_known_up
@@ -396,51 +394,3 @@ def repair(mesh: MeshLike) -> Mesh:
     8
     """
     return repaired(as_stated(mesh))[0]
-
-
-class Shown:
-    """A rotatable mesh in a notebook.
-
-    Attributes
-    ----------
-    html : str
-        The page, which any browser can open.
-    """
-
-    def __init__(self, mesh: Mesh) -> None:
-        from trimesh.viewer.notebook import scene_to_html
-
-        scene = import_module("haptic_glance.lod").to_trimesh(mesh)
-        self.html: str = scene_to_html(scene.scene() if hasattr(scene, "scene") else scene)
-
-    def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="480" style="border: 0"></iframe>'
-
-
-def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
-    """Shows a rotatable mesh in a notebook.
-
-    Parameters
-    ----------
-    mesh : Mesh or any input of `as_mesh`
-        The mesh.
-    values : (n,) array_like, optional
-        One value per vertex, 0 or more, that colours the mesh from violet (low) to yellow (high).
-
-    Returns
-    -------
-    Shown
-        An object that notebooks draw.
-
-    Raises
-    ------
-    ValueError
-        For values of another shape, negative values, and values that are not finite.
-    """
-    model = as_mesh(mesh)
-    if values is not None:
-        values = np.asarray(values, dtype=np.float64)
-        if values.shape != (len(model.vertices),) or not ((values >= 0) & (values < np.inf)).all():
-            raise ValueError(f"values must be one per vertex, ({len(model.vertices)},), finite and 0 or more")
-        model = coloured(model, values)
-    return Shown(model)

@@ -11,7 +11,7 @@ from typing import Any
 
 import pandas as pd
 
-from haptic_glance.gallery.page import as_script
+from haptic_glance.gallery.viewer import as_script
 
 from .claims import Claim
 from .effects import sets_of

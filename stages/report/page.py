@@ -21,6 +21,7 @@ from PIL import Image
 from scipy.spatial import KDTree
 
 from haptic_glance.base.packing import SHADES, Level, ordered, pack, viewer_data
+from haptic_glance.gallery import viewer
 from haptic_glance.lod import vertex_errors
 from haptic_glance.lod.export import shown_mesh
 from haptic_glance.mesh.mesh import Mesh
@@ -95,9 +96,9 @@ def prose(text: str) -> str:
 
 
 def part(name: str) -> str:
-    """A file of the package's page folder, or of the viewer of meshes that the library's gallery has."""
-    folders = resources.files(__package__ or "") / "page", resources.files("haptic_glance.gallery") / "viewer"
-    return next(folder / name for folder in folders if (folder / name).is_file()).read_text(encoding="utf-8")
+    """A file of the package's page folder, or of the library's viewer of meshes."""
+    file = resources.files(__package__ or "") / "page" / name
+    return file.read_text(encoding="utf-8") if file.is_file() else viewer.part(name)
 
 
 def links(paths: list[Path]) -> str:
@@ -188,7 +189,7 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     place = KDTree(full.vertices)
     methods = [method for method in METHODS if method in points_by_method] or list(points_by_method)
     saliency = {
-        method: (label(method), vivid(values)[nearest])
+        method: (f"saliency: {label(method)}", vivid(values)[nearest])
         for method, values in results.saliency(name).items()
         if method in methods
     }

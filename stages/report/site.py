@@ -22,7 +22,8 @@ from matplotlib.figure import Figure as Drawing
 from haptic_glance.base.files import read_table, write_text
 from haptic_glance.cli.saliency import as_csv, points_of
 from haptic_glance.gallery.exhibit import Exhibit, Level
-from haptic_glance.gallery.page import as_script, build_page
+from haptic_glance.gallery.page import build_page
+from haptic_glance.gallery.viewer import as_script
 from haptic_glance.lod import vertex_errors
 from haptic_glance.lod.export import write_any
 from haptic_glance.lod.pictures import coloured, look

@@ -1,4 +1,4 @@
-"""Recognises the mesh on the table by touch: bars of belief that move with each touch, and the most telling next one."""
+"""Recognises the mesh on the table by touch: bars of belief that move with each touch, and a planner of touches."""
 
 from collections.abc import Sequence
 from pathlib import Path
