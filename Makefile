@@ -63,7 +63,6 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, scenes, impr
 	OMP_NUM_THREADS=1 python -m benchmarks.up_axis
 	OMP_NUM_THREADS=1 python -m benchmarks.deep_gaze
 	OMP_NUM_THREADS=1 python -m benchmarks.invariance
-	OMP_NUM_THREADS=1 python -m benchmarks.unknown $(psb)
 	python -m benchmarks.networks
 	python -m benchmarks.cluster
 	python -m benchmarks.pipeline
