@@ -258,28 +258,3 @@ def test_a_click_shows_what_is_felt_and_a_slider_changes_it(window):
 def newest(studio):
     """The studio's side of the page that was opened last."""
     return studio.windows[max(studio.windows)][1]
-
-
-def test_the_mesh_is_known_after_a_click_and_a_few_touches_of_the_planner(window, studio):
-    hand = window()
-    hand.reads("bulges out")
-    hand.choose("Know")
-    hand.page.locator('.bar[data-name="knob"]').wait_for()
-    know, scene = newest(studio).panel, newest(studio).scene
-    hand.click_until(lambda: len(know.exploration.images))
-    hand.page.get_by_role("button", name="Touch until it is known").click()
-    hand.reads("knob, after")
-    assert know.exploration.belief.known == "knob" and scene.has("/know/touched/0")
-    hand.choose("Look")
-    assert hand.until(lambda: scene.has("/mesh") and not scene.has("/know"))
-    hand.choose("Know")
-    hand.reads("knob, after")
-
-
-def test_a_planner_that_finds_no_place_says_so(window, monkeypatch):
-    monkeypatch.setattr("haptic_glance.know.exploration.Exploration.next_place", lambda self: None)
-    hand = window()
-    hand.choose("Know")
-    hand.page.locator('.bar[data-name="knob"]').wait_for()
-    hand.page.get_by_role("button", name="Touch until it is known").click()
-    hand.reads("No touch would help")
