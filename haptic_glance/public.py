@@ -73,7 +73,7 @@ def accepts_any_mesh(name: str, function: Callable[..., Any]) -> Callable[..., A
             _convert_metres(values, METRE_ARGUMENTS[name])
         return function(*bound.args, **bound.kwargs)
 
-    work.__module__ = __package__  # where pickle finds it
+    work.__module__ = "haptic_glance"  # where pickle finds it
     return work
 
 

@@ -138,7 +138,7 @@ def test_the_studio_needs_no_picture_table_or_learner():
     pytest.importorskip("viser")
     absent = without([*MODULES["pictures"], "pandas", "pywt", "sklearn"])
     code = "from haptic_glance.studio import app, guard, opening, window\n"
-    process = python(f"{absent}\n{code}mystery.study(mystery.gather([], None, None, True, None)[0], True)")
+    process = python(f"{absent}\n{code}from haptic_glance.know import learn, primitives\nlearn(primitives())")
     assert process.returncode == 0, process.stderr
 
 
