@@ -3,7 +3,7 @@
 Objects 0.1 m across: spheres of three face counts, and the meshes of the least, the middle and the most faces of
 data/household/meshes and of psb.zip. An array of 32 x 32 taxels, 1 mm apart, under 2 mm of foam, pressed
 0.5 mm deep at 40 random vertices, the same for all. Methods: `ours`, press_forces to that depth, all touches in one
-call; `ours_load`, to the load of that depth; `ours_single`, a call a touch; `ours_layout`, the same taxels as a layout;
+call; `ours_load`, to the load of that depth; `ours_single`, a call a touch;
 `mujoco`, the tactile sensor on a mesh of 32 x 32 vertices, below a box that collides: mj_fwdPosition, mj_fwdVelocity
 and mj_sensorVel after each move, which is what a reading needs of a step. It answers with a depth, by an octree of
 signed distances of default depth. The methods take turns, and `seconds` is the median of seven rounds on one core.
@@ -32,10 +32,8 @@ from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import (
     Layer,
-    Layout,
     Surface,
     gaps_at,
-    layout_forces,
     press_forces,
     sensor_axes,
     sensor_normals,
@@ -123,17 +121,10 @@ def timed(work):
     return time.process_time() - start
 
 
-def taxels():
-    """The Layout of the array."""
-    line = (np.arange(SIDE) - (SIDE - 1) / 2) * PITCH
-    x, y = (part.ravel() for part in np.meshgrid(line, -line))
-    return Layout(np.c_[x, y, 0 * x], np.tile([0, 0, -1.0], (len(x), 1)), np.full(len(x), PITCH**2))
-
-
 def object_rows(name, mesh):
     """Rows `build` and `rate` of one object."""
     vertices = rng(0, name).permutation(np.flatnonzero(touchable(mesh, np.arange(len(mesh.vertices)))))[:TOUCHES]
-    axes, cells, layout = sensor_axes(sensor_normals(mesh, vertices)), (SIDE, SIDE), taxels()
+    axes, cells = sensor_axes(sensor_normals(mesh, vertices)), (SIDE, SIDE)
     built, peer, note = {"ours": timed(lambda: Surface(mesh))}, None, ""
     surface, centres = Surface(mesh), mesh.vertices[vertices]
     gaps = gaps_at(surface, centres, axes, DEPTH, cells, PITCH)
@@ -154,7 +145,6 @@ def object_rows(name, mesh):
         "ours": lambda: press_forces(surface, centres, axes, LAYER, cells, PITCH, depth=DEPTH),
         "ours_load": lambda: press_forces(surface, centres, axes, LAYER, cells, PITCH, load=loads),
         "ours_single": one_by_one,
-        "ours_layout": lambda: layout_forces(mesh, centres, axes, LAYER, layout, depth=DEPTH),
     }
     if peer:
         works["mujoco"] = lambda: peer.touch(centres, axes)
@@ -179,7 +169,8 @@ def error_rows(name, mesh):
     """Rows `error` on a sphere, the array level above its middle."""
     radius, centre, axes = DIAMETER / 2, np.array([[0.0, 0, DIAMETER / 2 - DEPTH]]), np.eye(3)[None]
     felt = press_forces(mesh, centre, axes, LAYER, (SIDE, SIDE), PITCH, depth=DEPTH)[0]
-    x, y = taxels().positions[:, :2].T
+    line = (np.arange(SIDE) - (SIDE - 1) / 2) * PITCH
+    x, y = (part.ravel() for part in np.meshgrid(line, -line))
     known = np.maximum(np.sqrt(radius**2 - x**2 - y**2) - centre[0, 2], 0)
     errors = {"ours": np.abs(felt.ravel() / (LAYER.stiffness * PITCH**2) - known).max()}
     try:

@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from haptic_glance.gallery.viewer import Shown, show
     from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, perceptual, to_trimesh, write_any
     from haptic_glance.lod.scene import Camera, Placed, Scene, budget, fly
     from haptic_glance.look.camera import Viewpoint
@@ -40,23 +41,21 @@ if TYPE_CHECKING:
         follow,
         forces,
         gaps_at,
-        layout_forces,
         press,
         press_forces,
         press_many,
-        read_layout,
         sensor_axes,
         sensor_normals,
         shear,
     )
 
-    from .doors import Shown, load, repair, show, simplify
+    from .public import load, repair, simplify
 
 __all__ = [
     "CHANNELS", "Camera", "Cloud", "Detection", "InfeasibleTarget", "Layer", "METHODS", "Mesh", "MeshError", "Placed",
     "Scene", "Sequence", "Shown", "SimplifyError", "Surface", "View", "Viewpoint", "as_mesh", "budget", "clean",
-    "cloud_of_depth", "conspicuity", "detect", "find_points", "fly", "follow", "forces", "gaps_at", "layout_forces",
-    "load", "metro", "normalise", "perceptual", "press", "press_forces", "press_many", "read_layout", "render",
+    "cloud_of_depth", "conspicuity", "detect", "find_points", "fly", "follow", "forces", "gaps_at", 
+    "load", "metro", "normalise", "perceptual", "press", "press_forces", "press_many", "render",
     "repair", "rotate_to_z_up", "saliency", "sensor_axes", "sensor_normals", "shear", "show", "simplify", "surface_of",
     "to_trimesh", "write_any",
 ]  # fmt: skip
@@ -64,8 +63,8 @@ __all__ = [
 _NAMES = {
     "haptic_glance.look.channels": ("CHANNELS", "conspicuity"),
     "haptic_glance.touch": (
-        "Layer", "Sequence", "Surface", "follow", "forces", "gaps_at", "layout_forces", "press", "press_forces",
-        "press_many", "read_layout", "sensor_axes", "sensor_normals", "shear",
+        "Layer", "Sequence", "Surface", "follow", "forces", "gaps_at", "press", "press_forces",
+        "press_many", "sensor_axes", "sensor_normals", "shear",
     ),
     "haptic_glance.look.camera": ("Viewpoint",),
     "haptic_glance.lod": (
@@ -77,7 +76,8 @@ _NAMES = {
     "haptic_glance.look.points": ("METHODS", "Detection", "detect", "find_points", "saliency"),
     "haptic_glance.lod.scene": ("Camera", "Placed", "Scene", "budget", "fly"),
     "haptic_glance.look.views": ("View", "render"),
-    "haptic_glance.doors": ("Shown", "load", "repair", "show"),
+    "haptic_glance.public": ("load", "repair"),
+    "haptic_glance.gallery.viewer": ("Shown", "show"),
 }  # fmt: skip
 _MODULES = {name: module for module, names in _NAMES.items() for name in names}
 
@@ -93,8 +93,8 @@ def __getattr__(name: str) -> object:
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     member = getattr(import_module(_MODULES[name]), name)
-    doors = import_module("haptic_glance.doors")
-    globals()[name] = doors.door(name, member) if name in doors.MESHES else member
+    public = import_module("haptic_glance.public")
+    globals()[name] = public.accepts_any_mesh(name, member) if name in public.PATH_ARGUMENTS else member
     return globals()[name]
 
 

@@ -137,8 +137,8 @@ def test_what_a_mesh_of_ones_own_needs_runs_in_a_core_install(ball):
 def test_the_studio_needs_no_picture_table_or_learner():
     pytest.importorskip("viser")
     absent = without([*MODULES["pictures"], "pandas", "pywt", "sklearn"])
-    code = "from haptic_glance.studio import app, guard, mystery, opening, window\n"
-    process = python(f"{absent}\n{code}mystery.study(mystery.gather([], None, None, True, None)[0], True)")
+    code = "from haptic_glance.studio import app, guard, opening, window\n"
+    process = python(f"{absent}\n{code}from haptic_glance.know import learn, primitives\nlearn(primitives())")
     assert process.returncode == 0, process.stderr
 
 
@@ -194,9 +194,9 @@ def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
     (block,) = (node for node in tree.body if isinstance(node, ast.If))
     imports = [node for node in block.body if isinstance(node, ast.ImportFrom) and not node.level]
     seen = {alias.name: node.module for node in imports for alias in node.names}
-    (doors,) = (node for node in block.body if isinstance(node, ast.ImportFrom) and node.level)
-    seen |= {alias.name: "haptic_glance.doors" for alias in doors.names}
-    assert seen == haptic_glance._MODULES | {"simplify": "haptic_glance.doors"}
+    (public,) = (node for node in block.body if isinstance(node, ast.ImportFrom) and node.level)
+    seen |= {alias.name: "haptic_glance.public" for alias in public.names}
+    assert seen == haptic_glance._MODULES | {"simplify": "haptic_glance.public"}
     assert sorted(seen) == sorted(haptic_glance.__all__) == sorted({*dir(haptic_glance)} - {"__version__"})
     assert all(getattr(haptic_glance, name) is not None for name in seen)
     with pytest.raises(AttributeError, match="no attribute 'salience'"):

@@ -45,6 +45,11 @@ class Store:
         steps = ((SHADES - 1) * np.clip(values, 0, 1)).round().astype(np.int64)
         return self._add(np.diff(steps, prepend=0).astype(np.uint8), len(steps))
 
+    def put_colors(self, colors: np.ndarray) -> list[int]:
+        """Colours (n, 3) u1 as differences along the first axis."""
+        values = colors.astype(np.int64)
+        return self._add((np.diff(values, axis=0, prepend=0) % 256).ravel().astype(np.uint8), colors.size)
+
     def put_positions(self, vertices: np.ndarray) -> list[int]:
         """Vertices (n, 3) within -0.5..0.5, of a mesh from `ordered`."""
         return self.put_words((2 * STEPS * np.clip(vertices, -0.5, 0.5)).round())
@@ -83,12 +88,13 @@ def viewer_data(
 def pack(
     name: str, faces: int, full: Mesh, saliency: Mapping[str, tuple[str, np.ndarray]],
     points: Mapping[str, tuple[str, np.ndarray]], ladders: Mapping[str, tuple[str, Sequence[Level]]],
+    colors: np.ndarray | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """One object: a mesh from `ordered`, of an object of so many faces, and of it by method, with a label each.
 
     saliency: (n,) in 0..1; points: (k,) ids of its vertices; ladders: its Levels, finest first. All levels share one
     scale, `error_top` in % of the diagonal, so that the error is seen to grow along the slider; shades are its square
-    root.
+    root. colors (n, 3) u1: of its own, for an object without levels.
     """
     store = Store()
     levels = [level for _, ladder in ladders.values() for level in ladder]
@@ -100,6 +106,8 @@ def pack(
         key: {"label": text, "levels": [_level(level, top, store) for level in ladder]}
         for key, (text, ladder) in ladders.items()
     }
+    if colors is not None:
+        record["tints"] = store.put_colors(colors)
     return record | {"store": store.text()}
 
 

@@ -5,15 +5,12 @@ Add it once: `haptic-glance completion bash >> ~/.bashrc`, or `zsh` and `~/.zshr
 """
 
 import argparse
-import json
 import re
-import subprocess
-import sys
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
+from importlib import import_module
 
-OPTIONS = Path(__file__).with_name("options.json")  # {command: its long options}, of `write_options`
+from .arguments import command_parser
+
 BASH = """\
 _haptic_glance() {{
   local word=${{COMP_WORDS[COMP_CWORD]}}
@@ -30,33 +27,26 @@ FISH_COMMAND = "complete -c haptic-glance -n __fish_use_subcommand -f -a {comman
 FISH_OPTION = "complete -c haptic-glance -n '__fish_seen_subcommand_from {command}' -l {option}"
 
 
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    command = command_parser("completion", __doc__ or "")
+    command.add_argument("shell", choices=["bash", "zsh", "fish"])
+    return command
+
+
 def run(argv: Sequence[str]) -> None:
     """Prints the script of a shell."""
-    parser = argparse.ArgumentParser(
-        prog="haptic-glance completion", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("shell", choices=["bash", "zsh", "fish"])
-    shell = parser.parse_args(argv).shell
+    shell = parser().parse_args(argv).shell
     from haptic_glance.__main__ import COMMANDS
 
-    option_table = json.loads(OPTIONS.read_text())
-    options = {command: option_table.get(command, []) for command in COMMANDS}
+    options = {command: options_of(module) for command, module in COMMANDS.items()}
     print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
 
 
-def options_of(command: str) -> list[str]:
-    """The long options that the --help of a command lists; none where it needs an extra that is not installed."""
-    process = subprocess.run([sys.executable, "-m", "haptic_glance", command, "--help"], capture_output=True, text=True)
-    return sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", process.stdout, flags=re.MULTILINE)))
-
-
-def write_options() -> None:
-    """Asks every command for its --help, half a minute, and keeps the options; a test says when that is due."""
-    from haptic_glance.__main__ import COMMANDS
-
-    with ThreadPoolExecutor() as pool:
-        options = dict(zip(COMMANDS, pool.map(options_of, COMMANDS), strict=True))
-    OPTIONS.write_text(json.dumps(options, indent=1) + "\n")
+def options_of(module: str) -> list[str]:
+    """The long options that the --help of a command's module lists."""
+    text = import_module(module).parser().format_help()
+    return sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", text, flags=re.MULTILINE)))
 
 
 def bash(options: dict[str, list[str]]) -> str:

@@ -10,15 +10,21 @@ examples:
   haptic-glance points scan.stl --purpose touch --count 6
 """
 
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
 from .saliency import look_at, shared_parser
 
 
-def run(argv: Sequence[str]) -> None:
-    """Runs the command line `argv`, without the program's name."""
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
     command = shared_parser("points", __doc__ or "")
     command.add_argument("--out", dest="points", metavar="FILE", type=Path, help="write the points as CSV, too")
     command.set_defaults(out=None, picture=None, weights=None)
-    look_at(command.parse_args(argv))
+    return command
+
+
+def run(argv: Sequence[str]) -> None:
+    """Runs the command line `argv`, without the program's name."""
+    look_at(parser().parse_args(argv))

@@ -34,16 +34,22 @@ from .page import build_page
 LEVELS, COUNT, PAGE = "50%,25%,10%", 6, "index.html"
 
 
-def run(argv: Sequence[str]) -> int:
-    """Runs the command line `argv`, without the program's name; returns the exit status."""
-    command = parser("gallery", __doc__ or "")
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    command = command_parser("gallery", __doc__ or "")
     command.add_argument("meshes", metavar="FOLDER", type=Path, help="the folder of the meshes, or one file")
     command.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: FOLDER_gallery)")
     add_up(command)
     help_levels = "face counts or shares (default: 50%%,25%%,10%%)"
     command.add_argument("--levels", metavar="N,N,...", type=levels, default=levels(LEVELS), help=help_levels)
     command.add_argument("--count", metavar="N", type=int, default=COUNT, help="places a mesh (default: %(default)s)")
-    options = command.parse_args(argv)
+    command.add_argument("--json", action="store_true", help="print what was made as JSON")
+    return command
+
+
+def run(argv: Sequence[str]) -> int:
+    """Runs the command line `argv`, without the program's name; returns the exit status."""
+    options = parser().parse_args(argv)
     if options.count < 1:
         raise ValueError(f"--count {options.count}: give 1 or more")
     place = options.meshes.resolve()
@@ -51,13 +57,6 @@ def run(argv: Sequence[str]) -> int:
     out = options.out or Path(f"{name}_gallery")
     check_output_folder(out, options.meshes)
     return show("gallery", f"Gallery of {name}", options, out)
-
-
-def parser(name: str, about: str) -> argparse.ArgumentParser:
-    """The parser of `gallery` and `demo`; about: the text of --help."""
-    command = command_parser(name, about)
-    command.add_argument("--json", action="store_true", help="print what was made as JSON")
-    return command
 
 
 def show(name: str, title: str, options: argparse.Namespace, out: Path) -> int:

@@ -8,24 +8,32 @@ examples:
   haptic-glance demo --out page --json
 """
 
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
 from haptic_glance.base.files import check_folder
+from haptic_glance.cli.arguments import command_parser
 from haptic_glance.lod.export import levels
 
-from .command import COUNT, LEVELS, commands, parser, show
+from .command import COUNT, LEVELS, commands, show
 
 SAMPLE = "dromedary.glb"
 
 
-def run(argv: Sequence[str]) -> int:
-    """Runs the command line `argv`, without the program's name; returns the exit status."""
-    command = parser("demo", __doc__ or "")
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    command = command_parser("demo", __doc__ or "")
     text = "output folder (default: %(default)s)"
     command.add_argument("--out", metavar="FOLDER", type=Path, default=Path("haptic_glance_demo"), help=text)
     command.set_defaults(meshes=sample(), up=None, count=COUNT, levels=levels(LEVELS))
-    options = command.parse_args(argv)
+    command.add_argument("--json", action="store_true", help="print what was made as JSON")
+    return command
+
+
+def run(argv: Sequence[str]) -> int:
+    """Runs the command line `argv`, without the program's name; returns the exit status."""
+    options = parser().parse_args(argv)
     check_folder(options.out, f"--out {options.out}")
     status = show("demo", "Haptic Glance: a demo", options, options.out)
     if not options.json:

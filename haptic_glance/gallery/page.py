@@ -2,7 +2,6 @@
 
 import base64
 import io
-import json
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib import resources
@@ -23,8 +22,9 @@ from haptic_glance.lod.task import number
 from haptic_glance.mesh import rotate_to_z_up
 
 from .exhibit import Exhibit
+from .viewer import MOST, as_script, part
 
-MOST, LEAST, ALL = 20_000, 2_000, 160_000  # faces of a turnable mesh, and of all on a page: some 2 MB
+LEAST, ALL = 2_000, 160_000  # faces of a turnable mesh at least, and of all on a page: some 2 MB
 WIDE = 480  # pixels of a picture
 
 
@@ -39,15 +39,13 @@ def build_page(
     faces = int(np.clip(ALL // max(len(exhibits), 1), LEAST, MOST))
     colours = viridis(np.linspace(0, 1, SHADES))
     package = resources.files(__package__ or "")
-    shared = package / "viewer"  # the report shows its meshes with the same files
-    viewer = (shared / "viewer.html").read_text("utf-8").replace('data-first="error"', 'data-first="glance"')
     words = {
         "title": escape(title),
-        "style": (shared / "page.css").read_text("utf-8") + (package / "page.css").read_text("utf-8"),
-        "script": (shared / "viewer.js").read_text("utf-8"),
+        "style": part("page.css") + (package / "page.css").read_text("utf-8"),
+        "script": part("viewer.js"),
         "failures": failures_html(failures),
         "contents": contents_html(exhibits),
-        "viewer": viewer,
+        "viewer": part("viewer.html").replace('data-first="error"', 'data-first="glance"'),
         "meshes": "".join(exhibit_html(k, item, out) for k, item in enumerate(exhibits)) + more,
         "commands": escape("\n".join(commands)),
         "data": as_script(viewer_data([turnable(item, faces) for item in exhibits], colours)),
@@ -70,7 +68,7 @@ def turnable(item: Exhibit, faces: int) -> dict[str, Any]:
         Drawn(shown_mesh(rotate_to_z_up(level.mesh), faces)[0], level.error[nearest], len(level.mesh.faces))
         for level in item.levels
     ]
-    saliency, ladders = ("glance", vivid(item.saliency)[nearest]), ("saliency as weight", ladder)
+    saliency, ladders = ("saliency: glance", vivid(item.saliency)[nearest]), ("saliency as weight", ladder)
     layers = {"glance": saliency}, {"glance": ("the most salient", points)}, {"glance": ladders}
     return pack(item.name, len(item.touched.mesh.faces), full, *layers)
 
@@ -159,8 +157,3 @@ def data_uri(image: np.ndarray, wide: int | None = None) -> str:
         picture.save(stream, "PNG")
     kind = "webp" if wide else "png"
     return f"data:image/{kind};base64,{base64.b64encode(stream.getvalue()).decode('ascii')}"
-
-
-def as_script(value: object) -> str:
-    """JSON that is safe inside a script element."""
-    return json.dumps(value, separators=(",", ":")).replace("</", "<\\/").replace("<!--", "<\\u0021--")

@@ -55,7 +55,7 @@ class Studio:
             time.sleep(0.1)
         name = uuid.uuid4().hex
         client.local_storage.set_item(ITEM, " ".join([*names, name][-4 * LEFT :]))
-        return name, Session(tour=None if names or self.settings.panel == "Mark" else 0)
+        return name, Session()
 
     def gone(self, client: viser.ClientHandle) -> None:
         """A window was closed or reloaded, or has lost the connection: its session waits for it."""

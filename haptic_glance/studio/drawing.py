@@ -20,7 +20,8 @@ DOT = 0.85  # of the pitch: a cell as it is drawn on the object
 
 def draw_array(scene: Scene, name: str, felt: Felt) -> None:
     """The outline of the array in its pose, and its cells where they met the object, in the colours of the grid."""
-    draw_line(scene, f"{name}/outline", np.concatenate([felt.corners, felt.corners[:1]]))
+    lines = np.stack([felt.corners, np.roll(felt.corners, -1, axis=0)], axis=1).astype(np.float32)
+    scene.api.add_line_segments(f"{name}/outline", lines, RED, thickness=THICK)
     draw_cells(scene, f"{name}/cells", felt)
 
 
@@ -34,12 +35,6 @@ def draw_cells(scene: Scene, name: str, felt: Felt) -> None:
         name, places, viridis(values), point_size=DOT * felt.pitch, point_shape="square", precision="float32",
         point_shading="flat",
     )  # fmt: skip
-
-
-def draw_line(scene: Scene, name: str, places: np.ndarray) -> None:
-    """A line through places (k, 3)."""
-    lines = np.stack([places[:-1], places[1:]], axis=1).astype(np.float32)
-    scene.api.add_line_segments(name, lines, RED, thickness=THICK)
 
 
 BARS = 8  # of the likeliest objects; the others are counted
@@ -60,16 +55,6 @@ def grid_html(pressed: np.ndarray, span: tuple[float, float], unit: str, words: 
         '<div style="display:flex;justify-content:space-between;max-width:15em;margin:auto;font-size:0.8em">'
         f'<span class="low">{low}</span><span>pressed harder →</span><span class="high">{high}</span></div>'
         f'<div class="words" style="font-size:0.8em;text-align:center">{escape(words)}</div></div>'
-    )
-
-
-def pair_html(picture: np.ndarray, imprint: np.ndarray) -> str:
-    """A picture (h, w, 3) in 0..1 beside an imprint (r, c) in 0..1 of which 0 is pressed hardest."""
-    pixels = np.rint(255 * picture).astype(np.uint8)
-    return "".join(
-        f'<div style="display:inline-block;width:46%;margin:0 2%;font-size:0.8em"><img class="{kind}" alt="{kind}" '
-        f'src="{source}" style="image-rendering:pixelated;width:100%"><br>{kind}</div>'
-        for kind, source in (("vision", data_uri(pixels)), ("touch", _source(1 - imprint)))
     )
 
 

@@ -31,7 +31,7 @@ class Session:
 
     count: of points, None for the method's own. kept: what a panel keeps of this mesh, by its title; it is emptied when
     another mesh comes. For a page that is loaded again: panel, the title of the one shown; controls, their values;
-    view, the camera's position (3,) and the place (3,) that it looks at. tour: its step, None where it has ended.
+    view, the camera's position (3,) and the place (3,) that it looks at.
     """
 
     specimen: Specimen | None = None
@@ -42,7 +42,6 @@ class Session:
     panel: str = ""
     controls: dict[str, dict[str, Any]] = field(default_factory=dict)
     view: tuple[np.ndarray, np.ndarray] | None = None
-    tour: int | None = None
 
     def put(self, specimen: Specimen) -> None:
         """Another mesh on the table, or the same one turned."""

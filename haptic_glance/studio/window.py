@@ -21,7 +21,6 @@ from .progress import Progress
 from .scene import BESIDE, MESH, Scene
 from .session import Session, Settings
 from .specimen import Look, Specimen
-from .tour import Tour
 
 
 class Window:
@@ -37,7 +36,6 @@ class Window:
             self.gui.main_panel.dock_right()
         self.scene.on_click(lambda *ray: self.run("", lambda: self.clicked(*ray)))
         self.progress = Progress(self.gui, self.on)
-        self.tour = Tour(self)
         self.opening = Opening(self, settings)
         bound_uploads(self.gui, self.opening.refuse)
         self.panels = [make(self) for make in PANELS]
@@ -149,16 +147,14 @@ class Window:
 
     def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
         """A click on the picture."""
-        target = self.panel.target()
-        if target is None:
+        specimen = self.session.specimen
+        if specimen is None:
             return
-        hit = target.pick(origin, direction)
+        hit = specimen.pick(origin, direction)
         if hit is None and self.session.other is not None:
-            hit = target.pick(origin - BESIDE, direction)
+            hit = specimen.pick(origin - BESIDE, direction)
         if hit is not None:
             self.panel.on_click(hit)
-        else:
-            self.panel.on_miss()
 
     def choose(self, title: str) -> None:
         """Shows one panel alone."""
@@ -169,7 +165,7 @@ class Window:
         for panel, folder in zip(self.panels, self.folders, strict=True):
             folder.visible = panel is new_panel
         self.session.panel = title
-        if new_panel.target() is not None:
+        if self.session.specimen is not None:
             self.run(new_panel.title, new_panel.on_show)
 
     def close(self) -> None:

@@ -3,7 +3,6 @@
 from .distances import CONTACTS, adaptive_distances, distances, distances_at
 from .follow import Sequence, contour, follow, follow_many
 from .force import forces, gaps_at, press_forces, shear
-from .layout import Layout, layout_forces, read_layout
 from .press import normalise, press, press_at, press_many, warm_up
 from .quasi_tangent import contour_imprints, quasi_tangent
 from .section import SectionCurve, snap_to_surface
@@ -11,8 +10,8 @@ from .skin import Layer, Skin, indent
 from .surface import Surface, sensor_axes, sensor_normals, touchable
 
 __all__ = [
-    "CONTACTS", "Layer", "Layout", "SectionCurve", "Sequence", "Skin", "Surface", "adaptive_distances", "contour",
+    "CONTACTS", "Layer", "SectionCurve", "Sequence", "Skin", "Surface", "adaptive_distances", "contour",
     "contour_imprints", "distances", "distances_at", "follow", "follow_many", "forces", "gaps_at", "indent",
-    "layout_forces", "normalise", "press", "press_at", "press_forces", "press_many", "quasi_tangent", "read_layout",
+    "normalise", "press", "press_at", "press_forces", "press_many", "quasi_tangent", 
     "sensor_axes", "sensor_normals", "shear", "snap_to_surface", "touchable", "warm_up",
 ]  # fmt: skip

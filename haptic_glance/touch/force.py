@@ -151,7 +151,6 @@ def forces(
     areas: ArrayLike,
     load: ArrayLike | None = None,
     depth: ArrayLike | None = None,
-    cosines: ArrayLike = 1.0,
 ) -> np.ndarray:
     """Forces along the normals of taxels under a layer.
 
@@ -168,8 +167,6 @@ def forces(
         `depth`.
     depth : float, str or (k,) array_like, optional
         Metres of approach after the first contact; `haptic_glance.forces` also takes a text such as "2mm".
-    cosines : float or array_like
-        Cosine of each taxel's normal to the approach, by which the layer is indented less.
 
     Returns
     -------
@@ -201,26 +198,22 @@ def forces(
         raise ValueError("gaps must have shape (k, ...), a row for each touch, got a number")
     if not (gaps > -np.inf).all():  # NaN fails as well
         raise ValueError("gaps must be numbers of metres, inf where nothing is in range")
-    areas, cosines = (_per_taxel(*pair, gaps.shape[1:]) for pair in (("areas", areas), ("cosines", cosines)))
-    _check_areas(areas)
-    if len(wrong := cosines[~((cosines >= 0) & (cosines <= 1))]):
-        raise ValueError(f"cosines must lie in 0..1, got {wrong[0]:g}")
+    _check_areas(areas := _per_taxel("areas", areas, gaps.shape[1:]))
     least = gaps.min(axis=tuple(range(1, gaps.ndim)), initial=np.inf)
-    weights = (layer.stiffness * areas * cosines**2).ravel()
+    weights = (layer.stiffness * areas).ravel()
     # From the first contact on: sums with the distance of an array that starts far away would round the depth off.
     near = gaps - np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
     if depth is not None:
         depths = checked_depths(depth, len(gaps))
     else:
         rows = near.reshape(len(gaps), weights.size)
-        facing = np.isfinite(rows[:, weights > 0]).any(axis=1)
         loads = _checked_loads(load, len(gaps))
-        _check_contact(facing)
+        _check_contact(np.isfinite(rows).any(axis=1))
         depths = depths_of_loads(rows, weights, loads, layer.thickness)
     _check_thickness(depths, layer)
     normal_forces = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
     np.maximum(normal_forces, 0.0, out=normal_forces)
-    normal_forces *= layer.stiffness * areas * cosines
+    normal_forces *= layer.stiffness * areas
     return normal_forces
 
 

@@ -9,7 +9,7 @@ from haptic_glance.mesh.mesh import Mesh
 
 from .distances import check_arrays, distances, distances_at
 from .kernels.faces import ORDER
-from .kernels.measure import BELOW_TAXELS, FIRST_BELOW, MEASURE, PRESS
+from .kernels.measure import FIRST_BELOW, MEASURE, PRESS
 from .surface import Surface
 
 FLAT = 1e-3  # of the pitch: relief below it is rounding of the mesh's coordinates
@@ -169,7 +169,7 @@ def normalise(distances: ArrayLike, pitch: ArrayLike) -> np.ndarray:
 @functools.cache
 def warm_up() -> None:
     """Touches a tetrahedron, once in a process: before time is measured, this loads or compiles machine code."""
-    for kernel in (ORDER, MEASURE, FIRST_BELOW, PRESS, BELOW_TAXELS):
+    for kernel in (ORDER, MEASURE, FIRST_BELOW, PRESS):
         kernel.compile_always()
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     press(Mesh(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])), 0)

@@ -12,8 +12,8 @@ from haptic_glance.mesh.files import MeshLike, with_known_up
 from haptic_glance.mesh.materials import merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
-from .kernels.faces import Taxels, face_tree
-from .kernels.measure import BELOW_TAXELS, FIRST_BELOW, MEASURE, PRESS
+from .kernels.faces import face_tree
+from .kernels.measure import FIRST_BELOW, MEASURE, PRESS
 
 FLAT = 1e-9  # of the cubed diagonal: a smaller volume is rounding
 SHEET = 0.1  # of the area; the open meshes of the data sets, with holes and gaps, have at most 0.08
@@ -96,20 +96,6 @@ class Surface:
     ) -> np.ndarray:
         """(k, rows, cols) newtons on the cells of arrays, see `kernels.measure.press`; `press_forces` checks."""
         return self._run(PRESS, centres, axes, cells, pitch, unit, stiffness, limit, loads, depths)
-
-    def below_taxels(
-        self,
-        centres: np.ndarray,
-        axes: np.ndarray,
-        cells: tuple[int, int],
-        pitch: float,
-        start: np.ndarray,
-        window: float,
-        taxels: Taxels,
-        count: int,
-    ) -> np.ndarray:
-        """(k, count) distances from the taxels of a layout, see `kernels.measure.below_taxels`."""
-        return self._run(BELOW_TAXELS, centres, axes, cells, pitch, start, window, taxels, count)
 
     def _run(self, kernel, centres, axes, cells, *more):
         # Copied, hence writeable: for a read-only array numba would compile everything again.

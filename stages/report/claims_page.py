@@ -12,7 +12,7 @@ from typing import Any
 
 import pandas as pd
 
-from haptic_glance.gallery.page import as_script
+from haptic_glance.gallery.viewer import as_script
 from stages.charts.commands import command
 from stages.charts.datasets import dataset_text
 from stages.charts.html import box, folded, prose

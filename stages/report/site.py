@@ -12,7 +12,8 @@ from typing import Any
 import pandas as pd
 
 from haptic_glance.base.files import write_text
-from haptic_glance.gallery.page import as_script
+from haptic_glance.gallery import viewer
+from haptic_glance.gallery.viewer import as_script
 from stages.charts.cells import CLAIMS as CLAIM_ROWS
 from stages.charts.cells import PREFIXES, filled
 from stages.charts.datasets import dataset_text
@@ -119,9 +120,9 @@ def page_html(names: Sequence[str], name: str, lead: str, main: str, scripts: Se
 
 
 def page_file(name: str) -> str:
-    """A file of the folder page/, or of the viewer of meshes that the library's gallery has."""
-    folders = resources.files(__package__ or "") / "page", resources.files("haptic_glance.gallery") / "viewer"
-    return next(folder / name for folder in folders if (folder / name).is_file()).read_text(encoding="utf-8")
+    """A file of the folder page/, or of the library's viewer of meshes."""
+    file = resources.files(__package__ or "") / "page" / name
+    return file.read_text(encoding="utf-8") if file.is_file() else viewer.part(name)
 
 
 def page_main(page: str, results: Results, built: Built, claims: pd.DataFrame, out: Path) -> str:

@@ -62,7 +62,7 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     place = KDTree(full.vertices)
     methods = [method for method in METHODS if method in points_by_method] or list(points_by_method)
     saliency = {
-        method: (label(method), vivid(values)[nearest])
+        method: (f"saliency: {label(method)}", vivid(values)[nearest])
         for method, values in results.by_method("salient_points", read_saliency, name).items()
         if method in methods
     }

@@ -18,7 +18,8 @@ from haptic_glance.cli.touch import run as touch
 from haptic_glance.gallery import command
 from haptic_glance.gallery.command import run
 from haptic_glance.gallery.exhibit import exhibit
-from haptic_glance.gallery.page import as_script, turnable
+from haptic_glance.gallery.page import turnable
+from haptic_glance.gallery.viewer import as_script
 from haptic_glance.lod import vertex_errors
 from haptic_glance.mesh import load, rotate_to_z_up
 from tests.shapes import flat_grid

@@ -11,7 +11,7 @@ from PIL import Image
 
 from haptic_glance.base.files import write_mesh
 from haptic_glance.base.packing import SHADES, STEPS, Store, ordered, viewer_data
-from haptic_glance.gallery.page import as_script
+from haptic_glance.gallery.viewer import as_script
 from haptic_glance.mesh.mesh import Mesh
 from stages.report.site import page_file, page_html
 from stages.report.viewer import FINEST, apart, pack_object, pack_viewer

@@ -11,7 +11,6 @@ from haptic_glance.look.marks import read_marks
 from haptic_glance.mesh import load, normalise
 from haptic_glance.studio.app import Studio
 from haptic_glance.studio.session import Settings
-from haptic_glance.studio.specimen import Hit
 
 from .conftest import ball
 
@@ -87,10 +86,10 @@ class Hand:
             self.page.wait_for_timeout(100)
         return False
 
-    def click_until(self, answered, downs=(0,)):
+    def click_until(self, answered):
         """Clicks until a condition holds: a page that is still drawing its first picture misses a click."""
-        for attempt in range(PATIENCE // 5000):
-            self.click(0, downs[attempt % len(downs)])
+        for _ in range(PATIENCE // 5000):
+            self.click()
             if self.until(answered, 5000):
                 return
         raise AssertionError("the click was not answered")
@@ -223,13 +222,12 @@ def test_without_webgl_the_page_says_so(driver, browser_program, studio):
     blind.close()
 
 
-def test_the_tour_the_panel_and_a_dropped_file_outlive_a_reload(window, studio):
+def test_the_panel_and_a_dropped_file_outlive_a_reload(window, studio):
     hand = window()
-    hand.reads("1 of 4")
     hand.reads("bulges out")
     hand.page.get_by_text("Save", exact=True).click()
     assert b"float saliency" in Path(hand.saved("PLY").path()).read_bytes()[:400]
-    hand.page.get_by_role("button", name="Next", exact=True).click()
+    hand.choose("Levels")
     hand.page.evaluate(DROP, (studio.folder / "dent.ply").read_bytes().hex())
     hand.reads("dropped")
     hand.reads("Metro error")
@@ -237,12 +235,9 @@ def test_the_tour_the_panel_and_a_dropped_file_outlive_a_reload(window, studio):
     hand.reads("512 faces")
     hand.page.reload()
     hand.reads("512 faces")
-    hand.reads("2 of 4")
-    hand.page.get_by_role("button", name="End the tour").press("Enter")
-    playwright.expect(hand.page.get_by_text("2 of 4")).to_be_hidden(timeout=PATIENCE)
 
 
-def test_a_click_shows_what_is_felt_and_a_slider_changes_it_and_a_path_plays_to_its_end(window, studio):
+def test_a_click_shows_what_is_felt_and_a_slider_changes_it(window):
     hand = window()
     page = hand.page
     hand.reads("bulges out")
@@ -259,60 +254,7 @@ def test_a_click_shows_what_is_felt_and_a_slider_changes_it_and_a_path_plays_to_
     assert grid.get_attribute("src") != before
     assert float(page.locator(".low").inner_text()) > 0 == float(page.locator(".high").inner_text())
 
-    hand.choose("Path")
-    hand.reads("Click two or more places")
-    path = newest(studio).panel
-    hand.click(-40)
-    assert hand.until(lambda: len(path.places) == 1)
-    hand.click(40, 20)
-    hand.reads("2 places")
-    hand.reads("frame 25 of 25")
-    front = path.places[0]
-    beside = Hit(0, 0, front.position + 3 * np.cross(front.normal, [0, 0, 1]), front.normal)  # across a gap
-    newest(studio).run("", lambda: path.on_click(beside))
-    hand.reads("leaves the mesh between places 2 and 3")
-    assert len(path.places) == 2
-
 
 def newest(studio):
     """The studio's side of the page that was opened last."""
     return studio.windows[max(studio.windows)][1]
-
-
-def test_a_mystery_to_its_end(window, studio):
-    hand = window()
-    hand.reads("bulges out")
-    hand.choose("Know")
-    hand.page.locator('.bar[data-name="knob"]').wait_for()
-    hand.page.get_by_role("button", name="Mystery object").click()
-    hand.reads("An object hides in the ball")
-    know, scene = newest(studio).panel, newest(studio).scene
-    assert know.guess.hidden and not scene.has("/mesh") and not scene.has("/know/shown")
-    hand.click_until(lambda: know.guess.touches, downs=(0, 25, 50, 75, -25, -50))  # of a torus the middle is empty
-    assert know.guess.helped == 0
-    if not know.guess.over:  # the touch may name the object already
-        hand.page.get_by_role("button", name="Touch until it is known").click()
-        stopped = hand.page.get_by_text("No touch would help").first
-        assert hand.until(lambda: know.guess.over or stopped.is_visible())
-        if not know.guess.over:  # the first touch, where a hand made it, may leave two objects that feel alike
-            hand.page.get_by_role("button", name="Reveal").click()
-    hand.reads("the planner alone")
-    hand.reads(f"It is {know.guess.name}.")
-    assert scene.has("/know/shown") and know.guess.over
-    shown = {bar.get_attribute("data-name") for bar in hand.page.locator(".bar").all()}
-    assert shown == {*know.guess.exploration.library.names}
-    hand.choose("Look")
-    assert hand.until(lambda: scene.has("/mesh") and not scene.has("/know"))
-
-
-def test_a_planner_that_gives_up_says_so_and_the_object_is_revealed(window, studio, monkeypatch):
-    monkeypatch.setattr("haptic_glance.know.exploration.Exploration.next_place", lambda self: None)
-    hand = window()
-    hand.choose("Know")
-    hand.page.locator('.bar[data-name="knob"]').wait_for()
-    hand.page.get_by_role("button", name="Mystery object").click()
-    hand.reads("An object hides in the ball")
-    hand.page.get_by_role("button", name="Touch until it is known").click()
-    hand.reads("No touch would help")
-    hand.page.get_by_role("button", name="Reveal").click()
-    hand.reads(f"It is {newest(studio).panel.guess.name}.")

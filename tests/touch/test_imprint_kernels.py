@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from haptic_glance.base.jit import interpreted
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import Layout, Surface
+from haptic_glance.touch import Surface
 from haptic_glance.touch.kernels import faces, measure
 from haptic_glance.touch.kernels.faces import face_tree
 
@@ -49,12 +49,6 @@ def test_presses_are_equal_bit_for_bit():
         for compiled, plain in zip(*pressed, strict=True):
             assert compiled[:3].any() and np.isnan(pressed[0][1][3])
             np.testing.assert_array_equal(compiled[:3], plain[:3])
-    x, y, z = random.uniform(-0.1, 0.1, (3, 30))
-    cells, pitch, _, grid = Layout(np.c_[x, y, z], np.tile([0, 0, -1.0], (30, 1)), np.ones(30)).cells
-    arguments = *tree, cells, *places, pitch, np.array([0, 0, 0.3]), 0.1, grid, 30
-    below = measure.below_taxels(*arguments)
-    assert np.isfinite(below).any()
-    np.testing.assert_array_equal(interpreted(measure.below_taxels)(*arguments), below)
 
 
 def test_the_tree_is_equal(monkeypatch):

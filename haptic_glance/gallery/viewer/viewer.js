@@ -18,7 +18,7 @@
     for (let k = stride; k < values.length; k++) values[k] += values[k - stride];
     return values;
   };
-  const octets = ([at, count]) => summed(store.slice(at, at + count), 1);
+  const octets = ([at, count], stride = 1) => summed(store.slice(at, at + count), stride);
   const ids = (where) => summed(words(where), 1);
   const positions = (where) => Float32Array.from(summed(new Int16Array(words(where).buffer), 3), (v) => v / 8190);
   const triangles = (where) => {
@@ -32,18 +32,18 @@
   const colours = bytes(data.colours);
 
   const vertexShader = `#version 300 es
-    in vec3 position; in float value;
+    in vec3 position; in float value; in vec3 tint;
     uniform mat3 turn; uniform float zoom; uniform vec2 aspect; uniform float lift; uniform float size;
-    out vec3 place; out float shade;
+    out vec3 place; out float shade; out vec3 own;
     void main() {
-      place = turn * position; shade = value;
+      place = turn * position; shade = value; own = tint;
       gl_Position = vec4(place.xy * zoom * aspect, -0.5 * place.z - lift, 1.0);
       gl_PointSize = size;
     }`;
   const fragmentShader = `#version 300 es
     precision highp float;
-    in vec3 place; in float shade;
-    uniform sampler2D table; uniform int mode; uniform float scale; uniform vec3 plain;
+    in vec3 place; in float shade; in vec3 own;
+    uniform sampler2D table; uniform int mode; uniform float scale;
     out vec4 colour;
     void main() {
       if (mode == 1) { colour = vec4(0.1, 0.15, 0.22, 1.0); return; }
@@ -55,7 +55,7 @@
       vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
       if (normal.z < 0.0) normal = -normal;
       float light = 0.45 + 0.3 * normal.z + 0.35 * max(dot(normal, normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
-      vec3 base = shade < -0.5 ? plain : texture(table, vec2(shade * 63.0 / 64.0 + 0.5 / 64.0, scale)).rgb;
+      vec3 base = shade < -0.5 ? own : texture(table, vec2(shade * 63.0 / 64.0 + 0.5 / 64.0, scale)).rgb;
       colour = vec4(base * light, 1.0);
     }`;
 
@@ -68,10 +68,11 @@
   }
   gl.bindAttribLocation(program, 0, "position");
   gl.bindAttribLocation(program, 1, "value");
+  gl.bindAttribLocation(program, 2, "tint");
   gl.linkProgram(program);
   gl.useProgram(program);
   const at = Object.fromEntries(
-    ["turn", "zoom", "aspect", "lift", "size", "mode", "scale", "plain"].map((name) => [name, gl.getUniformLocation(program, name)]));
+    ["turn", "zoom", "aspect", "lift", "size", "mode", "scale"].map((name) => [name, gl.getUniformLocation(program, name)]));
   gl.enable(gl.DEPTH_TEST);
   gl.clearColor(1, 1, 1, 1);
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
@@ -83,10 +84,12 @@
   }
   const panes = [0, 1].map(() => ({
     positions: gl.createBuffer(), values: gl.createBuffer(), faces: gl.createBuffer(), edges: gl.createBuffer(), count: 0 }));
+  const tints = gl.createBuffer();  // colours of the mesh's own, of an object without levels
   const marks = { buffer: gl.createBuffer(), count: 0 };
   const view = { azimuth: 305, elevation: 22, zoom: 1.75 };
 
   const object = () => data.objects[ask("object").value];
+  const alone = () => !Object.keys(object().ladders).length;  // an object without levels has the whole picture
   // The simplified mesh that the slider is at; the original itself at its left end.
   const level = () => {
     const ladder = object().ladders[ask("ladder").value];
@@ -103,12 +106,15 @@
   async function chooseObject() {
     const one = object();
     store = await unpack(one);
-    const saliency = Object.entries(one.saliency).map(([key, item]) => [key, "saliency: " + item.label]);
+    const saliency = Object.entries(one.saliency).map(([key, item]) => [key, item.label]);
     const errors = Object.keys(one.ladders).length ? [["error", "error (distance)"]] : [];
-    fill(ask("colour"), [...errors, ...saliency, ["", "none"]]);
+    const own = one.tints ? [["own", "its own colours"]] : [];
+    fill(ask("colour"), [...errors, ...saliency, ...own, ["", "none"]]);
     fill(ask("points"), [...Object.entries(one.points).map(([key, item]) => [key, item.label]), ["", "none"]]);
     const ladders = Object.entries(one.ladders).map(([key, item]) => [key, item.label]);
-    fill(ask("ladder"), ladders.length ? ladders : [["", "not run"]]);
+    fill(ask("ladder"), ladders);
+    for (const id of ["ladder", "level"]) ask(id).closest("label").hidden = alone();
+    ask("points").closest("label").hidden = !Object.keys(one.points).length;
     chooseLadder();
   }
 
@@ -143,7 +149,7 @@
   // simplified vertex takes the mean of those that are nearest to it.
   function shades(mesh, full, small) {
     const chosen = ask("colour").value;
-    if (!chosen) return [new Float32Array(full.length / 3).fill(-1), new Float32Array(small.length / 3).fill(-1)];
+    if (!chosen || chosen === "own") return [new Float32Array(full.length / 3).fill(-1), new Float32Array(small.length / 3).fill(-1)];
     const where = chosen === "error" ? mesh.error : object().saliency[chosen].values;
     const left = where ? Float32Array.from(octets(where), (v) => v / 63) : new Float32Array(full.length / 3);
     if (mesh === object().full) return [left, left];
@@ -179,6 +185,10 @@
     const [left, right] = shades(mesh, full, small);
     send(panes[0], object().full, full, left);
     send(panes[1], mesh, small, right);
+    if (object().tints) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, tints);
+      gl.bufferData(gl.ARRAY_BUFFER, octets(object().tints, 3), gl.STATIC_DRAW);
+    }
     const chosen = ask("points").value;
     const marked = chosen ? ids(object().points[chosen].ids) : [];
     gl.bindBuffer(gl.ARRAY_BUFFER, marks.buffer);
@@ -194,21 +204,21 @@
     const original = mesh === one.full;
     const share = `${(100 * mesh.faces / one.faces).toFixed(mesh.faces < one.faces / 20 ? 1 : 0)} %`;
     const drawn = (item, shown) => (shown < item.faces ? ` (drawn with ${shown.toLocaleString("en")})` : "");
-    ask("viewer-left").textContent = `${one.name}, original: ${faces(one)}${drawn(one, one.full.faces)}`;
-    ask("viewer-right").textContent = original ? "the original itself: move the slider" :
+    ask("viewer-left").textContent = `${one.name}${alone() ? "" : ", original"}: ${faces(one)}${drawn(one, one.full.faces)}`;
+    ask("viewer-right").textContent = alone() ? "" : original ? "the original itself: move the slider" :
       `simplified: ${faces(mesh)} (${share})${drawn(mesh, mesh.drawn)}; distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
     ask("level-name").textContent = original ? "the original" : faces(mesh);
     ask("level").setAttribute("aria-valuetext", faces(mesh));
-    canvas.setAttribute("aria-label", `Turnable meshes: ${ask("viewer-left").textContent}; ${ask("viewer-right").textContent}`);
+    canvas.setAttribute("aria-label", ["Turnable meshes: " + ask("viewer-left").textContent, ask("viewer-right").textContent].filter(Boolean).join("; "));
     const chosen = ask("colour").value;
     const error = chosen === "error";
-    ask("legend").style.visibility = chosen ? "visible" : "hidden";
+    ask("legend").style.visibility = error || one.saliency[chosen] ? "visible" : "hidden";
     const top = one.error_top;
     const tick = (value) => value.toPrecision(2) + " %";
     ask("bar-low").textContent = error ? "0" : "low";
     ask("bar-middle").textContent = error ? tick(top / 4) : "";
     ask("bar-high").textContent = error ? "≥ " + tick(top) : "top 2 %";
-    ask("bar-name").textContent = error ? "of the diagonal, the same at all levels" : "saliency";
+    ask("bar-name").textContent = error ? "of the diagonal, the same at all levels" : one.saliency[chosen]?.label ?? "";
     const bar = ask("bar").getContext("2d");
     for (let k = 0; k < 64; k++) {
       const at = 3 * (k + (error ? 64 : 0));
@@ -224,25 +234,25 @@
     return [-sa, -se * ca, ce * ca, ca, -se * sa, ce * sa, 0, ce, se];
   }
 
-  function attribute(slot, buffer, count) {
+  function attribute(slot, buffer, count, kind = gl.FLOAT) {
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.enableVertexAttribArray(slot);
-    gl.vertexAttribPointer(slot, count, gl.FLOAT, false, 0, 0);
+    gl.vertexAttribPointer(slot, count, kind, kind === gl.UNSIGNED_BYTE, 0, 0);
   }
 
   function draw() {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const [w, h] = [canvas.clientWidth * ratio, canvas.clientHeight * ratio].map(Math.round);
     if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
-    const stacked = h > 1.1 * w;
+    const stacked = !alone() && h > 1.1 * w;
     const head = Math.round(40 * ratio);  // two lines of caption above each mesh
     ask("stage").classList.toggle("stacked", stacked);
     gl.disable(gl.SCISSOR_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
-    const [pw, ph] = stacked ? [w, Math.floor(h / 2)] : [Math.floor(w / 2), h];
+    const [pw, ph] = alone() ? [w, h] : stacked ? [w, Math.floor(h / 2)] : [Math.floor(w / 2), h];
     if (ph <= head) return;  // the page has no layout yet
-    panes.forEach((pane, k) => {
+    (alone() ? panes.slice(0, 1) : panes).forEach((pane, k) => {
       const corner = stacked ? [0, k ? 0 : h - ph] : [k ? w - pw : 0, 0];
       gl.viewport(...corner, pw, ph - head);
       gl.scissor(...corner, pw, ph - head);
@@ -254,10 +264,12 @@
     gl.uniformMatrix3fv(at.turn, false, turn());
     gl.uniform1f(at.zoom, view.zoom);
     gl.uniform2f(at.aspect, Math.min(1, h / w), Math.min(1, w / h));
-    gl.uniform3f(at.plain, 0.8, 0.8, 0.82);
     gl.uniform1f(at.scale, ask("colour").value === "error" ? 0.75 : 0.25);
     attribute(0, pane.positions, 3);
     attribute(1, pane.values, 1);
+    gl.disableVertexAttribArray(2);
+    gl.vertexAttrib3f(2, 0.8, 0.8, 0.82);
+    if (ask("colour").value === "own") attribute(2, tints, 3, gl.UNSIGNED_BYTE);
     const passes = [[0, gl.TRIANGLES, pane.faces, pane.count, 0]];
     if (ask("edges").checked) passes.push([1, gl.LINES, pane.edges, 2 * pane.count, 0.001]);
     for (const [mode, kind, buffer, count, lift] of passes) {

@@ -4,8 +4,6 @@ from .know import KnowPanel
 from .levels import LevelsPanel
 from .look import LookPanel
 from .mark import MarkPanel
-from .path import PathPanel
-from .senses import SensesPanel
 from .touch import TouchPanel
 
-PANELS = (LookPanel, LevelsPanel, TouchPanel, PathPanel, KnowPanel, SensesPanel, MarkPanel)
+PANELS = (LookPanel, LevelsPanel, TouchPanel, KnowPanel, MarkPanel)

@@ -3,20 +3,23 @@
 import viser
 
 from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch.places import Places
 from haptic_glance.touch.press import warm_up
 from haptic_glance.touch.surface import as_surface, mean_vertex_normals
 
 from ..drawing import draw_array, grid_html
-from ..feeling import CONTOURS, NEWTONS, SENSORS, Sensor, feel
-from ..panel import TouchingPanel
+from ..feeling import CONTOURS, NEWTONS, SENSORS, Sensor, feel, place_of
+from ..panel import Panel
+from ..specimen import Hit
 
+ARRAY = "/array"  # its name in the scene
 ASK = "Click the mesh: the array is pressed there."
 
 
-class TouchPanel(TouchingPanel):
+class TouchPanel(Panel):
     """Presses the array where the person clicks, and again there when a setting moves."""
 
-    title, array = "Touch", "/array"
+    title = "Touch"
 
     def build(self, gui: viser.GuiApi) -> None:
         first = Sensor()
@@ -42,6 +45,11 @@ class TouchPanel(TouchingPanel):
             *array, self.blur.value, self.noise.value, self.turn.value, self.load.value, self.size.value / 1000
         )
 
+    @property
+    def place(self) -> Places | None:
+        """The place that was clicked, if one was on this mesh."""
+        return self.window.session.kept.get(self.title)
+
     def on_mesh(self) -> None:
         self.about.content, self.grid.visible = ASK, False
 
@@ -49,6 +57,13 @@ class TouchPanel(TouchingPanel):
         mesh = self.window.session.on_table.mesh
         self.window.show()
         self.window.work("Preparing the mesh for touch", lambda _: prepare(mesh), lambda _: self.again())
+
+    def on_hide(self) -> None:
+        self.window.scene.clear(ARRAY)
+
+    def on_click(self, hit: Hit) -> None:
+        self.window.session.kept[self.title] = place_of(as_surface(self.window.session.on_table.mesh), hit)
+        self.again()
 
     def again(self) -> None:
         """Presses the array where it was pressed before."""
@@ -63,7 +78,7 @@ class TouchPanel(TouchingPanel):
         self.about.content = f"Pressed at **{where}**, {self.kind.value}."
         self.grid.content = grid_html(felt.pressed, felt.span, felt.unit, f"{rows} x {columns} cells at {where}")
         self.grid.visible = True
-        draw_array(self.window.scene, self.array, felt)
+        draw_array(self.window.scene, ARRAY, felt)
 
 
 def prepare(mesh: Mesh) -> None:

@@ -18,13 +18,8 @@ SLACK = 1e-12  # of the mesh's diagonal: how far a face extends beyond its edges
 GRAZING = 1e-12  # sine of a face's angle to the normal, below which a column has no single intersection with it
 
 # centre (3,); right, down (3,) in cells per unit, normal (3,) in units; column, row of the centre; side 1, or -1 for
-# upwards; lift, slack in units, margin the slack in cells; grazing the area in cells below which an area of 1 grazes;
-# around 0, or half a cell: a taxel of a layout lies anywhere in its cell, not in the middle.
-Frame = namedtuple("Frame", "centre right down normal column row side lift slack margin grazing around")
-
-# Of the n taxels of a layout, cell by cell: column, row (n,) where they are in the frame; rise (n,) how far below the
-# highest of them, 0 or less; number (n,) in the layout. first (cells + 1,) taxel of each cell.
-Taxels = namedtuple("Taxels", "column row rise number first")
+# upwards; lift, slack in units, margin the slack in cells; grazing the area in cells below which an area of 1 grazes.
+Frame = namedtuple("Frame", "centre right down normal column row side lift slack margin grazing")
 
 
 @helper
@@ -37,7 +32,6 @@ def frame_of(
     side: float,
     lift: float,
     diagonal: float,
-    around: float,
 ) -> Frame:
     """The Frame of an array; for side -1 heights count down, so that what is above comes first."""
     over, slack = 1 / pitch, SLACK * (diagonal + (rows + columns) * pitch)
@@ -53,7 +47,6 @@ def frame_of(
         slack,
         slack * over,
         GRAZING * over * over,
-        around,
     )
 
 
@@ -195,7 +188,7 @@ ROWS = 24  # of 32 numbers, one per face
 HITS, TWICE, FIRST, LAST, TOP, BOTTOM = (LANES * k for k in range(6))  # twice the area; cells under its box
 HEIGHT = LANES * 6  # and the three rows after: its heights at its first four cells
 FACE = LANES * 10  # and the 13 rows after: see `crossing`
-OVER_FOUR = 16.0  # hits: the face has more than four cells under its box, or taxels may be
+OVER_FOUR = 16.0  # hits: the face has more than four cells under its box
 
 
 @helper
@@ -284,7 +277,7 @@ def project(block: np.ndarray, frame: Frame, rows: int, columns: int, floor: flo
 
     HITS is 0 for one that covers no cell, or is below the height `floor`.
     """
-    last_column, last_row, reach = columns - 1.0, rows - 1.0, frame.margin + frame.around
+    last_column, last_row, reach = columns - 1.0, rows - 1.0, frame.margin
     for f in range(LANES):
         u, v, w = project_corner(block, f, frame)
         u1, v1, w1 = project_corner(block, 3 * LANES + f, frame)
@@ -313,7 +306,7 @@ def project(block: np.ndarray, frame: Frame, rows: int, columns: int, floor: flo
         hits += 2.0 if min3(covered_2, wide - 1, wide - 1) >= 0 else 0.0
         hits += 4.0 if min3(covered_3, tall - 1, tall - 1) >= 0 else 0.0
         hits += 8.0 if min3(covered_4, wide - 1, tall - 1) >= 0 else 0.0
-        hits = hits if max3(wide, tall, 0.0) + 4 * frame.around <= 1.0 else OVER_FOUR
+        hits = hits if max3(wide, tall, 0.0) <= 1.0 else OVER_FOUR
         hits = hits if min3(wide, tall, min3(frame.lift - low, high - floor, high - floor)) >= 0 else 0.0
         out[HITS + f] = hits if abs(twice) > frame.grazing * block[9 * LANES + f] else 0.0  # false for NaN
         out[TWICE + f] = twice
@@ -352,25 +345,6 @@ def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.
                 if covered >= 0:
                     highest = max(highest, height)
                     raise_cell(best, back, row, column, height, from_back)
-    return highest
-
-
-@kernel
-def raise_taxels(
-    projected: np.ndarray, frame: Frame, columns: int, heights: np.ndarray, taxels: Taxels, highest: float
-) -> float:
-    """Raises the heights (1, n) above taxels to those that `project` wrote; highest: with the rise of its taxel."""
-    for f in range(LANES):
-        if projected[HITS + f] == 0:
-            continue
-        face = load_face(projected, f)
-        left, right = int(projected[FIRST + f]), int(projected[LAST + f])
-        for row in range(int(projected[TOP + f]), int(projected[BOTTOM + f]) + 1):
-            for t in range(taxels.first[row * columns + left], taxels.first[row * columns + right + 1]):
-                covered, height = crossing(face, taxels.column[t], taxels.row[t], frame.lift)
-                if covered >= 0 and height > heights[0, t]:
-                    heights[0, t] = height
-                    highest = max(highest, height + taxels.rise[t])
     return highest
 
 

@@ -13,7 +13,6 @@ from .faces import (
     LANES,
     ROWS,
     Frame,
-    Taxels,
     along,
     faces_above,
     frame_of,
@@ -22,7 +21,6 @@ from .faces import (
     kernel,
     project,
     raise_cells,
-    raise_taxels,
 )
 
 MAX_CHECKED = 64  # cells under a box, up to which it pays to check if all of them hide it
@@ -54,11 +52,11 @@ def measure(
     for k in range(len(centres)):
         below = distances[k]
         below[:], back[:], out[:] = -np.inf, False, False
-        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
-        search(blocks, boxes, children, frame, cells, stack, projected, below, back, np.inf, None)
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
+        search(blocks, boxes, children, frame, cells, stack, projected, below, back, np.inf)
         if maybe_inside(back, below, sheet, above):
-            frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal, 0.0)
-            search(blocks, boxes, children, frame, cells, stack, projected, above, out, np.inf, None)
+            frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal)
+            search(blocks, boxes, children, frame, cells, stack, projected, above, out, np.inf)
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = above[i, j] if out[i, j] else -below[i, j]
@@ -88,8 +86,8 @@ def first_below(
     for k in range(len(centres)):
         below = distances[k]
         below[:], back[:] = -np.inf, False
-        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
-        lowest = search(blocks, boxes, children, frame, cells, stack, projected, below, back, window, None) - window
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
+        lowest = search(blocks, boxes, children, frame, cells, stack, projected, below, back, window) - window
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = -below[i, j] if below[i, j] >= lowest else np.inf
@@ -140,8 +138,8 @@ def press(
                 felt[i, j], back[i, j] = -np.inf, False
         for axis in range(3):
             start[axis] = centres[k, axis] + reach * axes[k, 2, axis]
-        frame = frame_of(start, axes[k], pitch, rows, columns, 1.0, lift, diagonal, 0.0)
-        highest = search(blocks, boxes, children, frame, cells, stack, projected, felt, back, window, None)
+        frame = frame_of(start, axes[k], pitch, rows, columns, 1.0, lift, diagonal)
+        highest = search(blocks, boxes, children, frame, cells, stack, projected, felt, back, window)
         first = (-highest - reach) * unit if highest > -np.inf else 0.0
         for i in range(rows):
             for j in range(columns):
@@ -162,48 +160,9 @@ def press(
     return forces
 
 
-@kernel
-def below_taxels(
-    blocks: np.ndarray,
-    boxes: np.ndarray,
-    children: np.ndarray,
-    diagonal: float,
-    lift: float,
-    cells: tuple[int, int],
-    centres: np.ndarray,
-    axes: np.ndarray,
-    pitch: float,
-    start: np.ndarray,
-    window: float,
-    taxels: Taxels,
-    count: int,
-) -> np.ndarray:
-    """(k, count) distances from the plane at `start`, in the frame of a layout, to the first surface below its taxels.
-
-    Less the taxels' rise. inf where it is missed, or may be if it is more than `window` farther than the least.
-    """
-    distances, heights = np.empty((len(centres), count)), np.empty((1, len(taxels.rise)))
-    back, stack, projected = np.empty((0, 0), dtype=np.bool_), np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
-    middle = np.empty(3)
-    for k in range(len(centres)):
-        for t in range(count):
-            distances[k, t] = np.inf
-        for t in range(heights.shape[1]):
-            heights[0, t] = -np.inf
-        for axis in range(3):
-            x, y, z = axes[k, 0, axis], axes[k, 1, axis], axes[k, 2, axis]
-            middle[axis] = centres[k, axis] + start[0] * x + start[1] * y + start[2] * z
-        frame = frame_of(middle, axes[k], pitch, *cells, 1.0, 0.0, diagonal, 0.5)
-        search(blocks, boxes, children, frame, cells, stack, projected, heights, back, window, taxels)
-        for t in range(heights.shape[1]):
-            distances[k, taxels.number[t]] = -heights[0, t] - taxels.rise[t]
-    return distances
-
-
 MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
 FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
 PRESS = UntilWorthCompiling(press, __file__, budget=12_800)
-BELOW_TAXELS = UntilWorthCompiling(below_taxels, __file__, budget=12_800)  # cells, of about a taxel
 
 
 @helper
@@ -233,16 +192,15 @@ def search(
     best: np.ndarray,
     back: np.ndarray,
     window: float,
-    taxels: Taxels | None,
 ) -> float:
     """Raises best to the height of the highest face not above `lift`; back: if it is seen from its back.
 
-    best (rows, cols), or (1, n) of n `taxels`. Returns the highest of all, of taxels with their rise. Faces deeper than
-    `window` below the highest are not searched, nor, without a window, a cell that begins at inf. The nearer child, by
-    the height of its centre, comes first. A perfect order would hardly save a box.
+    Returns the highest of all. Faces deeper than `window` below the highest are not searched, nor, without a window, a
+    cell that begins at inf. The nearer child, by the height of its centre, comes first. A perfect order would hardly
+    save a box.
     """
     rows, columns = cells
-    reach = frame.margin + frame.around
+    reach = frame.margin
     size, stack[0], highest = min(1, len(children)), 0, -np.inf
     while size > 0:
         size -= 1
@@ -274,10 +232,7 @@ def search(
         if child < 0:
             if faces_above(blocks[-1 - child], frame, floor):
                 project(blocks[-1 - child], frame, rows, columns, floor, projected)
-                if taxels is None:
-                    highest = raise_cells(projected, frame, best, back, highest)
-                else:
-                    highest = raise_taxels(projected, frame, columns, best, taxels, highest)
+                highest = raise_cells(projected, frame, best, back, highest)
             continue
         x, y, z = from_centre(boxes, child, frame)
         away = abs(along(frame.normal, x, y, z))

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
-from html import escape
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -17,7 +16,6 @@ from haptic_glance.base.warner import warn_caller
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.lod.export import face_count
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
-from haptic_glance.lod.pictures import coloured
 from haptic_glance.lod.task import repaired
 from haptic_glance.mesh.axes import AUTO, AXES, Axis, axis_named
 from haptic_glance.mesh.files import WITH_UP, MeshLike, as_mesh, as_stated, with_known_up
@@ -26,9 +24,9 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius, rotate_to_z_up
 from haptic_glance.touch.skin import METRES, Layer, Metres, length
 
-MESHES = {  # public function: its arguments that are meshes
+PATH_ARGUMENTS = {  # public function: its arguments that may be a path, or another form of a mesh
     **dict.fromkeys(
-        ("clean", "conspicuity", "detect", "find_points", "layout_forces", "normalise", "press", "press_many", "render",
+        ("clean", "conspicuity", "detect", "find_points", "normalise", "press", "press_many", "render",
          "rotate_to_z_up", "saliency", "sensor_normals", "simplify", "to_trimesh", "write_any"), ("mesh",)
     ),
     **dict.fromkeys(("gaps_at", "press_forces"), ("surface",)),
@@ -37,120 +35,90 @@ MESHES = {  # public function: its arguments that are meshes
     "forces": (),
     "follow": ("mesh_or_surface",),
 }  # fmt: skip
-LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
-# public function: its argument in metres
-METRIC = {"press_forces": "depth", "gaps_at": "within", "layout_forces": "depth", "forces": "depth"}
+# Lengths that are shares of the diameter, or texts such as "1mm"; and the one length in metres, or such a text.
+LENGTH_ARGUMENTS = {
+    "press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",),
+}  # fmt: skip
+METRE_ARGUMENTS = {"press_forces": "depth", "gaps_at": "within", "forces": "depth"}
+# They depend on the axis that is up, or tell it: a warning says where the shape chose it.
+DEPENDS_ON_UP = "as_mesh", "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"
+KEEPS_UP = "clean", "normalise", "simplify"  # hand an axis that nobody has said on, unknown as it is
 TRIES = 8  # lower counts that are tried where one leaves a fold
-# They depend on the axis that is up, or tell it.
-LOOKING = "as_mesh", "detect", "find_points", "saliency", "press", "press_many", "rotate_to_z_up"
-PASSING = "clean", "normalise", "simplify"  # hand an axis that nobody has said on, unknown as it is
 
 
-def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-    """The public function of a name, made of the one of the stages."""
-    convert = as_stated if name in PASSING else as_mesh
-    work = with_metres(function, METRIC[name]) if name in METRIC else simplify if name == "simplify" else function
-    work = takes_any_mesh(work, MESHES[name], name in LOOKING, convert)
-    if name in LENGTHS:
-        work = with_lengths(work, LENGTHS[name], name in LOOKING)
-    work.__module__ = __package__  # where pickle finds it
-    return work
+def accepts_any_mesh(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """The public function of a name, made of the one of its package: it takes meshes in any form, and lengths as text.
 
-
-def takes_any_mesh(
-    function: Callable[..., Any],
-    names: Sequence[str],
-    looking: bool = False,
-    convert: Callable[[MeshLike], Mesh] = as_mesh,
-) -> Callable[..., Any]:
-    """The function, its arguments of these names converted to a Mesh, but a Surface, which holds one.
-
-    looking: whether the function depends on the axis that points up, which is then warned of where the shape chose it.
+    Functions of LENGTH_ARGUMENTS also take `unit`, what the coordinates of the mesh are in.
     """
+    function = simplify if name == "simplify" else function
     parameters = signature(function)
+    convert = as_stated if name in KEEPS_UP else as_mesh
+    remedy = "up={!r}" if "up" in parameters.parameters else WITH_UP
 
     @wraps(function)
     def work(*args: Any, **kwargs: Any) -> Any:
-        bound = parameters.bind(*args, **kwargs)
-        for name in names:
-            mesh = bound.arguments[name]
-            if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
-                silent = not looking or bound.arguments.get("up") is not None
-                remedy = "up={!r}" if "up" in parameters.parameters else WITH_UP
-                bound.arguments[name] = convert(mesh) if silent else with_known_up(mesh, remedy)
-        return function(*bound.args, **bound.kwargs)
-
-    return work
-
-
-def with_lengths(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
-    """The function, its lengths as shares of the object's diameter, or as text such as "1mm" with unit="mm".
-
-    unit: what the coordinates of the mesh are in. The diameter is that of the bounding sphere about the middle of the
-    bounding box of the upright object, which is 1 for a normalised mesh. looking: as of `takes_any_mesh`.
-    """
-    parameters = signature(function)
-
-    @wraps(function)
-    def work(*args: Any, unit: str | None = None, **kwargs: Any) -> Any:
-        bound = parameters.bind(*args, **kwargs)
-        bound.apply_defaults()
-        name, whole = next(iter(bound.arguments.items()))
-        if not isinstance(getattr(whole, "mesh", whole), Mesh):
-            bound.arguments[name] = whole = with_known_up(whole, WITH_UP) if looking else as_mesh(whole)
-        if unit is not None and not any(isinstance(bound.arguments[name], str) for name in names):
-            raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
-        diameter = _diameter(getattr(whole, "mesh", whole))
-        for name in names:
-            if bound.arguments[name] is not None:
-                value = bound.arguments[name]
-                bound.arguments[name] = converted = in_units(name, value, diameter, unit)
-                if name == "pitch" and isinstance(value, str) and "cells" in bound.arguments:
-                    _warn_of_misfit(value, bound.arguments["cells"], converted, diameter)
-        return function(*bound.args, **bound.kwargs)
-
-    return work
-
-
-def with_metres(function: Callable[..., Any], metric: str) -> Callable[..., Any]:
-    """The function, whose `unit` may be "mm" as well as a number of metres, and whose lengths may be texts as "1mm".
-
-    A number stays what it is: of metres, of the argument named `metric`; of units of the mesh, of the pitch.
-    """
-    parameters = signature(function)
-
-    @wraps(function)
-    def work(*args: Any, **kwargs: Any) -> Any:
+        unit = kwargs.pop("unit", None) if name in LENGTH_ARGUMENTS else None
         bound = parameters.bind(*args, **kwargs)
         bound.apply_defaults()
         values = bound.arguments
-        if isinstance(unit := values.get("unit", 1.0), str):
-            if unit not in METRES:
-                raise ValueError(f"unit={unit!r}: give a number of metres, or one of {', '.join(METRES)}")
-            values["unit"] = unit = METRES[unit]
-        for name in ("pitch", metric):
-            if isinstance(text := values.get(name), str):
-                try:
-                    amount = length(text)
-                except ValueError:
-                    raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
-                real = name == "pitch" and isinstance(amount, Metres)
-                values[name] = float(amount) / (values["unit"] if real else 1)
-        if not isinstance(values.get("layer", Layer()), Layer):
-            raise TypeError(f"layer must be a Layer such as Layer(thickness=0.002), got {values['layer']!r}")
-        if "layer" in values and "gaps" not in values:
-            surface = next(iter(values.values()))
-            whole = getattr(surface, "mesh", surface)
-            if "layout" in values:
-                if not hasattr(values["layout"], "cosines"):
-                    raise TypeError(f"layout must be a Layout, as read_layout gives it, got {values['layout']!r}")
-                pitch = max(np.ptp(values["layout"].positions, axis=0).max(), np.sqrt(values["layout"].areas.max()))
-                _warn_of_units(whole, values["layer"], (1, 1), float(pitch) / unit, unit, "layout")
-            else:
-                _warn_of_units(whole, values["layer"], values["cells"], values["pitch"], unit)
+        for argument in PATH_ARGUMENTS[name]:
+            mesh = values[argument]
+            if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
+                warned = name in DEPENDS_ON_UP and values.get("up") is None
+                values[argument] = with_known_up(mesh, remedy) if warned else convert(mesh)
+        if name in LENGTH_ARGUMENTS:
+            _convert_lengths(values, LENGTH_ARGUMENTS[name], unit)
+        if name in METRE_ARGUMENTS:
+            _convert_metres(values, METRE_ARGUMENTS[name])
         return function(*bound.args, **bound.kwargs)
 
+    work.__module__ = "haptic_glance"  # where pickle finds it
     return work
+
+
+def _convert_lengths(values: dict[str, Any], names: Sequence[str], unit: str | None) -> None:
+    """Converts lengths of these names, shares of the object's diameter or texts such as "1mm", to units of the mesh.
+
+    The first of the values is the mesh or its Surface. The diameter is that of the bounding sphere about the middle of
+    the bounding box of the upright object, which is 1 for a normalised mesh.
+    """
+    if unit is not None and not any(isinstance(values[name], str) for name in names):
+        raise ValueError(f'unit={unit!r} applies to lengths such as "1mm" of {" and ".join(names)}: leave it out')
+    whole = next(iter(values.values()))
+    diameter = _diameter(getattr(whole, "mesh", whole))
+    for name in names:
+        if values[name] is not None:
+            text = values[name]
+            values[name] = in_units(name, text, diameter, unit)
+            if name == "pitch" and isinstance(text, str) and "cells" in values:
+                _warn_of_misfit(f"pitch={text!r}", values["cells"], values[name], diameter)
+
+
+def _convert_metres(values: dict[str, Any], metric: str) -> None:
+    """Converts a `unit` such as "mm" to metres, and texts such as "1mm" to numbers.
+
+    A number stays what it is: of metres, of the argument named `metric`; of units of the mesh, of the pitch.
+    """
+    if isinstance(unit := values.get("unit", 1.0), str):
+        if unit not in METRES:
+            raise ValueError(f"unit={unit!r}: give a number of metres, or one of {', '.join(METRES)}")
+        values["unit"] = unit = METRES[unit]
+    for name in ("pitch", metric):
+        if isinstance(text := values.get(name), str):
+            try:
+                amount = length(text)
+            except ValueError:
+                raise ValueError(f'{name}={text!r}: give a number, or a length such as "1mm"') from None
+            real = name == "pitch" and isinstance(amount, Metres)
+            values[name] = float(amount) / (values["unit"] if real else 1)
+    if not isinstance(layer := values.get("layer", Layer()), Layer):
+        raise TypeError(f"layer must be a Layer such as Layer(thickness=0.002), got {layer!r}")
+    if "layer" in values and "surface" in values:
+        pitch, cells = values["pitch"], values["cells"]
+        diameter = _diameter(getattr(values["surface"], "mesh", values["surface"]))
+        if diameter > 0 and np.ndim(unit) == 0 and 0 < unit < np.inf:  # the function refuses others
+            _warn_of_misfit(f"pitch={pitch:g}, unit={unit:g}", cells, pitch, diameter, layer, unit)
 
 
 def in_units(name: str, value: float | str, diameter: float, unit: str | None) -> Any:
@@ -174,39 +142,28 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
     return float(amount) / METRES[unit]
 
 
-def _warn_of_misfit(text: str, cells: Sequence[int], pitch: float, diameter: float) -> None:
-    """Warns where the array is far from the object's size: a normalised mesh, for one, is no longer in mm."""
+def _warn_of_misfit(
+    name: str, cells: Sequence[int], pitch: float, diameter: float, layer: Layer | None = None, unit: float = 1.0
+) -> None:
+    """Warns where the array, its layer or the object has a size that only a wrong unit of length explains.
+
+    name: of the length, as the warning begins. unit: metres that a unit of the mesh is long, for the layer.
+    """
     from haptic_glance.touch.distances import check_array  # `press` has imported both, which take a while
-    from haptic_glance.touch.quasi_tangent import misfit
+    from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
 
     cells, pitch, _ = check_array(cells, pitch)
-    if wrong := misfit(cells, pitch / diameter):
-        warn_caller(f"pitch={text!r}: {wrong}")
+    wrong = misfit(cells, pitch / diameter)
+    if not wrong and layer and (wrong := misfit_of_layer(layer, max(cells) * pitch * unit, diameter * unit)):
+        wrong = f"{wrong}; is the unit of length right?"
+    if wrong:
+        warn_caller(f"{name}: {wrong}")
 
 
 @weak_cache
 def _diameter(mesh: Mesh) -> float:
     upright = mesh if mesh.up in (*AXES, AUTO) else rotate_to_z_up(mesh)  # another axis turns the box
     return float(centre_and_radius(upright)[1] / RADIUS)
-
-
-def _warn_of_units(mesh: Mesh, layer: Layer, cells: Sequence[int], pitch: float, unit: float, name: str = "") -> None:
-    """Warns where the array, its layer or the object has a size that only a wrong unit explains.
-
-    name: of an argument in metres that holds the array, as it begins the sentence; "" for the pitch and the unit.
-    """
-    from haptic_glance.touch.distances import check_array
-    from haptic_glance.touch.quasi_tangent import misfit, misfit_of_layer
-
-    cells, pitch, _ = check_array(cells, pitch)
-    diameter = _diameter(mesh)
-    if not (diameter > 0 and np.ndim(unit) == 0 and 0 < unit < np.inf):  # which the function refuses
-        return
-    wrong = misfit(cells, pitch / diameter)
-    if not wrong and (wrong := misfit_of_layer(layer, max(cells) * pitch * unit, diameter * unit)):
-        wrong = f"{wrong}; is the unit of length right?"
-    if wrong:
-        warn_caller(f"{name or f'pitch={pitch:g}, unit={unit:g}'}: {wrong}")
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:
@@ -396,51 +353,3 @@ def repair(mesh: MeshLike) -> Mesh:
     8
     """
     return repaired(as_stated(mesh))[0]
-
-
-class Shown:
-    """A rotatable mesh in a notebook.
-
-    Attributes
-    ----------
-    html : str
-        The page, which any browser can open.
-    """
-
-    def __init__(self, mesh: Mesh) -> None:
-        from trimesh.viewer.notebook import scene_to_html
-
-        scene = import_module("haptic_glance.lod").to_trimesh(mesh)
-        self.html: str = scene_to_html(scene.scene() if hasattr(scene, "scene") else scene)
-
-    def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="480" style="border: 0"></iframe>'
-
-
-def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
-    """Shows a rotatable mesh in a notebook.
-
-    Parameters
-    ----------
-    mesh : Mesh or any input of `as_mesh`
-        The mesh.
-    values : (n,) array_like, optional
-        One value per vertex, 0 or more, that colours the mesh from violet (low) to yellow (high).
-
-    Returns
-    -------
-    Shown
-        An object that notebooks draw.
-
-    Raises
-    ------
-    ValueError
-        For values of another shape, negative values, and values that are not finite.
-    """
-    model = as_mesh(mesh)
-    if values is not None:
-        values = np.asarray(values, dtype=np.float64)
-        if values.shape != (len(model.vertices),) or not ((values >= 0) & (values < np.inf)).all():
-            raise ValueError(f"values must be one per vertex, ({len(model.vertices)},), finite and 0 or more")
-        model = coloured(model, values)
-    return Shown(model)

@@ -1,4 +1,4 @@
-"""The doors agree: commands, functions and studio give the same places, values and imprints, for a mesh in any form."""
+"""Commands, functions and studio give the same places, values and imprints, for a mesh in any form."""
 
 import inspect
 import json
@@ -11,11 +11,10 @@ import pytest
 import trimesh
 
 import haptic_glance
-from haptic_glance import Mesh, detect, doors, find_points, know, load, press, press_many, saliency, simplify
+from haptic_glance import Mesh, detect, find_points, know, load, press, press_many, public, saliency, simplify
 from haptic_glance.__main__ import run
 from haptic_glance.lod.export import write_any
 from haptic_glance.studio.specimen import open_content, open_file
-from haptic_glance.touch.layout import Layout
 from tests.shapes import flat_grid
 
 COUNT = 5
@@ -42,7 +41,7 @@ def file(body, tmp_path, request):
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:assuming")
 @pytest.mark.parametrize("file", [".glb"], indirect=True)
-def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, capsys):
+def test_commands_functions_and_studio_give_the_same_places_values_and_imprints(file, tmp_path, capsys):
     mesh = load(file)
     detection = detect(mesh, count=COUNT)
     assert (np.diff(detection.scores) <= 0).all() and len(detection.scores) == COUNT
@@ -76,7 +75,7 @@ def test_lengths_are_shares_of_the_diameter_or_have_a_unit(body, scale):
     mesh = Mesh(*body)
     image = press(Mesh(scale * mesh.vertices, mesh.faces), 7)
     assert np.allclose(image, press(mesh, 7), atol=1e-5)
-    millimetres = press(mesh, 7, pitch=f"{0.01 * doors.centre_and_radius(mesh)[1] / 0.5}mm", unit="mm")
+    millimetres = press(mesh, 7, pitch=f"{0.01 * public.centre_and_radius(mesh)[1] / 0.5}mm", unit="mm")
     assert np.allclose(millimetres, image, atol=1e-5)
     with pytest.raises(ValueError, match="pitch='1mm' needs unit"):
         press(mesh, 7, pitch="1mm")
@@ -112,14 +111,7 @@ def test_forces_take_lengths_as_texts(body):
     assert felt.any() and (felt == numbers).all()
     gaps = haptic_glance.gaps_at(mesh, *place, within="2mm", pitch="0.15cm", unit="mm")
     assert np.allclose(gaps, haptic_glance.gaps_at(mesh, *place, within=0.002, pitch=1.5, unit=0.001))
-    metres = Mesh(mesh.vertices / 1000, mesh.faces), place[0] / 1000, place[1], layer
-    layout = Layout([[0, 0, 0]], [[0, 0, -1]], [1e-6])
     for text, number in (("2mm", 0.002), ("0.05cm", 0.0005)):
-        felt = haptic_glance.layout_forces(*metres, layout, depth=text)
-        assert felt.any()
-        assert (felt == haptic_glance.layout_forces(*metres, layout, depth=number)).all()
-        in_mm = haptic_glance.layout_forces(mesh, *place, layer, layout, depth=text, unit="mm")
-        assert np.allclose(in_mm, felt)
         felt = haptic_glance.forces(gaps, layer, 1e-6, depth=text)
         assert (felt == haptic_glance.forces(gaps, layer, 1e-6, depth=number)).all()
     with pytest.raises(ValueError, match="depth='deep': give a number"):
@@ -149,21 +141,6 @@ def test_units_of_forces_that_do_not_fit_are_warned_of(body, sizes, words):
     assert all(warning.filename == __file__ for warning in caught)
 
 
-@pytest.mark.parametrize("scale, unit, words", [
-    (1.0, 1.0, "layout: .* is the unit of length right"), (0.001, 1.0, ""), (1.0, "mm", ""),
-])  # fmt: skip
-def test_a_layout_that_does_not_fit_the_object_is_warned_of(body, scale, unit, words):
-    mesh = Mesh(scale * body[0], body[1])
-    place = mesh.vertices[[7]], haptic_glance.sensor_axes(haptic_glance.sensor_normals(mesh, [7]))
-    taxels = Layout([[0, 0, 0], [0.008, 0, 0]], [[0, 0, -1]] * 2, [1e-5] * 2)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        layer, arrays = haptic_glance.Layer(), (mesh.vertices, mesh.faces)
-        haptic_glance.layout_forces(arrays, *place, layer, taxels, depth=1e-4, unit=unit)
-    assert len(caught) == bool(words) and all(re.match(words, str(warning.message)) for warning in caught)
-    assert all(warning.filename == __file__ for warning in caught)
-
-
 FORMS = {
     "path": lambda mesh, path: path,
     "arrays": lambda mesh, path: (mesh.vertices, mesh.faces),
@@ -175,7 +152,6 @@ CALLS = {
     "detect": lambda f, m: f(m, count=2), "find_points": lambda f, m: f(m, 2),
     "follow": lambda f, m: f(m, np.array([[100, -30, 7], [120, -30, 7], [100, -10, 7.0]]), 3, (4, 4)),
     "gaps_at": lambda f, m: f(m, *PLACE, within=1.0, pitch=0.1),
-    "layout_forces": lambda f, m: f(m, *PLACE, haptic_glance.Layer(), LAYOUT, depth=0.001),
     "metro": lambda f, m: f(m, m, 100), "normalise": lambda f, m: f(m),
     "perceptual": lambda f, m: f(m, m, [haptic_glance.Viewpoint(0, 0)], (45, 60)),
     "press": lambda f, m: f(m, 7), "press_forces": lambda f, m: f(m, *PLACE, haptic_glance.Layer(), depth=0.001),
@@ -186,7 +162,6 @@ CALLS = {
     "rotate_to_z_up": lambda f, m: f(m),
 }  # fmt: skip
 PLACE = np.array([[100.0, -30.0, 40.0]]), haptic_glance.sensor_axes([[0.0, 0.0, 1.0]])
-LAYOUT = Layout([[0, 0, 0], [0.1, 0, 0]], [[0, 0, -1], [0, 0, -1]], [1e-4, 1e-4])
 
 
 def test_every_function_with_a_mesh_is_called_here():
@@ -236,16 +211,14 @@ def test_an_axis_that_nobody_said_is_warned_of_where_it_first_matters(body):
             looking(small)
 
 
-@pytest.mark.parametrize("name", doors.MESHES)
+@pytest.mark.parametrize("name", public.PATH_ARGUMENTS)
 def test_functions_travel_to_other_processes(name):
     assert pickle.loads(pickle.dumps(getattr(haptic_glance, name))) is getattr(haptic_glance, name)
 
 
-def test_a_layer_or_a_layout_that_is_none_is_named(body):
+def test_a_layer_that_is_none_is_named(body):
     with pytest.raises(TypeError, match=r"layer must be a Layer .*got 0\.002"):
         haptic_glance.press_forces(Mesh(*body), [[0, 0, 0]], [np.eye(3)], 0.002, load=1)
-    with pytest.raises(TypeError, match="layout must be a Layout, as read_layout gives it, got 'tip.csv'"):
-        haptic_glance.layout_forces(Mesh(*body), [[0, 0, 0]], [np.eye(3)], haptic_glance.Layer(), "tip.csv", load=1)
 
 
 def test_values_that_colour_a_mesh_are_one_per_vertex_and_finite(body):
