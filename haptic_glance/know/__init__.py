@@ -9,9 +9,10 @@ from .library import Belief, Library, known_objects, learn, place_at, primitives
 from .protocol import evaluate, random_holdout, region_holdout
 from .touches import concatenate_touches, draw_combinations, touch_map
 from .trial import LIKELIHOODS, SPLITS, Trial, split_touches
+from .unknown import NONE
 
 __all__ = [
-    "Belief", "CLASSIFIERS", "Calibration", "Exploration", "FEATURES", "LIKELIHOODS", "Library", "SPLITS",
+    "Belief", "CLASSIFIERS", "Calibration", "Exploration", "FEATURES", "LIKELIHOODS", "Library", "NONE", "SPLITS",
     "STRATEGIES", "Trial", "calibrate", "classifier", "concatenate_touches", "confusable", "draw_combinations",
     "evaluate", "explore", "features", "known_objects", "learn", "place_at", "primitives",
     "random_holdout", "region_holdout", "sample_places", "similarity", "split_touches", "stop", "touch_map",

@@ -9,7 +9,7 @@ from haptic_glance.touch import Surface, press_at, sensor_axes
 from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import as_surface, turned
 
-from .library import CELLS, PITCH, Belief, Expected, Library, check_scale, sample_places
+from .library import CELLS, PITCH, SURE, Belief, Expected, Library, check_scale, sample_places
 
 PLACES = 64  # where the planner may touch
 FRESH = 0.04  # units, a quarter of the array: nearer to a touched place there is little new
@@ -106,12 +106,22 @@ class Exploration:
         return np.where((distances > FRESH).all(axis=1), self.library.gains(self.belief, self.expected), -np.inf)
 
     def next_place(self) -> Places | None:
-        """The place at which the belief is expected to gain most; None where no fresh place promises anything."""
+        """The place at which the belief is expected to gain most; None where no fresh place promises anything.
+
+        If the object may be unknown, and the likeliest known object is sure among the known ones, it is the first fresh
+        place: the touches are then compared with those of this object, which were at random places, too.
+        """
         gains = self.gains()
-        return self.candidate(int(gains.argmax())) if gains.max() > WORTHLESS else None
+        if gains.max() > WORTHLESS and not (self.library.verifier and self.belief.among_known.max() >= SURE):
+            return self.candidate(int(gains.argmax()))
+        fresh = np.flatnonzero(np.isfinite(gains))
+        return self.candidate(int(fresh[0])) if self.library.verifier and len(fresh) else None
 
     def finish(self, most: int = MOST) -> str:
-        """Lets the planner touch until an object is known, whose name is returned; empty where it gives up."""
+        """Lets the planner touch until an object is known, whose name is returned; empty where it gives up.
+
+        "none of these", if the library was learned with `unknown` and it is none of its objects.
+        """
         while not self.belief.known and len(self.images) < most and (place := self.next_place()) is not None:
             self.touch(place)
         return self.belief.known

@@ -6,7 +6,7 @@ tells how likely a new imprint is under each object.
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
 
@@ -43,20 +43,26 @@ from .belief import (
     nearest_outcomes,
     place_kernel,
 )
-from .components import Components
+from .components import COMPONENTS, Components
 from .explore import State, by_gain
 from .features import FEATURES, features
+from .unknown import NONE, Verifier, check_unknown, log_pooled
 
 SURE = 0.95  # belief in one object at which it is known
 
 
 @dataclass(frozen=True)
 class Belief:
-    """log_likelihoods (classes,): sums over the touches so far under each object of the library."""
+    """log_likelihoods (classes,): sums over the touches so far under each object of the library.
+
+    components (touches, 12): of the imprints so far; pooled: the sum of their log likelihoods under all objects pooled.
+    """
 
     library: "Library"
     log_likelihoods: np.ndarray
     touches: int = 0
+    components: np.ndarray = field(default_factory=lambda: np.zeros((0, COMPONENTS)))
+    pooled: float = 0.0
 
     def after(self, image: np.ndarray, position: np.ndarray) -> "Belief":
         """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,).
@@ -69,24 +75,48 @@ class Belief:
         if place.shape != (3,) or not np.isfinite(place).all():
             raise ValueError(f"a touch needs a position of three finite numbers, got {position}")
         self.library.check_near(place)
-        evidence = self.library.log_likelihoods(np.asarray(image)[None], place[None])[0]
-        return Belief(self.library, self.log_likelihoods + evidence, self.touches + 1)
+        components = self.library.components(np.asarray(image)[None])
+        evidence = self.library.evidence(components, place[None])[0]
+        return Belief(
+            self.library,
+            self.log_likelihoods + evidence,
+            self.touches + 1,
+            np.concatenate([self.components, components]),
+            self.pooled + float(log_pooled(evidence)),
+        )
+
+    @cached_property
+    def among_known(self) -> np.ndarray:
+        """(classes,) probabilities if the object is one of the library's, in the order of its names."""
+        touches = max(self.touches, 1)
+        return np.exp(self.library.calibration.log_belief(self.log_likelihoods, touches))
+
+    @cached_property
+    def none(self) -> float:
+        """The probability that the object is none of the library's: 0 unless it was learned with `unknown`."""
+        if (verifier := self.library.verifier) is None:
+            return 0.0
+        return 1 - verifier.probability(self.log_likelihoods, self.pooled, self.components)
 
     @cached_property
     def values(self) -> np.ndarray:
         """(classes,) probabilities, in the order of the library's names; equal before the first touch."""
-        touches = max(self.touches, 1)
-        return np.exp(self.library.calibration.log_belief(self.log_likelihoods, touches))
+        return self.among_known * (1 - self.none)
 
     @property
     def probabilities(self) -> dict[str, float]:
-        """{name: probability}, the likeliest first."""
+        """{name: probability}, the likeliest first; with "none of these" if the library was learned with `unknown`."""
         by_name = dict(zip(self.library.names, self.values.tolist(), strict=True))
+        if self.library.verifier is not None:
+            by_name[NONE] = self.none
         return dict(sorted(by_name.items(), key=lambda item: -item[1]))
 
     @property
     def known(self) -> str:
-        """The name of the object that is known: its probability is at least SURE; else empty."""
+        """The name of the object that is known: its probability is at least SURE; else empty.
+
+        It is "none of these" where that has this probability.
+        """
         name, probability = next(iter(self.probabilities.items()))
         return name if probability >= SURE else ""
 
@@ -149,6 +179,7 @@ def learn(
     seed: int = 0,
     turned: bool = False,
     skin: Skin | None = None,
+    unknown: bool = False,
 ) -> "Library":
     """Learns objects by touch; a mesh that was learned before costs nothing.
 
@@ -167,6 +198,10 @@ def learn(
     skin : Skin, optional
         The sensor by whose imprints the objects are learned, and by which an `Exploration` touches. Where a real array
         has dead cells or noise, a belief that was learned with an ideal array is sure too soon, and often wrong.
+    unknown : bool
+        Whether an object may be none of these, which is then an answer of its own with a probability. False: an object
+        that was never learned gets the name of a learned one, and often a sure one. True needs three meshes or more; a
+        known object needs more touches, and stays undecided more often.
 
     Returns
     -------
@@ -176,8 +211,8 @@ def learn(
     Raises
     ------
     ValueError
-        For fewer than two meshes, and for a mesh that cannot be touched or has another scale; the message names the
-        mesh.
+        For fewer than two meshes, three with `unknown`; for a mesh that cannot be touched or has another scale, and for
+        a mesh called "none of these" with `unknown`; the message names the mesh.
     TypeError
         For meshes that are no mapping, for names that are no texts, and for a skin that is none.
 
@@ -194,17 +229,28 @@ def learn(
     >>> library = learn({name: shapes[name] for name in ("box", "cylinder")}, placed=False)
     >>> Exploration(library, shapes["cylinder"], np.random.default_rng(0)).finish()
     'cylinder'
+
+    A torus that was never learned, with its probability to be none of five other shapes:
+
+    >>> others = {name: shape for name, shape in shapes.items() if name != "torus"}
+    >>> exploration = Exploration(learn(others, unknown=True), shapes["torus"], np.random.default_rng(0))
+    >>> exploration.finish()
+    'none of these'
+    >>> round(exploration.belief.none, 2)
+    0.97
     """
     check_names(meshes)
     if len(meshes) < 2:
         raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
+    if unknown:
+        check_unknown(len(meshes), TOUCHES)
     if skin is not None and not callable(skin):
         raise TypeError(f"skin must be a Skin such as Skin(noise=0.02), got {skin!r}")
     upright = {name: upright_named(name, meshes[name]) for name in sorted(meshes)}
     upright = {name: mesh if isinstance(meshes[name], Mesh) else normalise(mesh) for name, mesh in upright.items()}
     objects = tuple(_Named(name, mesh, seed, turned, skin) for name, mesh in upright.items())
     _warn_of_equal(objects)
-    return _library(objects, placed)
+    return _library(objects, placed, unknown)
 
 
 def _warn_of_equal(objects):
@@ -280,11 +326,14 @@ class Library:
         The sensor by which the objects were touched; None: an ideal one.
     turned : bool
         Whether each array was turned at random about its normal; an `Exploration` then turns its arrays, too.
+    unknown : bool
+        Whether an object may be none of these, as in `learn`.
 
     Raises
     ------
     ValueError
-        For equal names, for samples and positions that are not finite or do not fit them, and for features of bytes.
+        For equal names, for samples and positions that are not finite or do not fit them, for features of bytes, and,
+        with `unknown`, for fewer than three objects or four touches of each, or an object called "none of these".
 
     Notes
     -----
@@ -295,17 +344,22 @@ class Library:
 
     def __init__(
         self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0,
-        skin: Skin | None = None, turned: bool = False,
+        skin: Skin | None = None, turned: bool = False, unknown: bool = False,
     ) -> None:  # fmt: skip
         self.names, self.placed, self.skin, self.turned = names, placed, skin, turned
         samples, positions = np.asarray(samples), np.asarray(positions)
         _check_samples(names, samples, positions)
+        if unknown:
+            check_unknown(*samples.shape[:2])
+        if unknown and NONE in names:
+            raise ValueError(f"an object is called {NONE!r}, which is the answer where it is unknown: rename it")
         classes, self._touches = samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._touches)
         self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
         self._evidence = self._of_own_touches()
         self.calibration: Calibration = self._calibrate(seed)
+        self.verifier: Verifier | None = self._verifier(rng(seed, "unknown")) if unknown else None
 
     def belief(self) -> Belief:
         """The Belief before the first touch: all objects alike."""
@@ -327,12 +381,16 @@ class Library:
         If the objects are `placed`, a touch counts less the farther it is from all learned touches: there none of them
         says what an object feels like.
         """
+        return self.evidence(self.components(images), np.asarray(positions))
+
+    def components(self, images: np.ndarray) -> np.ndarray:
+        """(k, 12) principal components of the features of imprints (k, *CELLS); as in `log_likelihoods`."""
         if np.shape(images)[1:] != CELLS:
             raise ValueError(f"this library was learned with {CELLS} cells, the imprints have {np.shape(images)[1:]}")
-        components, positions = (
-            self._reduction.transform(features(as_shares(np.asarray(images)))),
-            np.asarray(positions),
-        )
+        return self._reduction.transform(features(as_shares(np.asarray(images))))
+
+    def evidence(self, components: np.ndarray, positions: np.ndarray) -> np.ndarray:
+        """`log_likelihoods` of imprints by their components (k, 12)."""
         kernel = feature_kernel(components, self._components)
         evidence = self._log_likelihood(kernel, positions, np.arange(len(self._owners)))
         if not self.placed:
@@ -353,10 +411,13 @@ class Library:
         return Expected(np.stack(predicted), probabilities)
 
     def gains(self, belief: Belief, expected: Expected) -> np.ndarray:
-        """(k,) nats by which the entropy of the belief is expected to fall with a touch at each of k places."""
+        """(k,) nats by which the entropy of the belief is expected to fall with a touch at each of k places.
+
+        The belief is that among the known objects.
+        """
         random_scores = np.zeros((1, len(expected.predicted)))
         parts = random_scores, expected.predicted[None], expected.probabilities[None], self.calibration
-        beliefs = belief.values[belief.values > 0]
+        beliefs = belief.among_known[belief.among_known > 0]
         return by_gain(State(belief.log_likelihoods[None], belief.touches, *parts))[0] - beliefs @ np.log(beliefs)
 
     def _log_likelihood(self, kernel, positions, ids):
@@ -387,6 +448,11 @@ class Library:
         np.fill_diagonal(kernel, 0)
         evidence = self._log_likelihood(kernel, position[None], ids)
         return evidence.reshape(*outcomes.shape, len(self.names))
+
+    def _verifier(self, random):
+        shape = len(self.names), self._touches, -1
+        evidence, components = self._evidence.reshape(shape), self._components.reshape(shape)
+        return Verifier(evidence, components, self.calibration, SURE, random)
 
     def _calibrate(self, seed):
         touches = self._evidence.reshape(len(self.names), self._touches, -1)
@@ -435,11 +501,11 @@ class _Named:
 
 
 @lru_cache(maxsize=4)
-def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
+def _library(objects: tuple[_Named, ...], placed: bool, unknown: bool) -> Library:
     samples, positions = zip(*map(_learned, objects), strict=True)
     names = tuple(item.name for item in objects)
     _, seed, _, turned, skin = objects[0].key
-    return Library(names, np.stack(samples), np.stack(positions), placed, seed, skin, turned)
+    return Library(names, np.stack(samples), np.stack(positions), placed, seed, skin, turned, unknown)
 
 
 SCALE = 0.87, 2.0  # the diagonal of a normalised object is 1 to 1.74; no object of half or double the size passes
