@@ -200,10 +200,10 @@ def below_taxels(
     return distances
 
 
-MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
-FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
-PRESS = UntilWorthCompiling(press, __file__, budget=12_800)
-BELOW_TAXELS = UntilWorthCompiling(below_taxels, __file__, budget=12_800)  # cells, of about a taxel
+MEASURE = UntilWorthCompiling(measure, budget=12_800)  # cells: 50 arrays of 16 x 16
+FIRST_BELOW = UntilWorthCompiling(first_below, budget=12_800)
+PRESS = UntilWorthCompiling(press, budget=12_800)
+BELOW_TAXELS = UntilWorthCompiling(below_taxels, budget=12_800)  # cells, of about a taxel
 
 
 @helper
