@@ -14,7 +14,7 @@ from stages.recheck import EQUAL, by_method, chain, compared, run
 from stages.recheck import outcome as outcome_of
 from stages.views import __main__ as views
 
-SECTION = {"viewpoints": "four", "size": [45, 60], "renderer": "raster", "background": "black", "compare_sets": False}
+SECTION = {"viewpoints": "four", "size": [45, 60], "background": "black", "compare_sets": False}
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ MODULES = {
     "pictures": ("cv2", "matplotlib"),
     "pipeline": (
         "cloudpickle", "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "omegaconf", "pandas",
-        "point_cloud_utils", "pymeshlab", "pypcd4", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage",
+        "point_cloud_utils", "pymeshlab", "pypcd4", "pywt", "robust_laplacian", "rtree", "skimage",
         "sklearn", "threadpoolctl", "tqdm", "yaml",
     ),
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),

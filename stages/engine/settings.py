@@ -94,7 +94,6 @@ NAMES = {  # section: {setting: MODULE:NAME of the names that its values have, o
     },
     "views": {
         "background": "haptic_glance.look.views.view:BACKGROUNDS",
-        "renderer": "haptic_glance.look.views.renderer:resolve_renderer",
         "viewpoints": "haptic_glance.look.views.viewpoints:VIEWPOINTS",
     },
     "weights": {"method": "stages.weights.training:CHOICES", "svm": "stages.weights.training:PIXELS"},

@@ -13,7 +13,6 @@ class Params:
 
     viewpoints: str
     size: list[int]
-    renderer: str
     background: str
     compare_sets: bool
     material: Material = field(default_factory=Material)
