@@ -2,6 +2,7 @@
 
 import argparse
 import ast
+import gc
 import re
 import sys
 import warnings
@@ -9,8 +10,6 @@ from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
-
-from haptic_glance import first_run
 
 # Command -> the module that runs it; the first line of its docstring is what --help says of it.
 MESH_COMMANDS = {
@@ -78,8 +77,7 @@ def main() -> None:
 
 def run(command: str, argv: Sequence[str]) -> int:
     """Runs a command; returns the exit status."""
-    if command in first_run.COMMANDS and not {"-h", "--help"} & set(argv):
-        first_run.start(command)
+    gc.set_threshold(200_000)  # a command ends soon, and numba's graphs hold no garbage: a tenth of a first run
     from haptic_glance.base.errors import errors_in_one_line, interrupts_wait
 
     errors_in_one_line(command)

@@ -12,9 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO
 
+from .cache_folder import cache_folder
 from .errors import FetchError as FetchError
 from .files import sha256
-from .kept import cache_folder
 
 LARGEST = 2**30  # bytes of one member that are read into memory; what the stages read has at most a tenth of that
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .jit import kernel_of
+from .jit import cached_njit
 from .lazy import cv2
 
 WINDOW = 11  # pixels; Wang et al. 2004, with a Gaussian of sigma 1.5
@@ -32,7 +32,7 @@ def _blurred(values):
     return cv2.sepFilter2D(values, -1, weights, weights, borderType=cv2.BORDER_REFLECT)
 
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 
 
 @kernel

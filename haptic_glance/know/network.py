@@ -4,7 +4,7 @@ import numba
 import numpy as np
 from sklearn.base import BaseEstimator, ClassifierMixin
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 
 RHO = 0.99  # Adadelta's decay; RapidMiner's default
 PRECISION = np.float32  # as in RapidMiner's H2O
@@ -74,7 +74,7 @@ Layers = tuple[np.ndarray, ...]
 
 
 # It divides as numpy does, without a branch on zero, which would prevent vectorisation of Adadelta's loop.
-@kernel_of(__file__)
+@cached_njit()
 def train(
     weights: Layers,
     squares: Layers,

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from haptic_glance.base.jit import helper, kernel_of
+from haptic_glance.base.jit import cached_njit, helper
 
-kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as all else here
+kernel = cached_njit()
 
 
 def graph_components(tails: np.ndarray, heads: np.ndarray, count: int) -> tuple[np.ndarray, int]:

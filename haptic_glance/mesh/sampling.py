@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 
 if TYPE_CHECKING:
     from .mesh import Mesh
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 
 
 def sample_surface(

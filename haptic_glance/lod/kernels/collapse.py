@@ -10,9 +10,9 @@ import numpy as np
 
 from haptic_glance.base.jit import greater, lesser
 
-from .jit import Id, cross, dot, helper, kernel, point
 from .mesh import HalfEdgeMesh, after, before, collapse_edge
 from .quadrics import Wedges, attribute_cost, best_place, error_at, merge_wedges
+from .vectors import Id, cross, dot, helper, kernel, point
 
 NOBODY = np.int64(-1)  # no vertex; numba compiles anew for a plain -1
 STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not checked

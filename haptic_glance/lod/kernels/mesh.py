@@ -10,7 +10,7 @@ import numpy as np
 
 from haptic_glance.base.jit import greater, lesser
 
-from .jit import Id, allocating_kernel, between, cross, dot, helper, kernel, light_kernel, point
+from .vectors import Id, between, cross, dot, helper, kernel, point
 
 
 @helper
@@ -37,7 +37,7 @@ def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray
     return _of_any(faces, count, oriented)
 
 
-@allocating_kernel
+@kernel
 def _of_any(faces, count, oriented):
     """`opposites` of faces that need not be closed."""
     opposite = np.full(len(faces), -1, dtype=np.int32)
@@ -67,7 +67,7 @@ def _of_any(faces, count, oriented):
     return opposite, non_manifold
 
 
-@light_kernel
+@kernel
 def _closed(faces, opposite, first, following, half_edge):
     """Fills `opposite` for a closed manifold with consistent winding, else returns False.
 
@@ -97,7 +97,7 @@ def _closed(faces, opposite, first, following, half_edge):
     return good  # each half-edge down has its own up; faces are cycles, so that none up is left over
 
 
-@allocating_kernel
+@kernel
 def _by_lower_end(faces, count):
     first = np.zeros(count + 1, dtype=np.int32)
     for h in range(len(faces)):
@@ -225,7 +225,7 @@ def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: i
     return faces[:size].copy(), used[:ids].copy()
 
 
-@light_kernel
+@kernel
 def _name_corners(corner, locked, source, count, name, faces, used):
     """Fills what `compact` returns; returns the numbers of corners and of vertices. name: -1 for each key."""
     size = ids = 0
@@ -250,7 +250,7 @@ def split_fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, int
     return fan, _fill_split_fans(faces, opposite, fan)
 
 
-@light_kernel
+@kernel
 def _fill_split_fans(faces, opposite, fan):
     """Fills the fans of `split_fans`, all -1 before; returns their number."""
     count = 0
@@ -278,7 +278,7 @@ def face_components(opposite: np.ndarray) -> tuple[np.ndarray, int]:
     return component, _fill_components(opposite, component, np.empty_like(component))
 
 
-@light_kernel
+@kernel
 def _fill_components(opposite, component, waiting):
     """Fills the components, all -1 before, and returns their number. waiting (m,): scratch."""
     count = 0
@@ -307,7 +307,7 @@ def signed_volumes(vertices: np.ndarray, faces: np.ndarray, opposite: np.ndarray
     return volume
 
 
-@light_kernel
+@kernel
 def _add_volumes(vertices, faces, opposite, component, origin, volume, boundary):
     """Adds the volume under each face to that of its component. origin: -1, then a vertex of each component."""
     for f in range(len(component)):
@@ -335,7 +335,7 @@ def count_faults(
     return _count(vertices, faces, opposite, thin, fold, np.zeros((len(faces) // 3, 3)))
 
 
-@light_kernel
+@kernel
 def _count(vertices, faces, opposite, thin, fold, normal):
     """`count_faults`; normal (m, 3): zeros."""
     degenerate = folded = 0

@@ -14,8 +14,8 @@ import numpy as np
 
 from haptic_glance.base.jit import greater
 
-from .jit import Id, between, cross, dot, helper, kernel, point
 from .mesh import after
+from .vectors import Id, between, cross, dot, helper, kernel, point
 
 PULL = 1e-6  # weight of the distance to the point itself relative to the plane: on a flat region it alone decides
 MAX_SHIFT = 2.0  # of the optimum from the edge's midpoint, in lengths of the edge

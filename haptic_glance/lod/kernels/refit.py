@@ -10,8 +10,8 @@ import numpy as np
 from haptic_glance.base.jit import greater, lesser
 
 from .collapse import NOBODY, check_move
-from .jit import between, cross, dot, helper, kernel, point
 from .mesh import HalfEdgeMesh, after, before
+from .vectors import between, cross, dot, helper, kernel, point
 
 STEP = 1.4  # over the step that cannot overshoot: converges faster
 TURN = 0.8  # least cosine by which the fit may turn a face

@@ -7,10 +7,10 @@ view, since pyrDown keeps the even pixels and pyrUp restores them, so maps do no
 
 import numpy as np
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.base.lazy import cv2
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 SCALES = 9
 CENTRES = (2, 3, 4)
 DELTAS = (3, 4)

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
@@ -34,7 +34,7 @@ from .texture import (
     magnitude,
 )
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 OURS, PRINTED, MENDED = FORMULAS = ("ours", "printed", "mended")
 STORED = 2  # the scale of a map of a whole picture, a quarter of its size
 Levels = dict[int, np.ndarray]

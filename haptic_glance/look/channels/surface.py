@@ -11,7 +11,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 
@@ -20,7 +20,7 @@ from ..views import View
 from .cropped_view import cropped_view, fill
 from .operators import OUTPUT_SCALE, centre_surround, normalise, pyramid
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 FLOOR = 0.02  # of the range of the values; a flatter map is noise of the mesh
 SCALE = 1  # one scale finer than centre-surround starts at, so that small faces are not aliased
 

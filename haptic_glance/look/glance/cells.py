@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from haptic_glance.base.jit import greater, helper, kernel_of, lesser
+from haptic_glance.base.jit import cached_njit, greater, helper, lesser
 
 if TYPE_CHECKING:
     from .samples import Samples
 
-kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as a loop
+kernel = cached_njit()
 CORNERS, DEPTH = 24, 96  # a triangle that six walls have cut has nine corners; halving 2^30 cells along three axes
 ROUNDING = 1e-5  # in units of a cell: what lies this near to a wall lies on it
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import KDTree
 
-from haptic_glance.base.jit import greater, kernel_of, lesser
+from haptic_glance.base.jit import cached_njit, greater, lesser
 
 NEAREST = 10  # points that a value on the surface is interpolated from
 SHARP = 0.75  # width of the Gaussian of that interpolation, in units of the spacing
@@ -118,7 +118,7 @@ def nearest(tree: KDTree, positions: np.ndarray, count: int) -> tuple[np.ndarray
     return np.where(at_end & ~at_end[:, :1], np.inf, distance[:, :-1]), ids[:, :-1]
 
 
-kernel = kernel_of(__file__, _nrt=False)  # makes no array: numba compiles np.empty for as long as a loop
+kernel = cached_njit()
 # Averages: a grid of cubes gives the neighbours, faster than a tree.
 STRIDES = np.array([1 << 42, 1 << 21, 1])  # cubes that follow one another along z have keys that do
 ROOM = 40  # neighbours of a point for which there is room at first

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.base.lazy import cv2
 from haptic_glance.mesh.mesh import Mesh
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 CLASSICAL = ("color", "intensity", "orientation")  # Itti, Koch and Niebur 1998, T [41]
 
 # T3.1.5. `VisAttAll` has the eight channels of T3.2.2; edge is added only in eq. 3.9 (methods `thesis_*`).

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.sampling import along_curve
 from haptic_glance.touch.surface import sensor_axes
@@ -18,7 +18,7 @@ from ..glance import Samples, samples_of_mesh
 from .glance import SampledDetector, nearest_vertices
 from .options import Options
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 WIDTH = 0.16  # of the array, in units of the normalised mesh: 16 cells of 0.01 (T4.3.1)
 CELLS = 8  # along a side of the array that compares places
 PLACES = 2000  # places compared with each other

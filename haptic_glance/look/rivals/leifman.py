@@ -21,13 +21,13 @@ from scipy.ndimage import gaussian_filter
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.mesh.mesh import Mesh
 
 from .maxima import high_maxima
 from .samples import Samples, samples, unit_mesh
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 SAMPLES = 1500
 RADII = (0.05, 0.1, 0.2)  # of the size: the supports of the spin images
 BINS = 8  # from the normal to the rim

@@ -10,13 +10,13 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.mesh.mesh import Mesh
 
 from ..channels.surface import smoother
 from ..weights.svm import select_far_points
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 DIGITS = 9  # decimals of positions, in sizes: closer vertices are one
 
 

@@ -14,14 +14,14 @@ import numpy as np
 from scipy import fft
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 
 from .maxima import check_values
 from .samples import area_vectors, subdivide
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
 PADDING = 16  # voxels around the box: the Fourier domain is periodic, and the widest Gaussian must not see its copy
 SIGMA = 1.0  # voxels: finer scales would show the grid

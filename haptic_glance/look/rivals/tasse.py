@@ -19,14 +19,14 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.mesh.mesh import Mesh
 
 from ..weights.svm import select_far_points
 from .maxima import high_maxima
 from .samples import unit_mesh
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 BINS = 11  # per angle of a descriptor; an odd number, so that a plane lies in the middle of one
 RADIUS = 0.01  # of the size: the neighbourhood of a vertex
 GROWTH, FEWEST = 1.1, 6  # it grows by this until a vertex has so many neighbours on average

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.jit import cached_njit
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
@@ -141,7 +141,7 @@ def _fewer(seen, share, most):
     return find_cover(np.ascontiguousarray(kinds, dtype=np.float32), counts.astype(np.float32), goal, most, NODES)
 
 
-kernel = kernel_of(__file__, fastmath=True)
+kernel = cached_njit(fastmath=True)
 # The search for few views is a branch and bound, bounded by Lagrangian relaxation.
 STEPS = 25  # of the prices at a node, which start from its parent's
 AIM = 0.01  # of the points: how far below the need a step of the prices aims; a longer step needs fewer nodes

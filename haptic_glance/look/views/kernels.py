@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from haptic_glance.base.jit import greater, helper, kernel_of, lesser
+from haptic_glance.base.jit import cached_njit, greater, helper, lesser
 
-kernel = kernel_of(__file__, _nrt=False)
-allocating_kernel = kernel_of(__file__)  # counts references to the arrays that it makes
+kernel = cached_njit()
 
 FLAT = 1e-12  # square pixels: a face seen from its edge has no single crossing point and counts as missed
 SLACK = 1e-9  # of a face: a pixel on the edge of two faces belongs to both, whichever way rounding goes
@@ -108,7 +107,7 @@ def shade_pixels(
                 rgb[i, j, channel] = shade
 
 
-@allocating_kernel
+@kernel
 def background_colour(rgb: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, bool]:
     """((3,) u1 the first colour of rgb (h, w, 3) u1 off the mask (h, w), whether all pixels there have it).
 
@@ -128,7 +127,7 @@ def background_colour(rgb: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, bo
     return colour, True
 
 
-@allocating_kernel
+@kernel
 def fold_depth(depth: np.ndarray, inside: np.ndarray, behind: float, step: float) -> np.ndarray:
     """(4, h * w) u1: the mixed second differences of a depth map in steps, near zero on a smooth surface.
 
@@ -150,7 +149,7 @@ def fold_depth(depth: np.ndarray, inside: np.ndarray, behind: float, step: float
     return planes
 
 
-@allocating_kernel
+@kernel
 def unfold_depth(planes: np.ndarray, inside: np.ndarray, behind: float, step: float, depth: np.ndarray) -> None:
     """Writes the depths that fold_depth folded to the pixels inside of depth (h, w) f4."""
     height, width = depth.shape

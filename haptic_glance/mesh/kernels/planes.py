@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from haptic_glance.base.jit import UntilCompiledBeside, greater, helper, kernel_of, lesser
+from haptic_glance.base.jit import cached_njit, greater, helper, lesser
 
 Id = int | np.integer
-kernel = kernel_of(__file__, forceinline=True, _nrt=False)  # makes no array
+kernel = cached_njit(forceinline=True)
 NUMBERS = 16  # of the planes
 SLIM = 1e-3  # height of a face over the position of its foot: below, the axes are orthogonalised again
 SLIVER = 1e-12  # height of a face over its length: a flatter face has no interior
@@ -118,7 +118,7 @@ def square_to(
 def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """(k, 3) barycentric weights, 0 to 1, of the points of faces[owners] (k,) nearest to points (k, 3)."""
     weights = np.empty((len(points), 3))
-    _WEIGH(points, owners, vertices, faces, weights)
+    _weigh(points, owners, vertices, faces, weights)
     return weights
 
 
@@ -148,6 +148,3 @@ def _weigh(points, owners, vertices, faces, weights):
             if square_distance < best:
                 best = square_distance
                 weights[i, k], weights[i, after], weights[i, (k + 2) % 3] = 1 - t, t, 0.0
-
-
-_WEIGH = UntilCompiledBeside(_weigh, most=5_000)

@@ -12,8 +12,8 @@ import numpy as np
 import viser
 from scipy.spatial import KDTree
 
+from haptic_glance.base.jit import kernel_folder
 from haptic_glance.lod import InfeasibleTarget, metro, neighbourhoods, vertex_errors
-from haptic_glance.lod.kernels.jit import FOLDER
 from haptic_glance.lod.pictures import viridis, vivid
 from haptic_glance.lod.simplify import BACKEND
 from haptic_glance.lod.task import SimplificationTask, repaired
@@ -82,7 +82,7 @@ class Levels:
             return self._levels[faces, kind]
 
     def _made(self, faces, kind, report):
-        first = not any(FOLDER.rglob("*.nbc"))
+        first = not any(kernel_folder().rglob("*.nbc"))
         report(0.1, "compiling, the first time on this machine: about ten seconds" if first else "simplifying")
         task = self.tasks[kind]
         try:

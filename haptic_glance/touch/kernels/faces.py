@@ -9,9 +9,9 @@ from collections import namedtuple
 
 import numpy as np
 
-from haptic_glance.base.jit import UntilWorthCompiling, helper, kernel_of
+from haptic_glance.base.jit import UntilWorthCompiling, cached_njit, helper
 
-kernel = kernel_of(__file__)
+kernel = cached_njit()
 
 
 SLACK = 1e-12  # of the mesh's diagonal: how far a face extends beyond its edges, so that no column passes between two
@@ -141,7 +141,7 @@ def order_faces(middles: np.ndarray, order: np.ndarray, ranges: np.ndarray, chil
         used += 2
 
 
-ORDER = UntilWorthCompiling(order_faces, __file__, budget=15_000)  # faces
+ORDER = UntilWorthCompiling(order_faces, budget=15_000)  # faces
 
 
 @helper

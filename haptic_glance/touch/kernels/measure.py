@@ -160,9 +160,9 @@ def press(
     return forces
 
 
-MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
-FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
-PRESS = UntilWorthCompiling(press, __file__, budget=12_800)
+MEASURE = UntilWorthCompiling(measure, budget=12_800)  # cells: 50 arrays of 16 x 16
+FIRST_BELOW = UntilWorthCompiling(first_below, budget=12_800)
+PRESS = UntilWorthCompiling(press, budget=12_800)
 
 
 @helper

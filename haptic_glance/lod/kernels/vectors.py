@@ -1,29 +1,16 @@
-"""The decorators of this folder's kernels, and vectors of three numbers.
+"""The decorator of this folder's kernels, and vectors of three numbers.
 
 A call of a vector function is compiled in less time than the operators that it stands for.
 """
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
-from haptic_glance.base.jit import UntilCompiledBeside, helper, kernel_of
-from haptic_glance.base.kept import kept_in
+from haptic_glance.base.jit import cached_njit, helper
 
 Id = int | np.integer  # of a vertex, half-edge, face or bucket
 
 # Inlined throughout: a call passes seven words for each array, which took as long as the work.
-kernel = kernel_of(__file__, forceinline=True, _nrt=False)  # for arguments of any numeric type; makes no array
-allocating_kernel = kernel_of(__file__, forceinline=True)  # to count references to arrays takes longer to compile
-FOLDER = kept_in(__file__)
-SMALL = 30_000  # half-edges, or vertices
-
-
-def light_kernel(function: Callable[..., Any]) -> Any:
-    """Makes a kernel of a function whose interpretation takes less time on a small mesh than its compilation."""
-    return UntilCompiledBeside(kernel(function), SMALL)
-
+kernel = cached_njit(forceinline=True)  # for arguments of any numeric type
 
 Vector = tuple[float, float, float]
 
