@@ -154,7 +154,7 @@ def _fewer(surface):
 
 def _points_seen(mesh, viewpoint, generator):
     """(points (k, 3), their normals (k, 3)) of one depth image."""
-    view = render(mesh, viewpoint, SIZE)
+    view = render(mesh, viewpoint, SIZE, "raster")
     rows, columns = np.nonzero(view.mask)
     origins, directions = pixel_rays(rows, columns, viewpoint, SIZE)
     away = view.depth[rows, columns] + NOISE * mesh.diagonal * generator.standard_normal(len(rows))

@@ -42,7 +42,7 @@ def take_pictures(name: str, folder: Path, data: Path, settings: Params) -> list
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     viewpoints, size = viewpoint_sphere(settings.parallels, settings.azimuths), (settings.size, settings.size)
     with Stopwatch() as watch:
-        pictures = np.stack([render(mesh, viewpoint, size).rgb.mean(axis=2) for viewpoint in viewpoints])
+        pictures = np.stack([render(mesh, viewpoint, size, "raster").rgb.mean(axis=2) for viewpoint in viewpoints])
     write_arrays(
         folder / ".pictures" / f"{name}.npz", pictures=np.rint(pictures).astype(np.uint8), seconds=watch.seconds
     )

@@ -89,7 +89,7 @@ def maps_under_conditions(
     normals = corner_normals(mesh) if conditions.light else np.zeros((0, 3, 3))
     by_view, masks = [], []
     for viewpoint in TWELVE:
-        view = render(mesh, viewpoint, size)
+        view = render(mesh, viewpoint, size, "raster")
         if conditions.light:
             view = relit(mesh, view, conditions.light, normals)
         if conditions.background:  # rendered black

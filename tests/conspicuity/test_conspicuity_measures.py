@@ -31,7 +31,7 @@ def test_the_share_of_the_silhouette_on_maps_of_a_disc():
 def test_filling_keeps_a_box_from_being_outlined():
     box = trimesh.creation.box((0.5, 0.5, 0.3))
     mesh = Mesh(box.vertices, box.faces)
-    view = render(mesh, Viewpoint(30, 20), SIZE)
+    view = render(mesh, Viewpoint(30, 20), SIZE, "raster")
     channels = ["contrast", "edge", "orientation"]
     _, filled = measured_maps(mesh, view, channels, (112, 150))
     raw = background_rows(mesh, view, channels, (112, 150))
@@ -45,7 +45,7 @@ def test_no_channel_lights_the_silhouette_of_a_bumpy_object():
     head = trimesh.creation.icosphere(3, radius=0.12).apply_translation([0.33, 0.1, 0.22])
     body = trimesh.util.concatenate([ball, head])
     mesh = Mesh(body.vertices, body.faces)
-    view = render(mesh, Viewpoint(30, 20), SIZE)
+    view = render(mesh, Viewpoint(30, 20), SIZE, "raster")
     shares = {name: silhouette_share(values, view.mask) for name, values in conspicuity(mesh, view, CHANNELS).items()}
     assert all(np.isnan(share) or share < 2 for share in shares.values()), shares
     assert np.isfinite([*shares.values()]).sum() > 5
@@ -59,7 +59,7 @@ def painted(ball, around, spot):
 
 def maps(mesh, material):
     """({channel: map}, (h, w) boolean: around the spot, (h, w) boolean: on the object)."""
-    values = conspicuity(mesh, render(mesh, FRONT, SIZE, material=material), ["color", "dkl", "intensity"])
+    values = conspicuity(mesh, render(mesh, FRONT, SIZE, "raster", material=material), ["color", "dkl", "intensity"])
     rows, columns = np.indices(values["color"].shape) * 4 + 1.5
     right, up = (columns - 299.5) / 429.35, (224.5 - rows) / 429.35
     return values, np.hypot(right - SPOT[1], up - SPOT[2]) < 0.1, np.hypot(right, up) < 0.45
@@ -81,7 +81,7 @@ def test_color_and_dkl_see_a_spot_of_another_hue_and_intensity_does_not(ball, ma
 def likeness(ball, around, spot):
     """{(metric, channel): value} of the ball with a spot."""
     mesh = painted(ball, around, spot)
-    view = render(mesh, FRONT, SIZE)
+    view = render(mesh, FRONT, SIZE, "raster")
     values = conspicuity(mesh, view, ["color", "dkl", "intensity"], (112, 150))
     return {(row["metric"], row["method"]): row["value"] for row in hue_rows(mesh, view, values, (112, 150))}
 

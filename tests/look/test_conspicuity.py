@@ -32,7 +32,7 @@ ODD = {
 
 @pytest.fixture(scope="module")
 def bumpy_view():
-    return render(lopsided(), Viewpoint(20, 10), SIZE)
+    return render(lopsided(), Viewpoint(20, 10), SIZE, "raster")
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def bumpy_maps(bumpy_view):
 
 @pytest.fixture(scope="module")
 def box_view():
-    return render(BOX, Viewpoint(30, 20), SIZE)
+    return render(BOX, Viewpoint(30, 20), SIZE, "raster")
 
 
 def test_maps_are_of_one_size_in_0_to_1_and_zero_off_the_object(bumpy_view, bumpy_maps):
@@ -63,7 +63,7 @@ def test_maps_are_the_same_when_object_and_camera_turn_together_in_any_order_and
     turn = trimesh.transformations.euler_matrix(0, 0, np.radians(77))[:3, :3]
     order = rng.permutation(len(mesh.vertices))
     turned = Mesh((mesh.vertices @ turn.T)[order], rng.permutation(np.argsort(order)[mesh.faces])[:, ::-1])
-    maps = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE))
+    maps = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE, "raster"))
     for channel, values in bumpy_maps.items():
         assert np.abs(values - maps[channel]).max() < 0.03, channel
 
@@ -72,7 +72,7 @@ def test_maps_are_the_same_when_object_and_camera_turn_together_in_any_order_and
 @pytest.mark.filterwarnings("error")
 @pytest.mark.slow
 def test_odd_meshes_give_finite_maps(name):
-    view = render(ODD[name], Viewpoint(40, 30), (180, 240))
+    view = render(ODD[name], Viewpoint(40, 30), (180, 240), "raster")
     for channel, values in conspicuity(ODD[name], view).items():
         assert np.isfinite(values).all() and values.min() >= 0 and values.max() <= 1, channel
         if name in ("one triangle", "no face", "flat"):
@@ -81,7 +81,7 @@ def test_odd_meshes_give_finite_maps(name):
 
 @pytest.mark.parametrize("size", [(3, 5), (20, 31)])
 def test_tiny_and_empty_views_give_finite_maps(size):
-    view = render(BOX, Viewpoint(30, 20), size)
+    view = render(BOX, Viewpoint(30, 20), size, "raster")
     assert all(np.isfinite(values).all() for values in conspicuity(BOX, view, [*CHANNELS, *OTHERS]).values())
     nothing = dataclasses.replace(view, face=np.full_like(view.face, -1), depth=np.full_like(view.depth, np.inf))
     for settings in ({}, {"filled": False, "formulas": "printed"}):
@@ -100,7 +100,7 @@ def test_a_rival_sees_the_image_as_rendered_and_nothing_in_one_grey_value(name, 
 
 @pytest.mark.parametrize("formulas", ["printed", "mended"])
 def test_maps_of_the_printed_formulas_lie_in_0_to_1_on_the_object_alone(formulas):
-    view = render(BALL, Viewpoint(30, 20), (225, 300))
+    view = render(BALL, Viewpoint(30, 20), (225, 300), "raster")
     maps = conspicuity(BALL, view, [*CHANNELS, *OTHERS], filled=False, formulas=formulas)
     for name, values in maps.items():
         assert values.shape == (56, 75) and values.min() >= 0 and values.max() <= 1, name

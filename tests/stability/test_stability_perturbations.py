@@ -179,7 +179,7 @@ def test_a_severity_out_of_range_is_named(name, pear):
 
 
 def test_light_at_no_angle_is_the_renderers_own_and_else_brightens_the_side_it_comes_from(pear):
-    view = render(pear, Viewpoint(0, 0), SIZE)
+    view = render(pear, Viewpoint(0, 0), SIZE, "raster")
     assert np.abs(relit(pear, view, 0.0, corner_normals(pear)).rgb.astype(int) - view.rgb).max() <= 1
     rgb = relit(pear, view, 60.0, corner_normals(pear)).rgb[..., 0]
     rows, columns = np.nonzero(view.mask)

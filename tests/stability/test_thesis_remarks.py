@@ -58,7 +58,7 @@ def test_entropy_adds_nothing_without_texture():
     Without texture both measure the slope of the shading.
     """
     mesh = SMOOTH["bumpy"]
-    view = render(mesh, VIEWPOINTS[0], SIZE)
+    view = render(mesh, VIEWPOINTS[0], SIZE, "raster")
     assert agreement(mesh, view) > 0.85
     assert agreement(mesh, textured(view)) < 0.6
 
@@ -66,7 +66,7 @@ def test_entropy_adds_nothing_without_texture():
 @pytest.mark.slow
 def test_entropy_measures_texture():
     """T3.1.5. The grain adds more than a bit where the shading is even, facing the light."""
-    view = render(SMOOTH["ellipsoid"], VIEWPOINTS[0], SIZE)
+    view = render(SMOOTH["ellipsoid"], VIEWPOINTS[0], SIZE, "raster")
     rows, columns = (ids[::7] for ids in np.nonzero(view.mask & (view.rgb[..., 0] > 170)))
     bits = [local_entropy(v.rgb[..., 0], view.mask, rows, columns).mean() for v in (view, textured(view))]
     assert bits[1] > bits[0] + 1
@@ -87,7 +87,7 @@ def symmetry_at_the_ends(mesh):
     """Of each view the information gain of the symmetry map about the tips along x, and the map."""
     gains, maps = [], []
     for viewpoint in VIEWPOINTS:
-        view = render(mesh, viewpoint, SIZE)
+        view = render(mesh, viewpoint, SIZE, "raster")
         inside = mask_at_size(view.mask, MAP)
         tip = np.abs(mesh.vertices[mesh.faces[np.maximum(view.face, 0), 0], 0]) > 0.36
         symmetry = conspicuity(mesh, view, ["symmetry"], MAP)["symmetry"]
@@ -107,7 +107,7 @@ def test_a_black_background_left_in_draws_the_maps_to_the_contour_least():
 def contour_share(mesh, background):
     shares = []
     for viewpoint in VIEWPOINTS:
-        view = render(mesh, viewpoint, SIZE, background)
+        view = render(mesh, viewpoint, SIZE, "raster", background)
         maps = conspicuity(mesh, view, FROM_THE_PICTURE, MAP, filled=False)
         shares += [silhouette_share(values, view.mask) for values in maps.values()]
     return np.nanmean(shares)

@@ -189,7 +189,7 @@ def maps_on_surface(mesh: Mesh, samples: Samples) -> np.ndarray:
     total, coverage = np.zeros((len(samples.points), len(MAPS)), dtype=np.float32), np.zeros(len(samples.points))
     for azimuth in AROUND:
         viewpoint = Viewpoint(first + azimuth, 0)
-        view = render(framed, viewpoint, (SIZE, SIZE))
+        view = render(framed, viewpoint, (SIZE, SIZE), "raster")
         rows, columns, depths = project(points, viewpoint, (SIZE, SIZE))
         nearest = ndimage.maximum_filter(np.where(view.mask, view.depth, 0), 3)
         pixel = np.rint([rows, columns]).astype(np.int64).clip(0, SIZE - 1)

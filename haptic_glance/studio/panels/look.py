@@ -197,5 +197,5 @@ def views_of(mesh: Mesh, saliency: np.ndarray, report: Report) -> np.ndarray:
     model, tiles = coloured(mesh, saliency), []
     for number, viewpoint in enumerate(TWELVE):
         report(number / len(TWELVE), f"{number + 1} of {len(TWELVE)}")
-        tiles.append(render(model, viewpoint, TILE, "white").rgb)
+        tiles.append(render(model, viewpoint, TILE, "raster", "white").rgb)
     return np.concatenate([np.concatenate(tiles[k : k + 3], axis=1) for k in range(0, len(tiles), 3)])

@@ -204,7 +204,7 @@ def errors(mesh: Mesh, level: Mesh) -> np.ndarray:
 def _show_coloured(axes: Axes, mesh: Mesh, values: np.ndarray, rows: int) -> None:
     colours = np.rint(255 * COLOURS(np.clip(values, 0, 1))[:, :3]).astype(np.uint8)
     mesh = Mesh(mesh.vertices, mesh.faces, colours)
-    image = render(mesh, VIEWPOINT, (2 * rows, 2 * rows), background="white").rgb
+    image = render(mesh, VIEWPOINT, (2 * rows, 2 * rows), "raster", background="white").rgb
     axes.imshow(squared(image.reshape(rows, 2, rows, 2, 3).mean(axis=(1, 3)) / 255)[0])
     axes.set_axis_off()
 
