@@ -7,7 +7,7 @@
 # an index with its CPU builds by --build-arg PIP_EXTRA_INDEX_URL=... for an image of a third of the size.
 FROM python:3.11-slim
 RUN apt-get update \
- && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends chromium git libatomic1 \
+ && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends chromium git libatomic1 libegl1 libgl1-mesa-dri \
     libopengl0 make nodejs npm \
  && rm -rf /var/lib/apt/lists/*
 ARG PIP_EXTRA_INDEX_URL

@@ -13,7 +13,7 @@ from haptic_glance.look import camera
 from haptic_glance.look.channels import ViewMaps
 from haptic_glance.look.channels.channels import CHANNELS as NINE
 from haptic_glance.look.channels.channels import OTHERS
-from haptic_glance.look.views import TWELVE
+from haptic_glance.look.views import TWELVE, gl
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from stages.engine import run
@@ -111,6 +111,14 @@ def shapes():
         "bowl": Mesh(sphere.vertices, lower),
         "coloured": Mesh(torus.vertices, torus.faces, np.clip((torus.vertices + 0.5) * 255, 0, 255).astype(np.uint8)),
     }
+
+
+@pytest.fixture(params=["raster", "pyrender"])
+def renderer(request):
+    """Each renderer that can run here."""
+    if request.param == "pyrender" and gl.egl_error():
+        pytest.skip(f"no EGL context on this machine: {gl.egl_error()}")
+    return request.param
 
 
 @pytest.fixture(scope="module")

@@ -227,6 +227,7 @@ def test_git_sees_the_headline_numbers_of_a_run_so_that_experiments_of_dvc_keep_
         ("out=dvc.yaml", "out=dvc.yaml is no folder for results"),
         ("classification.classifiers=[knnn]", "unknown name 'knnn': did you mean knn?"),
         ("conspicuity.channels=[colour]", "unknown name 'colour': did you mean color?"),
+        ("views.renderer=foo", "views.renderer: unknown renderer 'foo': choose auto or one of raster, pyrender"),
         ("household.lod.viewpoints=six", "lod.viewpoints: unknown name 'six': known: twelve, four, principal"),
         ("weights.method=guess", "weights.method: unknown name 'guess': known: gaze, fixations"),
         ("parallel.backend=foo", "parallel.backend=foo is none of loky, sequential, dask"),
@@ -299,8 +300,8 @@ def test_a_value_that_a_setting_cannot_have_is_named(params, setting, value, hin
         ("  views:\n", "  other:\n", "household.views: .* with views among the stages of conf/data/household.yaml"),
         ("parallel:", "paralel:", "did you mean parallel"),
         ("sets:", "data:", "lacks the section graph or sets: run `python -m stages.compose`"),
-        ("    background: ", "    backgrund: ", "unknown setting views.backgrund: did you mean views.background"),
-        ("    background: black\n", "", "views.background"),
+        ("    renderer: ", "    rendrer: ", "unknown setting views.rendrer: did you mean views.renderer"),
+        ("    renderer: raster\n", "", "views.renderer"),
         (
             "    background: black\n",
             "    background: blak\n",

@@ -37,7 +37,7 @@ def take_pictures(mesh: Mesh, views: Sequence[Viewpoint], size: int, colour: boo
     """
     rendered = mesh if colour else Mesh(mesh.vertices, mesh.faces)
     fine = (size * SAMPLES, size * SAMPLES)
-    renders = [render(rendered, view, fine, background="white").rgb for view in views]
+    renders = [render(rendered, view, fine, renderer="raster", background="white").rgb for view in views]
     blocks = np.stack(renders).reshape(-1, size, SAMPLES, size, SAMPLES, 3)
     return np.rint(blocks.mean(axis=(2, 4))).astype(np.uint8)
 

@@ -43,6 +43,7 @@ class Analysis(NamedTuple):
 
 def perceptual(
     reference: Mesh, mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300),
+    renderer: str = "raster",
 ) -> dict[str, float]:  # fmt: skip
     """Errors of the pictures of a mesh against those of the reference, averaged over the viewpoints.
 
@@ -55,6 +56,8 @@ def perceptual(
     size : tuple of 2 ints
         Rows and columns of the pictures, 11 or more. Compare values of one size only: at 225 x 300 four meshes had 0.7
         to 1.5 times the `ssim` of the thesis's 900 x 1200, since the window of 11 pixels covers more of the object.
+    renderer : str
+        As of `render`.
 
     Returns
     -------
@@ -84,12 +87,12 @@ def perceptual(
     """
     if not (len(reference.faces) and len(mesh.faces)):
         raise ValueError("a mesh without faces has no picture to compare")
-    before, after = (take_pictures(surface, viewpoints, size) for surface in (reference, mesh))
+    before, after = (take_pictures(surface, viewpoints, size, renderer) for surface in (reference, mesh))
     return picture_errors(before, after)
 
 
 def take_pictures(
-    mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300)
+    mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300), renderer: str = "raster"
 ) -> np.ndarray:
     """(views, rows, columns) f8 luminance, 0 to 255, of a mesh; those of a reference serve many comparisons."""
     if len(viewpoints) == 0:
@@ -98,7 +101,7 @@ def take_pictures(
         raise ValueError(f"pictures of {tuple(size)} are smaller than the window of {WINDOW} pixels")
     pictures = np.empty((len(viewpoints), *size))
     for picture, viewpoint in zip(pictures, viewpoints, strict=True):
-        cv2.transform(render(mesh, viewpoint, size).rgb.astype(np.float64), LUMA, picture)
+        cv2.transform(render(mesh, viewpoint, size, renderer=renderer).rgb.astype(np.float64), LUMA, picture)
     return pictures
 
 

@@ -99,7 +99,7 @@ def _colour_scale():
 def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
     """(ROWS, ROWS, 3) u1 picture of a mesh on white; wires: with the edges between visible faces."""
     side = ROWS * FINER
-    view = render(mesh, VIEWPOINT, (side, side), background="white")
+    view = render(mesh, VIEWPOINT, (side, side), renderer="raster", background="white")
     image = view.rgb.astype(np.float64)
     if wires:
         face = view.face
@@ -135,7 +135,7 @@ def places(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def visible(mesh: Mesh, vertices: np.ndarray) -> np.ndarray:
     """(k,) boolean: which of the vertices the picture shows."""
     size = (ROWS, ROWS)
-    depth = render(mesh, VIEWPOINT, size).depth
+    depth = render(mesh, VIEWPOINT, size, renderer="raster").depth
     rows, columns, depths = project(mesh.vertices[vertices], VIEWPOINT, size)
     r, c = (np.clip(np.rint(place).astype(int), 0, ROWS - 1) for place in (rows, columns))
     return depths <= depth[r, c] + 0.02  # units: a point on the silhouette may miss its own surface by a pixel

@@ -177,7 +177,7 @@ def _margins(left, right, bottom, top, gap):
 
 def _shaded(mesh, viewpoint):
     side = ROWS * SUPERSAMPLING
-    view = render(Mesh(mesh.vertices, mesh.faces), viewpoint, (side, side), background="white")
+    view = render(Mesh(mesh.vertices, mesh.faces), viewpoint, (side, side), renderer="raster", background="white")
     return view.rgb.reshape(ROWS, SUPERSAMPLING, ROWS, SUPERSAMPLING, 3).mean(axis=(1, 3)) / 255
 
 

@@ -13,6 +13,7 @@ from haptic_glance.base.files import read_mesh, write_table
 from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.look.views import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set
+from haptic_glance.look.views.renderer import resolve_renderer
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
@@ -21,16 +22,16 @@ from . import COLUMNS, Params
 from .storage import write_view
 
 
-def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
+def process(name: str, folder: Path, data: Path, settings: Params, renderer: str) -> Rows:
     """Renders all views of one object; the first view's seconds include making the mesh ready."""
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     rows = []
     height, width = settings.size
     for viewpoint in viewpoint_set(settings.viewpoints):
         with Stopwatch() as watch:
-            view = render(mesh, viewpoint, (height, width), settings.background, settings.material)
+            view = render(mesh, viewpoint, (height, width), renderer, settings.background, settings.material)
         write_view(folder / name / f"{viewpoint.name}.npz", view)
-        row = {"item": name, "method": "raster", "viewpoint": viewpoint.name, "metric": "coverage"}
+        row = {"item": name, "method": renderer, "viewpoint": viewpoint.name, "metric": "coverage"}
         rows.append(row | {"value": float(view.mask.mean()), "seconds": watch.seconds})
     return [*rows, *(seen_rows(name, mesh) if settings.compare_sets else [])]
 
@@ -54,8 +55,9 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     viewpoints = viewpoint_set(settings.viewpoints)
+    renderer = resolve_renderer(settings.renderer)
     with StageRun(workspace, "views", COLUMNS, inputs=("meshes",)) as stage:
-        work = functools.partial(process, data=workspace.data, settings=settings)
+        work = functools.partial(process, data=workspace.data, settings=settings, renderer=renderer)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz",))
         table = [(v.name, float(v.azimuth), float(v.elevation), float(v.roll)) for v in viewpoints]
         columns = ["viewpoint", "azimuth", "elevation", "roll"]
@@ -66,7 +68,7 @@ def run(workspace: Workspace) -> None:
         metrics = {"views": len(shares), "coverage": round(coverage, 6)}
         stage.metrics(metrics | ({"fewest_views": round(float(np.mean(fewest)), 6)} if fewest else {}))
     count = f"{len(stage.objects)} objects, {len(shares)} views"
-    print(f"views: {count}, {coverage:.1%} of the pixels on objects")
+    print(f"views: {count} by {renderer}, {coverage:.1%} of the pixels on objects")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from stages.conspicuity.measure import read_maps
 from stages.engine.rows import read_rows
 from stages.views.__main__ import run as run_views
 
-VIEWS = {"viewpoints": "four", "size": [90, 120], "background": "black",
+VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
          "compare_sets": False}  # fmt: skip
 SECTION = {"channels": ["intensity", "symmetry_radial", "edge"], "size": [45, 60], "background": "filled",
            "symmetry": "perceived", "formulas": "ours", "compare_background": True}  # fmt: skip

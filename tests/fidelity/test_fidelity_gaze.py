@@ -27,7 +27,7 @@ def seconds(ring):
     """(render (h, w), a smooth map (h, w)) of the ring."""
     mesh, viewpoint, _ = ring
     down, right = np.mgrid[:SIZE, :SIZE] / SIZE
-    return render(mesh, viewpoint, (SIZE, SIZE)).rgb.mean(axis=2), np.sin(5 * down) ** 2 + right
+    return render(mesh, viewpoint, (SIZE, SIZE), "raster").rgb.mean(axis=2), np.sin(5 * down) ** 2 + right
 
 
 def by_boxes(saliency, picture, mesh, viewpoint):

@@ -101,7 +101,7 @@ def test_density(dromedary, agreement):
 def test_headlight(ball, agreement):
     """T3.1.1: grey and smooth, lit from the camera at infinity, on black: the cosine, in grey levels of 204."""
     mesh = Mesh(ball.vertices, ball.faces)
-    view = render(mesh, Viewpoint(30, 20), (225, 300))
+    view = render(mesh, Viewpoint(30, 20), (225, 300), renderer="raster")
     y, x = np.mgrid[:225, :300]
     square = ((y - 112) ** 2 + (x - 149.5) ** 2) / (0.5 * pixels_per_unit(225)) ** 2
     literal = np.where(square < 1, np.sqrt(np.maximum(1 - square, 0)), 0)

@@ -255,7 +255,7 @@ def test_weighted_average(agreement):
 
 def test_our_formulas(dromedary, agreement):
     """Nine maps of a dromedary by our own formulas, background filled, beside the printed ones: the least likeness."""
-    view = render(dromedary, Viewpoint(90, 0), (450, 600))
+    view = render(dromedary, Viewpoint(90, 0), (450, 600), renderer="raster")
     ours = conspicuity(dromedary, view)
     letter = conspicuity(dromedary, view, filled=False, formulas="printed")
     inside = mask_at_size(view.mask, ours["intensity"].shape)

@@ -61,7 +61,7 @@ def test_curvature_ignores_vertex_order_and_splitting_and_flips_with_the_winding
 def test_of_two_balls_the_smaller_stands_out_in_curvature():
     v, f = SPHERE.vertices, SPHERE.faces
     balls = Mesh(np.r_[v * 0.2 - [0, 0.22, 0], v * 0.1 + [0, 0.3, 0]], np.r_[f, f + len(v)])
-    values = conspicuity(balls, render(balls, Viewpoint(0, 0), SIZE), ["curvature"])["curvature"]
+    values = conspicuity(balls, render(balls, Viewpoint(0, 0), SIZE, "raster"), ["curvature"])["curvature"]
     assert values[:, 60:].max() > 1.8 * values[:, :55].max() > 0
 
 
@@ -142,13 +142,13 @@ def test_a_mirror_plane_is_lateral_and_an_axis_radial_and_both_together_the_stro
 
 
 def test_the_lateral_map_shows_the_plane_and_the_radial_map_the_pole():
-    maps = conspicuity(CONE, render(CONE, Viewpoint(0, 60), SIZE), ["symmetry_lateral", "symmetry_radial"])
+    maps = conspicuity(CONE, render(CONE, Viewpoint(0, 60), SIZE, "raster"), ["symmetry_lateral", "symmetry_radial"])
     lateral, radial = maps.values()
     columns = np.argmax(lateral, axis=1)[lateral.max(axis=1) > 0.3 * lateral.max()]
     assert np.abs(columns - 49.5).max() < 3  # down the middle
     rows, columns = np.nonzero(radial > 0.5 * radial.max())
     assert np.ptp(rows) < 15 and np.ptp(columns) < 15 and (lateral > 0.5 * lateral.max()).sum() > 2 * len(rows)
-    maps = conspicuity(BOX, render(BOX, Viewpoint(30, 20), SIZE), ["symmetry", *maps])
+    maps = conspicuity(BOX, render(BOX, Viewpoint(30, 20), SIZE, "raster"), ["symmetry", *maps])
     assert maps["symmetry_lateral"].any() and not maps["symmetry_radial"].any()  # a box has no axis
     np.testing.assert_array_equal(maps["symmetry"], maps["symmetry_lateral"])
 
@@ -157,7 +157,7 @@ def test_the_lateral_map_shows_the_plane_and_the_radial_map_the_pole():
 def test_the_setting_replaces_the_maps_of_symmetry_alone():
     channels, view = (
         ["symmetry", "symmetry_radial", "intensity"],
-        render(lopsided(), Viewpoint(-84, 33), SIZE),
+        render(lopsided(), Viewpoint(-84, 33), SIZE, "raster"),
     )
     perceived, strongest = (conspicuity(lopsided(), view, channels, symmetry=setting) for setting in SYMMETRIES)
     assert [perceived[name].any() for name in channels] == [False, False, True]

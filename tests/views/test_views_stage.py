@@ -14,7 +14,7 @@ from stages.engine.settings import ParamsError
 from stages.views import __main__ as stage
 from stages.views.storage import read_view
 
-SECTION = {"viewpoints": "four", "size": [90, 120], "background": "black",
+SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
            "compare_sets": True}  # fmt: skip
 
 
@@ -34,7 +34,7 @@ def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers_an
     for parallel in ({"backend": "loky", "workers": 2}, {"backend": "sequential"}):
         shutil.rmtree(workspace.build, ignore_errors=True)
         stage.run(make_workspace({"views": SECTION}, parallel=parallel))
-        assert capsys.readouterr().out.startswith("views: 2 objects, 8 views,")
+        assert capsys.readouterr().out.startswith("views: 2 objects, 8 views by raster")
         files = sorted((workspace.data / "views").rglob("*.*"))
         stored.append({str(path.relative_to(workspace.root)): path.read_bytes() for path in files})
     assert stored[0] == stored[1]
@@ -71,7 +71,8 @@ def test_the_material_of_the_settings_is_drawn_and_one_out_of_range_is_named(wor
     stage.run(make_workspace({"views": SECTION | {"compare_sets": False, "material": shiny}}))
     stored = read_view(workspace.data / "views" / "torus" / f"{FOUR[0].name}.npz")
     drawn = [
-        render(shapes["torus"], FOUR[0], (90, 120), material=material) for material in (Material(**shiny), LAMBERT)
+        render(shapes["torus"], FOUR[0], (90, 120), "raster", material=material)
+        for material in (Material(**shiny), LAMBERT)
     ]
     assert (stored.rgb == drawn[0].rgb).all() and (stored.rgb != drawn[1].rgb).any()
     assert set(read_rows(workspace.measurements / "views.csv.gz").metric) == {"coverage"}  # sets are not compared

@@ -22,7 +22,7 @@ def assert_equal(first, second):
 def test_round_trip_is_exact_and_equal_views_give_equal_bytes(shapes, name, background, tmp_path):
     mesh = (shapes | {"nothing": Mesh(np.zeros((0, 3)), np.zeros((0, 3)))})[name]
     for file in ("view.npz", "again.npz"):
-        view = render(mesh, Viewpoint(120, 45, 10), (225, 300), background)
+        view = render(mesh, Viewpoint(120, 45, 10), (225, 300), "raster", background)
         write_view(tmp_path / file, view)
     assert_equal(read_view(tmp_path / "view.npz"), view)
     assert (tmp_path / "view.npz").read_bytes() == (tmp_path / "again.npz").read_bytes()
@@ -39,7 +39,7 @@ def test_view_without_background_comes_back(tmp_path):
 
 
 def test_patterned_background_is_refused(shapes, tmp_path):
-    view = render(shapes["cube"], TWELVE[0], (90, 120))
+    view = render(shapes["cube"], TWELVE[0], (90, 120), "raster")
     view.rgb[0, 0] = 1
     with pytest.raises(ValueError, match="background"):
         write_view(tmp_path / "view.npz", view)

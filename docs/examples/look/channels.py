@@ -13,7 +13,7 @@ from haptic_glance.gallery.demo import sample
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
-view = render(mesh, Viewpoint(azimuth=305, elevation=22))
+view = render(mesh, Viewpoint(azimuth=305, elevation=22), renderer="raster")
 maps = conspicuity(mesh, view)
 
 fig, axes = plt.subplots(2, 5, figsize=(10, 3.6), layout="constrained")

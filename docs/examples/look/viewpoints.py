@@ -19,7 +19,7 @@ best, shares = greedy_views(mesh, 12)
 fig = plt.figure(figsize=(9, 5.4), layout="constrained")
 top, bottom = fig.subfigures(2, 1, height_ratios=[1, 1.3])
 for axis, viewpoint in zip(top.subplots(1, 4), best, strict=False):
-    axis.imshow(render(mesh, viewpoint, (300, 300)).rgb)
+    axis.imshow(render(mesh, viewpoint, (300, 300), renderer="raster").rgb)
     axis.set_title(viewpoint.name, fontsize=9)
     axis.axis("off")
 axis = bottom.subplots()

@@ -254,14 +254,19 @@ def prepared(mesh: Mesh, up: Axis | None = None) -> Mesh:
     return normalise(rotate_to_z_up(mesh, up))
 
 
-def compute_maps(mesh: Mesh, channels: Iterable[str], viewpoints: Iterable[Viewpoint] | None = None) -> ViewMaps | None:
-    """The ViewMaps of a normalised mesh from the viewpoints, with the maps of the channels; None without channels."""
+def compute_maps(
+    mesh: Mesh, channels: Iterable[str], viewpoints: Iterable[Viewpoint] | None = None, renderer: str = "raster"
+) -> ViewMaps | None:
+    """The ViewMaps of a normalised mesh: rendered from the viewpoints, with the channels' maps; None without channels.
+
+    renderer: that of haptic_glance.look.views.render.
+    """
     channels, viewpoints = tuple(channels), _chosen(viewpoints)
     if not channels:
         return None
     per_view, masks = [], []
     for viewpoint in viewpoints:
-        view = render(mesh, viewpoint, VIEW_SIZE)
+        view = render(mesh, viewpoint, VIEW_SIZE, renderer)
         per_view.append(conspicuity(mesh, view, channels, MAP_SIZE))
         masks.append(mask_at_size(view.mask, MAP_SIZE))
     maps = {channel: np.stack([maps[channel] for maps in per_view]) for channel in channels}

@@ -1,4 +1,4 @@
-"""The material and light of a view: by default smooth neutral grey under one head light at infinity (T3.1.1).
+"""The material and light of both renderers: by default smooth neutral grey under one head light at infinity (T3.1.1).
 
 Lambertian shading: brightness is the cosine between the normal and the view axis, so that the silhouette of a smooth
 object fades into the black background and draws no attention (T3.1.1). A face seen from behind is lit as if its normal

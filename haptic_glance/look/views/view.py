@@ -1,4 +1,4 @@
-"""A rendered view, the material of its surface, and the rounding of its depths.
+"""A rendered view, the material of its surface, and the rounding that both renderers share.
 
 A material is matte by default, with a highlight where a setting asks for one.
 """
@@ -48,7 +48,7 @@ class View:
 
 
 def empty_view(viewpoint: Viewpoint, size: tuple[int, int], background: str) -> View:
-    """A view of the background only, for the renderer to fill in."""
+    """A view of the background only, for a renderer to fill in."""
     rgb = np.full((*size, 3), BACKGROUNDS[background], dtype=np.uint8)
     return View(rgb, np.full(size, np.inf, dtype=np.float32), np.full(size, -1, dtype=np.int32), viewpoint)
 
