@@ -19,7 +19,7 @@ from stages.report.tables import Ranking
 from stages.report.topics import CLAIMS, KINDS, TOPICS
 
 REPORTS = Path(__file__).parents[2] / "reports"
-ASKED = 10
+ASKED = 9
 
 
 def show(tab, tmp_path, main):
@@ -174,7 +174,7 @@ def test_a_title_that_a_run_does_not_bear_out_gives_way_to_the_claim():
     assert findings_html(pd.DataFrame(columns=["key", "low", "verdict"]), pd.DataFrame()) == ""
 
 
-def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
+def test_the_questions_are_answered_from_what_the_repository_holds(tmp_path):
     names = {f"{kind}/{name}" for topic in TOPICS for kind, held in KINDS.items() for name in getattr(topic, held)}
     keys = {f"key={claim.key}" for claim in CLAIMS}
 
