@@ -1,11 +1,13 @@
-"""Reads damaged files under limits of time and memory: `python -m tests.fuzz.attack FOLDER READER ...`
+"""Reads damaged files under limits of time and memory: `python -m tests.fuzz.attack FOLDER SECONDS READER ...`
 
 Prints a line for every file that breaks the rule: it is read, or refused by a ValueError or a FetchError that names it.
-The file that is being read lies in FOLDER, so that one that kills the process is found there.
+SECONDS of the processor are shared equally by the readers. The file that is being read lies in FOLDER, so that one that
+kills the process is found there.
 
 Damages are flipped bits, cuts, swapped parts, noise, lies in headers, huge counts and deep nesting.
 """
 
+import itertools
 import logging
 import re
 import resource
@@ -24,6 +26,7 @@ from haptic_glance.base.fetch import FetchError
 from .readers import READERS, Reader
 
 SECONDS = 5  # of the processor, of one file
+RATE = 75  # files a second of the budget, at most: a small budget tries the same files on every fast machine
 MEMORY = 2**29  # bytes that reading one file may take
 CLAIMED = "fits in memory"  # a refusal by the parser's MemoryError, which comes too late where memory is overcommitted
 
@@ -32,11 +35,12 @@ class TooSlow(BaseException):
     """Not an Exception, which a parser would catch."""
 
 
-def attack(name: str, folder: Path, count: int) -> Iterator[str]:
-    """Yields what is wrong with the reading of each of `count` damaged files."""
+def attack(name: str, folder: Path, seconds: float) -> Iterator[str]:
+    """Yields what is wrong with the reading of damaged files, until so many seconds of the processor are over."""
     reader = READERS[name]
     seeds = reader.seeds(folder)
-    for number in range(count):
+    end = time.process_time() + seconds
+    for number in itertools.takewhile(lambda _: time.process_time() < end, range(round(RATE * seconds))):
         fault = fault_of(reader, folder, damaged(seeds, number))
         if fault:
             yield f"{name} {number}: {fault}"
@@ -165,11 +169,11 @@ def main() -> None:
     """Attacks the readers that the command line names; the exit status tells of no fault, only of a crash."""
     warnings.simplefilter("ignore")
     logging.disable()
-    folder, *names = sys.argv[1:]
+    folder, budget, *names = sys.argv[1:]
     for name in names:
         subfolder, start = Path(folder, name), time.process_time()
         subfolder.mkdir()
-        for fault in attack(name, subfolder, READERS[name].count):
+        for fault in attack(name, subfolder, float(budget) / len(names)):
             print(fault, flush=True)
         print(name, f"{time.process_time() - start:.1f}", file=sys.stderr)
 

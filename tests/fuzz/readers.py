@@ -40,14 +40,13 @@ COLORS = np.arange(126).reshape(42, 3)
 class Reader:
     """file: its name; seeds(folder) writes all that lies beside it and returns valid contents; read(path) reads it.
 
-    names: a refusal names the file. count: of damaged files; fewer where one takes long.
+    names: a refusal names the file.
     """
 
     file: str
     seeds: Callable[[Path], list[bytes]]
     read: Callable[[Path], object]
     names: bool = True
-    count: int = 150
 
 
 def mesh_seeds(*kinds):
@@ -323,10 +322,10 @@ READERS = {
     "glb": Reader("a.glb", lambda folder: [*mesh_seeds("glb")(folder), textured(folder).export(file_type="glb")],
                   read_mesh_file),
     "gltf": Reader("a.glb", gltf_seeds, read_gltf),
-    "cloud": Reader("a.xyz", cloud_seeds, load, count=40),
+    "cloud": Reader("a.xyz", cloud_seeds, load),
     "pcd": Reader("a.pcd", pcd_seeds, load),
-    "las": Reader("a.las", las_seeds, load, count=40),
-    "depth": Reader("a.depth", depth_seeds, load, count=40),
+    "las": Reader("a.las", las_seeds, load),
+    "depth": Reader("a.depth", depth_seeds, load),
     "mesh": Reader("a.npz", npz_seeds, read_mesh),
     "array": Reader("a.npz", npy_seeds, in_npz(read_arrays)),
     "json": Reader("a.json", lambda folder: [json.dumps({"a": [1, 2, {"b": None}], "c": "d"}).encode()], read_json),
@@ -336,7 +335,7 @@ READERS = {
     "deb": Reader("a.deb", deb_seeds, lambda path: [name for name, _ in debian_files(path)]),
     "lod": Reader("a.glb", lod_seeds, read_lod),
     "params": Reader("params.yaml", lambda folder: [b"seed: 0\nsets: [a, b]\na: {lod: {targets: ['25%']}}\n"],
-                     load_params, count=40),
+                     load_params),
     "table": Reader("a.csv", lambda folder: [b"item,value,seconds\ncup,1,0.5\nvase,2,\n"], read_table),
     "picture": Reader("a.jpg", pictures("jpg", "png", "bmp"), lambda path: read_picture(path, 16)),
     "marks": Reader("a.csv", mark_seeds, read_marks),
@@ -344,7 +343,7 @@ READERS = {
     "fixations": Reader("FixationMaps/cup_300norm.txt", fixation_seeds,
                         lambda path: read_fixations(path.parents[1])),
     "interest points": Reader("a.mat", interest_seeds, read_interest_points, False),
-    "network": Reader("a.npz", network_seeds, read_network, count=40),
+    "network": Reader("a.npz", network_seeds, read_network),
     "checkpoint": Reader("a.pt", checkpoint_seeds, read_checkpoint),
     "pickle": Reader("alexnet.ckpt", pickle_seeds, read_pickle, False),
     "torch": Reader("a.pth", checkpoint_seeds, read_torch_file),

@@ -18,7 +18,7 @@ from stages.report.parts import CLAIMS, KINDS, PARTS, Built, page_of
 from stages.report.site import FINDINGS, findings_html, front_main, page_html, questions_html
 
 REPORTS = Path(__file__).parents[2] / "reports"
-ASKED = 10
+ASKED = 9
 
 
 def show(tab, tmp_path, main):

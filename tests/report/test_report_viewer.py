@@ -1,13 +1,11 @@
 """The turnable meshes of the page: what is packed, and what a browser shows of it."""
 
 import base64
-import io
 import zlib
 from string import Template
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from haptic_glance.base.files import write_mesh
 from haptic_glance.base.packing import SHADES, STEPS, Store, ordered, viewer_data
@@ -139,11 +137,6 @@ class Page:
         script = f"q = document.getElementById('level'); q.value = {step}; q.dispatchEvent(new Event('input'))"
         self.page.evaluate(script)
 
-    def canvas(self):
-        """(h, w, 3) what the canvas shows, without the captions."""
-        script = "document.getElementById('canvas').toDataURL().split(',')[1]"
-        return np.asarray(Image.open(io.BytesIO(base64.b64decode(self.page.evaluate(script)))).convert("RGB"))
-
 
 WIDE, NARROW = 1400, 390
 
@@ -167,36 +160,14 @@ def opened(browser, results, tmp_path, width):
     tab.close()
 
 
-def halves(image):
-    h, w = image.shape[:2]
-    return (image[: h // 2], image[h // 2 :]) if h > 1.1 * w else (image[:, : w // 2], image[:, w // 2 :])
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("shown", [WIDE, NARROW], indirect=True)
-def test_original_and_level_stand_side_by_side_and_turn_together(shown):
-    before = halves(shown.canvas())
-    assert all((half < 250).any(axis=2).mean() > 0.1 for half in before)
-    shown.page.locator("#edges").check()
-    wired = halves(shown.canvas())
-    shown.page.locator("#canvas").press("ArrowUp")
-    after = halves(shown.canvas())
-    assert all((a != b).any() for a, b in zip(wired, after, strict=True))
-    assert shown.page.evaluate("document.documentElement.scrollWidth") == shown.page.viewport_size["width"]
-    assert not shown.faults
-
-
-@pytest.mark.slow
-def test_slider_leads_from_the_original_to_more_and_more_error(shown):
-    redness = []
-    for step in (0, 1, 2):
-        shown.slide(step)
-        meshes = [half[(half < 250).any(axis=2)] for half in halves(shown.canvas().astype(int))]
-        redness.append([float((mesh[:, 0] - mesh[:, 2]).mean()) for mesh in meshes])
+def test_slider_leads_from_the_original_to_fewer_faces(shown):
+    shown.slide(2)
     assert shown.caption().startswith("simplified: 120 faces")
-    assert (np.diff(redness, axis=0) > 0).all()
     shown.slide(0)
     assert shown.caption().startswith("the original itself")
+    assert shown.page.evaluate("document.documentElement.scrollWidth") == shown.page.viewport_size["width"]
     assert not shown.faults
 
 
@@ -206,19 +177,6 @@ def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, l
         assert viewer.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
         viewer.slide(1)
         assert viewer.caption().startswith("simplified: 120 faces (23 %)")
-
-
-@pytest.mark.slow
-def test_one_can_look_at_saliency_and_shading_instead(shown):
-    shown.page.locator("#points").select_option("")
-    seen = [shown.canvas()]
-    for choice in ("glance", ""):
-        shown.page.locator("#colour").select_option(choice)
-        seen.append(shown.canvas())
-    assert (seen[0] != seen[1]).any() and (seen[1] != seen[2]).any()
-    grey = seen[2].astype(int)
-    assert np.abs(grey[..., 0] - grey[..., 1]).max() < 10
-    assert shown.page.locator("#legend").is_hidden()
 
 
 def test_a_larger_error_is_darker_for_every_eye():

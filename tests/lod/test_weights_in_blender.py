@@ -1,7 +1,7 @@
 """The weights of the tutorial `weights_elsewhere` in Blender itself.
 
-`BLENDER=PYTHON pytest tests/slow/test_blender.py`, where PYTHON is a Python that has the package `bpy` (300 MB, with
-numpy of its own), or `BLENDER='blender -b -P'`.
+`BLENDER=PYTHON pytest tests/lod/test_weights_in_blender.py`, where PYTHON is a Python that has the package `bpy` (300
+MB, with numpy of its own), or `BLENDER='blender -b -P'`.
 """
 
 import json

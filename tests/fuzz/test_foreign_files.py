@@ -1,7 +1,7 @@
 """Mesh files of other people, from Debian packages: each is looked at and simplified, or refused in one line.
 
-`make foreign` runs this, `make test` does not. It fetches 83 MB by `apt-get download`, each package once by its hash,
-and computes for ten minutes.
+Runs where FUZZ_SECONDS gives it the time, as in `make fuzz`: it fetches 83 MB by `apt-get download`, each package once
+by its hash, and computes for ten minutes.
 """
 
 import os
@@ -19,7 +19,11 @@ from haptic_glance.base.fetch import debian_files, fetch_debian
 from haptic_glance.gallery.demo import sample
 from haptic_glance.mesh.files import FORMATS
 
-pytestmark = pytest.mark.slow
+NEEDED = 600  # seconds of FUZZ_SECONDS
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(float(os.environ.get("FUZZ_SECONDS", "0")) < NEEDED, reason=f"FUZZ_SECONDS is below {NEEDED}"),
+]
 
 # A package's file; how many of its files have a suffix that `load` knows, and how many hold a mesh; its SHA-256.
 PACKAGES = {
