@@ -55,14 +55,13 @@ sys.addaudithook(note)
 def run(tmp_path_factory, small):
     """A small run with a report: its `root`, the `opened` files and the text of its `pages` by path.
 
-    A method has an odd name, and rows are of a set that is switched off.
+    A method has an odd name, and rows on human gaze are of a set that is switched off.
     """
     root, opened = small.root(tmp_path_factory.mktemp("run")), []
     small.write_attention(root)
     for name in (OLD, OLD_PAGE, OTHERS):
         write_text(root / "reports" / name, "old")
     small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
-    small.write(root, "lod", small.lod(), "elsewhere")
     WATCHED.append(opened)
     write_report(small.results(root))
     WATCHED.pop()
@@ -107,7 +106,7 @@ def test_old_results_go_and_those_of_others_and_of_sets_that_are_off_stay(run):
     assert not (run.root / "reports" / OLD).exists() and not (run.root / "reports" / OLD_PAGE).exists()
     assert (run.root / "reports" / OTHERS).exists() and len(run.pages) > 3
     apart = re.findall(r"<p>Not part of this run: (.*?)\.</p>", " ".join(run.pages.values()))
-    assert any("elsewhere" in text for text in apart)
+    assert any("human gaze" in text for text in apart)
 
 
 def test_pages_ask_nothing_of_the_network_and_are_accessible(run):
