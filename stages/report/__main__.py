@@ -19,10 +19,12 @@ from typing import Any
 import pandas as pd
 
 from haptic_glance.base.files import replace_folder, write_json, write_table, write_text
+from stages.engine.measurements import Measurements
 from stages.engine.parallel import parallel_map
 from stages.engine.settings import workspace_of_arguments
 
 from . import Params
+from .claims import load
 from .claims_page import claims_shown
 from .items import Built
 from .page import part, viewer_or_reason
@@ -31,12 +33,11 @@ from .results import NotRun, Results
 from .reuse import VIEWER, built, keep, key_of, taken_again
 from .site import write_own_page, write_site
 from .tables import as_text, markdown_table
-from .topics import CLAIMS, KINDS, TOPICS, build_all, files_of, name_of
-from .verdict import by_claim, counted, counts, open_by_cause, tabled
+from .topics import KINDS, TOPICS, build_all, files_of, name_of
+from .verdict import counted, counts, judged
 
 OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html", HEADLINES_FILE,
            PROVENANCE_FILE)  # fmt: skip
-CLAIMED = "claims"  # the kind of a part that is none of KINDS
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 
 
@@ -89,7 +90,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
         not_run["what needs other data sets"] = OWN_NOTE
     write_claims(claims, differences, out)
     write_headlines(out, None if own_meshes else counts(claims))
-    parts = {**items, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
+    parts = {**items, "claims": claims, "differences": differences, "known": load(), "results": results}
     parts |= {"not_run": not_run, "sets": results.sets, "own": own_meshes}
     parts["meshes"] = None if isinstance(meshes, str) else meshes
     if isinstance(meshes, str) and not own_meshes:
@@ -121,9 +122,9 @@ def side_by_side(
     """Builds the changed parts; returns {kind: its items}, the frames of `tabled` and the meshes of the viewer."""
     jobs: dict[tuple[str, str], Callable[[Results], Any]] = {}
     keys: dict[tuple[str, str], str] = {}
-    for kind, topic in product((CLAIMED, "figures", "tradeoff", "tables"), TOPICS):  # the longest first
+    for kind, topic in product(("figures", "tradeoff", "tables"), TOPICS):  # the longest first
         job = kind, name_of(topic)
-        jobs[job] = partial(by_claim, topic.CLAIMS) if kind == CLAIMED else partial(build_all, kind, topics=[topic])
+        jobs[job] = partial(build_all, kind, topics=[topic])
         keys[job] = key_of(files_of(topic, kind), results)
     jobs["viewer", "page"], keys["viewer", "page"] = viewer_or_reason, key_of(VIEWER, results)
     parts = {job: taken_again("-".join(job), keys[job], results) for job in jobs}
@@ -143,7 +144,7 @@ def side_by_side(
             total.items += parts[kind, name_of(topic)].items
             total.not_run |= parts[kind, name_of(topic)].not_run
             total.no_data |= parts[kind, name_of(topic)].no_data
-    claims = tabled(CLAIMS, [row for topic in TOPICS for row in parts[CLAIMED, name_of(topic)]])
+    claims = judged(load(), Measurements(results.reports))
     return items, claims, parts["viewer", "page"]
 
 
@@ -172,7 +173,6 @@ def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> 
         "# Claims of the thesis, tested",
         part("claims_note.md").strip(),
         counted(claims),
-        open_by_cause(claims),
         table,
     )
     write_text(out / "claims.md", "\n\n".join(parts))

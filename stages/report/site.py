@@ -226,21 +226,17 @@ def topic_mains(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path)
 
 
 def topic_main(module: ModuleType, parts: dict[str, Any], items: Sequence[Table | Figure], out: Path) -> str:
-    """The findings of a topic, its claims, charts and tables; those of sets that are off can be unfolded.
+    """The findings of a topic, its charts and tables; those of sets that are off can be unfolded.
 
     out: the folder whose tables, charts and claims are written already; the figures of what was found are theirs.
     """
-    claims = parts["claims"][parts["claims"]["key"].isin([claim.key for claim in module.CLAIMS])]
     others = [item for item in items if item.sets and not set(item.sets) & set(parts["sets"])]
-    if not items and claims.empty:
+    if not items:
         return ""
     paragraphs = [] if parts["own"] else findings(module, out)  # which are about other data sets
     text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in paragraphs)
     text = f'<section id="found" class="found"><h2>What was found</h2>{text}</section>\n' if text else ""
     own_items = [item for item in items if item not in others]
-    if len(claims):
-        verdicts = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
-        text += f'<p>{len(claims)} <a href="{CLAIMS}.html">claims</a>: {verdicts}.</p>\n'
     contents = "".join(f'<li><a href="#{anchor(item)}">{escape(item.title)}</a></li>' for item in [*own_items, *others])
     text += f'<nav aria-label="On this page" class="contents"><ul>{contents}</ul></nav>\n' if len(items) > 2 else ""
     text += items_html(own_items)

@@ -33,7 +33,6 @@ TOPICS: tuple[ModuleType, ...] = (
     chain, fidelity,
 )  # fmt: skip
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a topic
-CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]
 
 
 def name_of(topic: ModuleType) -> str:

@@ -224,4 +224,3 @@ def named(rows: pd.DataFrame, role: str) -> int:
 TABLES = {"front": front_table, "front_changed": changed}
 FIGURES = {}
 CHARTS = {"front": chart}
-CLAIMS = []

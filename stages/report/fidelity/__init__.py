@@ -25,4 +25,3 @@ def build(results: Results) -> Table:
 TABLES = {"fidelity": build}
 FIGURES = {}
 CHARTS = {}
-CLAIMS = []

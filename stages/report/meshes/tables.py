@@ -193,8 +193,6 @@ COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
     CLASSICAL, "VisAttCurvP", "VisAttCurv", "Curv", "VisAttSymP", "VisAttSym", "SymLat", "SymRad", "2Sym",
     "VisAttCurvSym", "VisAttCon", "VisAttCurvSymCon", "VisAttEnt", "VisAttAll",
 )  # fmt: skip
-BY_AREA = (CLASSICAL, "VisAttCon", "VisAttCurvSymCon", "VisAttAll")  # whose neighbourhoods go by area, too (T3.1.3)
-SYMMETRIES = ("SymLat", "SymRad", "2Sym")
 # T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
 RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
 PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM, learned from other objects than the simplified

@@ -165,7 +165,6 @@ PUBLISHED = {
     "GGT-SNN (2024)": (92.36, 75.00),
     "barrel network, shared (Zhu and others 2025)": (94.44, 86.67),
 }
-SPIKING = {"objects": 0.8944, "containers": 0.6417}  # TactileSGNet, whose data these are
 CONDITIONS = {
     "heard": "share of the touch heard", "cells": "taxels", "dead_taxels": "share of the taxels dead",
     "dropped_events": "share of the events dropped", "jitter": "deviation of an event's time, steps",

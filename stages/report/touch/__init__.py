@@ -30,4 +30,3 @@ CHARTS = {
     "saliency": claims.by_saliency,
     "imprints": imprints.chart,
 }
-CLAIMS = claims.CLAIMS

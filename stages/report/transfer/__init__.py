@@ -18,4 +18,3 @@ FIGURES = {
     "training_curves": figures.training_curves,
 }
 CHARTS = {"networks": figures.networks_chart}
-CLAIMS = tables.CLAIMS
