@@ -129,8 +129,8 @@ def absent(values: dict[str, Any]) -> dict[str, str]:
 
 
 def groups() -> dict[str, list[str]]:
-    """{group: its options} of conf/."""
-    folders = sorted(path for path in CONF.iterdir() if path.is_dir())
+    """{group: its options} of conf/, whose claims are no group."""
+    folders = sorted(path for path in CONF.iterdir() if path.is_dir() and path.name != "claims")
     return {folder.name: sorted(path.stem for path in folder.glob("*.yaml")) for folder in folders}
 
 

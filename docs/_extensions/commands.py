@@ -7,13 +7,11 @@ from itertools import takewhile
 from pathlib import Path
 
 import pandas as pd
-import yaml
 
 from stages.charts.cells import number_of, rows_of
 from stages.charts.commands import COMPOSE, switch
 from stages.engine.rows import SUFFIX
-from stages.report.claims import Claim
-from stages.report.parts import CLAIMS
+from stages.report.claims import load
 
 from .measured import REPORTS
 
@@ -65,26 +63,16 @@ def commands() -> list[Command]:
     """The commands that test claims, the default run first, then those with most claims."""
     written = {row["key"]: row for row in rows_of(REPORTS / "claims.csv").to_dict("records")}
     by_text: dict[str, Command] = {}
-    for claim in CLAIMS:
-        if written.get(claim.key, {"pairs": "0"})["pairs"] == "0" or not (sets := sets_of(claim)):
+    for claim in load():
+        if written.get(claim.key, {"pairs": "0"})["pairs"] == "0":
             continue  # nothing was measured
-        text = command_for(sets[0], claim.stage)
+        text = command_for(claim.sets[0], claim.stage)
         by_text.setdefault(text, Command(text)).claims.append(written[claim.key])
     for dataset in measured_sets():
         for stage in stages_of(dataset):
             if command := by_text.get(command_for(dataset, stage)):
                 command.work.add((dataset, stage))
     return sorted(by_text.values(), key=lambda entry: (entry.text != DEFAULT, -len(entry.claims)))
-
-
-def sets_of(claim: Claim) -> list[str]:
-    """The sets whose rows a claim compares; a default set comes before others."""
-    defaults = settings()["sets"]
-    sets = [name for name in measured_sets() if claim.stage in stages_of(name)]
-    sets.sort(key=lambda name: name not in defaults)
-    others = [name for name in sets if name not in claim.sets]
-    wanted = [name or next(iter(others), "") for name in claim.sets]
-    return [name for name in wanted if name in sets]
 
 
 def measured_sets() -> list[str]:
@@ -103,12 +91,6 @@ def command_for(dataset: str, stage: str) -> str:
     """What runs a stage on a set."""
     chosen = switch(ROOT / "conf", dataset, stage)
     return f"{COMPOSE} {chosen} && dvc repro" if chosen else DEFAULT
-
-
-@cache
-def settings() -> dict:
-    """The content of params.yaml."""
-    return yaml.safe_load((ROOT / "params.yaml").read_text(encoding="utf-8"))
 
 
 @cache

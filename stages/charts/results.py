@@ -5,13 +5,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import files_below, object_files, read_arrays, read_mesh, read_table
 from haptic_glance.base.timing import WALL
 from haptic_glance.mesh.mesh import Mesh
-from stages.engine.rows import SUFFIX, read_rows
+from stages.engine.measurements import Measurements, Missing
+from stages.engine.rows import SUFFIX
 from stages.engine.settings import Workspace, conf_folder, load_params
 
 from .commands import command
@@ -23,7 +23,7 @@ OWN_FOLDER = "own"  # in place of a stage: of what only a folder of one's own ha
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
-class NotRun(Exception):
+class NotRun(Missing):
     """A measurement that is absent; the message says what is missing and, where a run would help, the command."""
 
     def __init__(self, message: str, stage: str, runnable: bool = True, dataset: str = "") -> None:
@@ -89,7 +89,11 @@ class Results:
         self.out = workspace.build / "partial/report"  # where the report is made before it takes its place
         self.sets = workspace.sets  # the names of the data sets that are switched on, in order
         self.read: set[str] = set()  # the data sets that the present item was read from
-        self._cache: dict[Hashable, Any] = {}
+
+    @cached_property
+    def measurements(self) -> Measurements:
+        """The rows below `reports`."""
+        return Measurements(self.reports)
 
     @classmethod
     def published(cls, workspace: Workspace, settings: Any) -> "Results":
@@ -104,75 +108,43 @@ class Results:
         dataset: None for the first of `datasets(stage)`. Raises NotRun when the rows are absent, lack the column, or
         none is left; with the stage's own note on why it left them out, where there is one.
         """
-        dataset = self._first(stage, dataset)
-        self.read.add(dataset)
-        frame = self._frame(stage, dataset)
-        chosen = np.ones(len(frame), dtype=bool)
-        for column, value in where.items():
-            if column in frame:
-                chosen &= self._equal(stage, dataset, column, value)
-                if chosen.any():
-                    continue
-            if notes := self.notes(stage, dataset, **where):
-                raise NotRun("; ".join(notes[:2]), stage, runnable=False)
-            if column not in frame:
-                raise NotRun(f"no column {column} in the rows of {stage}", stage)
-            raise NotRun(f"{column} {either(value)} is not among those that {stage} measured", stage, runnable=False)
-        return frame[chosen] if where else frame.copy(deep=False)
+        return self._rows(self.measurements.rows, stage, dataset, where)
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
         """As `rows`, only those that have a value; NotRun where there is none."""
-        frame = self.rows(stage, dataset, **where)
-        frame = frame[frame["value"].notna()]
-        if frame.empty:
-            notes = self.notes(stage, dataset, **where) or [f"{stage} has rows of this, but no value"]
-            raise NotRun("; ".join(notes[:2]), stage, runnable=False)
-        return frame
+        return self._rows(self.measurements.measured, stage, dataset, where)
+
+    def _rows(
+        self, read: Callable[..., pd.DataFrame], stage: str, dataset: str | None, where: Mapping[str, object]
+    ) -> pd.DataFrame:
+        dataset = self._first(stage, dataset)
+        self.read.add(dataset)
+        if self.own_meshes and dataset not in self.sets:
+            raise NotRun(f"{dataset} is not switched on", f"{stage}@{dataset}", runnable=False)
+        try:
+            return read(stage, dataset, **where)
+        except Missing as missing:
+            absent = not self.measurements.path(stage, dataset).exists()
+            raise NotRun(str(missing), stage, absent and dataset in self.sets, dataset) from None
 
     def clock(self, stage: str, dataset: str | None = None) -> str:
         """The `clock_of` a stage's rows."""
-        return clock_of(self._frame(stage, self._first(stage, dataset)))
+        return clock_of(self.rows(stage, dataset))
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""
-        dataset = self._first(stage, dataset)
-        frame = self._frame(stage, dataset)
-        if "note" not in frame or "value" not in frame:
-            return []
-        chosen = (frame["value"].isna() & frame["note"].notna()).to_numpy()
-        for column in where.keys() & frame.columns:
-            chosen = chosen & (
-                self._equal(stage, dataset, column, where[column]) | self._equal(stage, dataset, column, None)
-            )
-        return list(dict.fromkeys(frame.loc[chosen, "note"]))
+        return self.measurements.notes(stage, self._first(stage, dataset), where)
 
     def left_out(self, stage: str, dataset: str | None = None, **where: object) -> str:
         """`notes` as sentences for a table's prose, a line each."""
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
-    def _equal(self, stage: str, dataset: str, column: str, value: object) -> np.ndarray:
-        """(n,) bool: which rows have one of some values in a column, or no value for None; compares each value once."""
-        codes, values = self.cached(
-            (stage, dataset, column), lambda: pd.factorize(self._frame(stage, dataset)[column])
-        )  # the code of an empty cell is -1, the last place below
-        wanted = np.zeros(len(values), dtype=bool) if value is None else values.isin(listed(value))
-        return np.append(wanted, value is None)[codes]
-
     def _first(self, stage: str, dataset: str | None) -> str:
         return dataset or require_rows(self.datasets(stage), f"no measurements of {stage}", stage)[0]
 
-    def _frame(self, stage: str, dataset: str) -> pd.DataFrame:
-        if self.own_meshes and dataset not in self.sets:
-            raise NotRun(f"{dataset} is not switched on", f"{stage}@{dataset}", runnable=False)
-        path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
-        require_file(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets, dataset)
-        return self.cached(path, lambda: read_rows(path))
-
-    def cached(self, key: Hashable, work: Callable[[], Value]) -> Value:
+    def cached(self, key: Hashable, work: Callable[[], Any]) -> Any:
         """The result of some work on the rows, computed at the first call."""
-        if key not in self._cache:
-            self._cache[key] = work()
-        return self._cache[key]
+        return self.measurements.cached(key, work)
 
     def bench(self, name: str) -> pd.DataFrame:
         """Rows of reports/bench/NAME.csv (or .csv.gz): what `make bench` measured; times are ratios to a named peer."""
@@ -284,13 +256,3 @@ class Results:
         except NotRun:
             return f"group {group}"
         return f"{group} objects" if count == NUMBERS.get(group) else f"{count} objects (group {group})"
-
-
-def listed(value: object) -> list:
-    """One value or several, as a list."""
-    return list(value) if isinstance(value, list | tuple | set | frozenset) else [value]
-
-
-def either(value: object) -> str:
-    """One value or several, in words: `knn or svm`."""
-    return " or ".join(map(str, listed(value)))

@@ -5,8 +5,6 @@ best row by the numbers that are shown, so that rows shown as equal are equally 
 scaling of the samples (T4.2.4), `with_means` adds means over the classifiers with and without the SVM.
 """
 
-import math
-import numbers
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,6 +15,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, TRAINING, TWICE
+from stages.charts.numbers import number, with_interval
 from stages.charts.results import NotRun, Results
 from stages.engine.statistics import interval
 
@@ -156,29 +155,6 @@ def everywhere(results: Results, stage: str, message: str = "", **where: object)
 
 
 WORDS = ("not run", "infeasible", "")  # that stand in columns of numbers
-
-
-def number(value: Any, digits: int = 3) -> str:
-    """A number to `digits` significant digits without exponent clutter; a dash for NaN; other things as they are."""
-    if value is None or value != value:
-        return "–"
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        return str(value)
-    value = float(value)
-    if value.is_integer() and abs(value) < 1e7:
-        return f"{int(value):,}"
-    if 0 < abs(value) < 1e-4:
-        return f"{value:.{digits - 1}e}"
-    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:.{places}f}"
-
-
-def with_interval(mean: float, low: float, high: float, scale: float = 1, places: int | None = None) -> str:
-    """`mean [low, high]`, or the mean alone where the interval is unknown; "not run" without a mean."""
-    if mean != mean:
-        return "not run"
-    show = (lambda v: f"{v * scale:z.{places}f}") if places is not None else (lambda v: number(v * scale))
-    return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
 def interval_columns(name: str, ends: Iterable[Any], prefix: str | None = None) -> dict[str, Any]:

@@ -22,7 +22,6 @@ import numpy as np
 from haptic_glance.base.files import read_table, whole_file
 from haptic_glance.base.lazy import pandas as pd
 from haptic_glance.base.timing import clock
-from haptic_glance.know.split import Split
 
 COMMON = {
     "dataset": "the data set",
@@ -70,6 +69,8 @@ def _check(path, number, row, names):
         raise ValueError(f"{path.name}: columns {', '.join(unknown)} are not declared in the COLUMNS that StageRun got")
     if _empty(row.get("metric")):
         raise ValueError(f"{path.name}: row {number} has no metric")
+    from haptic_glance.know.split import Split  # its package is large, and readers of rows do without
+
     split = row.get("split")
     if not _empty(split) and split not in ("", *Split):
         raise ValueError(f"{path.name}: split {split} is not one of {', '.join(Split)}")

@@ -1,10 +1,10 @@
-"""Statistics: intervals, power, pooled differences of several data sets, breaking points, and random splits of items.
+"""Statistics: intervals, pooled differences of several data sets, breaking points, and random splits of items.
 
 A breaking point is the severity of a disturbance at which half of a score's lead is lost. Pooling is by random effects.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -126,24 +126,9 @@ def interval_tree(values: Mapping[tuple[str, ...], ArrayLike], seed: int = 0) ->
     return tree
 
 
-MOST = 10_000  # units; what needs more is hardly an effect
-
-
-@cache
-def _quantiles() -> np.ndarray:
-    return scipy.stats.t.ppf(0.975, np.arange(1, MOST))
-
-
-def needed(spread: float, distance: float, shared: float = 0.0) -> float:
-    """The fewest units whose 95 % interval is no wider than `distance` to either side; infinite beyond MOST.
-
-    By Student's interval at the present spread, the standard deviation of the units: t(n - 1) * spread * sqrt(1 / n +
-    shared). distance: of the present mean from what would decide it. shared: as in
-    `stages.engine.statistics.interval`: of repeated splits that share much even infinitely many may not decide.
-    """
-    counts = np.arange(2, MOST + 1)
-    is_enough = _quantiles() * spread * np.sqrt(1 / counts + shared) <= distance
-    return float(counts[is_enough.argmax()]) if is_enough.any() else np.inf
+def pseudo_values(whole: float, without: Any) -> Any:
+    """(objects,) each object's part in a statistic, by its value of all objects and of all but one (Tukey 1958)."""
+    return len(without) * whole - (len(without) - 1) * without
 
 
 ROUNDS = 1000  # of the search for the variance between sets; tens are enough but where it is next to zero
@@ -165,24 +150,23 @@ class Pooled(NamedTuple):
 
     def interval(self, level: float = 0.95) -> tuple[float, float, float]:
         """(mean, low, high), by Student's t."""
-        half = float(scipy.stats.t.ppf((1 + level) / 2, self.freedom)) * self.error
+        half = float(scipy.special.stdtrit(self.freedom, (1 + level) / 2)) * self.error
         return self.mean, self.mean - half, self.mean + half
 
     @property
     def p_value(self) -> float:
         """Two-sided, of no effect."""
-        return float(2 * scipy.stats.t.sf(abs(self.mean) / self.error, self.freedom))
+        return float(2 * scipy.special.stdtr(self.freedom, -abs(self.mean) / self.error))
 
 
-def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[float], fixed: bool = False) -> Pooled:
+def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[float]) -> Pooled:
     """The random-effects mean of the effects of k sets, (k,) with their standard errors and degrees of freedom.
 
     The variance between sets is that of restricted maximum likelihood. Where it is above zero and there are three sets
     or more, the error is Hartung and Knapp's (2001) with k - 1 degrees of freedom: it carries to other sets. That error
     is too small where sets agree by luck, and therefore never taken below the plain one (Roever, Knapp and Friede,
     BMC Medical Research Methodology 2015). Else the error is the plain one, sqrt(1 / sum of weights), with the degrees
-    of freedom of Welch and Satterthwaite. Of two sets nobody knows the spread of sets: it is about these two. fixed:
-    whether the mean of these k sets is asked for (fixed effects, each set counts alike), and not that of any sets.
+    of freedom of Welch and Satterthwaite. Of two sets nobody knows the spread of sets: it is about these two.
     Raises ValueError for fewer than two sets, or an error that is not above zero.
     """
     effects, within = np.asarray(means, dtype=np.float64), np.asarray(errors, dtype=np.float64) ** 2
@@ -198,10 +182,7 @@ def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[flo
     error, freedom = weights.sum() ** -0.5, weights.sum() ** 2 / (weights**2 / np.asarray(freedoms)).sum()
     if between > 0 and k > 2:
         error, freedom = error * max(1.0, float(weights @ (effects - mean) ** 2) / (k - 1)) ** 0.5, k - 1
-    if fixed:
-        mean, error = float(effects.mean()), within.sum() ** 0.5 / k
-        freedom = within.sum() ** 2 / (within**2 / np.asarray(freedoms)).sum()
-    shares = between / (between + typical), scipy.stats.chi2.sf(q, k - 1)
+    shares = between / (between + typical), scipy.special.chdtrc(k - 1, q)
     return Pooled(mean, float(error), float(freedom), between, *map(float, shares))
 
 

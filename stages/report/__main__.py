@@ -23,16 +23,18 @@ from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import replace_folder, write_json, write_table, write_text
 from stages.charts.results import Results
 from stages.charts.tables import as_text, markdown_table
+from stages.engine.measurements import Measurements
 from stages.engine.parallel import parallel_map
 from stages.engine.settings import Workspace, check_clone, nearest
 
 from . import Params
+from .claims import load
 from .claims_page import claims_shown
 from .headlines import HEADLINES_FILE, write_headlines
 from .own_page import write_own_page
-from .parts import CLAIMS, KINDS, PARTS, Built, build_part
+from .parts import KINDS, PARTS, Built, build_part
 from .site import page_file, write_site
-from .verdict import by_claim, counted, counts, open_by_cause, tabled
+from .verdict import counted, counts, judged
 from .viewer import viewer_or_reason
 
 FOLDERS = (*KINDS, "claims", "site")
@@ -130,14 +132,14 @@ def build(results: Results, out: Path) -> dict[str, Any]:
 
 
 def build_parallel(results: Results) -> tuple[Built, tuple[pd.DataFrame, pd.DataFrame], dict[str, Any] | str]:
-    """Builds the parts of all stages, side by side: (their items, the frames of `tabled`, the meshes of the viewer)."""
+    """Builds the parts of all stages, side by side: (their items, the frames of `judged`, the meshes of the viewer)."""
     where = dict(results.workspace.parallel)
     if where.get("backend") == "dask":  # the files that a part reads are here alone
         where["backend"] = "loky"
-    jobs = [partial(by_claim, CLAIMS, results), partial(viewer_or_reason, results)]
+    jobs = [partial(judged, load(), Measurements(results.reports)), partial(viewer_or_reason, results)]
     jobs += [partial(build_part, part, results) for part in PARTS.values()]
     claims, meshes, *parts = parallel_map(call, jobs, "report", **where)
-    return sum(parts, Built()), tabled(CLAIMS, claims), meshes
+    return sum(parts, Built()), claims, meshes
 
 
 def remove_older(built: Built, out: Path) -> dict[str, str]:
@@ -163,7 +165,7 @@ def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> 
     write_table(out / "claims/differences.csv.gz", differences)
     table = markdown_table(as_text(claims_shown(claims)))
     note = page_file("claims_note.md").strip()
-    parts = ("# Claims of the thesis, tested", note, counted(claims), open_by_cause(claims), table)
+    parts = ("# Claims of the thesis, tested", note, counted(claims), table)
     write_text(out / "claims.md", "\n\n".join(parts))
 
 

@@ -1,35 +1,38 @@
-"""A claim of the thesis as data: which rows are compared, in which pairs, and the words for them."""
+"""Claims as data: entries of conf/claims/*.yaml that say which rows are compared, in which pairs.
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+`load` reads the files of a folder into `Claim` objects, and names the file and line of an entry that is wrong.
+"""
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields, replace
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
-from haptic_glance.know.split import Split, shared_by
-from haptic_glance.look.points.methods import METHODS, SUMMED
-from stages.charts.datasets import dataset_text
-from stages.charts.drawing import label
-from stages.charts.results import Results
-from stages.charts.tables import number
+import yaml
 
-Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
+from stages.charts.datasets import dataset_text
+from stages.charts.numbers import number
+from stages.engine.measurements import listed
+
+FOLDER = Path(__file__).resolve().parents[2] / "conf/claims"
+WORDS_FILE = "words.yaml"
+POINTS = "points of accuracy"
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean
 
-POINTS = "points of accuracy"
-OVER = {
-    "repetition": "repetitions",
-    "item": "objects",
-    "fold": "folds",
-    "method": "methods",
-    "group": "classes",
-    "set": "sets",
-}
+
+class ClaimError(ValueError):
+    """An entry that is wrong; the message names its file and line."""
 
 
 @dataclass(frozen=True)
 class Pick:
     """The one of several values of a column with the highest (or lowest) mean over the pairs that all of them have.
 
-    names: the values, none for all but those of `but`, such as `*_seen`, and those of the other side.
+    names: the values, none for all but those of `but` and of the other side. In YAML: {highest: [a, b]}, or
+    {lowest: all, but: [c]}.
     """
 
     names: tuple[str, ...] = ()
@@ -37,25 +40,12 @@ class Pick:
     but: tuple[str, ...] = ()
 
 
-Methods = str | tuple[str, ...] | Pick  # of one side of a claim
-
-
-def highest_of(*names: str, but: tuple[str, ...] = ()) -> Pick:
-    """The value with the highest mean: the best by accuracy, the worst by error."""
-    return Pick(names, False, but)
-
-
-def lowest_of(*names: str, but: tuple[str, ...] = ()) -> Pick:
-    """The value with the lowest mean: the worst by accuracy, the best by error."""
-    return Pick(names, True, but)
-
-
 @dataclass(frozen=True)
 class Reading:
     """Another reasonable reading of an ambiguous protocol.
 
-    name: the reading in words. changes: the fields of the claim that differ; a mapping such as `where` is merged into
-    that of the claim. literal: whether this reading follows a printed formula to the letter and the claim does not.
+    name: the reading in words. changes: the fields of the claim that differ; where, first and second are merged into
+    those of the claim. literal: whether this reading follows a printed formula to the letter and the claim does not.
     """
 
     name: str
@@ -65,95 +55,53 @@ class Reading:
     def of(self, claim: "Claim") -> "Claim":
         """The claim in this reading."""
         merged = {
-            field: {**old, **value} if isinstance(old := getattr(claim, field), Mapping) else value
+            field: {**old, **value} if field in SIDES and isinstance(old := getattr(claim, field), Mapping) else value
             for field, value in self.changes.items()
         }
         return replace(claim, readings=(), **merged)
-
-
-def reading(name: str, **changes: Any) -> Reading:
-    """The Reading with these changes: `reading("15 imprints", where={"variant": "first_15"})`."""
-    return Reading(name, changes)
-
-
-SCALE = {"scaling": "beforehand"}  # "The entire data is standardized beforehand using z-transform" (T4.2.4)
-TRAINED = {"scaling": "training"}  # fitted to the training part alone, so that nothing of the test part leaks
-OF_TRAINING = reading("z-transform of the training part", where=TRAINED)
-RANGE = reading("all data from 0 to 1", where={"scaling": "min_max"})  # gamma 1 at its own scale
-SCALED = (OF_TRAINING, RANGE)
-ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
-NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
-
-
-SUMS = "sums of maps, as eq. 3.1 to 3.6 print them"  # the channels are means of these maps
-
-
-def in_sums(*sides: Methods, **more: Any) -> tuple[Reading, ...]:
-    """The reading of a claim on the methods of its first and second side with SUMS; none where sums change nothing.
-
-    more: further fields that the reading changes.
-    """
-    summed = tuple(_renamed(side, _with_sums) for side in sides)
-    changes = {side: {"method": methods} for side, methods in zip(("first", "second"), summed, strict=False)}
-    return () if summed == sides else (Reading(SUMS, {**changes, **more}, literal=True),)
-
-
-def _with_sums(method: str) -> str:
-    base, dash, way = method.partition("-")
-    base = "VisAtt" if base == "itti" else base
-    return f"{base}{SUMMED}{dash}{way}" if f"{base}{SUMMED}" in METHODS else method
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """One testable sentence: the paired differences of two sides of the rows of a stage, positive as it is claimed.
 
-    dataset: the set of the rows; None: the first that has rows of the stage and is not named. Several: the effects of
-    those that have such rows are pooled. elsewhere: {method: the one in its place on all sets but the first}. first,
+    section: of the thesis, as T4.2.4, or "ours". sets: the data sets of the rows, whose effects are pooled. first,
     second: the rows of each side, of another set where a side names a `dataset`; second may be a number (before
-    scaling) or None. where: what both have in common. A text value with `*` is a pattern. over: columns whose
-    combinations are the pairs, the outermost unit of the analysis first (stages.engine.rows); within: columns that are
-    matched too, before the differences of a pair are averaged. relative: differences as shares of the mean of both
-    sides. mean_of: the side ("first" or "second") that counts by the mean of all its rows. contrast: two selections;
-    the difference under the first of them minus that under the second. scale, then margin: from differences to `unit`.
-    statistic: a name of stages.report.effects.STATISTICS. shared: test over training share (haptic_glance.know.split),
-    or a function of the set; None: that of the split where the pairs are repetitions, else 0. phrases: {(column,
-    value): words} of the topic. note: words behind all others. printed: how many of the sets, from the first on, follow
-    the printed protocol: their rows alone give the verdict, and the other sets show whether it carries over; 0 for all.
-    None: 1 for the thesis's claims, 0 for ours. of: key of the primary claim whose sentence this claim tests elsewhere;
-    a later claim in the same words and chapter is secondary without being told. readings: other readings of the
-    protocol, in which the verdict must hold too. checked: whether rows that stages.report.effects refuses are out.
-    ties: whether two equal meshes are a result, a difference of zero; otherwise such a pair is invalid. fixed: whether
-    the claim is about the mean of its sets, in which each counts alike, and not about any sets.
+    scaling) or none. where: what both have in common. over: columns whose combinations are the pairs, the outermost
+    unit of the analysis first (stages.engine.rows). within: columns that are matched too, before the differences of a
+    pair are averaged. relative: differences as shares of the mean of both sides. mean_of: the side ("first" or
+    "second") that counts by the mean of all its rows. contrast: two selections; the difference under the first minus
+    that under the second. scale, then margin: from differences to `unit`. statistic: a name of
+    stages.report.statistics. shared: test over training share of repeated splits of the same data, for the interval;
+    of each set where they differ. readings: other readings, in which the verdict must hold too. checked: whether rows
+    that stages.report.validity refuses are out. ties: whether two equal meshes are a result and not an invalid pair.
+    of: key of the claim whose sentence this one tests elsewhere. note: words behind all others. place: file and line.
     """
 
     key: str
     section: str
     sentence: str
     stage: str
-    first: Side = field(default_factory=dict)
+    sets: tuple[str, ...]
+    where: Side
+    first: Side
     second: Side | float | None = None
-    where: Side = field(default_factory=dict)
-    dataset: str | None | tuple[str | None, ...] = None
-    elsewhere: Mapping[str, str] = field(default_factory=dict)
+    contrast: tuple[Side, ...] = ()
     over: tuple[str, ...] = ("repetition",)
     within: tuple[str, ...] = ()
     relative: bool = False
     mean_of: str = ""
-    contrast: tuple[Side, Side] | None = None
+    statistic: str = "difference"
     scale: float = 100.0
     margin: float = 0.0
     unit: str = POINTS
-    statistic: str = "difference"
-    shared: float | Callable[[str], float] | None = None
-    phrases: Phrases = field(default_factory=dict)
-    note: str = ""
-    of: str = ""  # key of the primary claim; this one asks whether its sentence carries over
-    printed: int | None = None
+    shared: float | Mapping[str, float] = 0.0
     readings: tuple[Reading, ...] = ()
     checked: bool = True
     ties: bool = False
-    fixed: bool = False
+    of: str = ""
+    note: str = ""
+    place: str = ""
 
     @property
     def is_ours(self) -> bool:
@@ -161,116 +109,178 @@ class Claim:
         return self.section == "ours"
 
     @property
-    def judging(self) -> int:
-        """The number of leading sets whose rows give the verdict."""
-        printed = self.printed if self.printed is not None else 0 if self.is_ours else 1
-        return printed or len(self.sets)
-
-    @property
     def other(self) -> Side:
         """The second side; ValueError where that is a number, or none."""
-        if self.second is None or isinstance(self.second, int | float):
+        if not isinstance(self.second, Mapping):
             raise ValueError(f"claim {self.key} has no second side")
         return self.second
 
-    @property
-    def share(self) -> float:
-        """Test over training share of the pairs, for the interval."""
-        if callable(self.shared):
-            return self.shared(self.sets[0] or "")
-        if self.shared is not None:
-            return self.shared
-        split = {**self.where, **self.first}.get("split")
-        return shared_by(str(split)) if "repetition" in self.over and split else 0.0
+    def share(self, dataset: str) -> float:
+        """`shared` on one set."""
+        return self.shared.get(dataset, 0.0) if isinstance(self.shared, Mapping) else self.shared
 
-    @property
-    def sets(self) -> tuple[str | None, ...]:
-        """The data sets, as they were named."""
-        return self.dataset if isinstance(self.dataset, tuple) else (self.dataset,)
-
-    def on(self, dataset: str | None) -> "Claim":
-        """The claim on one set; on all but the first of its own, methods give way to those of `elsewhere`."""
-        shared = self.shared(dataset or "") if callable(self.shared) else self.shared
-        sides = {"first": self.first, "second": self.second}
-        if self.elsewhere and dataset != self.sets[0]:
-            sides = {
-                name: _renamed(side, lambda value: self.elsewhere.get(value, value)) for name, side in sides.items()
-            }
-        return replace(self, dataset=dataset, shared=shared, **sides)  # pyright: ignore[reportArgumentType]
-
-    @property
-    def pairs(self) -> str:
-        """The pairs, in words."""
-        return " and ".join(map(self._words_of, self.over))
-
-    @property
-    def units(self) -> str:
-        """The outermost units, in words."""
-        return self._words_of(self.over[0])
-
-    def _words_of(self, column: str) -> str:
-        return self.phrases.get(("over", column), OVER.get(column, column))
+    def sets_read(self) -> list[str]:
+        """The data sets whose rows the claim compares."""
+        named = [str(side["dataset"]) for side in (self.first, self.second)
+                 if isinstance(side, Mapping) and "dataset" in side]  # fmt: skip
+        return list(dict.fromkeys(named or self.sets))
 
 
-def _renamed(value: Any, rename: Callable[[Any], Any]) -> Any:
-    """A side of a claim, or a part of it, with other names of methods."""
-    if isinstance(value, Mapping):
-        return {column: _renamed(part, rename) for column, part in value.items()}
-    if isinstance(value, Pick):
-        return replace(value, names=_renamed(value.names, rename))
-    return tuple(_renamed(entry, rename) for entry in value) if isinstance(value, tuple) else rename(value)
+SIDES = ("where", "first", "second")
+FIELDS = {field.name: field for field in fields(Claim) if field.name != "place"}
+REQUIRED = [name for name, field in FIELDS.items() if field.default is MISSING]
+LISTS = ("sets", "over", "within")
 
 
-METRICS = {  # "" where the claim's unit says it
-    "accuracy": "", "recall": "mean of the objects' rates", "nss": "NSS", "auc": "AUC", "pcc": "PCC",
-}  # fmt: skip
-NAMED = ("method", "classifier", "network")  # columns whose values have a label
+def load(folder: Path = FOLDER) -> list[Claim]:
+    """The claims of all YAML files of a folder; ClaimError for one that is wrong."""
+    claims: dict[str, Claim] = {}
+    for path in sorted(folder.glob("*.yaml")):
+        for claim in _read(path) if path.name != WORDS_FILE else ():
+            if claim.key in claims:
+                raise ClaimError(f"{claim.place}: {claim.key} is the key of {claims[claim.key].place}, too")
+            claims[claim.key] = claim
+    for claim in claims.values():
+        if claim.of and claim.of not in claims:
+            raise ClaimError(f"{claim.place}: {claim.key} is `of` {claim.of}, which is no claim")
+    if not claims:
+        raise ClaimError(f"no claims in {folder}")
+    return list(claims.values())
 
 
-def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
-    """`household: kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
-    claim, set_names = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
-    shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
-    parts = [set_names, *shared, _sides(claim, results), claim.note]
-    return ", ".join(part.rstrip(",") for part in parts if part)
+def _read(path: Path) -> list[Claim]:
+    place = "/".join(path.parts[-3:])
+    loader = yaml.CSafeLoader(path.read_text(encoding="utf-8"))
+    try:
+        node = loader.get_single_node()
+        content = loader.construct_document(node)
+    except yaml.YAMLError as error:
+        raise ClaimError(f"{place}: {error}") from error
+    if not isinstance(content, dict) or not isinstance(content.get("claims"), list):
+        raise ClaimError(f"{place}: no list `claims`")
+    _known(content, ("defaults", "readings", "claims"), place)
+    (entries,) = (value for name, value in node.value if name.value == "claims")
+    lines = [entry.start_mark.line + 1 for entry in entries.value]
+    return [_claim(entry, content, f"{place}:{line}") for entry, line in zip(content["claims"], lines, strict=True)]
 
 
-def _sides(claim: Claim, results: Results) -> str:
-    text = _side(claim, results, claim.first)
-    if isinstance(claim.second, int | float):
-        if claim.second:
+def _claim(entry: dict[str, Any], content: dict[str, Any], place: str) -> Claim:
+    readings = content.get("readings", {})
+    entry = {"where": {}, "first": {}, **content.get("defaults", {}).get(entry.get("stage"), {}), **entry}
+    place_of = f"{place} ({entry.get('key', 'no key')})"
+    _known(entry, FIELDS, place_of)
+    if absent := [name for name in REQUIRED if name not in entry]:
+        raise ClaimError(f"{place_of}: no {' and no '.join(absent)}")
+    own = []
+    for reading in entry.get("readings", ()):
+        if isinstance(reading, str):
+            _known([reading], readings, place_of)
+            reading = {"name": reading, **readings[reading]}
+        name, literal = reading.get("name", ""), reading.get("literal", False)
+        changes = {field: value for field, value in reading.items() if field not in ("name", "literal")}
+        _known(changes, FIELDS, place_of)
+        own.append(Reading(name, _values(changes, place_of), literal))
+    values = _values({name: value for name, value in entry.items() if name != "readings"}, place_of)
+    claim = Claim(**values, readings=tuple(own), place=place)
+    if claim.section != "ours" and not claim.section.startswith("T"):
+        raise ClaimError(f"{place_of}: section {claim.section} is neither `ours` nor one of the thesis, as T4.2.4")
+    for variant in (claim, *(reading.of(claim) for reading in own)):
+        for name in variant.sets:
+            if not (FOLDER.parent / f"data/{name}.yaml").exists():
+                raise ClaimError(f"{place_of}: set {name} is not in conf/data")
+    if not (FOLDER.parents[1] / "stages" / claim.stage / "__init__.py").exists():
+        raise ClaimError(f"{place_of}: stage {claim.stage} is not in stages/")
+    return claim
+
+
+def _known(names: Any, known: Any, place: str) -> None:
+    for name in names:
+        if name not in known:
+            close = difflib.get_close_matches(str(name), list(map(str, known)), 1)
+            raise ClaimError(f"{place}: {name} is unknown" + (f", perhaps {close[0]}" if close else ""))
+
+
+def _values(entry: dict[str, Any], place: str) -> dict[str, Any]:
+    """The values of fields as Claim has them."""
+    values = dict(entry)
+    for name in values.keys() & {*LISTS}:
+        values[name] = tuple(listed(values[name]))
+    for name in values.keys() & {*SIDES}:
+        values[name] = _side(values[name], place)
+    if "contrast" in values:
+        values["contrast"] = tuple(_side(side, place) for side in values["contrast"])
+    if "shared" in values:
+        shared = values["shared"]
+        is_each = isinstance(shared, dict)
+        values["shared"] = {name: _share(value) for name, value in shared.items()} if is_each else _share(shared)
+    return values
+
+
+def _share(value: Any) -> float:
+    """A share, which may be written as 3/7."""
+    return float(Fraction(value)) if isinstance(value, str) else float(value)
+
+
+def _side(side: Any, place: str) -> Any:
+    if not isinstance(side, dict):
+        return side
+    return {column: _value(value, f"{place}, {column}") for column, value in side.items()}
+
+
+def _value(value: Any, place: str) -> Any:
+    if isinstance(value, dict):
+        _known(value, ("highest", "lowest", "but"), place)
+        names = value.get("lowest", value.get("highest"))
+        return Pick(() if names == "all" else tuple(names or ()), "lowest" in value, tuple(value.get("but", ())))
+    return tuple(value) if isinstance(value, list) else value
+
+
+class Words:
+    """Words for the columns and values of claims; those that the file of words lacks are their own names."""
+
+    NAMES = ("method", "classifier", "network", "metric")  # columns whose values say what they are
+
+    def __init__(self, path: Path = FOLDER / WORDS_FILE) -> None:
+        self.path = path
+
+    @cached_property
+    def by_column(self) -> dict[str, dict[Any, str]]:
+        """{column: {value: words}}."""
+        return yaml.load(self.path.read_text(encoding="utf-8"), yaml.CSafeLoader)
+
+    def over(self, column: str) -> str:
+        """The pairs by a column."""
+        return self.by_column["over"].get(column, column)
+
+    def tested_on(self, claim: Claim, sets: Sequence[str]) -> str:
+        """`household, kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
+        shared = [self._value(column, value) for column, value in claim.where.items()]
+        parts = [" and ".join(map(dataset_text, sets)), *shared, self._sides(claim), claim.note]
+        return ", ".join(part.rstrip(",") for part in parts if part)
+
+    def _sides(self, claim: Claim) -> str:
+        text = self._side(claim.first)
+        if isinstance(claim.second, Mapping):
+            text += f" minus {self._side(claim.second)}"
+        elif claim.second:
             text = text or str(claim.where.get("metric", "value")).replace("_", " ")
             text += f" minus {number(claim.scale * claim.second)}"
-    elif claim.second is not None:
-        text += f" minus {_side(claim, results, claim.second)}"
-    if claim.contrast:
-        first, second = (_side(claim, results, where) for where in claim.contrast)
-        text = f"{text}: {first} minus {second}"
-    return text + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
+        if claim.contrast:
+            text = f"{text}: {' minus '.join(map(self._side, claim.contrast))}"
+        return text + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
 
+    def _side(self, side: Side) -> str:
+        return " ".join(filter(None, (self._value(column, value) for column, value in side.items())))
 
-def _side(claim: Claim, results: Results, side: Side) -> str:
-    return " ".join(filter(None, (_phrase(claim, results, column, value) for column, value in side.items())))
-
-
-def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
-    """One column and its value in words; the topic's own words first."""
-    if isinstance(value, Pick):
-        rank = "lowest" if value.lowest else "highest"
-        names = ", ".join(_phrase(claim, results, column, name) for name in value.names)
-        return f"the {rank} of {names}" if names else f"the {rank} of the others"
-    if (column, value) in claim.phrases:
-        return claim.phrases[column, value]
-    if isinstance(value, tuple):
-        return f"mean of {', '.join(_phrase(claim, results, column, part) for part in value)}"
-    if value is None:
-        return ""
-    if column == "group":
-        return results.group_text(str(value), claim.sets[0])
-    if column == "dataset":
-        return dataset_text(str(value))
-    if column == "split":
-        return Split(str(value)).words
-    if column == "metric":
-        return METRICS.get(str(value), str(value).replace("_", " "))
-    return label(value) if column in NAMED else f"{column} {value}"
+    def _value(self, column: str, value: Any) -> str:
+        if isinstance(value, Pick):
+            names = ", ".join(self._value(column, name) for name in value.names) or "the others"
+            return f"the {'lowest' if value.lowest else 'highest'} of {names}"
+        if isinstance(value, tuple):
+            return f"mean of {', '.join(self._value(column, part) for part in value)}"
+        if value is None:
+            return ""
+        if column == "dataset":
+            return dataset_text(str(value))
+        words = str(value).replace("_", " ") if column in self.NAMES else f"{column} {value}"
+        return self.by_column.get(column, {}).get(value, words)

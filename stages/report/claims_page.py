@@ -16,12 +16,11 @@ from haptic_glance.gallery.viewer import as_script
 from stages.charts.commands import command
 from stages.charts.datasets import dataset_text
 from stages.charts.html import box, folded, prose
+from stages.charts.numbers import with_interval
 from stages.charts.results import Results
-from stages.charts.tables import with_interval
 
 from .claims import Claim
-from .effects import sets_of
-from .verdict import counted, open_by_cause, sentences
+from .verdict import counted, over_text, sentences, sets_text
 
 # Verdict -> class in the style sheet.
 CLASSES = {
@@ -44,32 +43,10 @@ def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     text_table["on each set"] = [sets_text(row) for row in claims.itertuples()]
     text_table["readings"] = claims["readings"]
     text_table["invalid"] = claims["validity"]
-    text_table["carries over"] = [carries_text(row) for row in claims.itertuples()]
+    text_table["tests elsewhere"] = claims["of"]
     text_table["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
-    text_table["open"] = [open_text(row) for row in claims.itertuples()]
     text_table["key"] = claims["key"]
     return text_table
-
-
-def over_text(row: Any) -> str:
-    """`50 objects, 40 units`: the pairs, and how many units they are of where these are fewer."""
-    return f"{row.pairs} {row.over}" + (f", {row.units} units" if row.units != row.pairs else "")
-
-
-def sets_text(row: Any) -> str:
-    """The effect on each set, and the share of their variation that is between them; empty for one set."""
-    shown = row.by_set and row.i2 == row.i2
-    return row.by_set + (f"; {100 * row.i2:.0f} % of the variation between sets" if shown else "")
-
-
-def carries_text(row: Any) -> str:
-    """Whether the sentence holds on all sets together; of a secondary claim, the sentence that it tests elsewhere."""
-    return f"tests `{row.of}` elsewhere" if row.of else row.carries
-
-
-def open_text(row: Any) -> str:
-    """Why a claim is open, and how many units would decide it at its present effect and spread; empty for others."""
-    return row.cause + (f": about {row.needed:,.0f} {row.needed_of} would decide" if row.needed == row.needed else "")
 
 
 def effect(row: Any) -> str:
@@ -79,25 +56,18 @@ def effect(row: Any) -> str:
     return f"{'+' if row.effect > 0 else ''}{with_interval(row.effect, row.low, row.high)} {row.unit}"
 
 
-def sets_read(claim: Claim, results: Results) -> list[str]:
-    """The data sets that a claim is tested on, and those that a side names instead."""
-    datasets = [side["dataset"] for side in (claim.first, claim.second) if isinstance(side, dict) and "dataset" in side]
-    sets = [name for name in sets_of(claim, results) if name]
-    return list(dict.fromkeys(datasets or sets)) if sets else []
-
-
 def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
     """The text of the page below its head. claims, differences: the results of `judged`."""
     by_key = {claim.key: claim for claim in known}
     items, values = [], {name: {} for name in ("chapter", "verdict", "set")} | {"kind": KINDS}
     for row in claims.itertuples():
         claim = by_key[str(row.key)]
-        sets = sets_read(claim, results)
+        sets = claim.sets_read()
         chapter = chapter_of(str(row.section))
         values["chapter"][chapter] = CHAPTERS.get(chapter, chapter)
         values["verdict"][str(row.verdict).replace(" ", "-")] = str(row.verdict)
         values["set"] |= {name: dataset_text(name) for name in sets}
-        rerun = command(results.workspace.root / "conf", claim.stage, sets) if sets else ""
+        rerun = command(results.workspace.root / "conf", claim.stage, sets)
         files = [name for name in sets if name in results.datasets(claim.stage)]
         items.append(_claim_html(row, claim, sets, files, chapter, rerun))
     pairs = {
@@ -106,7 +76,6 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
     words = {
         "holds": what_holds(sentences(claims)),
         "counted": escape(counted(claims)),
-        "causes": escape(open_by_cause(claims)),
         **{f"{name}s": _options(choices) for name, choices in values.items()},
         "claims": "".join(items),
         "pairs": as_script(pairs),
@@ -156,10 +125,9 @@ def _claim_html(
     facts = {
         "Tested on": prose(row.tested_on),
         "On each set": prose(sets_text(row)),
-        "Carries over": prose(carries_text(row)),
+        "Tests elsewhere": prose(f"`{row.of}`" if row.of else ""),
         "Readings": prose(row.readings),
         "Invalid": prose(row.validity),
-        "Open": prose(open_text(row)),
         "Data": links if row.pairs else "not measured",
         "Holds among the claims of its chapter": row.holds,
         "Judged again from its rows": f"<code>python -m stages.claim {row.key}</code>",

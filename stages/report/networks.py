@@ -5,9 +5,6 @@ objects left out. A confusion matrix is in per cent of the true class.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import partial
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,15 +17,12 @@ from stages.charts import tables
 from stages.charts.drawing import label, plt, start
 from stages.charts.results import NotRun, Results
 
-from .claims import Claim
-
 # As the thesis calls them, in its order.
 PRINTED = {name: label(name) for name in ("alexnet", "googlenet", "vgg16", "resnet50", "mobilenet_v2")}
 FINE, COARSE = "imprints128", "imprints16"
 THESIS = {FINE: "table_5_4_simulated_fsr_128x128", COARSE: "table_5_3_fsr_16x16"}  # its tables of them
 SPLITS = {"random": "touches at random", "objects": "unseen objects"}
 THEIRS = "princeton_six"  # the set of the thesis's classes
-SETS = (THEIRS, None)  # of a claim: that, and the first of the others, the furniture
 OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
 STARTS, MODES = ("imagenet", "random", "random_initial"), ("finetuned", "frozen")
 PASSES = {  # of the trainings, over the touches
@@ -36,13 +30,6 @@ PASSES = {  # of the trainings, over the touches
 }  # fmt: skip
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
 NETWORK = "mobilenet_v2"
-WORDS = {  # phrases of claims
-    ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
-    ("mode", "finetuned"): "fine-tuned", ("mode", "frozen"): "frozen",
-    ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
-}  # fmt: skip
-SEEN = ("size", "touches")  # columns of what a network saw: a claim compares only what saw the same
-GUESS = 7.6  # points over chance that frozen filters have in T table 5.3, which calls that around a random guess
 
 
 def measured(results: Results, dataset: str | None = None, passes: str = "printed", **where: object) -> pd.DataFrame:
@@ -105,26 +92,6 @@ def origin(weights: str, pretrained: str | None) -> str:
     """The weights that a network starts from, and the part of ImageNet's weights that they have."""
     part = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
     return f"{start(weights)} ({part})" if part else start(weights)
-
-
-def both(*claims: Claim, items: str = "touches", verb: str = "touched") -> list[Claim]:
-    """Each claim with items drawn at random, as in the thesis, and on objects left out, whose folds are the pairs.
-
-    Of a sentence of the thesis, the second is secondary: it asks whether the sentence carries over. items, verb: what
-    was drawn, and what was never done to the objects.
-    """
-    variants = []
-    for claim, split in product(claims, SPLITS):
-        unseen = split == "objects"
-        words = {("split", split): SPLITS[split].replace("touches", items)}
-        words |= {("over", "repetition"): "folds"} if unseen else {}
-        variants.append(replace(
-            claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
-            sentence=f"{claim.sentence[:-1]}, on objects never {verb} too." if unseen else claim.sentence,
-            shared=partial(shared, split), phrases={**claim.phrases, **words},
-            of=claim.of or (f"{claim.key}_random" if unseen and not claim.is_ours else ""),
-        ))  # fmt: skip
-    return variants
 
 
 DARK = 55  # per cent from which a number is written in white

@@ -33,7 +33,6 @@ PARTS: dict[str, ModuleType] = {
                    recorded, stability, fidelity)
 }  # fmt: skip
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a part
-CLAIMS = [claim for part in PARTS.values() for claim in part.CLAIMS]
 
 
 @dataclass

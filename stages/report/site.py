@@ -22,8 +22,9 @@ from stages.charts.items import Figure, Table, findings
 from stages.charts.results import NotRun, Results
 from stages.charts.tables import with_interval
 
+from .claims import load
 from .claims_page import claims_main
-from .parts import CLAIMS, PARTS, Built, page_of
+from .parts import PARTS, Built, page_of
 from .verdict import DEPENDS, UNTESTABLE, counts, of_thesis
 
 
@@ -86,9 +87,9 @@ def write_site(
     leads: dict[str, str] = {}
     for part in PARTS.values():
         leads.setdefault(page_of(part), (part.__doc__ or "").strip())
-    mains = {page: main for page in leads if (main := page_main(page, results, built, frame, out))}
+    mains = {page: main for page in leads if (main := page_main(page, results, built, out))}
     if len(frame):
-        mains[CLAIM_ROWS] = claims_main(CLAIMS, frame, differences, results)
+        mains[CLAIM_ROWS] = claims_main(load(), frame, differences, results)
     leads[CLAIM_ROWS] = "Each sentence of the thesis, and of this project about its own model, has its verdict here."
     for name, main in mains.items():
         scripts = ["site.js", "claims.js"] if name == CLAIM_ROWS else ["site.js"]
@@ -125,22 +126,18 @@ def page_file(name: str) -> str:
     return file.read_text(encoding="utf-8") if file.is_file() else viewer.part(name)
 
 
-def page_main(page: str, results: Results, built: Built, claims: pd.DataFrame, out: Path) -> str:
-    """The findings of a page, its claims, charts and tables; those of sets that are off come last.
+def page_main(page: str, results: Results, built: Built, out: Path) -> str:
+    """The findings of a page, its charts and tables; those of sets that are off come last.
 
     out: the folder whose tables, charts and claims are written already; the figures of what was found are theirs.
     """
     parts = [part for part in PARTS.values() if page_of(part) == page]
-    claims = claims[claims["key"].isin([claim.key for part in parts for claim in part.CLAIMS])]
     items = [item for item in built.items if item.page == page]
-    if not items and claims.empty:
+    if not items:
         return ""
     paragraphs = [] if results.own_meshes else [text for part in parts for text in findings(part, out)]
     text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in paragraphs)
     text = f'<section id="found" class="found"><h2>What was found</h2>{text}</section>\n' if text else ""
-    if len(claims):
-        verdicts = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
-        text += f'<p>{len(claims)} <a href="{CLAIM_ROWS}.html">claims</a>: {verdicts}.</p>\n'
     others = [item for item in items if item.sets and not set(item.sets) & set(results.sets)]
     ordered = [*charts_first([item for item in items if item not in others]), *charts_first(others)]
     contents = "".join(f'<li><a href="#{anchor(item)}">{escape(item.title)}</a></li>' for item in ordered)

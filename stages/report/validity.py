@@ -10,7 +10,7 @@ from math import log
 
 import pandas as pd
 
-from stages.charts.results import NUMBERS, NotRun, Results
+from stages.engine.measurements import Measurements, Missing
 
 PLAIN, QSLIM = "qem", "qslim"  # plain simplification: with and without the fit of ours
 UNIT = ["item", "method", "target"]
@@ -34,7 +34,8 @@ TRAINING = ("method", "split", "data", "weights", "pretrained", "mode", "size", 
             "passes")  # fmt: skip
 CHANGES = ("weight_change", "layer_weight_change")  # of a tuned network
 SEQUENCES, SUM = ("method", "split", "repetition", "training", "frames", "cells"), "cnn"  # trials by contours
-Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
+NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
+Check = Callable[[Measurements, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
 
 
@@ -47,7 +48,7 @@ def of_all_rows(work: Check) -> Check:
     """Makes some work on all rows of a stage on a set, done at the first call, an answer for each selection of them."""
 
     @wraps(work)
-    def selected(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    def selected(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
         answers = results.cached(
             (work.__name__, stage, dataset), lambda: work(results, stage, dataset, results.rows(stage, dataset))
         )
@@ -56,7 +57,7 @@ def of_all_rows(work: Check) -> Check:
     return selected
 
 
-def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def causes(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
     checker = CHECKS.get(stage)
     return checker(results, stage, dataset, rows) if checker else pd.Series("", index=rows.index)
@@ -64,7 +65,7 @@ def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd
 
 @check("lod")
 @of_all_rows
-def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def kept_neighbourhoods(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of methods that should keep neighbourhoods but kept none: their mesh is that of plain simplification."""
     if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
         return pd.Series("", index=rows.index)
@@ -75,7 +76,7 @@ def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.Dat
 @check("classification")
 @check("recorded")
 @of_all_rows
-def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def several_answers(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
     guess = pd.Series(float("nan"), index=rows.index)
     if "group" in rows:
@@ -94,7 +95,7 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
 
 @check("transfer")
 @check("recorded_networks")
-def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def trained(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of tuned networks whose training was stopped after some passes while it still improved, or may have been.
 
     A network that hardly errs on its test part has learned its training part. The changes of its weights are checked
@@ -113,14 +114,14 @@ def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> p
 
 
 @of_all_rows
-def _diverged(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def _diverged(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Whether no pass of each row's training had a loss below that of guessing, the logarithm of the number of classes.
 
     The pass that was kept is the one of the best validation; its loss is no less than the least.
     """
     try:
         losses = results.measured(stage, dataset, metric=LOSS)
-    except NotRun:
+    except Missing:
         return pd.Series(False, index=rows.index)
     keys = [column for column in TRAINING if column in rows]
     least = losses.groupby(keys, dropna=False, as_index=False)["value"].min()
@@ -129,7 +130,7 @@ def _diverged(results: Results, stage: str, dataset: str, rows: pd.DataFrame) ->
 
 
 @check("fixation")
-def attentive(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def attentive(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of the least distance of a method whose distances exceed those of noise, and rows of VGG16 alone.
 
     The least distance rewards many centres, as noise has them. The fully connected layers of VGG16 start from random
@@ -147,7 +148,7 @@ def attentive(results: Results, stage: str, dataset: str, rows: pd.DataFrame) ->
 
 
 @check("weights")
-def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def over_background(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Accuracies on kinds of pixels where an SVM is right less often than `on the object, hence salient`."""
     if "background_alone" not in rows or not rows["metric"].eq("accuracy").all():
         return pd.Series("", index=rows.index)
@@ -160,7 +161,7 @@ def over_background(results: Results, stage: str, dataset: str, rows: pd.DataFra
 
 @check("sequences")
 @of_all_rows
-def settled(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def settled(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of networks that did not know their training sequences while their loss still fell, or may not have.
 
     The sum of both networks needs both.
@@ -193,11 +194,11 @@ def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
     return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
 
 
-def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
+def _beside(results: Measurements, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
     """(n,) another metric of the same trials, NaN where it was not measured."""
     try:
         metric_rows = results.measured(stage, dataset, metric=metric)
-    except NotRun:
+    except Missing:
         return pd.Series(float("nan"), index=rows.index)
 
     def of_all() -> pd.Series:

@@ -17,4 +17,3 @@ FIGURES = {
     "views_seen": maps.build,
 }
 CHARTS = {"attention": maps.by_method}
-CLAIMS = claims.CLAIMS

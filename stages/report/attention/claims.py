@@ -7,20 +7,16 @@ learned methods of the gaze tables leave out the judged object; only methods wit
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from functools import partial
-from typing import Any
 
 import pandas as pd
 
-from stages.bench import PER_OBJECT, has_seen
-from stages.charts.datasets import COLOURED, GAZED, GREY_3_1, MENDED_3_2, SECTION_3_2
+from stages.bench import has_seen
 from stages.charts.drawing import label
 from stages.charts.items import Table, shared_notes
 from stages.charts.pareto import attention_seconds
 from stages.charts.results import NotRun, Results, require_rows
 from stages.charts.tables import Ranking, interval_columns, number, records, signed, with_interval
-from stages.engine.statistics import BROKEN, interval
-from stages.report.claims import POINTS, Claim, highest_of, in_sums, lowest_of, reading
+from stages.engine.statistics import interval
 
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"
@@ -83,144 +79,8 @@ def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
-NO_RIVAL = (*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen")
-BEST_RIVAL = highest_of(but=NO_RIVAL)
-OTHER_METRICS = (
-    *(reading(metric.upper(), where={"metric": metric}) for metric in ("auc", "cc", "sim")),
-    reading("KL", where={"metric": "kl"}, second={"method": lowest_of(but=NO_RIVAL)}, scale=-1.0),
-)
 COUNTED = "points_strong"
-ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household objects, each in one colour of a palette
-PHRASES = {
-    ("method", OURS): "our glance", ("method", ANY_POSE): "our glance in any pose",
-    ("method", "VisAttAll"): "VisAttAll", ("method", "equal"): "equal weights",
-    ("metric", "weight"): "weights", ("metric", "information_gain"): "information gain",
-    ("metric", "extremes"): "largest over mean distance from the centre of mass",
-    ("metric", "distances_deviation"): "deviation of the distances from the centre of mass",
-    ("channel", "symmetry"): "of symmetry", ("metric", COUNTED): "points found",
-    ("views", "best"): "four to eight best viewpoints", ("views", "four"): "four around the object",
-    ("views", "twelve"): "twelve",
-    ("metric", "repeatability"): "points found again", ("perturbation", "clay"): "with the colours taken away",
-    ("metric", "intensity_likeness"): "",
-    ("area", "image"): "random pixels of the whole image", ("area", "object"): "the object's pixels",
-    ("training", "one_per_object"): "an object's own SVM", ("training", "one_for_all"): "the one for all",
-    ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
-    ("validation", "objects"): "on whole objects left out",
-}  # fmt: skip
 MARKED = "household"  # the data set whose marks come with the project
-OF_3_2 = (SECTION_3_2, "gaze_clouds")  # the printed protocol first; elsewhere a method has not seen the object
-UNSEEN = {"guided_ed_seen": "guided_ed", "guided_ssim_seen": "guided_ssim", "svm_object": "svm"}
-MENDED = reading("formulas mended", dataset=(MENDED_3_2, OF_3_2[1]))
-CHANNELS = (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))  # key, name, method
-about = partial(Claim, section="ours", over=("item",), phrases=PHRASES)
-closer = partial(about, stage="salient_points", where={"metric": "nss"}, dataset=GAZED, scale=1, unit="NSS")
-colour = partial(about, dataset=COLOURED)
-learned = partial(about, stage="weights", dataset=OF_3_2)
-GAIN_OF_PICTURE = {"metric": "information_gain", "area": "image"}
-ON_OBJECT = {"area": "object"}
-MENDED_GAIN = reading("formulas mended", dataset=(MENDED_3_2, MARKED))
-
-
-def by_gain(key: str, sentence: str, section: str = "T3.2.3", **more: Any) -> Claim:
-    """A claim on the information gain of channels about the pixels of an object, by gaze and by marks."""
-    options: dict[str, Any] = {"scale": 1, "unit": "rank correlation"} | more
-    return learned(key=key, section=section, sentence=sentence, dataset=(SECTION_3_2, MARKED), **options)
-
-
-def learned_to_gaze(key: str, section: str, first: str, sentence: str) -> Claim:
-    """A claim that a method of T3.2 that has learned from the truth has a higher NSS than equal weights.
-
-    As printed, it has learned from the gaze that judges it, too; readings ask for one that has not.
-    """
-    unseen: dict[str, Any] = {"first": {"method": UNSEEN[first]}, "note": ""}
-    readings = [
-        MENDED, reading("learned from other objects", **unseen),
-        reading("nine channels with equal weights", second={"method": "equal"}),
-        reading("our formulas, learned from other objects", **unseen, dataset=GAZED),
-    ]  # fmt: skip
-    return closer(key=key, section=section, sentence=sentence, first={"method": first}, second={"method": "VisAttAll"},
-                  dataset=OF_3_2, elsewhere=UNSEEN, readings=tuple(readings),
-                  note="learned from the gaze that judges it, too, as in the thesis")  # fmt: skip
-
-
-CLAIMS = [
-    Claim(
-        key="four_views_cover", section="T4.2.1", stage="views", dataset=(None, "gaze", "furniture", "princeton"),
-        printed=0,
-        sentence="Four perpendicular viewpoints see the whole surface, but for one percent.", over=("item",),
-        where={"metric": "seen_share", "views": 4}, first={"method": "principal"}, second=0.99, scale=100.0,
-        unit="% of the surface", readings=(reading("four viewpoints around the object", first={"method": "four"}),),
-        phrases={("method", "principal"): "four principal viewpoints", ("method", "four"): "four viewpoints around",
-                 ("metric", "seen_share"): "share of the surface that any of 62 viewpoints sees"},
-    ),
-    closer(key="equal_over_itti_gaze", first={"method": "VisAttAll"}, second={"method": CLASSICAL}, dataset=OF_3_2,
-           sentence="All channels with equal weights (VisAttAll) predict where people look better than the classical "
-                    "model.",
-           printed=1, readings=(*in_sums("VisAttAll", CLASSICAL), MENDED, reading("our formulas", dataset=GAZED))),
-    closer(key="grey_colour", section="T3.1.1", first={"method": "VisAttAll"}, second={"method": "VisAttAllNoColour"},
-           sentence="Although the objects are grey, the colour channels improve the detection of regions of interest.",
-           dataset=GREY_3_1, readings=in_sums("VisAttAll", "VisAttAllNoColour")),
-    learned_to_gaze("guided_ed_gaze", "T3.2.2", "guided_ed_seen",
-                    "Weights learned by Euclidean distance predict attention better than equal ones."),
-    learned_to_gaze("guided_ssim_gaze", "T3.2.2", "guided_ssim_seen",
-                    "Weights learned by similarity predict attention better than equal ones."),
-    learned_to_gaze("svm_gaze", "T3.2.3", "svm_object",
-                    "An SVM on the channels predicts attention better than equal weights."),
-    closer(key="svm_more_points", section="T3.2.3", dataset=OF_3_2, elsewhere=UNSEEN, where={"metric": COUNTED},
-           first={"method": "svm_object"}, second={"method": highest_of("guided_ed_seen", "guided_ssim_seen")},
-           sentence="The SVM finds more salient points than the weighted maps do.", unit="points", readings=(MENDED,),
-           note="at most 32 of the SVM's, and all of the others"),
-    colour(key="colour_parts_dkl", stage="conspicuity", where={"metric": "intensity_likeness"},
-           first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity",
-           sentence="Even where objects have several hues, DKL is as close to intensity as in one hue."),
-    *(colour(key=f"colour_{key}", stage="stability", where={"metric": "repeatability", "perturbation": "clay"},
-             first={"method": method}, second=BROKEN, unit="points of the share found again",
-             sentence=f"Half of the points or more are found again without the colours ({name}).",
-             readings=(reading("the hues alone taken away", where={"perturbation": "grey"}),))
-      for key, name, method in CHANNELS),
-    *(learned(key=f"{key}_ssim", section=section, sentence=sentence, dataset=SECTION_3_2, scale=1, unit="SSIM",
-              where={"metric": "weight", "method": "guided_ssim"}, first={"channel": channel}, statistic=statistic,
-              phrases=PHRASES | {("method", "guided_ssim"): ""}, note=note,
-              readings=(reading("formulas mended", dataset=MENDED_3_2),))
-      for key, section, channel, statistic, sentence, note in (
-          ("colour_least", "T3.2.9", "color", "least_weight",
-           "Colour gets the least weight by similarity where each object has one colour.",
-           "the lowest weight of the other channels minus that of colour"),
-          ("entropy_most", "T3.2.1.4", "entropy", "largest_weight",
-           "The entropy map is the most similar to the ground truth.",
-           "the weight of entropy minus the largest of the other channels"))),
-    *(learned(key=key, section="T3.2.3", unit=POINTS, mean_of="second", where={"metric": "accuracy", "area": area},
-              first={"training": "one_per_object", "validation": alone},
-              second={"training": "one_for_all", "validation": joint},
-              sentence=f"One SVM for each object is more accurate {words}.", of=of,
-              note="each learns from 1,000 pixels, the one for all from few of each object")
-      for key, area, alone, joint, words, of in (
-          ("svm_per_object", "image", "pixels", "pixels", "than one for all", ""),
-          ("svm_per_object_unseen", "object", "views", "objects", "on what it has not seen, too", "svm_per_object"))),
-    by_gain(
-        "symmetry_gain_varies", "The weight of symmetry by information gain changes a lot from object to object.",
-        statistic="varies_more", where=GAIN_OF_PICTURE, first={"channel": "symmetry"}, scale=100,
-        unit="% of the mean gain", readings=(reading("pixels of the object alone", where=ON_OBJECT), MENDED_GAIN),
-        note="distance of an object's gain from the mean gain, minus the same of the other channels"),
-    by_gain(
-        "symmetry_gain_extremes",
-        "Symmetry contributes less where the extremes of an object deviate less from its centre of mass.",
-        statistic="share_rises_with", first=GAIN_OF_PICTURE | {"channel": "symmetry"}, second={"metric": "extremes"},
-        note="rank correlation over the objects, of the channel's share in the gain",
-        readings=(reading("pixels of the object alone", first=ON_OBJECT), MENDED_GAIN,
-                  reading("deviation of all distances", second={"metric": "distances_deviation"}))),
-    by_gain(
-        "gain_by_convexity", "The contribution of the channels depends on the level of convexity of an object.",
-        section="T3.2.9.2", statistic="differs_with", first=GAIN_OF_PICTURE, second={"metric": "convexity"},
-        note="rank correlation over pairs of objects: distance of the channels' shares in the gain, and of convexities",
-        readings=(reading("pixels of the object alone", first=ON_OBJECT), MENDED_GAIN)),
-    closer(key="glance_over_best_gaze", first={"method": OURS}, second={"method": BEST_RIVAL}, readings=OTHER_METRICS,
-           sentence="Our glance predicts where people look better than its best rival."),
-    closer(key="any_pose_over_best_gaze", first={"method": ANY_POSE}, second={"method": BEST_RIVAL},
-           readings=OTHER_METRICS,
-           sentence="Our glance without an up axis predicts where people look better than the best rival of the "
-                    "glance."),
-]  # fmt: skip
 
 
 MEANS = {

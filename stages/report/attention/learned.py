@@ -1,11 +1,9 @@
 """Attention learned from ground truth: channel weights and SVMs beside the thesis's (T table 3.1, T3.2.3)."""
 
-from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
 import pandas as pd
-from scipy.spatial.distance import pdist
 
 from stages.charts.datasets import COLOURED, MENDED_3_2, SECTION_3_2, dataset_text
 from stages.charts.drawing import label
@@ -22,8 +20,6 @@ from stages.charts.tables import (
     with_interval,
 )
 from stages.engine.statistics import interval
-from stages.report.claims import Claim
-from stages.report.effects import side, statistic
 
 from .claims import MEAN
 
@@ -107,86 +103,6 @@ def own_values(group: pd.DataFrame) -> pd.Series:
 def pseudo_values(whole: float, without: pd.Series) -> pd.Series:
     """(objects,) each object's part in a statistic, by its value of all objects and of all but one (Tukey 1958)."""
     return len(without) * whole - (len(without) - 1) * without
-
-
-@statistic("least_weight")
-def least_weight(results: Results, claim: Claim) -> pd.Series:
-    """The lowest weight of the other channels minus that of the channel of the first side, by object."""
-    return -_over_other(results, claim, pd.Series.idxmin)
-
-
-@statistic("largest_weight")
-def largest_weight(results: Results, claim: Claim) -> pd.Series:
-    """The weight of the channel of the first side minus the largest weight of the other channels, by object."""
-    return _over_other(results, claim, pd.Series.idxmax)
-
-
-def _over_other(results: Results, claim: Claim, extreme: Callable[[pd.Series], Any]) -> pd.Series:
-    """The weight of the channel of the first side minus that of the other channel that `extreme` names, by object."""
-    side = {**claim.where, **claim.first}
-    channel = side.pop("channel")
-    rows = results.measured(claim.stage, claim.sets[0], **side)
-    of_all = rows[rows["item"].isna() & (rows["channel"] != channel)].set_index("channel")["value"]
-    first, other = (own_values(rows[rows["channel"] == name]) for name in (channel, extreme(of_all)))
-    return first - other
-
-
-@statistic("varies_more")
-def varies_more(results: Results, claim: Claim) -> pd.Series:
-    """Distance of the gain of the first side's channel from its mean, as a share of the mean, by object.
-
-    The mean of the same distances of the other channels is subtracted. Channels without any gain are left out.
-    """
-    gains = _gains(results, claim, claim.where)
-    shares = (gains / gains.mean() - 1).abs().dropna(axis=1)
-    channel = claim.first["channel"]
-    return shares[channel] - shares.drop(columns=channel).mean(axis=1)
-
-
-@statistic("share_rises_with")
-def share_rises_with(results: Results, claim: Claim) -> pd.Series:
-    """Rank correlation over the objects of a channel's share in the gain with the second side, as pseudo-values.
-
-    The share counts, since every channel gains more where an object fills less of the picture.
-    """
-    channel = claim.first["channel"]
-    gains = _gains(results, claim, {key: value for key, value in claim.first.items() if key != "channel"})
-    second = side(results, claim, claim.other, None)
-    table = pd.concat([gains[channel] / gains.sum(axis=1), second], axis=1, join="inner", keys=["first", "second"])
-    return _by_jackknife(claim, table, lambda part: part["first"].corr(part["second"], method="spearman"))
-
-
-@statistic("differs_with")
-def differs_with(results: Results, claim: Claim) -> pd.Series:
-    """Rank correlation of two distances over pairs of objects, as pseudo-values by object (Mantel 1967).
-
-    The distances are those of the channels' shares in the gain, and of the second side.
-    """
-    gains = _gains(results, claim, claim.first)
-    shares = gains.div(gains.sum(axis=1), axis=0)
-    table = shares.join(side(results, claim, claim.other, None).rename("second"), how="inner")
-
-    def correlation(part: pd.DataFrame) -> float:
-        far_apart = [pd.Series(pdist(part[columns])) for columns in (list(shares), ["second"])]
-        return far_apart[0].corr(far_apart[1], method="spearman")
-
-    return _by_jackknife(claim, table, correlation)
-
-
-def _gains(results: Results, claim: Claim, where: Mapping[str, Any]) -> pd.DataFrame:
-    """Frame (object, channel) of information gains."""
-    rows = results.measured(claim.stage, claim.sets[0], **where)
-    return rows.pivot(index="item", columns="channel", values="value")
-
-
-FEWEST = 5  # objects that a rank correlation needs
-
-
-def _by_jackknife(claim: Claim, table: pd.DataFrame, measure: Callable[[pd.DataFrame], float]) -> pd.Series:
-    if len(table) < FEWEST:
-        raise NotRun(f"fewer than {FEWEST} objects to rank", claim.stage, runnable=False)
-    without = {name: measure(table.drop(index=name)) for name in table.index}
-    return pseudo_values(measure(table), pd.Series(without).rename_axis("item"))
 
 
 def _ranks(frame: pd.DataFrame) -> str:

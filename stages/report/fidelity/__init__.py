@@ -26,4 +26,3 @@ def build(results: Results) -> Table:
 TABLES = {"fidelity": build}
 FIGURES = {}
 CHARTS = {}
-CLAIMS = []

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from . import agreement, claims, maps
+from . import agreement, maps
 
 TABLES = {"fixation": agreement.build}
 FIGURES = {
@@ -18,4 +18,3 @@ FIGURES = {
     "figure_3_36": agreement.figure_3_36,
 }
 CHARTS = {"fixation": agreement.chart}
-CLAIMS = claims.CLAIMS

@@ -24,8 +24,6 @@ from stages.charts.results import Results
 from stages.charts.tables import Ranking, everywhere, grouped, number, records, signed, with_interval, within
 from stages.engine.statistics import interval
 from stages.fixation.tasks import SHAPE_MEASURES
-from stages.report.claims import Claim
-from stages.report.effects import side, statistic
 
 from .rows import (
     FUSED,
@@ -360,27 +358,3 @@ def _box(axes: Axes, values: pd.Series, y: int, tint: str) -> None:
     axes.plot([low, high], [y, y], color=tint, lw=0.9)
     axes.barh(y, right - left, 0.6, left, color=tint, alpha=0.45)
     axes.plot([middle] * 2, [y - 0.3, y + 0.3], color=INK, lw=1.3)
-
-
-MEDIAN, UPPER_QUARTILE = "median_below", "upper_quartile_below"  # names of statistics
-
-
-def below(results: Results, claim: Claim, share: float) -> pd.Series:
-    """How many more of the first side's values than of the second's lie below a quantile of both, as a share by unit.
-
-    It is above zero where the first side's own quantile is the lower one. Values at the quantile count half.
-    """
-    sides = (claim.first, claim.other), (claim.other, claim.first)
-    side_values = pd.concat(
-        [side(results, claim, selection, other) for selection, other in sides], axis=1, keys=["first", "second"]
-    )
-    side_values = side_values.dropna()
-    if side_values.empty:
-        return side_values["first"]
-    edge = side_values.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
-    shares = (side_values < edge) + (side_values == edge) / 2
-    return (shares["first"] - shares["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
-
-
-statistic(MEDIAN)(partial(below, share=0.5))
-statistic(UPPER_QUARTILE)(partial(below, share=0.75))

@@ -1,6 +1,5 @@
 """One network for vision and touch, and what two senses are worth together (T5.5, T5.6)."""
 
-from functools import partial
 from itertools import product
 from typing import Any
 
@@ -12,11 +11,7 @@ from stages.charts.drawing import plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import NotRun, Results
 from stages.charts.tables import Ranking, grid, grouped, number, percent, with_interval, within
-from stages.engine.settings import conf_folder, load_params
-from stages.report.claims import POINTS, Claim, Side, reading
-from stages.report.effects import difference, statistic
-from stages.report.networks import PASSES, SEEN, SETS, SPLITS, accuracy, both, draw_matrices, everywhere, mean, seen
-from stages.report.validity import UNMEASURED
+from stages.report.networks import PASSES, SPLITS, accuracy, draw_matrices, everywhere, mean, seen
 
 SENSES = {"vision": "sight", "touch": "touch"}
 ITEMS = {split: words.replace("touches", "items") for split, words in SPLITS.items()}
@@ -27,7 +22,6 @@ METHODS = {
     "hybrid_float16": "hybrid, weights of 16 bits",
     "hybrid_int8": "hybrid, weights of 8 bits",
 }
-POINT = 1.0  # points of accuracy that may be lost
 TINTS = {"vision": "#0072B2", "touch": "#D55E00"}
 HOLLOW = " Hollow: layers {others} shared instead of {first}, as far from the hybrid as on the same items."
 
@@ -239,104 +233,6 @@ def spoken(perturbation: str, severity: float) -> str:
     sense, _, damage = perturbation.partition("_")
     words = "both whole" if perturbation == WHOLE else f"{sense}: {damage.replace('_', ' ')}"
     return words + (f" {severity:g}, %" if severity not in (0, 1) else ", %")
-
-
-UNHARMED = {"perturbation": WHOLE}
-# Whole pictures are named rightly in 97 to 99 %: a second sense has hardly anything to add there.
-BLURRED = reading("slightly blurred pictures", where={"perturbation": "picture_blur", "severity": 0.02})
-DARK = {"perturbation": "picture_darkness", "severity": 0.95}  # the harshest that was measured
-PHRASES = {
-    ("data", "hybrid"): "", ("mode", MIDDLE): f"layers {MIDDLE} shared", ("sense", "both"): "",
-    ("sense", "vision"): "by sight", ("sense", "touch"): "by touch", ("perturbation", WHOLE): "",
-    ("perturbation", None): "", ("perturbation", "picture_darkness"): "hardly any light", ("severity", 0.95): "",
-    ("method", "vision"): "network for sight", ("method", "touch"): "network for touch",
-    ("method", "better_sense"): "better sense alone", ("method", "fusion_entropy"): "both heads by certainty",
-    ("method", "fusion_entropy_raw"): "both heads by certainty without temperatures",
-    ("metric", NEW_OBJECTS): "new objects", ("severity", (1, 2, 5, 10)): "mean of 1, 2, 5 and 10 touches of each",
-    ("method", "hybrid_head"): "head on the hybrid's features", ("severity", 1): "one touch of each",
-    ("method", "imagenet_head"): "head on ImageNet's features", ("method", "hybrid_nearest"): "nearest touch",
-    ("method", "sum_mean"): "streams summed", ("method", "hybrid_int8"): "hybrid of 8 bits",
-}  # fmt: skip
-
-
-def claim(
-    key: str, section: str, sentence: str, first: Side, second: Side | float, where: Side, note: str = "", **more: Any
-) -> Claim:  # fmt: skip
-    """The claim of one way to recognise over another, or over an accuracy. where: what both have in common."""
-    return Claim(
-        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second,
-        where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
-        dataset=SETS, note=note if section == "ours" else "at 128 pixels, in print at 224", **more,
-    )  # fmt: skip
-
-
-def joined(
-    key: str, section: str, sentence: str, first: str, second: str, damage: Side = UNHARMED, **more: Any
-) -> Claim:  # fmt: skip
-    """A claim on both senses: one way of joining them, or one sense alone, over another."""
-    return claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage}, **more)
-
-
-on_both_splits = partial(both, items="items", verb="met")
-SIZE = claim(
-    "hybrid_smaller", "T5.5", "The file of one network for both senses is the printed 1.4284 times smaller than two "
-    "files, or more.", {"method": "hybrid"}, 0.0, {"metric": "size_ratio", "split": "random"}, margin=-1.4284, scale=1,
-    unit="times",
-)  # fmt: skip
-THESIS = on_both_splits(
-    claim("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
-          {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, {"perturbation": None}),
-    claim("sight_certain", "T5.5", "With layers 18 to 139 frozen, sight reaches 100 %, but for one point.",
-          {"method": "vision", "sense": "vision"}, 1.0, {"perturbation": None}, margin=POINT),
-    joined("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.", "fusion_entropy", "vision", DARK),
-)  # fmt: skip
-OURS = on_both_splits(
-    *(  # not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread
-        claim(f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
-              "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense},
-              {"sense": sense, "perturbation": None}, margin=POINT, unit=f"{POINTS} within the margin",
-              checked=False, note=UNMEASURED)  # both sides have the same weights, saturated or not
-        for sense, word in SENSES.items()
-    ),
-    joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",
-           "fusion_entropy", "better_sense", readings=(BLURRED,)),
-    joined("apart_over_sum", "ours",
-           "Two answers joined beat the sum of both streams, which the thesis feeds one sense at a time.",
-           "fusion_entropy", "sum_mean"),
-    joined("harmless_in_the_dark", "ours", "Where sight fails, having it does no harm to touch.",
-           "fusion_entropy", "touch", DARK),
-    joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
-           "fusion_entropy", "fusion_entropy_raw", DARK),
-)  # fmt: skip
-
-
-@statistic("of_object_classes")
-def of_object_classes(results: Results, claim: Claim) -> pd.Series:
-    """First side minus second, object by object; the classes of the set are the units."""
-    values = difference(results, claim)
-    members = load_params(conf_folder() / f"data/{claim.sets[0]}.yaml")["meshes"]["classes"]
-    class_of = {item: name for name, items in members.items() for item in items}
-    pairs = pd.MultiIndex.from_arrays([values.index.map(class_of), values.index], names=["class", "item"])
-    return values.set_axis(pairs)
-
-
-new_objects = partial(
-    Claim, section="ours", stage="transfer", dataset="furniture", over=("item",),
-    statistic="of_object_classes", phrases=PHRASES | {("over", "item"): "classes and objects"},
-    where={"metric": NEW_OBJECTS, "severity": (1, 2, 5, 10)},
-)  # fmt: skip
-DEVICE = [
-    new_objects(key="new_object_hybrid_over_imagenet", first={"method": "hybrid_head"},
-                second={"method": "imagenet_head"},
-                sentence="A new head learns new objects better on the hybrid network's features than on ImageNet's."),
-    new_objects(key="new_object_head_over_nearest", first={"method": "hybrid_head"},
-                second={"method": "hybrid_nearest"},
-                sentence="Of few touches a new head makes more than the nearest known touch does."),
-    new_objects(key="new_object_over_guessing", first={"method": "hybrid_head"}, second=1 / 8,
-                where={"metric": NEW_OBJECTS, "severity": 1},
-                sentence="One touch of each is enough to tell eight new objects apart better than by guessing."),
-]  # fmt: skip
-CLAIMS = [*THESIS, SIZE, *OURS, *DEVICE]
 
 
 TABLES = {"section_5_5": section_5_5_table, "hybrid_senses": hybrid_senses}

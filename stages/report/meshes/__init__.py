@@ -6,7 +6,6 @@ from stages.charts.datasets import SECTION_3_1, SECTION_3_2
 from stages.charts.items import as_printed
 
 from . import backends, errors
-from .claims import CLAIMS as CLAIMS
 from .errors import figure_3_4, figure_3_5, figure_3_23
 from .pictures import figure_3_6, figure_3_7, figure_3_8, figure_3_21, figure_3_22
 from .tables import combinations, dataset, every_detector, table_3_2

@@ -16,8 +16,9 @@ from haptic_glance.look.weights.weights import GLANCE
 from stages.charts.datasets import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, dataset_text
 from stages.charts.drawing import WAYS, label
 from stages.charts.items import Table, shared_notes
-from stages.charts.results import OWN_FOLDER, NotRun, Results, either, require_rows
+from stages.charts.results import OWN_FOLDER, NotRun, Results, require_rows
 from stages.charts.tables import Ranking, grouped, means, number, over_items, with_interval, within
+from stages.engine.measurements import either
 from stages.engine.statistics import interval
 
 CELL = ["item", "target"]
@@ -124,8 +125,6 @@ COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
     CLASSICAL, "VisAttCurvP", "VisAttCurv", "Curv", "VisAttSymP", "VisAttSym", "SymLat", "SymRad", "2Sym",
     "VisAttCurvSym", "VisAttCon", "VisAttCurvSymCon", "VisAttEnt", "VisAttAll",
 )  # fmt: skip
-BY_AREA = (CLASSICAL, "VisAttCon", "VisAttCurvSymCon", "VisAttAll")  # whose neighbourhoods go by area, too (T3.1.3)
-SYMMETRIES = ("SymLat", "SymRad", "2Sym")
 # T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
 RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
 PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM, learned from other objects than the simplified

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from . import claims, networks, tables
+from . import networks, tables
 
 TABLES = {
     "table_4_4": tables.table_4_4,
@@ -14,4 +14,3 @@ TABLES = {
 }
 FIGURES = {}
 CHARTS = {"network_sizes": networks.chart}
-CLAIMS = [*claims.TOUCHES, *claims.NETWORKS]

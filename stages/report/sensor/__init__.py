@@ -1,8 +1,5 @@
 """The effect of the pressure array's size and of the distance of its sensels on recognition (T4.3.2)."""
 
-from dataclasses import replace
-from functools import partial
-
 import numpy as np
 import pandas as pd
 
@@ -14,7 +11,6 @@ from stages.charts.pareto import NORMAL, noise_by
 from stages.charts.results import Results
 from stages.charts.tables import Ranking, blocks, everywhere, grid, grouped, means, over_items, records
 from stages.engine.statistics import interval
-from stages.report.claims import Claim, highest_of, reading
 
 EMPTY = {"fine": "", "extent": ""}  # of one array and one touch a sample
 EXTENTS = {
@@ -146,76 +142,6 @@ def _best(cells: pd.DataFrame) -> str:
 STAGE = "sensor_size"
 FINE, COARSE, SMALL, LARGE = 0.002, 0.01, 16, 32  # the arrays of T figure 4.9
 UNSEEN = {"metric": "accuracy", "split": Split.OBJECTS}
-BEST = {"cells": LARGE, "pitch": COARSE}  # the thesis's best array
-ALL = "mean of all classifiers"
-PHRASES = {
-    **{("cells", count): f"{count} x {count}" for count in (SMALL, LARGE)},
-    ("fine", None): "",
-    ("extent", None): "",
-    ("fine", "12-0.005"): "with 12 x 12 cells 0.005 apart",
-    ("fine", "12-0.002"): "with 12 x 12 cells 0.002 apart",
-    ("cells", 20): "20 x 20",
-    ("pitch", 0.005): "0.005 apart",
-    ("extent", "points"): "at separate points",
-    ("extent", "region"): "in a salient region",
-    ("extent", "disc"): "in a disc",
-    **{("pitch", pitch): f"{pitch:g} apart" for pitch in (FINE, COARSE, 2 * COARSE)},
-}
-MORE = (None, "princeton_touched")  # the furniture, and eight classes of six objects
-claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset="princeton_4_3_sets", where=UNSEEN,
-                over=("group", "item"), phrases=PHRASES, note=ALL)  # fmt: skip
-ours = partial(claim, section="ours", dataset=MORE)
-larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
-HANDS = "princeton_hands"
-EQUAL = {"cells": 20, "fine": None, "extent": None}  # as many cells as 16 x 16 and 12 x 12
-AROUND = {"cells": SMALL, "pitch": COARSE}
-hands = partial(claim, section="T6.3", dataset=HANDS, printed=0, note="mean of both classifiers")
-
-PRINTED_CLAIMS = [
-    *(
-        claim(key=f"larger_pitch_helps_{cells}", where=UNSEEN | {"cells": cells},
-              sentence=f"At equal cells a sensor with larger sensels is better ({cells} x {cells}).",
-              first={"pitch": COARSE}, second={"pitch": FINE})
-        for cells in (SMALL, LARGE)
-    ),
-    larger(key="more_cells_help", where=UNSEEN | {"pitch": COARSE},
-           sentence="At equal sensel size a larger sensor is better."),
-    claim(key="cells_hardly_matter_when_fine", where=UNSEEN | {"pitch": FINE}, first={"cells": SMALL},
-          sentence="With small sensels, more of them have no significant impact.", second={"cells": LARGE}, margin=5.0,
-          note=f"within five points, {ALL}", readings=(reading("within three points", margin=3.0),)),
-    larger(key="cells_matter_less_when_fine", of="cells_hardly_matter_when_fine",
-           contrast=({"pitch": COARSE}, {"pitch": FINE}),
-           sentence="With small sensels, more of them change less than with large ones."),
-    claim(key="knn_best_sensor", sentence="kNN is the best classifier of single touches of unseen objects.",
-          where=UNSEEN | BEST, first={"classifier": "knn"}, second={"classifier": highest_of()}, note=""),
-]  # fmt: skip
-CLAIMS = [
-    *PRINTED_CLAIMS,
-    *(
-        replace(entry, key=f"{entry.key}_{suffix}", of=entry.of or entry.key, dataset=sets, printed=0)
-        for suffix, sets in (("more", MORE), ("figure_4_10", "princeton_eight")) for entry in PRINTED_CLAIMS
-    ),
-    ours(key="more_cells_help_all", note=f"{ALL} and all distances of sensels", first={"cells": LARGE},
-         second={"cells": SMALL}, sentence="At equal sensel size a larger sensor is better, whatever the size."),
-    ours(key="finer_sensor_enough", first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST,
-          sentence="Half the cells at twice the distance are as good: the width counts, not the cells."),
-    *(
-        hands(key=f"{hand}_hand_over_{cells}", first={"cells": SMALL, "pitch": coarse, "fine": f"12-{fine}"},
-              second=EQUAL | {"pitch": pitch},
-              sentence=f"With as many cells in all, coarse and fine cells on one {hand} hand are better than one array "
-              f"of {cells} cells.")
-        for hand, coarse, fine in (("wide", 2 * COARSE, 0.005), ("narrow", COARSE, FINE))
-        for cells, pitch in (("coarse", coarse), ("fine", fine))
-    ),
-    *(
-        hands(key=f"region_over_{extent}", first=AROUND | {"extent": "region"}, second=AROUND | {"extent": extent},
-              sentence=f"Five touches in the salient region around a point are better than {words}.")
-        for extent, words in (("points", "at five separate points"), ("disc", "in a disc of its area"))
-    ),
-    ours(key="known_objects_easier",
-         sentence="Touches of known objects flatter: their class is named more often than unseen ones'.",
-          where={"metric": "accuracy"} | BEST, first={"split": Split.RANDOM}, second={"split": Split.OBJECTS}),
-]  # fmt: skip
 
 
 TABLES = {"figure_4_11": table}

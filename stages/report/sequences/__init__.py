@@ -13,4 +13,3 @@ FIGURES = {
     "figure_4_19": contours.figure_4_19,
 }
 CHARTS = {"sequences": contours.chart}
-CLAIMS = tables.CLAIMS

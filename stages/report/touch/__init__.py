@@ -28,4 +28,3 @@ CHARTS = {
     "touches": claims.by_features,
     "saliency": claims.by_saliency,
 }
-CLAIMS = claims.CLAIMS

@@ -16,4 +16,3 @@ FIGURES = {
     "figure_5_4": figures.figure_5_4,
 }
 CHARTS = {"networks": figures.networks_chart}
-CLAIMS = tables.CLAIMS

@@ -6,44 +6,34 @@ chance on a 16 x 16 array in T table 5.3.
 """
 
 from contextlib import suppress
-from dataclasses import replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.stats import spearmanr
 
 from haptic_glance.know.split import shared_by
 from stages.charts.datasets import dataset_text
 from stages.charts.drawing import label
 from stages.charts.items import Table, shared_notes
 from stages.charts.results import NotRun, Results
-from stages.charts.tables import Ranking, grid, grouped, percent
-from stages.report.claims import Claim, Pick, Reading, highest_of, lowest_of, reading
-from stages.report.effects import statistic
+from stages.charts.tables import Ranking, cell_texts, grid, grouped, percent, signed
+from stages.engine.statistics import interval
 from stages.report.networks import (
-    COARSE,
     FINE,
-    GUESS,
     MODES,
     NETWORK,
     PASSES,
     PRINTED,
-    SEEN,
-    SETS,
     SPLITS,
     STARTS,
-    THEIRS,
     THESIS,
-    WORDS,
     accuracy,
-    both,
     everywhere,
     of_passes,
     origin,
     seen,
-)  # fmt: skip
+)
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 OTHERS = list(PASSES)[1:]
@@ -207,134 +197,40 @@ def _looked(cells: pd.DataFrame) -> str:
     return "; ".join(heads.unique())
 
 
-FOUR = ("alexnet", "vgg16", "resnet50", NETWORK)  # of the five networks of T table 5.4 and figure 5.3
-PHRASES = WORDS | {
-    ("method", FOUR): "mean of four networks,",
-    ("data", FINE): "imprints of 128 x 128", ("data", COARSE): "imprints of 16 x 16",
-    ("mode", "18:139"): "layers 18 to 139 frozen", ("mode", "1:134"): "layers 1 to 134 frozen",
-    ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
-    ("passes", "printed_rate"): "at the printed learning rate",
-}  # fmt: skip
-Value = str | tuple[str, ...] | Pick  # of a column; of several the mean
-SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
-CONVERGED = (  # splits first: objects share the trainings, so that their interval is too narrow
-    reading("trained until nothing improves", where={"passes": "converged"}),
-    reading("trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
-            over=("item",), within=("repetition", *SEEN), shared=0.0),
-)  # fmt: skip
-INITIAL = reading("until nothing improves, random side with its initial statistics", where={"passes": "converged"},
-                  second={"weights": "random_initial"})  # fmt: skip
-REAL = "simulated; the thesis's array of 16 x 16 is real"
-PRINTED_RATE = (*CONVERGED, reading("at the printed learning rates", where={"passes": "printed_rate"}))
+SETTINGS = {
+    "plain": "16 x 16 cells, learning rate searched",
+    "fine_array": "128 x 128 cells",
+    "three_channels": "the imprint in all three channels, not in red alone",
+    "blocks": "cells drawn as blocks, not smoothed",
+    "settled": "normalisation by the statistics of the touches",
+    "size_224": "images of 224 pixels, not 80",
+    "quarter_of_the_touches": "a quarter of the touches to learn from",
+    "noise_0.05": "noise of 5 % of full scale",
+    "noise_0.2": "noise of 20 %",
+    "skin": "a worse sensor: blur of a cell, noise of 10 %, 5 % dead cells",
+    "random_weights": "random weights",
+    "rate_of_table_5_4": "the learning rate of T table 5.4 (0.0001)",
+    "rate_of_table_5_3": "the learning rate of T table 5.3 (0.00001)",
+    "fine_array_rate_of_table_5_4": "128 x 128 cells, the rate of table 5.4",
+    "fine_array_rate_of_table_5_3": "128 x 128 cells, the rate of table 5.3",
+    "skin_and_rate": "the worse sensor and the rate of table 5.3",
+}
 
 
-def claim(
-    key: str, section: str, sentence: str, column: str, first: Value, second: Value, margin: float = 0.0,
-    readings: tuple[Reading, ...] = CONVERGED, note: str = "", **where: str,
-) -> Claim:  # fmt: skip
-    """The claim of one value of a column over another. where: what both have in common that differs from SETTING."""
-    common = {name: value for name, value in (SETTING | where).items() if name != column}
-    return Claim(
-        key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
-        where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
-        readings=readings, note=note, printed=1,
-    )  # fmt: skip
-
-
-@statistic("later_convolutions_change_less")
-def later_change_less(results: Results, claim: Claim) -> pd.Series:
-    """Minus the rank correlation of a convolution's depth with its change, per training."""
-    changes = results.measured("transfer", claim.sets[0], **claim.where)
-    return -changes.groupby("repetition")["value"].agg(lambda values: spearmanr(np.arange(len(values)), values)[0])
-
-
-PLAIN = both(
-    claim("tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.", "mode", "finetuned", "frozen",
-          readings=PRINTED_RATE),
-    claim("frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
-          "metric", "accuracy", "chance", readings=PRINTED_RATE, mode="frozen"),
-    replace(
-        claim("tuned_over_chance", "T5.4", "Fine-tuned networks tell simulated imprints apart better than guessing.",
-              "metric", "accuracy", "chance", readings=PRINTED_RATE, mode="finetuned"),
-        checked=False,  # a network that has learned too little is above guessing all the more
-    ),
-    claim("frozen_coarse_by_chance", "T5.4",
-          "With 16 x 16 simulated sensels frozen filters are hardly better than guessing.", "metric",
-          "chance", "accuracy", GUESS, readings=PRINTED_RATE, note=REAL, data=COARSE, mode="frozen"),
-    claim("fine_over_coarse_frozen", "T5.4", "A finer array makes touch more like sight: frozen filters gain by it.",
-          "data", FINE, COARSE, readings=PRINTED_RATE, note=REAL, mode="frozen"),
-    claim("fine_over_coarse_tuned", "T5.6", "A finer array makes touch easier to recognise.",
-          "data", FINE, COARSE, readings=PRINTED_RATE, note=REAL, mode="finetuned"),
-    claim("fine_over_coarse_gain", "T5.6", "A finer array gains the printed 35.60 points of accuracy, or more.",
-          "data", FINE, COARSE, -35.60, readings=PRINTED_RATE, note=REAL, mode="finetuned"),
-    # T5.4 concludes that vision and touch share features from accuracies above guessing, without this control.
-    claim("seen_over_random_frozen", "ours",
-          "Filters learned by sight help beyond their architecture: frozen filters.",
-          "weights", "imagenet", "random", readings=(*CONVERGED, INITIAL), mode="frozen"),
-    claim("seen_over_random_tuned", "ours",
-          "Filters learned by sight help beyond their architecture: the start of a training on touch.",
-          "weights", "imagenet", "random", mode="finetuned"),
-    claim("early_and_late", "T5.5", "Tuning the first and the last layers alone beats frozen filters.",
-          "mode", "18:139", "frozen"),
-    claim("early_and_late_gain", "T5.5", "Tuning the first and the last layers alone gains the printed 33.81 points "
-          "over frozen filters, or more.", "mode", "18:139", "frozen", -33.81),
-    claim("middle_frozen", "T5.5", "With layers 18 to 139 frozen touch is recognised as well as with all tuned, but "
-          "for one point.", "mode", "18:139", "finetuned", 1.0),
-)  # fmt: skip
-
-
-def of_four(claim: Claim) -> Claim:
-    """The claim on the mean of FOUR networks, as the thesis speaks of all; other sets have rows of NETWORK alone.
-
-    Readings on objects, and at the printed rates, are those of NETWORK alone, too.
-    """
-    sides = {side: {"method": FOUR, **getattr(claim, side)} for side in ("first", "second")}
-    alone = {side: {"method": NETWORK} for side in sides}
-    readings = (CONVERGED[0], *(
-        reading(f"{label(NETWORK)}, {base.name}", **{**base.changes, **alone}) for base in claim.readings))  # fmt: skip
-    where = {column: value for column, value in claim.where.items() if column != "method"}
-    within = (*claim.within, "method")  # a network that one side lacks does not count
-    return replace(claim, where=where, within=within, elsewhere=dict.fromkeys(FOUR, NETWORK), readings=readings,
-                   **sides)  # fmt: skip
-
-
-PLAIN = [of_four(entry) if entry.section in ("T5.4", "T5.6") and not entry.of else entry for entry in PLAIN]
-EARLY = [  # by layers that the default run does not freeze
-    replace(entry, key=f"{entry.key}_psb", of=entry.of and f"{entry.of}_psb", dataset=THEIRS)
-    for entry in both(
-        claim("early_decisive", "T5.5", "The early layers are decisive: tuning them too beats tuning the last ones "
-              "alone.", "mode", "18:139", "1:134"),
-    )
-]  # fmt: skip
-CHANGES = Claim(
-    key="earlier_change_more", section="T5.4", stage="transfer", dataset=SETS, phrases=PHRASES, scale=1.0,
-    shared=shared_by("random"),
-    sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
-    where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet",
-           "passes": "printed", "metric": "layer_weight_change"},
-    statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
-    readings=CONVERGED[:1],
-)  # fmt: skip
-BESIDE = ("alexnet", "mobilenet_v2", "vgg16")  # networks beside ResNet50
-BEST = [  # of the networks at the thesis's size
-    replace(claim(key, "T5.4", "ResNet50 outperforms the other architectures in all cases.", "method", "resnet50",
-                  highest_of(*BESIDE), split="random", mode=mode), dataset=THEIRS, of=of)
-    for key, mode, of in (("resnet_best_tuned", "finetuned", ""), ("resnet_best_frozen", "frozen", "resnet_best_tuned"))
-]  # fmt: skip
-RANGES = ("1:150", "1:144", "1:134", "10:150", "10:144", "16:138")  # T table 5.6, but for 18:139
-LESS = [  # at the thesis's size, by networks or by layers
-    replace(entry, dataset=THEIRS)
-    for entry in (
-        claim("mobile_near_resnet", "T5.4", "Fine-tuned, MobileNetV2 comes within 3.33 points of ResNet50.", "method",
-              NETWORK, "resnet50", 3.33, split="random", mode="finetuned"),
-        replace(claim("resnet_smallest_updates", "T5.4", "ResNet50 has the smallest updates of its weights.", "method",
-                      lowest_of(*BESIDE), "resnet50", split="random", mode="finetuned", metric="weight_change",
-                      readings=CONVERGED[:1]), scale=1e6, unit="millionths, of squared weights"),
-        replace(claim("resnet_gains_least", "T5.4", "ResNet50 has the smallest updates of its accuracy.", "method",
-                      lowest_of(*BESIDE), "resnet50", split="random", note="what tuning gains over frozen filters"),
-                contrast=({"mode": "finetuned"}, {"mode": "frozen"}), of="resnet_smallest_updates"),
-        claim("early_and_late_best", "T5.5", "Frozen in layers 18 to 139, a network comes closest to one that is tuned "
-              "whole.", "mode", "18:139", highest_of(*RANGES), split="random", note="of T table 5.6's ranges"),
-    )
-]  # fmt: skip
-CLAIMS = [*PLAIN, *EARLY, CHANGES, *BEST, *LESS]
+def build(results: Results) -> Table:
+    """Accuracy of each setting, and what it gains over the first on the same splits."""
+    rows = results.rows("coarse_imprints", metric="accuracy")
+    values = rows.pivot(index="repetition", columns="setting", values="value")
+    share, lines = shared_by("random"), []
+    for setting in [name for name in SETTINGS if name in values]:
+        rates, gain = values[setting], values[setting] - values["plain"]
+        lines.append((setting, rates.count(), *interval(rates, share), *interval(gain, share), rows["chance"].iloc[0]))
+    gains = ["gain", "gain_low", "gain_high"]
+    frame = pd.DataFrame(lines, columns=["setting", "values", "accuracy", "low", "high", *gains, "chance"])
+    text_columns = {
+        "what differs": frame["setting"].map(SETTINGS),
+        "accuracy, %": cell_texts(frame, 1),
+        "minus the first row, points": [signed(*gain, places=1) for gain in 100 * frame[gains].to_numpy()],
+        "chance, %": [percent(guess, 1) for guess in frame["chance"]],
+    }
+    return Table(frame, pd.DataFrame(text_columns), best=Ranking("accuracy, %"))
