@@ -63,7 +63,7 @@ class Exploration:
                 f"the object has {self.surface.mesh.up} up, and was learned with z up: call rotate_to_z_up"
             )
         self.candidates = sample_places(self.surface, PLACES, random)
-        self.positions, self.normals = np.zeros((0, 3)), np.zeros((0, 3))  # of the touches so far
+        self.positions = np.zeros((0, 3))  # of the touches so far
         self.axes = np.zeros((0, 3, 3))  # of the arrays
         self.images = np.zeros((0, *CELLS), dtype=np.float32)  # what was felt there
         self.beliefs = [library.belief()]
@@ -89,7 +89,6 @@ class Exploration:
             image = self.library.skin(image[None], self._noise, len(self.images))[0]
         is_repeat = (self.positions == position).all(axis=1).any()
         self.positions = np.concatenate([self.positions, position])
-        self.normals = np.concatenate([self.normals, place.normals[:1]])
         self.axes = np.concatenate([self.axes, axes])
         self.images = np.concatenate([self.images, image[None]])
         self.beliefs.append(self.belief if is_repeat else self.belief.after(image, position[0]))

@@ -1,4 +1,4 @@
-"""Every mesh gets a result with the promised properties at the public doors, or a reason.
+"""Every mesh gets a result with the promised properties by the public functions, or a reason.
 
 The meshes are closed and open ones, with the faults that scanned and modelled meshes have.
 """

@@ -6,6 +6,7 @@ import json
 import re
 import zlib
 from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from haptic_glance.gallery import command
 from haptic_glance.gallery.command import run
 from haptic_glance.gallery.exhibit import exhibit
 from haptic_glance.gallery.page import turnable
-from haptic_glance.gallery.viewer import as_script
+from haptic_glance.gallery.viewer import as_script, show
 from haptic_glance.lod import vertex_errors
 from haptic_glance.mesh import load, rotate_to_z_up
 from tests.shapes import flat_grid
@@ -88,6 +89,19 @@ def test_the_page_needs_nothing_but_itself_and_claims_nothing(whole):
     assert links and all((out / link).is_file() for link in links)
     text = re.sub(r"<(style|script)\b.*?</\1>|base64,[\w+/=]+", "", page, flags=re.S)
     assert not re.search("supported|contradicted|claim|household|duck", text, re.I)
+
+
+def test_a_notebook_shows_a_mesh_in_its_own_colours_on_a_light_page_of_its_own(scans):
+    mesh = load(scans / "pear.ply")
+    for values in (None, mesh.vertices[:, 2]):
+        page = show(replace(mesh, colors=np.full((len(mesh.vertices), 3), 90, np.uint8)), values).html
+        (item,) = page_data(page)["objects"]
+        assert not re.search(r'(src|href)="', page) and len(page) < 60_000 and item["faces"] == 1280
+        store = np.frombuffer(zlib.decompress(base64.b64decode(item["store"])), np.uint8)
+        at, count = item["tints"]
+        assert (store[at : at + count].reshape(-1, 3).cumsum(axis=0, dtype=np.uint8) == 90).all()
+        assert list(item["saliency"]) == ([] if values is None else ["values"]) and not item["ladders"]
+    assert "tints" not in page_data(show(mesh).html)["objects"][0]
 
 
 def test_regions_of_the_page_have_names_of_their_own(whole):

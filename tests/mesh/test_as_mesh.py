@@ -1,4 +1,4 @@
-"""Whatever a person has for a mesh goes through the doors of the package."""
+"""Whatever a person has for a mesh goes through the public functions."""
 
 import numpy as np
 import pytest
