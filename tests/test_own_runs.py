@@ -80,7 +80,7 @@ def test_a_folder_ends_in_a_page_with_pipeline_alone(tmp_path):
     addresses = re.findall(r'href="(site/[^"]+)"', page)
     assert addresses and all((tree / "runs/folder" / address).exists() for address in addresses)
     changed = {line[3:] for line in git("status", "--short", "--untracked-files=all", cwd=tree).splitlines()}
-    assert changed <= {"params.yaml", "dvc.lock", "runs/folder/headlines.json"}
+    assert changed <= {"params.yaml", "code.yaml", "dvc.lock", "runs/folder/headlines.json"}  # the code is made up here
     assert "0 of 2 objects have ground truth" in process.stdout
     gate = subprocess.run([sys.executable, "-m", "stages.gate"], **options)
     assert gate.returncode == 1 and gate.stderr.count("\n") == 1 and "runs/folder/baseline.json" in gate.stderr
