@@ -77,7 +77,7 @@ def test_a_name_that_a_setting_does_not_know_is_refused(setting):
 
 @pytest.mark.parametrize(
     "command",
-    ["claim x", "code", "compose", "gate", "repro", "sweep classifier=knn", "engine.settings"],
+    ["claim x", "code", "compose", "gate", "sweep classifier=knn", "engine.settings"],
 )
 def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monkeypatch, command):
     name, *arguments = command.split()
