@@ -1,10 +1,10 @@
 """The items of the report: tables, and figures or charts, with their words.
 
-TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
+STAGE/report.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
 is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
 notes. The section of a figure or chart is `Alt: text for a blind reader`, then the caption. The code fills in `{word}`.
-An empty note is left out, and a note of several lines becomes several notes. TOPIC/findings.md holds the findings of a
-topic, with figures from any table or claim; a paragraph with a missing figure is left out. A `Kept` figure of a data
+An empty note is left out, and a note of several lines becomes several notes. STAGE/findings.md holds the findings of a
+stage, with figures from any table or claim; a paragraph with a missing figure is left out. A `Kept` figure of a data
 set outside the default run stays in the repository, with its words in NAME.json.
 """
 
@@ -125,12 +125,12 @@ class Figure(Item):
             write_table(self.paths[1], self.frame)
 
 
-def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
+def add_words(item: Table | Figure, part: ModuleType, kind: str, name: str) -> None:
     """Fills in name, title, summary (not yet its figures), notes of a table; name, title, alt, caption of a figure.
 
-    Raises KeyError where prose.md lacks the section or the item lacks a word.
+    Raises KeyError where report.md lacks the section or the item lacks a word.
     """
-    title, text = _sections(topic.__name__)[f"{kind}/{name}"]
+    title, text = _sections(part.__package__ or "")[f"{kind}/{name}"]
     item.name, item.title = name, title.format_map(item.words)
     if isinstance(item, Table):
         summary, *note_texts = re.split(r"^- ", text, flags=re.MULTILINE)
@@ -148,11 +148,12 @@ def shared_notes(package: str | None, name: str) -> str:
     return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
 
 
-def findings(topic: ModuleType, reports: Path) -> list[str]:
+def findings(part: ModuleType, reports: Path) -> list[str]:
     """The paragraphs of TOPIC/findings.md, in Markdown, with their figures; without those that lack a figure."""
-    text = resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
+    file = resources.files(part.__package__ or "") / "findings.md"
+    text = file.read_text(encoding="utf-8") if file.is_file() else ""
     paragraphs = []
-    for paragraph in text.strip().split("\n\n"):
+    for paragraph in filter(None, text.strip().split("\n\n")):
         with suppress(LookupError):
             paragraphs.append(filled(_joined(paragraph), reports)[0])
     return paragraphs
@@ -160,8 +161,8 @@ def findings(topic: ModuleType, reports: Path) -> list[str]:
 
 @cache
 def _sections(package: str) -> dict[str, tuple[str, str]]:
-    """{KIND/NAME: (title, text below it)} of a topic's prose.md."""
-    text = resources.files(package).joinpath("prose.md").read_text(encoding="utf-8")
+    """{KIND/NAME: (title, text below it)} of a stage's report.md."""
+    text = resources.files(package).joinpath("report.md").read_text(encoding="utf-8")
     parts = re.split(r"^# (\S+): (.+)$", text, flags=re.MULTILINE)
     return {name: (title, text.strip()) for name, title, text in zip(*(parts[k::3] for k in (1, 2, 3)), strict=True)}
 

@@ -10,28 +10,46 @@ from stages.charts.drawing import SETTINGS, plt
 from stages.charts.html import item_html
 from stages.charts.items import Figure, Table, add_words
 from stages.charts.results import NoData, NotRun, Results
+from stages.classification import report as classification
+from stages.exploration import report as exploration
+from stages.fixation import report as fixation
+from stages.lod import report as lod
+from stages.meshes import report as meshes
+from stages.recorded import report as recorded
+from stages.recorded_networks import report as recorded_networks
+from stages.salient_points import report as salient_points
+from stages.scene import report as scene
+from stages.sensor_size import report as sensor_size
+from stages.sequences import report as sequences
+from stages.simulated_to_real import report as simulated_to_real
+from stages.stability import report as stability
+from stages.touch_stability import report as touch_stability
+from stages.transfer import report as transfer
+from stages.views import report as views
+from stages.weights import report as weights
 
-from . import (
-    attention,
-    exploration,
-    fidelity,
-    fixation,
-    hybrid,
-    meshes,
-    recorded,
-    scene,
-    sensor,
-    sequences,
-    stability,
-    touch,
-    transfer,
-)
+from . import fidelity_table
 
 PARTS: dict[str, ModuleType] = {
-    module.__name__.rpartition(".")[2]: module
-    for module in (attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid,
-                   recorded, stability, fidelity)
-}  # fmt: skip
+    "views": views,
+    "weights": weights,
+    "salient_points": salient_points,
+    "fixation": fixation,
+    "meshes": meshes,
+    "lod": lod,
+    "scene": scene,
+    "classification": classification,
+    "exploration": exploration,
+    "sensor_size": sensor_size,
+    "sequences": sequences,
+    "transfer": transfer,
+    "recorded": recorded,
+    "recorded_networks": recorded_networks,
+    "simulated_to_real": simulated_to_real,
+    "stability": stability,
+    "touch_stability": touch_stability,
+    "report": fidelity_table,
+}
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a part
 
 
@@ -86,4 +104,4 @@ def build_item(part: ModuleType, kind: str, name: str, results: Results) -> Tabl
 
 def page_of(part: ModuleType) -> str:
     """The name of the page that a part is shown on."""
-    return getattr(part, "PAGE", part.__name__.rpartition(".")[2])
+    return part.PAGE

@@ -13,7 +13,7 @@ from stages.contours.contours import sample_contours, write_sequences
 from stages.engine.settings import Workspace
 from stages.report import Params, sequences
 from stages.report.parts import build_item
-from stages.report.sequences.contours import followed
+from stages.sequences.contour_figures import followed
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from scipy import stats
+from stages.report.attention import maps
 
 from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.look.views import TWELVE
@@ -16,10 +17,9 @@ from stages.charts.pareto import attention_seconds
 from stages.charts.results import NotRun
 from stages.engine.statistics import interval
 from stages.report import attention
-from stages.report.attention import maps
-from stages.report.attention.claims import agreement, difference, rivals
 from stages.report.page import pack_viewer
 from stages.report.parts import CLAIMS, build_item
+from stages.salient_points.agreement_tables import agreement, difference, rivals
 from tests.report.frames import only, verdicts
 
 

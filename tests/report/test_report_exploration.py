@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.exploration.report import needed
 from stages.report import exploration, stability
-from stages.report.exploration import needed
 from stages.report.parts import build_item
-from stages.report.stability.touch import DENOISED, breaking, curve, harmless
+from stages.touch_stability.report import DENOISED, breaking, curve, harmless
 from tests.report.frames import verdicts
 
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}

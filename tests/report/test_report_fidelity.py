@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.report.fidelity import PRINTED, RUNS
+from stages.report.fidelity_table import PRINTED, RUNS
 from stages.report.parts import KINDS, PARTS
 from tests.fidelity.agreements import is_printed, matches
 

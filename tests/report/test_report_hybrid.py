@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from stages.report import hybrid
-from stages.report.hybrid import JOINED, NEW_OBJECTS
 from stages.report.parts import build_item
+from stages.transfer.hybrid_report import JOINED, NEW_OBJECTS
 from tests.report import frames
 
 FIRST = "18:139"

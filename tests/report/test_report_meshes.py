@@ -5,16 +5,16 @@ from functools import partial
 import numpy as np
 import pandas as pd
 import pytest
+from stages.report.meshes import pictures
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 
 from haptic_glance.base.files import write_arrays, write_mesh
 from stages.charts.results import NotRun
 from stages.engine.statistics import interval
+from stages.lod.error_tables import data_sets, face_counts, paired_cells
 from stages.report import meshes
 from stages.report.claims import highest_of, lowest_of
 from stages.report.effects import differences
-from stages.report.meshes import pictures
-from stages.report.meshes.tables import data_sets, face_counts, paired_cells
 from stages.report.parts import build_item
 from stages.report.verdict import judge
 from tests.report.frames import has_ink

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from stages.report.meshes import pictures
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh.mesh import Mesh
 from stages.charts.drawing import VIEWPOINT, colours, picture, visible, vivid
-from stages.report.meshes import pictures
-from stages.report.meshes.errors import METHODS
-from stages.report.meshes.pictures import against_the_mean, density, faces_an_area
+from stages.lod.error_figures import METHODS
+from stages.lod.level_pictures import against_the_mean, density, faces_an_area
 
 
 def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_left_out(small):

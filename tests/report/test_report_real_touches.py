@@ -6,12 +6,12 @@ from itertools import combinations, product
 import numpy as np
 import pandas as pd
 import pytest
-
-from stages.report import recorded as topic
-from stages.report.parts import build_item
 from stages.report.recorded.claims import RECORDED_CLASSES, shared_classes
 from stages.report.recorded.claims import TOUCHES as CLAIMS
-from stages.report.recorded.tables import CLASSES
+
+from stages.recorded.selection_table import CLASSES
+from stages.report import recorded as topic
+from stages.report.parts import build_item
 from tests.report.frames import verdicts
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}

@@ -9,7 +9,7 @@ import pytest
 
 from stages.report import sequences
 from stages.report.parts import build_item
-from stages.report.sequences.tables import MORE, PRINTED_SET
+from stages.sequences.sequence_tables import MORE, PRINTED_SET
 from tests.report.frames import verdicts
 
 CLASSES = ("car", "chair", "vase")

@@ -23,10 +23,10 @@ from stages.charts.tables import (
     signed,
     with_interval,
 )
+from stages.classification.recognition_tables import METHODS, SSIM
+from stages.lod.error_tables import paired_cells
 from stages.report import touch
-from stages.report.meshes.tables import paired_cells
 from stages.report.parts import build_item, build_part
-from stages.report.touch.tables import METHODS, SSIM
 
 table_4_1 = partial(build_item, touch, "tables", "table_4_1")
 

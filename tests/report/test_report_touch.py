@@ -7,15 +7,15 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 import pytest
+from stages.report.touch import claims, pictures, tables
 
 from stages.charts.datasets import SETS_4_2
 from stages.charts.results import NotRun
 from stages.charts.tables import CLASSIFIERS
+from stages.classification.recognition_tables import COMMON, METHODS, PRINTED, accuracies, shared_objects
 from stages.report import touch
 from stages.report.effects import differences
 from stages.report.parts import build_item
-from stages.report.touch import claims, pictures, tables
-from stages.report.touch.tables import COMMON, METHODS, PRINTED, accuracies, shared_objects
 from tests.report.frames import verdicts
 
 GLANCE = {

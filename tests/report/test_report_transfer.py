@@ -14,7 +14,7 @@ from stages.report import recorded as recorded_topic
 from stages.report import transfer
 from stages.report.effects import differences
 from stages.report.parts import build_item
-from stages.report.transfer.figures import gains as gains_of
+from stages.transfer.network_figures import gains as gains_of
 from tests.report.frames import has_ink, only, verdicts
 
 FINE, COARSE = "imprints128", "imprints16"

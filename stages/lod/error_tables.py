@@ -1,0 +1,293 @@
+"""Tables of the objects and the errors of simplified meshes (T3.1.5, T table 3.2, T figure 3.6).
+
+Errors are compared on the same objects and targets only. The constants hold the methods' groups,
+short names and the order of T figure 3.6.
+"""
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from haptic_glance.look.points.methods import METHODS, SUMMED
+from haptic_glance.look.weights.weights import GLANCE
+from stages.charts.datasets import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, dataset_text
+from stages.charts.drawing import WAYS, label
+from stages.charts.items import Table, shared_notes
+from stages.charts.results import OWN_FOLDER, NotRun, Results, require_rows
+from stages.charts.tables import Ranking, grouped, means, number, over_items, with_interval, within
+from stages.engine.measurements import either
+from stages.engine.statistics import interval
+
+CELL = ["item", "target"]
+ERRORS = {  # metric -> name, with its unit
+    "metro_mean": "Metro mean, %", "metro_rms": "Metro rms, %", "metro_max": "Metro max, %",
+    "ssim_error": "1 − SSIM, %", "dlap": "DLap", "dnor": "Dnor",
+    "salient_error": "error where our model looks, %", "gaze_error": "error where people look, %",
+}  # fmt: skip
+UNITS = {metric: 100 if name.endswith("%") else 1 for metric, name in ERRORS.items()}  # factors to the unit
+METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
+FEWEST = 3  # objects that a mean over objects needs to be shown
+
+
+def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
+    """The sets with meshes simplified by any of these methods (none: by any), those that are switched on first.
+
+    Without those of one method on other backgrounds.
+    """
+    names, methods = results.datasets("lod"), [*methods]
+    sets = [
+        name for name in names
+        if name not in (ON_GREY, ON_WHITE)
+        and (not methods or {*methods} & {*results.rows("lod", name)["method"].replace(UNSEEN)})
+    ]  # fmt: skip
+    if names and methods:
+        return require_rows(sets, f"no mesh was simplified by {either(methods)}", "lod", runnable=False)
+    return require_rows(sets, "no measurements of lod", "lod")
+
+
+def paired_cells(
+    results: Results, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None,
+    dataset: str | None = None, whole: bool = False,
+) -> pd.DataFrame:  # fmt: skip
+    """Rows of these errors and methods (None: of all but sums), only where all that were run reach the target.
+
+    `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
+    only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm. Methods that have
+    learned from the object itself, as printed, have the names of those that have not.
+    """
+    rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"])
+    rows["method"] = rows["method"].replace(UNSEEN)
+    times = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
+    rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
+    plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
+    asked = rows["method"].isin(list(methods)) if methods is not None else ~rows["method"].str.contains(SUMMED)
+    rows = rows[asked]
+    rows = rows.merge(times, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
+    methods_met = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
+    method_counts = rows.assign(method=methods_met).groupby([*CELL, "metric"])["method"].transform("nunique")
+    return rows[method_counts == rows["method"].nunique()]
+
+
+def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFrame:
+    """Mean, its interval from `least` on, and mean difference from `plain`, over the objects of each value of `by`."""
+    lines = []
+    for key, group in grouped(rows, by):
+        values = over_items(group)
+        gain = interval(values - group["plain"].to_numpy())
+        lines.append((*key, *within(values, least=least, top=np.inf), values.count(), *gain))
+    ends = ["mean", "low", "high", "objects", "over_plain", "over_plain_low", "over_plain_high"]
+    return pd.DataFrame(lines, columns=[*by, *ends])
+
+
+def by_object(rows: pd.DataFrame, methods: list[str], metric: str, target: str | None = None) -> pd.DataFrame:
+    """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
+    rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
+    return UNITS[metric] * rows.pivot_table(index="item", columns="method", values="value").reindex(columns=methods)
+
+
+def face_counts(rows: pd.DataFrame) -> list[str]:
+    """The targets of the rows with enough objects, most faces first: counts, or shares where there are no counts."""
+    objects = rows.groupby("target")["item"].nunique()
+    frequent = sorted(objects.index[objects >= FEWEST], key=size)
+    return [target for target in frequent if target.isdigit()] or frequent
+
+
+def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
+    """Column `text` pivoted, rows and columns in the order of the cells; `–` where there is none."""
+    table = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
+    return table.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
+
+
+def cell(row: Any) -> str:
+    """`1.2 [1.1, 1.3] +`: an error with its interval, + or – where it differs from plain QEM beyond chance."""
+    mark = " +" if row.over_plain_low > 0 else " –" if row.over_plain_high < 0 else ""
+    return with_interval(row.mean, row.low, row.high, UNITS[row.metric]) + mark
+
+
+def size(target: str) -> tuple[bool, float]:
+    """A key that sorts targets: shares before counts, large before small."""
+    return (not target.endswith("%"), -float(target.rstrip("%")))
+
+
+def target_text(target: str) -> str:
+    """A target in words: `25%`, `1,500 faces`."""
+    return target if target.endswith("%") else f"{int(target):,} faces"
+
+
+PLAIN, QSLIM, OURS = "qem", "qslim", GLANCE  # QSLIM: plain QEM without the fit of ours, the thesis's
+CLASSICAL = "itti"  # the classical model, VisAtt in the thesis
+WEIGHTED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
+HKS = "heat_kernel"
+COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
+    CLASSICAL, "VisAttCurvP", "VisAttCurv", "Curv", "VisAttSymP", "VisAttSym", "SymLat", "SymRad", "2Sym",
+    "VisAttCurvSym", "VisAttCon", "VisAttCurvSymCon", "VisAttEnt", "VisAttAll",
+)  # fmt: skip
+# T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
+RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
+PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM, learned from other objects than the simplified
+PRINTED = ("guided_ed_seen", "guided_ssim_seen", "svm_object")  # the same, learned from that object too, as printed
+ADAPTIVE = tuple(f"{name}-adaptive" for name in PROPOSED)
+PRINTED_ADAPTIVE = tuple(f"{name}-adaptive" for name in PRINTED)
+UNSEEN = dict(zip(PRINTED + PRINTED_ADAPTIVE, PROPOSED + ADAPTIVE, strict=True))
+OF_T3_2 = (*PROPOSED, OURS)  # by which the sets of T3.2 are known
+FIXED_ADAPTIVE = tuple(name for pair in zip(PROPOSED, ADAPTIVE, strict=True) for name in pair)
+NAMES = {  # short, the thesis's, in the order of its figure 3.6; then those of later sections, ours and chance
+    "harris": "3DH", "mesh_saliency": "MS", "salient_points": "SP", "corners": "SDC", "sift": "3DS",
+    "VisAttCurvP": "VisAttCurvP", "VisAttAll": "VisAttAll", "VisAttSymP": "VisAttSymP", "VisAttEnt": "VisAttEnt",
+    "Curv": "Curv", "VisAttCurv": "VisAttCurv", "VisAttCurvSym": "VisAttCurvSym", "VisAttSym": "VisAttSym",
+    "VisAttCurvSymCon": "VisAttCurvSymCon", CLASSICAL: "VisAtt", "VisAttCon": "VisAttCon", "2Sym": "2Sym",
+    "SymLat": "SymLat", HKS: "HKS", "SymRad": "SymRad", "guided_ed": "ED", "guided_ssim": "SSIM",
+    WEIGHTED: label(WEIGHTED), "thesis_ed": label("thesis_ed"), "svm": "SVM", OURS: label(OURS), "random": "blind",
+}  # fmt: skip
+
+
+def fixed(method: str) -> bool:
+    """Whether a method keeps neighbourhoods of fixed size: no way of keeping them stands behind its name."""
+    return method.rpartition("-")[2] not in WAYS
+
+
+def is_drawn(method: str) -> bool:
+    """Whether a method is one of T figure 3.5, or beside these: fixed neighbourhoods, and maps that are no sums."""
+    return fixed(method) and SUMMED not in method
+
+
+def short(method: str) -> str:
+    """The thesis's short name of a method."""
+    base, _, way = method.rpartition("-")
+    return NAMES.get(method, label(method)) if fixed(method) else f"{short(base)}, {way}"
+
+
+def ordered(methods: Iterable[str]) -> list[str]:
+    """The methods in the thesis's order (figure 3.6), then those with a way behind their name, QEM last."""
+    order = [*NAMES, *(f"{name}-{way}" for name in NAMES for way in WAYS)]
+    plain = [PLAIN, QSLIM]
+    return sorted(methods, key=lambda name: (name in plain, order.index(name) if name in order else len(order), name))
+
+
+COUNTS = ["points", "kept"]  # beside the errors of every detector
+GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", WEIGHTED, f"{WEIGHTED}-adaptive", "VisAttAll", HKS,
+          OURS, PLAIN, QSLIM]  # fmt: skip
+THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", WEIGHTED: "ssim", "svm": "svm"}
+BLOCK = ["target", "nothing_shrunk"]
+KEEP_NOTHING = [label(PLAIN), label(QSLIM)]  # what the others are held against
+
+
+def combinations(results: Results) -> Table:
+    """The combinations of channels, in the thesis's order, and the mean errors that each led to."""
+    if results.own_meshes:
+        raise NotRun("the combinations of T3.1.5 are judged on the project's own data sets", OWN_FOLDER, runnable=False)
+    averages, reached = [], ""
+    with suppress(NotRun):  # the list is worth having without the errors
+        rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
+        averages = means(rows, ["method", "metric"])
+        counts = rows.groupby("target")["item"].nunique()
+        reached = ": " + ", ".join(f"{counts[name]} at {target_text(name)}" for name in sorted(counts.index, key=size))
+    averages = pd.DataFrame(averages, columns=["method", "metric", "mean"])
+    errors = averages.pivot(index="method", columns="metric", values="mean")
+    metrics = [metric for metric in ERRORS if metric in errors] or list(METRICS)
+    channels = [", ".join(map(label, METHODS[method].channels)) for method in COMBINATIONS]
+    frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
+    frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)
+    columns = {metric: (UNITS[metric] * frame[metric]).map(number).replace("–", "not run") for metric in metrics}
+    text_table, best = frame.assign(**columns).rename(columns=ERRORS), Ranking(ERRORS[metrics[0]], lowest=True)
+    return Table(frame, text_table, {"reached": reached}, best)
+
+
+def every_detector(results: Results) -> Table:
+    """Errors and numbers of points of every method, on every data set."""
+    by_set = {dataset_text(name): paired_cells(results, dataset=name) for name in data_sets(results)}
+    by_set = {data: rows for data, rows in by_set.items() if PLAIN in set(rows["method"])}
+    require_rows(
+        by_set, "no face count that plain QEM and all other methods reach on one object", "lod", runnable=False
+    )
+    parts = {data: _by_method(rows) for data, rows in by_set.items()}
+    frame = pd.concat(parts, names=["data", None]).reset_index("data")
+    frame.insert(3, "objects", frame.pop("objects"))
+    counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in by_set.items())
+    texts, answer = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
+    answer = [
+        name for name in map(str, texts) if name in answer or name in COUNTS or name.startswith(ERRORS["gaze_error"])
+    ]
+    best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
+    marks = shared_notes(__package__, "own_detectors" if results.own_meshes else "detectors")
+    return Table(frame, texts, {"counts": counts, "marks": marks}, best, ["kept points", *answer])
+
+
+def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
+    """A row a method and metric, COUNTS among them: over the objects, each by its mean over the targets."""
+    counts = [rows.assign(metric=name, value=rows[name], plain=np.nan) for name in COUNTS if name in rows]
+    keys = ["item", "method", "metric"]
+    objects = pd.concat([rows, *counts]).groupby(keys, sort=False)[["value", "plain"]].mean().reset_index()
+    frame = compared(objects, keys[1:], least=-np.inf).set_index("method")
+    return frame.loc[ordered(frame.index.unique())].reset_index()
+
+
+def _methods_wide(frame: pd.DataFrame) -> pd.DataFrame:
+    first = frame["data"] == frame["data"].iloc[0]
+    cells = frame[first | frame["metric"].isin([*METRICS, "gaze_error"])]  # of the further data sets these alone
+    cells = cells.sort_values("metric", key=lambda metric: metric.isin(ERRORS), kind="stable")  # the counts come first
+    texts = [cell(row) if row.metric in ERRORS else f"{row.mean:.1f}" for row in cells.itertuples()]
+    names = cells["metric"].replace(ERRORS)
+    heads = names.where(cells["data"] == frame["data"].iloc[0], names + ", " + cells["data"])
+    table = wide(cells.assign(text=texts, head=heads), "method", "head")
+    return table.loc[ordered(table.index)].rename(short).reset_index(names="kept points")
+
+
+def table_3_2(results: Results) -> Table:
+    """Errors by method and face count, on all objects and where nothing shrank, beside the thesis's."""
+    parts = require_rows(
+        list(_parts(results)), "no face count that all methods of the table reach", "lod", runnable=False
+    )
+    frame = compared(pd.concat(parts), ["data", "nothing_shrunk", "target", "method", "metric"])
+    thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
+    thesis = thesis[:0] if results.own_meshes else thesis
+    thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
+    frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
+    orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED, "metric": METRICS}
+    cells = frame.assign(
+        block=frame["target"].map(target_text) + np.where(frame["nothing_shrunk"], ", nothing shrunk", "")
+    )
+    cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
+    counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
+    objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
+    object_sets = "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
+    text_table = _blocks_wide(cells)
+    answer = [name for name in map(str, text_table) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
+    best = Ranking(next(name for name in answer[2:] if not name.endswith("thesis")), True, ["target"], KEEP_NOTHING)
+    words = {"objects": object_sets, "fewest": FEWEST, "beside": "", "printed": ""}
+    if not results.own_meshes:
+        words |= {"beside": ", beside the thesis", "printed": shared_notes(__package__, "printed_3_2")}
+    return Table(frame, text_table, words, best, answer)
+
+
+def _parts(results: Results) -> Iterator[pd.DataFrame]:
+    """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
+    for name in sorted(data_sets(results, OF_T3_2), key=lambda name: name != SECTION_3_2):
+        total = np.inf
+        for whole in (False, True):
+            rows = paired_cells(results, METRICS, GUIDED, name, whole)
+            rows = rows[rows["target"].isin(face_counts(rows))]
+            if 0 < len(rows) < total:
+                yield rows.assign(data=dataset_text(name), nothing_shrunk=whole)
+            total = len(rows)
+
+
+def _blocks_wide(cells: pd.DataFrame) -> pd.DataFrame:
+    """A row a block and method, most faces first; for each metric the set as printed, the thesis's, the other sets.
+
+    The thesis's stand there if it has any of them.
+    """
+    printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
+    printed["text"] = (printed["metric"].map(UNITS).astype(float) * printed["thesis"]).map(number)
+    parts = [printed] if printed["thesis"].notna().any() else []
+    cells = pd.concat([cells.assign(text=[cell(row) for row in cells.itertuples()]), *parts])
+    cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
+    cells["head"] = cells["metric"].map(ERRORS).astype(str) + ", " + cells["data"]
+    cells["kept points"] = cells["method"].map(label)
+    table = wide(cells, ["block", "kept points"], "head")
+    sets = sorted(cells["data"].unique(), key=[dataset_text(SECTION_3_2), "thesis"].__contains__, reverse=True)
+    table = table[[f"{ERRORS[metric]}, {data}" for metric in METRICS for data in sets]]
+    return table.reset_index(names=["target", "kept points"])
