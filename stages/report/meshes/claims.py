@@ -360,7 +360,7 @@ CLAIMS = [
           "Our glance places the kept points better than chance does (as seen).", "random", OURS),
 ]  # fmt: skip
 # T3.1.2 takes four principal viewpoints; T3.1.5 retains those of T figure 3.2, which has twelve.
-FOUR_VIEWS = reading("four principal viewpoints", dataset=(FOUR_3_1, *GAZED))
+FOUR_VIEWS = reading("four principal viewpoints", dataset=(FOUR_3_1, *GAZED), printed=1)
 
 
 def of_section_3_1(entry: Claim) -> Claim:
