@@ -7,6 +7,7 @@ from itertools import takewhile
 from pathlib import Path
 
 import pandas as pd
+
 from stages.engine.rows import SUFFIX
 from stages.report.cells import number_of, rows_of
 from stages.report.claims import load

@@ -13,6 +13,7 @@ from haptic_glance.look.weights.svm import fit_svm
 from haptic_glance.look.weights.weights import write_models
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine import statistics
+from stages.engine.measurements import Measurements
 from stages.engine.settings import Workspace
 from stages.report import Params, items
 from stages.report.drawing import save
@@ -302,6 +303,12 @@ def measure(tmp_path_factory):
         return read_results(root)
 
     return written
+
+
+@pytest.fixture(scope="session")
+def measured(measure):
+    """As `measure`, but returns the Measurements that claims are judged by."""
+    return lambda *arguments: Measurements(measure(*arguments).reports)
 
 
 @pytest.fixture(scope="session")

@@ -19,11 +19,11 @@ from stages.engine import statistics
 from stages.engine.settings import load_params
 from stages.report import items, reuse
 from stages.report.__main__ import write_report
-from stages.report.claims_page import sets_read
+from stages.report.claims import load
 from stages.report.drawing import save
 from stages.report.records import command
 from stages.report.results import NotRun
-from stages.report.topics import CLAIMS, TOPICS
+from stages.report.topics import TOPICS
 
 pytestmark = pytest.mark.slow
 
@@ -309,7 +309,7 @@ def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, run, width
 
 def test_the_command_of_a_claim_switches_its_stage_on(small):
     results, switched = small.results(ROOT), {}
-    needs = {(claim.stage, tuple(sets_read(claim, results))) for claim in CLAIMS}
+    needs = {(claim.stage, tuple(claim.sets_read())) for claim in load()}
     assert len(needs) > 10
     for stage, sets in sorted(needs):
         text = command(ROOT / "conf", stage, sets)

@@ -44,13 +44,6 @@ def test_code_and_prose_change_the_keys_of_the_topics_that_read_them(file, chang
     assert (HERE / file).is_file() and {name for name in after if after[name] != before[name]} == changed
 
 
-def test_prose_does_not_change_the_keys_of_claims(small, unchanged, monkeypatch):
-    (root, tables), digest = unchanged, reuse.file_digest
-    before = keys(small, root, "claims")
-    monkeypatch.setattr(reuse, "file_digest", lambda path: "changed" if path.suffix == ".md" else digest(path))
-    assert keys(small, root, "claims") == before and keys(small, root) != tables
-
-
 @pytest.mark.parametrize("file", ["reports/measurements/other/lod.csv.gz", "data/test/meshes/new.npz", "build/code/new",
                                   "reports/bench/new.csv", "params.yaml"])  # fmt: skip
 def test_a_setting_or_a_new_file_of_rows_data_or_code_changes_all_keys(file, small, root):

@@ -8,10 +8,8 @@ import pytest
 
 from stages.engine.settings import check_section, conf_folder, load_params
 from stages.report import scene as topic
-from stages.report.scene import CLAIMS
 from stages.report.scene.scene import COMMON, planning
 from stages.report.topics import build_one
-from stages.report.verdict import judge
 from stages.scene import Params, online
 
 VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000, "online": 1040}
@@ -63,9 +61,6 @@ def test_both_tables_say_why_there_is_no_network(measure, table):
     assert "the thesis's network: no object to learn from." in built.notes
 
 
-BY_KEY = {claim.key: claim for claim in CLAIMS}
-
-
 def rows_of(group, faces):
     """Rows of a scene; faces: {(method, matched): faces}."""
     common = {"dataset": "household_scenes", "group": group, "frame": "all", "factor": 1.0, "item": None, "seed": 0}
@@ -91,25 +86,6 @@ def measured(measure):
         return measure("scene", pd.DataFrame(rows))
 
     return make
-
-
-def test_the_saving_is_the_mean_of_the_scenes_with_an_interval_over_them(measured):
-    spread = np.linspace(-0.1, 0.1, 12)
-    results = measured(uniform__displacement=lambda k: (1000 + 10 * k) / (0.7 + spread[k]))
-    table = build_one(topic, "tables", "random_scenes", results)
-    line = table.frame.set_index(["method", "matched"]).loc[("uniform", "displacement")]
-    assert line["saved"] == pytest.approx(0.3, abs=1e-5) and 0.2 < line["saved_low"] < 0.3 < line["saved_high"] < 0.4
-    claims = judge([BY_KEY["saves_uniform_displacement"]], results).iloc[0]
-    assert (claims["verdict"], claims["pairs"], claims["over"]) == ("supported", 12, "scenes")
-    assert claims["effect"] == pytest.approx(30, abs=1e-3) and "30 random scenes" in claims["tested_on"]
-
-
-@pytest.mark.parametrize(("more", "verdict"), [(0.02, "supported"), (0.09, "contradicted")])
-def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verdict):
-    results = measured(online=lambda k: (1000 + 10 * k) * (1 + more + 0.001 * (k % 3)))
-    assert judge([BY_KEY["online_faces"]], results).iloc[0]["verdict"] == verdict
-    notes = " ".join(build_one(topic, "tables", "random_scenes", results).notes)
-    assert f"Without a frame ahead: {100 * more + 0.1:.1f} [" in notes
 
 
 @pytest.mark.slow
@@ -150,8 +126,6 @@ def needs(measure):
 
 def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
     assert build_one(topic, "tables", "faces_by_task", needs).frame["median"].tolist() == [104, 204, 1004, 3004, 304]
-    judged = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
-    assert judged["verdict"].tolist() == ["supported", "supported"] and (judged["pairs"] == 9).all()
 
 
 def test_random_scenes_share_objects_as_is_said():
