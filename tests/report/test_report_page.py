@@ -307,8 +307,8 @@ def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, run, width
         assert not bad, path.name
 
 
-def test_the_command_of_a_claim_switches_its_stage_on(small):
-    results, switched = small.results(ROOT), {}
+def test_the_command_of_a_claim_switches_its_stage_on():
+    switched = {}
     needs = {(claim.stage, tuple(claim.sets_read())) for claim in load()}
     assert len(needs) > 10
     for stage, sets in sorted(needs):

@@ -8,8 +8,9 @@ import pandas as pd
 import pytest
 
 from stages.report import sequences
-from stages.report.sequences.tables import MORE, PRINTED_SET
 from stages.report.topics import build_one
+
+PRINTED_SET, MORE = "princeton_eight", ("princeton_touched", "furniture_splits")
 
 CLASSES = ("car", "chair", "vase")
 MEANS = {"cnn": 0.9, "cnn_images": 0.8, "cnn_normals": 0.4, "knn": 0.6, "svm": 0.7, "knn_no_som": 0.65,
