@@ -260,11 +260,11 @@ class Words:
 
     def _sides(self, claim: Claim) -> str:
         text = self._side(claim.first)
-        if isinstance(claim.second, Mapping):
-            text += f" minus {self._side(claim.second)}"
-        elif claim.second:
-            text = text or str(claim.where.get("metric", "value")).replace("_", " ")
-            text += f" minus {number(claim.scale * claim.second)}"
+        if claim.second:
+            is_number = not isinstance(claim.second, Mapping)
+            second = number(claim.scale * claim.second) if is_number else self._side(claim.second)
+            text, second = text or _metric(claim, claim.first), second or _metric(claim, claim.other)
+            text += f" minus {second}"
         if claim.contrast:
             text = f"{text}: {' minus '.join(map(self._side, claim.contrast))}"
         return text + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
@@ -284,3 +284,7 @@ class Words:
             return dataset_text(str(value))
         words = str(value).replace("_", " ") if column in self.NAMES else f"{column} {value}"
         return self.by_column.get(column, {}).get(value, words)
+
+
+def _metric(claim: Claim, side: Side) -> str:
+    return str({**claim.where, **side}.get("metric", "value")).replace("_", " ")

@@ -11,8 +11,9 @@ from haptic_glance.touch import Surface
 from stages.charts.results import Results
 from stages.contours.contours import sample_contours, write_sequences
 from stages.engine.settings import Workspace
-from stages.report import Params, sequences
+from stages.report import Params
 from stages.report.parts import build_item
+from stages.sequences import report as sequences
 from stages.sequences.contour_figures import followed
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)

@@ -8,13 +8,11 @@ from scipy import stats
 from haptic_glance.know.split import Split, shared_by
 from stages.engine.rows import by_unit, unit
 from stages.engine.statistics import (
-    MOST,
     breaking_interval,
     breaking_point,
     discoveries,
     interval,
     interval_metrics,
-    needed,
     p_value,
     pool,
 )
@@ -167,13 +165,6 @@ def test_few_units_widen_the_interval():
     assert np.ptp(few.interval()[1:]) == pytest.approx(np.ptp(many.interval()[1:]) * stats.t.ppf(0.975, 4) / 1.959964)
 
 
-def test_in_the_mean_of_these_sets_each_counts_alike_and_their_differences_do_not_widen_it():
-    pooled = pool([0.0, 1.0, 5.0], [0.1, 0.2, 0.3], [5, 8, 11], fixed=True)
-    assert pooled.mean == pytest.approx(2) and pooled.error == pytest.approx((0.01 + 0.04 + 0.09) ** 0.5 / 3)
-    assert pooled.freedom == pytest.approx(0.14**2 / (0.01**2 / 5 + 0.04**2 / 8 + 0.09**2 / 11))
-    assert pooled.between > 0 and pooled.differ < 0.001  # which is told nevertheless
-
-
 def test_sets_that_differ_widen_the_interval_and_weigh_more_alike():
     apart, alike = pool([0.0, 1.0, 5.0], [0.1, 0.2, 0.3], [MANY] * 3), pool([2.0] * 3, [0.1, 0.2, 0.3], [MANY] * 3)
     assert apart.mean == pytest.approx(2, abs=0.05) and apart.freedom == 2 and apart.i2 > 0.95 and apart.differ < 1e-6
@@ -184,17 +175,6 @@ def test_sets_that_differ_widen_the_interval_and_weigh_more_alike():
 def test_what_cannot_be_pooled_is_refused(errors):
     with pytest.raises(ValueError, match="two sets or more"):
         pool([1.0] * len(errors), errors, [5.0] * len(errors))
-
-
-def test_as_many_units_are_needed_as_narrow_the_interval_to_the_distance():
-    count = needed(spread=10.0, distance=3.0)
-    half = [stats.t.ppf(0.975, n - 1) * 10 / n**0.5 for n in (count - 1, count)]
-    assert half[0] > 3 >= half[1]
-
-
-def test_repeated_splits_that_share_data_may_never_decide():
-    assert needed(1.0, 1.2, shared=1 / 3) < np.inf and needed(1.0, 1.1, shared=1 / 3) == np.inf
-    assert needed(1.0, 0.5) < 30 and needed(1.0, 1 / MOST) == np.inf
 
 
 SIZES = ("small", "medium", "large")

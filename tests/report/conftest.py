@@ -16,6 +16,7 @@ from stages.charts import items
 from stages.charts.drawing import save
 from stages.charts.results import Results
 from stages.engine import statistics
+from stages.engine.measurements import Measurements
 from stages.engine.settings import Workspace
 from stages.report import Params
 
@@ -290,6 +291,12 @@ def measure(tmp_path_factory):
         return read_results(root)
 
     return written
+
+
+@pytest.fixture(scope="session")
+def measured(measure):
+    """As `measure`, but returns the Measurements that claims are judged by."""
+    return lambda *arguments: Measurements(measure(*arguments).reports)
 
 
 @pytest.fixture(scope="session")

@@ -1,8 +1,6 @@
-"""Rows of frames, verdicts and pictures that several tests of the report look at."""
+"""Rows of frames and pictures that several tests of the report look at."""
 
 from PIL import Image
-
-from stages.report.verdict import judge
 
 SHADES = 20  # a chart has more, for the rims of its letters
 
@@ -13,11 +11,6 @@ def only(frame, **where):
         frame = frame[frame[column] == value]
     assert len(frame) == 1
     return frame.iloc[0]
-
-
-def verdicts(claims, results, *keys):
-    """The judged claims by key: those of these keys, or all."""
-    return judge([claim for claim in claims if not keys or claim.key in keys], results).set_index("key")
 
 
 def has_ink(figure):

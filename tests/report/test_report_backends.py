@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from stages.charts.results import NotRun
+from stages.lod import report as meshes
 from stages.lod.backend_report import growth
-from stages.report import meshes
 from stages.report.parts import build_item
 
 SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]

@@ -7,10 +7,9 @@ import pandas as pd
 import pytest
 
 from stages.exploration.report import needed
-from stages.report import exploration, stability
 from stages.report.parts import build_item
-from stages.touch_stability.report import DENOISED, breaking, curve, harmless
-from tests.report.frames import verdicts
+from stages.stability import report as stability
+from stages.touch_stability.report import breaking, curve, harmless
 
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
 SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
@@ -49,18 +48,6 @@ def test_accuracy_beyond_the_curve_is_never_reached():
     assert needed(rows, 0.1) == 1
 
 
-def test_claims_know_the_truth_of_the_rows(explorer):
-    judged = verdicts(exploration.CLAIMS, explorer)
-    words = judged["verdict"]
-    assert words["five_touches_over_one"] == words["adaptive_over_fixed"] == "supported"
-    assert words["gain_over_random"] == words["gain_over_saliency"] == "supported"
-    assert words["saliency_over_random"] == words["five_touches_perfect_by_imprints"] == "contradicted"
-    assert words["product_too_sure"] == words["sure_is_right"] == "supported"
-    assert judged.loc["gain_over_saliency", "effect"] == pytest.approx(1.5, abs=0.01)
-    assert "all touches where the belief stays below" in judged.loc["gain_over_saliency", "tested_on"]
-    assert judged.loc["adaptive_over_fixed", "effect"] == pytest.approx(7, abs=0.5)
-
-
 def disturbed():
     """Rows in which noise halves the lead of kNN at 0.2, and coarse models do no harm down to 400 faces."""
     lost = {("noise", 0.1): 0.1, ("noise", 0.2): 0.3, ("noise", 0.4): 0.5, ("coarse_model", 400.0): 0.01,
@@ -96,14 +83,3 @@ def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(measure):
 def test_what_is_no_better_than_guessing_has_no_breaking_point(measure):
     lost = disturbed()
     assert touch_stability(measure("touch_stability", lost.assign(value=lost["value"] - 0.7))).frame.empty
-
-
-def test_claims_on_denoisers_compare_the_same_touches(measure):
-    """An autoencoder that gives back a tenth under noise."""
-    rows, more = disturbed(), {"imprint": 0.0, "imprint_autoencoder": 0.1}
-    noise = rows[rows["perturbation"] != "coarse_model"].assign(dataset=DENOISED)
-    noisy = noise["perturbation"] == "noise"
-    several = [noise.assign(features=name, value=noise["value"] + gain * noisy) for name, gain in more.items()]
-    results = measure("touch_stability", pd.concat([rows, *several]))
-    judged = verdicts(stability.CLAIMS, results, "autoencoder_over_none_noise")
-    assert judged.loc["autoencoder_over_none_noise", "effect"] == pytest.approx(10, abs=0.1)

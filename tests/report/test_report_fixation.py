@@ -1,8 +1,6 @@
 """What the report says of where networks look (T3.3), on rows and maps whose truth is known."""
 
-import re
 import shutil
-from dataclasses import replace
 from functools import partial
 from itertools import combinations
 
@@ -10,18 +8,17 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from stages.report.fixation import maps
+from stages.report.fixation import rows as _fixation
 
 from haptic_glance.base.files import write_arrays
 from stages.charts.items import Figure
 from stages.charts.results import NotRun
 from stages.engine.statistics import interval
+from stages.fixation import report as topic
 from stages.fixation.agreement import ALL_VIEWS
-from stages.report import fixation as topic
-from stages.report.effects import differences
-from stages.report.fixation import maps
-from stages.report.fixation import rows as _fixation
 from stages.report.parts import build_item
-from tests.report.frames import has_ink, only, verdicts
+from tests.report.frames import has_ink, only
 
 NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "vgg16-last_block",
             "resnet50-last_block", "mobilenet_v2-random", "vgg16-random", "resnet50-random"]  # fmt: skip
@@ -102,11 +99,6 @@ def written(measure):
     return partial(measure, "fixation")
 
 
-def judged_row(results, key):
-    """The judged row of one claim."""
-    return verdicts(topic.CLAIMS, results, key).loc[key]
-
-
 def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze):
     frame = gaze.rows("fixation", "gaze")
     scores = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
@@ -159,51 +151,6 @@ VERDICTS = {
     "ewigc_nearer_than_literature_least": ("not testable", 10),  # noise is nearer by this measure
     "noise_correlates_masked": ("supported", 0.2),
 }
-
-
-@pytest.mark.slow
-def test_claims_say_what_the_rows_hold(gaze):
-    judged = verdicts(topic.CLAIMS, gaze, *VERDICTS)
-    assert judged["verdict"].to_dict() == {key: word for key, (word, _) in VERDICTS.items()}
-    assert judged["effect"].to_dict() == pytest.approx({key: size for key, (_, size) in VERDICTS.items()}, rel=0.05)
-    assert (judged["pairs"] == 6).all()
-    alike = next(claim for claim in topic.CLAIMS if claim.key == "resnet_more_alike")
-    assert differences(gaze, replace(alike, checked=False)).to_numpy() == pytest.approx(np.full(6, 0.2))
-
-
-def test_claims_turn_with_the_rows_and_name_what_was_not_run(gaze, written):
-    results = written(rows(resnet=-0.05, average=0.38))
-    for key, effect in (("over_vgg", -0.05), ("nearer_than_vgg", -10), ("nearer_than_vgg_least", -5)):
-        row = judged_row(results, f"resnet_{key}")
-        match = re.search(r"as written: not testable \+?([-\d.]+)", row["readings"])  # VGG16's layers are random
-        assert float(match[1]) == pytest.approx(effect, rel=0.1)
-        is_least = key == "nearer_than_vgg_least"  # by which noise is nearer than both networks, so no reading is valid
-        assert row["effect"] == pytest.approx(effect if is_least else 0, abs=abs(effect) / 10)  # by frozen filters
-    assert judged_row(results, "entropy_over_average")["verdict"] == "supported"
-    assert judged_row(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
-
-
-def test_the_network_with_the_lowest_accuracy_is_beside_the_least_of_the_thesis(written):
-    frame = rows()
-    taught = frame["metric"].eq("accuracy")
-    frame.loc[taught, "value"] = np.where(frame[taught]["method"] == "vgg16-last_block", 0.97, 0.99)
-    frame.loc[taught & (frame["task"] == "level_2"), "value"] += 0.01
-    row = judged_row(written(frame), "test_accuracy")
-    assert row["effect"] == pytest.approx(1.5) and row["pairs"] == 2
-
-
-@pytest.mark.parametrize(("key", "share"), [("median", 100 / 3), ("upper_quartile", -100 / 6)])
-def test_a_quartile_is_lower_where_more_views_lie_below_that_of_both(written, key, share):
-    """The network has the lower median, and the higher upper part, than Leifman, the nearer rival."""
-    of_views = {("resnet50-last_block", "ewigc"): (0.1, 0.1, 0.9), ("rival", "leifman"): (0.2, 0.3, 0.4),
-                ("rival", "mesh_saliency"): (0.5, 0.6, 0.8)}  # fmt: skip
-    frame = [{"item": f"mesh{number}", "method": method, "task": task, "metric": "distance", "view": view,
-              "value": value + 0.001 * number * (value == 0.1)}
-             for number in range(8) for (method, task), values in of_views.items()
-             for view, value in zip((0, 1, 2, ALL_VIEWS), (*values, 9), strict=True)]  # fmt: skip
-    claim = next(entry for entry in topic.CLAIMS if entry.key == f"ewigc_{key}_nearer_resnet50")
-    gaps = differences(written(pd.DataFrame(frame), "gaze"), claim)
-    assert gaps.to_numpy() == pytest.approx(np.full(8, share))  # a tie counts half
 
 
 @pytest.mark.slow
@@ -289,12 +236,3 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     kept.paths[0].unlink()
     with pytest.raises(NotRun, match="figure_3_34_gaze.png"):
         figure(name, results)
-
-
-def test_each_sentence_has_one_primary_claim_and_the_thesis_is_judged_as_printed():
-    claims = {claim.key: claim for claim in topic.CLAIMS}
-    primary = [claim for claim in claims.values() if not claim.of]
-    assert len({claim.sentence for claim in primary}) == len(primary)
-    for claim in primary:
-        if claim.section != "ours":
-            assert claim.sets[0] == "gaze" and claim.where["metric"] not in ("pcc", "nss", "auc", "distance_mean")

@@ -6,17 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 from stages.report.meshes import pictures
-from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 
 from haptic_glance.base.files import write_arrays, write_mesh
 from stages.charts.results import NotRun
-from stages.engine.statistics import interval
+from stages.lod import report as meshes
 from stages.lod.error_tables import data_sets, face_counts, paired_cells
-from stages.report import meshes
-from stages.report.claims import highest_of, lowest_of
-from stages.report.effects import differences
 from stages.report.parts import build_item
-from stages.report.verdict import judge
 from tests.report.frames import has_ink
 
 OBJECTS = ["a", "b", "c", "d"]
@@ -127,16 +122,6 @@ WORDS = {
 }
 
 
-def higher(results, worse, better, target=""):
-    """How much higher the Metro mean error of `worse` is than that of `better`, in % of the mean of the two."""
-    return differences(results, lower("s", "metro_mean", "k", "Sentence.", worse, better, target))
-
-
-def stated(results, statistic, **fields):
-    """The differences of a claim of one of the further statistics."""
-    return differences(results, claim(key="k", section="s", sentence="Sentence.", statistic=statistic, **fields))
-
-
 def test_combinations_tell_how_many_objects_reach_each_face_count(run):
     rows = without(measured("household_3_1"), item="d", target="1500", method="itti")
     words = table("table_3_1_5_combinations", run(rows)).words
@@ -151,91 +136,6 @@ def test_a_set_without_any_of_the_methods_is_said_to_lack_them(plain):
 ERROR = {"metric": "metro_mean"}
 
 
-def test_difference_is_relative_and_a_group_is_the_mean_of_those_that_were_run_or_the_worst_or_the_best(plain):
-    assert higher(plain, "corners", "itti", "3000").mean() == pytest.approx(100 * (1.6 - 1.15) / 1.375, rel=0.02)
-    group = higher(plain, ("corners", "sift"), "itti")
-    assert group.to_numpy() == pytest.approx(higher(plain, "corners", "itti").to_numpy())
-    with pytest.raises(NotRun, match="sift"):
-        higher(plain, ("sift",), "itti")
-    worst = higher(plain, "corners", highest_of("itti", "harris"))
-    best = higher(plain, "corners", lowest_of("itti", "harris"))
-    assert worst.to_numpy() == pytest.approx(higher(plain, "corners", "harris").to_numpy())
-    assert best.to_numpy() == pytest.approx(higher(plain, "corners", "itti").to_numpy())
-
-
-@pytest.mark.slow
-def test_a_sentence_of_t3_1_5_must_hold_from_four_viewpoints_too(run):
-    as_printed = [measured(name, seed) for seed, name in enumerate(("household_3_1", "princeton_3_1"))]
-    four = [frame.assign(dataset=frame["dataset"] + "_four") for frame in as_printed]
-    turned = [without(frame, 1e-6, method="VisAttAll", metric="metro_mean") for frame in four]
-    (entry,) = (entry for entry in CLAIMS if entry.key == "all_channels")  # these have a higher error than VisAtt
-    for frames, word in ((four, "supported"), (turned, "depends")):
-        row = judge([entry], run(*as_printed, *frames)).iloc[0]
-        assert row["verdict"].startswith(word) and "four principal viewpoints: " in row["readings"]
-
-
-def test_gap_and_spread_grow_at_few_faces(plain, run):
-    results, at = plain, {"where": ERROR, "contrast": FEW_MINUS_MANY}
-    corners, itti = {"method": "corners"}, {"method": "itti"}
-    assert (stated(results, "difference", first=corners, second=itti, **at) > 0).all()
-    assert (stated(results, "difference", first=itti, second=corners, **at) < 0).all()
-    assert (stated(results, "spread", first={"method": tuple(POINTS)}, **at) > 0).all()
-    rows = measured()
-    with pytest.raises(NotRun, match="target 3000 is not among"):
-        stated(run(rows[rows["target"] != "3000"]), "difference", first=corners, second=itti, **at)
-
-
-def test_error_falls_with_faces(plain, run):
-    rows, fields = measured(), {"where": ERROR, "first": {"method": "itti"}}
-    assert (stated(plain, "falls_with_faces", **fields) > 0).all()
-    single = (rows["item"] == "a") & (rows["target"] != "1500")
-    falls = stated(run(rows[~single]), "falls_with_faces", **fields)
-    assert list(falls.index) == ["b", "c", "d"]  # with one count nothing can fall
-    with pytest.raises(NotRun, match="two face counts"):
-        stated(run(rows[rows["target"] == "1500"]), "falls_with_faces", **fields)
-
-
-def test_error_falls_from_the_fewest_to_the_most_of_the_faces_in_print(run):
-    rows = measured("household_3_1")
-    other = rows["target"] == "25%"  # a count that print does not have
-    rows = rows.assign(faces=rows["faces"].mask(other, 500), value=rows["value"].mask(other, 1e6 * rows["value"]))
-    (entry,) = (entry for entry in CLAIMS if entry.key == "more_faces")
-    assert differences(run(rows), entry.on("household_3_1")).max() < 10
-
-
-def room(results, margin, methods, base, statistic="room"):
-    """What the differences of methods from a base leave of a margin."""
-    sides = {"first": {"method": methods}, "second": {"method": base}}
-    return stated(results, statistic, where=ERROR | BOTH, margin=margin, **sides)
-
-
-def test_a_fall_has_one_side_and_the_farthest_decides(plain):
-    assert interval(room(plain, 0.2, ("corners",), "itti", "fall"))[1] > 0  # the error rises
-    assert interval(room(plain, 0.2, ("corners",), "itti"))[2] < 0
-    assert interval(room(plain, 0.2, ("corners", "itti"), "harris", "fall"))[2] < 0
-
-
-def test_equivalence_holds_within_the_margin_and_fails_beyond_it(plain):
-    assert higher(plain, "guided_ed", "guided_ssim", "1500").mean() > 0  # they differ, beyond doubt, but little
-    _, low, _ = interval(room(plain, 0.2, ("guided_ed",), "guided_ssim"))
-    assert low > 0
-    _, _, high = interval(room(plain, 1e-3, ("guided_ed",), "guided_ssim"))
-    assert high < 0
-    _, _, high = interval(room(plain, 0.2, ("guided_ed", "corners"), "guided_ssim"))
-    assert high < 0  # the farthest of them decides
-    forward, back = (room(plain, 1e-4, (a,), b) for a, b in (("itti", "svm"), ("svm", "itti")))
-    assert forward.to_numpy() == pytest.approx(back.to_numpy())
-
-
-def test_ranks_agree_where_the_error_grows_with_the_points(plain, run):
-    assert stated(plain, "ranks_agree", first=ERROR).min() > 0.98
-    reversed_ = measured()
-    reversed_["points"] = 100 - reversed_["points"]
-    results = run(reversed_)
-    assert stated(results, "ranks_agree", first=ERROR).max() < -0.98
-    assert stated(results, "ranks_agree", first=ERROR, second={"metric": "dlap"}).min() > 0.98
-
-
 def with_people():
     """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
     rows = measured("gaze", 2)
@@ -243,18 +143,6 @@ def with_people():
     ours = people["method"] == "glance"
     people.loc[ours, "value"] *= np.linspace(0.1, 0.2, ours.sum())
     return pd.concat([rows, people])
-
-
-@pytest.mark.slow
-def test_where_people_look_is_judged_on_the_meshes_with_gaze(run):
-    results = run(measured(), with_people())
-    claims = [entry for entry in CLAIMS if entry.key in ("glance_keep_gaze", "glance_keep_salient")]
-    judged = judge(claims, results).set_index("key")
-    assert judged.loc["glance_keep_gaze", "verdict"] == "supported"
-    assert judged.loc["glance_keep_gaze", "tested_on"].startswith(
-        "meshes with human gaze, error weighted by human gaze"
-    )
-    assert judged.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
 
 
 @pytest.fixture(scope="module")

@@ -66,7 +66,6 @@ def topic(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     write_table(tmp_path / "tables/t.csv", pd.DataFrame({"method": ["one"], "mean": [2.5]}))
     module = ModuleType(package.name)
-    module.__dict__["CLAIMS"] = []
     return module
 
 

@@ -1,18 +1,15 @@
 """Real touches in the report: the readings of table 4.4, and the claims."""
 
 from functools import partial
-from itertools import combinations, product
+from itertools import product
 
 import numpy as np
 import pandas as pd
 import pytest
-from stages.report.recorded.claims import RECORDED_CLASSES, shared_classes
-from stages.report.recorded.claims import TOUCHES as CLAIMS
 
 from stages.recorded.selection_table import CLASSES
-from stages.report import recorded as topic
+from stages.recorded_networks import report as topic
 from stages.report.parts import build_item
-from tests.report.frames import verdicts
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
 GAIN = {"all": 0.0, "selected": 0.05, "selected_control": 0.0, "selected_training": -0.05}
@@ -77,22 +74,3 @@ def test_table_4_4_has_the_readings_of_the_scale_behind(measure):
     cells = shown.loc[("all 22 classes", "no selection: all data from 0 to 1")]
     assert cells["SVM, %"].startswith("70 [") and cells["mean of all, %"].startswith("63 [")
     assert shown.loc[("all 22 classes", "no selection"), "SVM, %"].startswith("40 [")
-
-
-@pytest.mark.slow
-def test_selection_simulation_and_the_best_classifier_are_judged_on_real_touches(every, measure):
-    judged = verdicts(CLAIMS, every)
-    assert judged.loc["simulation_helps_5", "verdict"] == "supported"
-    worse = measure("simulated_to_real", transferred(-0.1), "pressure_images")
-    worse = verdicts(CLAIMS, worse, "simulation_helps_5").iloc[0]
-    assert worse["verdict"] == "contradicted" and worse["effect"] == pytest.approx(-10, abs=0.5)
-    assert judged.loc["real_selection_six_alike", "effect"] == pytest.approx(5, abs=0.3)
-    assert judged.loc["real_selection_training", "verdict"] == "contradicted"
-    assert judged.loc["real_knn_best_all", "effect"] == pytest.approx(5, abs=0.5)
-    assert judged.loc["real_blocked", "verdict"] == "supported"
-
-
-def test_drawn_sets_of_classes_are_as_much_alike_as_their_number_says():
-    drawn = [set(np.random.default_rng(k).permutation(RECORDED_CLASSES)[:6].tolist()) for k in range(200)]
-    common = np.mean([len(first & second) / 6 for first, second in combinations(drawn, 2)])
-    assert shared_classes("six_drawn") == pytest.approx(common / (1 - common), rel=0.02)

@@ -1,7 +1,6 @@
 """Networks on recorded touches in the report: gains, guesses and claims on trainings whose truth is known."""
 
 from functools import partial
-from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -9,12 +8,15 @@ import pytest
 
 from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
-from stages.report import recorded as topic
+from stages.recorded_networks import report as topic
 from stages.report.parts import build_item
-from stages.report.recorded.claims import NETWORKS as CLAIMS
-from stages.report.recorded.claims import SETTINGS
-from tests.report.frames import only, verdicts
+from tests.report.frames import only
 
+SETTINGS = {
+    "pressure_random": ("pressure", "random"), "pressure_runs": ("pressure", "blocks"),
+    "fingers_random": ("grasps_object", "random"), "fingers_runs": ("grasps_object", "blocks"),
+    "fingers_slip": ("grasps_slip", "test_objects"),
+}  # fmt: skip
 LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exact, the splits differ by far more
     ("mobilenet_v2", "imagenet", "frozen"): 0.7,
     ("mobilenet_v2", "imagenet", "finetuned"): 0.8,
@@ -73,7 +75,6 @@ def majority():
 
 
 real_networks = partial(build_item, topic, "tables", "real_networks")
-judge = partial(verdicts, CLAIMS)
 
 
 @pytest.fixture
@@ -91,11 +92,6 @@ def touched(measure):
 @pytest.fixture(scope="module")
 def table(touched):
     return real_networks(touched)
-
-
-@pytest.fixture(scope="module")
-def judged(touched):
-    return judge(touched)
 
 
 def line(table, data="pressure", split="random", method="mobilenet_v2", weights="imagenet", mode="frozen", **more):
@@ -160,87 +156,3 @@ WORDS = {
     "tuned_over_frozen": "supported",
     "resnet_best": "supported",
 }
-
-
-@pytest.mark.slow
-def test_claims_say_what_the_rows_hold_in_every_setting(judged):
-    for key, word in WORDS.items():
-        subset = judged[judged.index.str.startswith(f"recorded_{key}")]
-        assert len(subset) in (2, 3, len(SETTINGS)) and set(subset["verdict"]) == {word}, key
-
-
-@pytest.mark.slow
-def test_one_reading_is_a_sentence_and_pressure_arrays_have_one_side_alone(judged):
-    primary = judged[judged["of"] == ""].index
-    assert "recorded_instant_by_guessing_hand_random" in primary and "recorded_frozen_over_guessing_vitac" in primary
-    assert not judged.index.str.startswith("recorded_frozen_over_guessing_pressure").any()  # T5.4 says the contrary
-
-
-@pytest.mark.parametrize(("key", "effect", "over"), [
-    ("tuned_over_frozen_pressure_runs", 10, "repetitions"), ("resnet_best_pressure_runs", 5, "repetitions"),
-    ("tuned_over_frozen_fingers_slip", 10, "objects"), ("frozen_over_guessing_fingers_slip", 30, "objects"),
-    ("frozen_by_guessing_pressure_random", 7.6 - 100 * (0.7 - 0.05 - MAJORITY), "repetitions"),  # the thesis's lead
-    ("seen_over_random_networks_pressure_random", 100 * (0.4 + 0.15 + 0.45) / 3, "networks"),
-])  # fmt: skip
-def test_effects_are_points_over_repetitions_objects_or_networks(judged, key, effect, over):
-    row = judged.loc[f"recorded_{key}"]
-    assert row["effect"] == pytest.approx(effect, abs=0.3) and row["over"] == over
-    assert row["pairs"] == {"repetitions": 3, "objects": len(OBJECTS), "networks": 3}[over]
-
-
-@pytest.mark.parametrize(("best", "word"), [(0.65, "supported"), (0.75, "contradicted")])
-def test_the_best_classifier_of_any_scaling_is_the_rival_of_frozen_filters(measured, measure, best, word):
-    ways = {("knn", "training"): 0.6, ("svm", "min_max"): best, ("tree", "training"): 0.5, ("majority", "training"): 1}
-    rows = [{"group": group, "method": "all", "split": "random", "classifier": name, "scaling": scaling,
-             "repetition": number, "metric": "accuracy", "value": (level if group == "all" else 0.9) - 0.05 * number}
-            for (name, scaling), level in ways.items() for group in ("all", "six") for number in range(3)]  # fmt: skip
-    results = measure("recorded", pd.DataFrame(rows), "pressure_images", measured(touches(settings=PRESSURE)))
-    row = judge(results, "recorded_frozen_over_features_pressure_random").iloc[0]
-    assert row["verdict"] == word and row["effect"] == pytest.approx(100 * (0.7 - best), abs=0.3)
-
-
-@pytest.mark.parametrize(("instant", "word"), [(0.1, "supported"), (0.6, "contradicted")])
-def test_one_reading_is_held_against_guessing_and_against_the_series(measured, instant, word):
-    fields = {"method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "size": 96, "pretrained": "complete"}
-    rows, random = [], np.random.default_rng(0)
-    for (data, level), split in product({"schunk": 0.4, "schunk_coarse": instant}.items(), ("random", "objects")):
-        rows += _trained(fields | {"data": data, "split": split}, level, random, 4)
-    keys = [f"recorded_{key}_hand_{split}" for key in ("instant_by_guessing", "series_over_instant")
-            for split in ("random", "grasps")]  # fmt: skip
-    frame = judge(measured(pd.DataFrame(rows, columns=COLUMNS)), *keys)
-    assert frame["verdict"].tolist() == [word] * 4 and frame["pairs"].tolist() == [4] * 4
-    series = frame[frame.index.str.contains("series")]
-    assert series["effect"].to_numpy() == pytest.approx(100 * (0.4 - instant), abs=0.3)
-
-
-def test_a_claim_names_the_training_or_the_rival_that_it_lacks(measured):
-    levels = {way: level for way, level in LEVELS.items() if way[0] == "resnet50"}
-    levels |= {way: level for way, level in LEVELS.items() if way[0] == "mobilenet_v2" and way[2] == "frozen"}
-    keys = ("recorded_tuned_over_frozen_pressure_random", "recorded_frozen_over_features_pressure_random")
-    frame = judge(measured(touches(levels, PRESSURE)), *keys)
-    lacking = frame.loc[keys[0]]
-    assert lacking["tested_on"] == "not run: mode finetuned is not among those that recorded_networks measured"
-    assert lacking["verdict"] == "open" and "no measurements of recorded" in frame.loc[keys[1], "tested_on"]
-    alone = {way: level for way, level in levels.items() if way[0] == "resnet50"}
-    alone = judge(measured(touches(alone, PRESSURE)), "recorded_resnet_best_pressure_random").iloc[0]
-    assert alone["verdict"] == "open" and "no other method than resnet50" in alone["tested_on"]
-
-
-def test_trainings_until_nothing_improves_are_a_reading_of_their_own(measured):
-    more = touches({way: 0.9 for way in LEVELS if way[2] == "finetuned"}, PRESSURE)
-    more = more.assign(passes="converged", value=more["value"] - 0.01 * more["repetition"])
-    keys = [f"recorded_{key}_pressure_random" for key in ("seen_over_random_tuned", "tuned_over_frozen")]
-    results = measured(pd.concat([touches(settings=PRESSURE), more]))
-    frame = judge(results, *keys)
-    assert frame["effect"].to_numpy() == pytest.approx([30, 10], abs=0.3)
-    readings = frame["readings"].str.partition("trained until nothing improves: ")[2]
-    assert readings.iloc[0].startswith("no difference") and readings.iloc[1].startswith("supported +19")
-    table = real_networks(results)
-    gains = [line(table, mode="finetuned", passes=passes)["over_random"] for passes in ("printed", "converged")]
-    assert gains == pytest.approx([0.3, 0.0], abs=0.003)
-    assert "fine-tuned, 64 px, until nothing improves" in set(table.text["filters"])
-
-
-def test_claims_over_repeated_splits_alone_are_widened():
-    shares = {(claim.pairs, claim.share) for claim in CLAIMS}
-    assert shares == {("repetitions", shared_by("random")), ("objects", 0.0), ("networks", 0.0)}

@@ -5,9 +5,8 @@ import pandas as pd
 import pytest
 
 from stages.engine.statistics import interval
-from stages.report import sensor
 from stages.report.parts import build_item
-from tests.report.frames import verdicts
+from stages.sensor_size import report as sensor
 
 
 def pressed():
@@ -38,14 +37,3 @@ def test_a_cost_has_the_interval_of_its_objects(measure):
     assert max(line.get_ydata().max() for line in axes.lines) == pytest.approx(1.2)  # milliseconds of 32 cells
     low, high = axes.collections[-1].get_segments()[0][:, 1]
     assert [low, high] == pytest.approx(interval([0.09, 0.1, 0.11])[1:])
-
-
-def test_claims_know_the_truth_of_the_rows(measure):
-    results = measure("sensor_size", pd.concat([pressed(), pressed().assign(dataset="princeton_4_3_sets")]))
-    judged = verdicts(sensor.CLAIMS, results)
-    words = judged["verdict"]
-    better = ["more_cells_help_all", "more_cells_help_more", "larger_pitch_helps_16", "larger_pitch_helps_32",
-              "more_cells_help", "knn_best_sensor", "known_objects_easier"]  # fmt: skip
-    assert (words[better] == "supported").all() and words["finer_sensor_enough"] == "contradicted"
-    assert judged.loc["known_objects_easier", "effect"] == pytest.approx(20, abs=1)
-    assert judged.loc["knn_best_sensor", "effect"] == pytest.approx(5, abs=1)

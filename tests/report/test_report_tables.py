@@ -23,9 +23,9 @@ from stages.charts.tables import (
     signed,
     with_interval,
 )
+from stages.classification import report as touch
 from stages.classification.recognition_tables import METHODS, SSIM
 from stages.lod.error_tables import paired_cells
-from stages.report import touch
 from stages.report.parts import build_item, build_part
 
 table_4_1 = partial(build_item, touch, "tables", "table_4_1")

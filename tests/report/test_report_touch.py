@@ -12,11 +12,9 @@ from stages.report.touch import claims, pictures, tables
 from stages.charts.datasets import SETS_4_2
 from stages.charts.results import NotRun
 from stages.charts.tables import CLASSIFIERS
-from stages.classification.recognition_tables import COMMON, METHODS, PRINTED, accuracies, shared_objects
-from stages.report import touch
-from stages.report.effects import differences
+from stages.classification import report as touch
+from stages.classification.recognition_tables import COMMON, PRINTED, accuracies, shared_objects
 from stages.report.parts import build_item
-from tests.report.frames import verdicts
 
 GLANCE = {
     "plain": 0.6, "first_15": 0.5, "locations": 0.8, "first_15_locations": 0.7, "locations_turned": 0.4,
@@ -89,61 +87,6 @@ VERDICTS = {
     "dissimilar_itti": "supported", "selection_helps_train": "contradicted", "locations_help_turned": "contradicted",
     "network_dips": "contradicted", "equal_over_itti": "depends on the reading",
 }  # fmt: skip
-
-
-@pytest.mark.slow
-def test_claims_follow_the_measurements(measure):
-    sets = pd.concat(map(drawn, SETS_4_2))
-    printed = sets[sets["scaling"].notna()].assign(scaling="beforehand")
-    printed["value"] -= 0.1 * ((printed["method"] == "itti") & (printed["variant"] == "first_15"))
-    printed["value"] += 0.1 * ((printed["method"] == "itti") & (printed["variant"] == "plain"))
-    frame = pd.concat([rows(), sets, printed, rows("glance", "test")])
-    judged = verdicts(claims.CLAIMS, measure("classification", frame), *VERDICTS)
-    assert judged["verdict"].to_dict() == VERDICTS
-    assert judged.loc["more_touches", "effect"] == pytest.approx(19, abs=1)  # over one with its position
-    itti = judged.loc["equal_over_itti"]
-    assert itti["effect"] == pytest.approx(10, abs=1)
-    assert "z-transform of all data beforehand, the first 15 imprints" in itti["tested_on"]
-    assert "; 60 imprints of each object: contradicted -" in itti["readings"]
-
-
-@pytest.mark.parametrize(("variant", "sentence"), [
-    ("more_touches_many", "more_touches"), ("network_dips_disjoint", "network_dips"),
-    ("selection_helps_train", "selection_helps"), ("locations_help_side", "locations_help"),
-])  # fmt: skip
-def test_a_variant_that_the_thesis_did_not_run_is_no_sentence_of_the_thesis(variant, sentence):
-    of = {entry.key: entry.of for entry in claims.CLAIMS}
-    assert (of[variant], of[f"{variant}_ours"]) == (sentence, f"{sentence}_ours")
-
-
-@pytest.mark.parametrize(("key", "variant"), [
-    ("selection_helps", "first_15_selected"), ("selection_helps_four", "first_15_selected"),
-    ("selection_helps_train", "first_15_selected_train"),
-])  # fmt: skip
-def test_selection_is_read_with_as_many_imprints_as_the_thesis_had_too(key, variant):
-    (entry,) = (claim for claim in claims.CLAIMS if claim.key == key)
-    (few,) = (base.of(entry) for base in entry.readings if base.name == "15 imprints of each object")
-    assert (few.first, few.second) == ({"variant": variant}, {"variant": "first_15"})
-
-
-def test_the_mean_of_four_classifiers_is_read_beside_one_touch_with_the_map_too():
-    (entry,) = (claim for claim in claims.CLAIMS if claim.key == "more_touches_all")
-    (base,) = (base for base in entry.readings if base.name.startswith("without the SVM, beside one touch with"))
-    assert base.of(entry).second == {"variant": "touches_1"} and "svm" not in base.of(entry).where["classifier"]
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_methods_of_unlike_imprints_are_more_accurate_where_their_ranks_say_so(measure, sign):
-    common = {"dataset": SETS_4_2[0], "group": "six", "variant": "first_15"}
-    right = {"metric": "accuracy", "classifier": "knn", "split": "random", "scaling": "beforehand"}
-    frame = pd.DataFrame(
-        common | part | {"set": number, "method": method}
-        for number in range(1, 5)
-        for rank, method in enumerate(METHODS.values())
-        for part in ({"metric": "similar_share", "value": 0.1 * rank}, right | {"value": 0.5 - 0.01 * sign * rank**2})
-    )
-    claim = next(entry for entry in claims.CLAIMS if entry.key == "dissimilar_accurate")
-    assert differences(measure("classification", frame), claim.on(SETS_4_2[0])).tolist() == [pytest.approx(sign)] * 4
 
 
 @pytest.mark.slow

@@ -1,21 +1,15 @@
 """The gains and the claims of chapter 5, on trainings whose truth is known."""
 
-import re
-from dataclasses import replace
-from functools import partial
-
 import numpy as np
 import pandas as pd
 import pytest
 
 from haptic_glance.know.split import shared_by
-from stages.report import networks as _transfer
-from stages.report import recorded as recorded_topic
-from stages.report import transfer
-from stages.report.effects import differences
+from stages.recorded_networks import report as recorded_topic
 from stages.report.parts import build_item
-from stages.transfer.network_figures import gains as gains_of
-from tests.report.frames import has_ink, only, verdicts
+from stages.transfer import network_rows as _transfer
+from stages.transfer import report as transfer
+from tests.report.frames import has_ink
 
 FINE, COARSE = "imprints128", "imprints16"
 LEVELS = {  # (data, weights, mode) -> accuracy
@@ -73,20 +67,6 @@ def run(measure):
     return measure("transfer", pd.concat([rows(), converged()]))
 
 
-words = partial(verdicts, transfer.CLAIMS)
-
-
-def test_passes_are_not_mixed_in_gains_and_claims(run):
-    gains = gains_of(_transfer.everywhere(run, *_transfer.PASSES)["furniture"])
-    gain = only(gains, split="random", data=FINE, passes="printed")
-    assert gain["mean"] == pytest.approx(30, abs=1) and gain["low"] < gain["mean"] < gain["high"]
-    assert only(gains, split="random", data=FINE, passes="converged")["mean"] == pytest.approx(25)
-    claim = next(entry for entry in transfer.CLAIMS if entry.key == "tuned_over_frozen_random").on("furniture")
-    assert differences(run, claim).mean() == pytest.approx(30, abs=1)
-    late = replace(claim, checked=False, where={**claim.where, "passes": "converged"})
-    assert differences(run, late).mean() == pytest.approx(25)
-
-
 def test_tables_compare_all_trainings_on_the_splits_of_the_printed_ones():
     def shown(*frames):
         return set(_transfer.of_passes(pd.concat(frames), *_transfer.PASSES)["repetition"])
@@ -103,69 +83,6 @@ def test_tables_compare_all_trainings_on_the_splits_of_the_printed_ones():
 @pytest.mark.slow
 def test_the_gains_of_one_set_alone_are_drawn(run):
     assert has_ink(build_item(transfer, "figures", "figure_5_3", run))
-
-
-@pytest.mark.slow
-def test_sets_that_contradict_each_other_are_mixed_and_each_is_told(measure):
-    results = measure("transfer", pd.concat([rows(), rows("princeton_six", turned=True)]))
-    judged = words(results)
-    judged = judged[~judged.index.str.contains("resnet")]  # of other networks
-    early = judged.index.str.endswith("_psb")
-    assert (judged["pairs"] == 5).all() and (judged.loc[early, "carries"] == "").all()
-    assert judged["tested_on"].str.startswith("psb, the thesis's 6 classes").all()
-    for split in ("random", "objects"):
-        row = judged.loc[f"tuned_over_frozen_{split}"]
-        assert row["verdict"] == "contradicted" and row["carries"].startswith("mixed")
-        assert re.match(r"psb, the thesis's 6 classes -(29|30)\S* .*; furniture \+(29|30)", row["by_set"])
-    assert results.rows("transfer")["dataset"].unique() == ["furniture"]
-
-
-@pytest.mark.slow
-def test_all_that_the_thesis_says_can_be_supported_by_its_classes_alone(measure):
-    others = rows("princeton_six", frozen=0.9).assign(method="googlenet")  # which changes no claim
-    frame = pd.concat([rows("princeton_six"), others[others["mode"] == "frozen"]], ignore_index=True)
-    results = measure("transfer", frame)
-    judged = words(results)
-    changed = judged.index == "earlier_change_more"  # equal differences show no spread
-    changed |= judged.index.str.contains("resnet")  # of other networks
-    gains = judged.index.str.contains("_gain_")  # fewer points than the printed 33.81 and 35.60
-    assert gains.sum() == 4 and set(judged.loc[gains, "verdict"]) == {"contradicted"}
-    changed |= gains
-    assert set(judged.loc[~changed, "verdict"]) == {"supported"}
-    assert judged.loc["earlier_change_more", "effect"] == 1 and (judged.loc[~changed, "by_set"] == "").all()
-    gain = judged.loc["tuned_over_frozen_objects"]
-    drawn = gains_of(_transfer.everywhere(results)["princeton_six"])
-    drawn = only(drawn, network="mobilenet_v2", split="objects", data=FINE)
-    assert list(drawn[["mean", "low", "high"]]) == pytest.approx([gain["effect"], gain["low"], gain["high"]])
-
-
-def test_a_sentence_about_all_networks_is_judged_on_their_mean_network_by_network(measure):
-    levels = {"alexnet": 0.7, "vgg16": 0.65, "resnet50": 0.6}
-    more = [rows("princeton_six", finetuned=level).assign(method=name) for name, level in levels.items()]
-    more = pd.concat([frame[frame["data"] == FINE] for frame in more], ignore_index=True)
-    keys = ["tuned_over_frozen_random", "tuned_over_frozen_objects"]
-    lone = more[(more["method"] == "resnet50") & (more["mode"] == "frozen")]  # one side alone
-    for frame, effect in ((more, 18.75), (more.drop(lone.index), 21.67)):
-        effects = words(measure("transfer", pd.concat([rows("princeton_six"), frame])), *keys)["effect"]
-        assert effects["tuned_over_frozen_random"] == pytest.approx(effect, abs=0.2)
-        assert effects["tuned_over_frozen_objects"] == pytest.approx(30, abs=0.2)  # MobileNetV2 alone
-
-
-def test_changes_of_weights_need_a_training_that_was_saturated(measure):
-    frame = rows("princeton_six")
-    keys = ["earlier_change_more", "resnet_smallest_updates"]
-    beside = pd.concat([frame, frame.assign(method="resnet50")], ignore_index=True)
-    assert "not testable" not in set(words(measure("transfer", beside), *keys)["verdict"])
-    beside.loc[beside["metric"] == "train_accuracy", "value"] = 0.5
-    assert set(words(measure("transfer", beside), *keys)["verdict"]) == {"not testable"}
-
-
-def test_networks_that_saw_other_sizes_are_not_compared(measure):
-    frame = rows("princeton_six")
-    frame.loc[(frame["data"] == COARSE) | (frame["mode"] == "18:139"), "size"] = 128
-    wanted = {"fine_over_coarse_tuned_random": "open", "early_and_late_random": "open"}
-    wanted["tuned_over_frozen_random"] = "supported"
-    assert words(measure("transfer", frame), *wanted)["verdict"].to_dict() == wanted
 
 
 def test_one_object_of_five_says_more_than_one_of_three():

@@ -2,13 +2,13 @@
 
 import pandas as pd
 import pytest
+from stages.report.scene import counts as table
 
 from haptic_glance.base.files import write_table, write_text
 from stages.charts.results import NotRun, Results
 from stages.engine.settings import Workspace
-from stages.report import scene
 from stages.report.parts import build_item
-from stages.report.scene import counts as table
+from stages.scene import report as scene
 
 
 def rows():

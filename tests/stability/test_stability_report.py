@@ -7,9 +7,10 @@ from stages.charts.drawing import label
 from stages.charts.results import Results
 from stages.engine.rows import write_rows
 from stages.engine.settings import Workspace
-from stages.report import Params, stability
+from stages.report import Params
 from stages.report.parts import build_item
 from stages.stability import COLUMNS
+from stages.stability import report as stability
 
 SETTINGS = Params(
     hero_object="pear", figure_objects=["pear"], viewer_objects=[], viewer_count=0, viewer_faces=0,
