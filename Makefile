@@ -32,7 +32,7 @@ quick: $(VENV)/ready ## the tests that are not marked slow, in a minute
 	pytest -n auto --dist worksteal -m "not slow"
 
 foreign: $(VENV)/ready ## 443 mesh files of other people: each is simplified, or refused in one line (ten minutes)
-	pytest tests/fuzz/foreign_files.py
+	pytest tests/slow
 
 smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy, held against its baseline
 	rm -rf $(SMOKE) && mkdir -p $(SMOKE)

@@ -45,7 +45,7 @@ plt.show()
 # The Decimate modifier reads a vertex group. This script makes the group and the modifier; run it in Blender's text
 # editor with the imported mesh selected. Vertices of weight 1 in the group are simplified most, so the script stores
 # one minus the saliency. In Blender 4.5 and 5.0, a tenth of the faces of the sample keeps all 25 vertices whose
-# saliency is above a half; without the group, it keeps 6.
+# saliency is above a half; without the group, it keeps 6. ``tests/slow/test_blender.py`` runs the script in Blender.
 
 properties = trimesh.load(files["ply"], process=False).metadata["_ply_raw"]["vertex"]["properties"]
 print("properties of a vertex:", ", ".join(properties))
