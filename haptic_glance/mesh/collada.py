@@ -16,7 +16,7 @@ from haptic_glance.base.lazy import trimesh
 from .headers import MeshError
 from .materials import join_parts
 from .mesh import Mesh
-from .obj import Beside
+from .obj import SiblingFiles
 from .polygons import refined
 
 UP = re.compile(rb"<(?:\w+:)?up_axis>\s*([XYZ])_UP\s*<")
@@ -29,7 +29,7 @@ OTHER_PARTS = {
 PICTURE = re.compile(rb"<(?:\w+:)?init_from>\s*(?:file://)?([^<]*?)\s*<")
 
 
-def ready(content: bytes) -> bytes:
+def parser_bytes(content: bytes) -> bytes:
     """The bytes in UTF-8; a concave polygon begins at another corner, or becomes triangles.
 
     pycollada would cut it as a fan about its first corner.
@@ -104,7 +104,7 @@ def read_collada(content: bytes, resolver: trimesh.resolvers.Resolver | None) ->
         raise MeshError("the file holds no scene")
     if NAN.search(content):
         raise MeshError("some numbers are NaN")
-    beside: Any = Beside(resolver) if resolver else None  # has what a resolver is asked for
+    beside: Any = SiblingFiles(resolver) if resolver else None  # has what a resolver is asked for
     scene = trimesh.load_scene(io.BytesIO(content), file_type="dae", resolver=beside)
     if not scene.geometry and left_out(content)["skins"]:
         raise MeshError("has skins alone, which are not read: export it in its rest pose")

@@ -41,7 +41,9 @@ MeshLike: TypeAlias = (
 WITH_UP = "Mesh(vertices, faces, up={!r})"  # says which axis points up
 CONVERT = "Blender, MeshLab and others convert most files: export it as .glb, .ply or .stl"
 # These functions rewrite a file in a form that the parser reads.
-READY = {".glb": gltf.ready, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain, ".dae": collada.ready}
+PARSER_BYTES = {
+    ".glb": gltf.parser_bytes, ".stl": stated_faces, ".obj": obj.plain, ".ply": ply.plain, ".dae": collada.parser_bytes,
+}  # fmt: skip
 LEFT_OUT = {".glb": gltf.left_out, ".obj": obj.left_out, ".ply": ply.left_out, ".dae": collada.left_out}
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".dae", *clouds.FORMATS, clouds.DEPTH)
 
@@ -210,7 +212,7 @@ def parse(
     check_header(content, suffix)
     try:
         counts = LEFT_OUT[suffix](content) if suffix in LEFT_OUT else {}
-        content = READY[suffix](content) if suffix in READY else content
+        content = PARSER_BYTES[suffix](content) if suffix in PARSER_BYTES else content
         with warnings.catch_warnings():  # of NaN, which is refused below, and of vertices that no face has
             warnings.simplefilter("ignore", RuntimeWarning)
             mesh = _parsed(content, suffix, resolver, every_colour, name)
@@ -245,7 +247,7 @@ def _parsed(content, suffix, resolver, every_colour, name):
         return collada.read_collada(content, resolver) or _to_mesh(None, False, every_colour)
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
-        beside = obj.Beside(resolver) if suffix == ".obj" and resolver else resolver
+        beside = obj.SiblingFiles(resolver) if suffix == ".obj" and resolver else resolver
         opened = _open(numbered(content), suffix, beside)
         if unreadable := set_apart(opened, content):
             warn_caller(f"{name}: unreadable, so left out: the picture {', the picture '.join(unreadable)}")

@@ -38,7 +38,7 @@ def as_glb(path: Path) -> bytes:
     suffix = path.suffix.lower()
     content = path.read_bytes() if suffix in SUFFIXES else b""
     resolver = trimesh.resolvers.FilePathResolver(str(path))
-    return ready(packed(content, resolver) if suffix == ".gltf" else with_pictures(content, resolver))
+    return parser_bytes(packed(content, resolver) if suffix == ".gltf" else with_pictures(content, resolver))
 
 
 def with_pictures(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -> bytes:
@@ -72,7 +72,7 @@ def packed(content: bytes, resolver: trimesh.resolvers.Resolver | None = None) -
     return joined(tree, binary)
 
 
-def ready(content: bytes) -> bytes:
+def parser_bytes(content: bytes) -> bytes:
     """The bytes of a GLB in the form that the parser reads (glTF 2.0, sections 3.5, 3.6.2 and 3.7).
 
     Meshes have the shape of their morph weights, and sparse accessors are full. Colours, which a glTF states linear,
@@ -223,7 +223,7 @@ def _encode_factor(properties, name):
 
 
 def with_linear_colours(content: bytes) -> bytes:
-    """The bytes of a GLB of the parser, whose colours are sRGB, with linear ones: `ready` the other way round.
+    """The bytes of a GLB of the parser, whose colours are sRGB, with linear ones: `parser_bytes` the other way round.
 
     Colours of vertices become floats: eight bits would lose dark ones, and the parser takes 16 bits for plain integers.
     """
@@ -322,7 +322,7 @@ def left_out(content: bytes) -> dict[str, int]:
     """{kind: count} of the parts of a GLB that change its shape and that the parser leaves out; empty where malformed.
 
     Primitives of points and of lines, meshes of the scenes that are not shown, instances, and skins whose joints stand
-    apart in the pose of the file: `ready` moves the mesh of such a skin by the first joint alone.
+    apart in the pose of the file: `parser_bytes` moves the mesh of such a skin by the first joint alone.
     """
     try:
         tree, _ = opened(content)

@@ -113,7 +113,7 @@ def numbered(content: bytes) -> bytes:
 
 
 def _exact_factor(material):
-    """The linear factor of colour of a material of a GLB that `gltf.ready` has encoded; the parser made bytes of it."""
+    """The linear factor of colour of a GLB material: `gltf.parser_bytes` encoded it, the parser made bytes of it."""
     with suppress(*MALFORMED):
         factor = np.array(material["pbrMetallicRoughness"]["baseColorFactor"], dtype=np.float64)
         if factor.shape == (4,) and GLOSS not in material.get("extensions", {}):

@@ -112,7 +112,7 @@ def _unfolded(content):
     return POLYGON.sub(lines, content) if rings else content
 
 
-class Beside:
+class SiblingFiles:
     """Reads the files beside an OBJ, also by a name with the separators of Windows, or behind the options of a map.
 
     `absent` names the pictures that were not there.
@@ -202,7 +202,7 @@ def not_read(path: Path, has_colors: bool = False) -> list[str]:
     if path.suffix.lower() != ".obj":
         return []
     content = text_of(path.read_bytes()).encode()
-    beside = Beside(trimesh.resolvers.FilePathResolver(str(path)))
+    beside = SiblingFiles(trimesh.resolvers.FilePathResolver(str(path)))
     libraries = [name.decode(errors="replace") for kind, name in NAMES.findall(content) if kind.lower() == b"mtllib"]
     text: str | bytes = b""
     with suppress(OSError):

@@ -20,7 +20,7 @@ from trimesh.exchange.gltf import export_glb
 from haptic_glance.base.files import read_mesh, read_table, whole_file, write_json
 from haptic_glance.lod.scene.camera import Scene, world_mesh
 from haptic_glance.lod.scene.chain import Level, finest
-from haptic_glance.mesh.gltf import ready, with_linear_colours
+from haptic_glance.mesh.gltf import parser_bytes, with_linear_colours
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import Y_UP
 
@@ -150,7 +150,7 @@ SINGLE = 1e-6  # of the largest coordinate: glTF stores 4 bytes a number
 def check_glb(path: Path, meshes: Sequence[Mesh], names: Sequence[str]) -> None:
     """Raises ValueError that names the file unless it holds these Meshes under these names, in their order."""
     try:
-        stream = io.BytesIO(ready(path.read_bytes()))
+        stream = io.BytesIO(parser_bytes(path.read_bytes()))
         loaded = trimesh.load_scene(stream, file_type="glb", process=False).geometry
     except Exception as error:  # whatever the reader raises: the file is at fault
         raise ValueError(f"{path} cannot be loaded back: {error}") from error

@@ -141,7 +141,7 @@ def test_only_what_feels_alike_beyond_the_array_recurs():
 @pytest.mark.slow
 def test_strong_points_are_the_peaks_more_than_a_deviation_above_the_mean():
     looked = Looked(load(sample()))
-    values, areas, points = looked.sight.smooth, looked.sight.samples.areas, looked.sight.samples.points
+    values, areas, points = looked.view_maps.smooth, looked.view_maps.samples.areas, looked.view_maps.samples.points
     near = KDTree(points).query_ball_point(points, looked.options.radius)
     is_peak = np.array([values[k] >= values[ids].max() for k, ids in enumerate(near)])
     mean = np.average(values, weights=areas)

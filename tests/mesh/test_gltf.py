@@ -17,7 +17,7 @@ from haptic_glance.cli.simplify import run
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import MeshError, load
 from haptic_glance.mesh.files import parse
-from haptic_glance.mesh.gltf import as_glb, joined, opened, ready
+from haptic_glance.mesh.gltf import as_glb, joined, opened, parser_bytes
 from haptic_glance.mesh.materials import not_read
 from haptic_glance.mesh.srgb import encoded
 from stages.meshes.furniture import files_beside
@@ -320,7 +320,7 @@ def test_joints_in_a_ring_end(glb):
         tree["nodes"] += [{"children": [len(tree["nodes"])], "scale": [0.5] * 3}]
         tree["skins"] = [{"joints": [len(tree["nodes"]) - 1]}]
 
-    assert ready(changed(glb, ring))[:4] == b"glTF"
+    assert parser_bytes(changed(glb, ring))[:4] == b"glTF"
 
 
 def test_a_file_without_a_scene_shows_all_nodes(glb):
@@ -353,7 +353,7 @@ def test_a_picture_stands_where_its_transform_puts_it(glb, second_set):
     expected = plain.uv[of_ball].copy()
     expected[..., 0] = 0.5 * expected[..., 0] + 0.25
     expected[..., 1] = 1 - (0.25 * (1 - expected[..., 1]) + 0.125)  # v runs downwards in a glTF
-    assert np.allclose(moved.uv[of_ball], expected, atol=1e-6) and not_read(ready(content)) == []
+    assert np.allclose(moved.uv[of_ball], expected, atol=1e-6) and not_read(parser_bytes(content)) == []
 
 
 LOST = [  # a change of the tree, and the names of all that is not read since
@@ -373,7 +373,7 @@ LOST = [  # a change of the tree, and the names of all that is not read since
 
 @pytest.mark.parametrize(("change", "names"), LOST)
 def test_all_that_a_mesh_cannot_hold_is_named(glb, change, names):
-    assert not_read(ready(changed(glb, lambda tree, _: change(tree)))) == names
+    assert not_read(parser_bytes(changed(glb, lambda tree, _: change(tree)))) == names
 
 
 def add_instances(tree):

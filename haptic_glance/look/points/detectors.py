@@ -34,26 +34,26 @@ class FusedDetector:
         self.channels = tuple(channels)
         self.parts: tuple[FusedDetector, ...] = (self,)  # whose points it has
 
-    def fused(self, sight: ViewMaps, _options: Options) -> np.ndarray:
+    def fused(self, view_maps: ViewMaps, _options: Options) -> np.ndarray:
         """(p,) f8: the saliency of each pixel of all views."""
-        return fuse(self.maps(sight))
+        return fuse(self.maps(view_maps))
 
-    def maps(self, sight: ViewMaps) -> dict[str, np.ndarray]:
+    def maps(self, view_maps: ViewMaps) -> dict[str, np.ndarray]:
         """dict channel -> (p,): the maps that the method uses; ValueError for a missing one."""
-        missing = [channel for channel in self.channels if channel not in sight.maps]
+        missing = [channel for channel in self.channels if channel not in view_maps.maps]
         if missing:
             raise ValueError(f"no map for {', '.join(missing)}: this method needs {', '.join(self.channels)}")
-        return {channel: sight.maps[channel] for channel in self.channels}
+        return {channel: view_maps.maps[channel] for channel in self.channels}
 
-    def saliency(self, _mesh: Mesh, sight: ViewMaps, options: Options) -> np.ndarray:
+    def saliency(self, _mesh: Mesh, view_maps: ViewMaps, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1 per vertex."""
-        return sight.vertex_saliency(self.fused(sight, options), options.smoothing)
+        return view_maps.vertex_saliency(self.fused(view_maps, options), options.smoothing)
 
-    def find(self, mesh: Mesh, sight: ViewMaps, options: Options, count: int | None = None) -> Detection:
+    def find(self, mesh: Mesh, view_maps: ViewMaps, options: Options, count: int | None = None) -> Detection:
         """The Detection; count None gives the strong points alone."""
-        fused = [part.fused(sight, options) for part in self.parts]
-        saliency = sight.vertex_saliency(fused[0], options.smoothing)
-        candidates = [_candidates(sight, values, options, count) for values in fused]
+        fused = [part.fused(view_maps, options) for part in self.parts]
+        saliency = view_maps.vertex_saliency(fused[0], options.smoothing)
+        candidates = [_candidates(view_maps, values, options, count) for values in fused]
         vertices, values, above = (np.concatenate(part) for part in zip(*candidates, strict=True))
         points, strong = merge_views(mesh, vertices, values, above, options.radius)
         if count is not None:
@@ -64,8 +64,8 @@ class FusedDetector:
 class SummedDetector(FusedDetector):
     """The average of channels that are sums of their maps (T eq. 3.1 to 3.6 and 3.8 to the letter)."""
 
-    def fused(self, sight: ViewMaps, _options: Options) -> np.ndarray:
-        maps = self.maps(sight)
+    def fused(self, view_maps: ViewMaps, _options: Options) -> np.ndarray:
+        maps = self.maps(view_maps)
         return fuse(maps, {channel: TERMS.get(channel, 1) for channel in maps})
 
 
@@ -76,8 +76,8 @@ class WeightedDetector(FusedDetector):
         super().__init__(channels)
         self.required_weights, self._name = name, name
 
-    def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
-        return fuse(self.maps(sight), options.learned.weights[self._name])
+    def fused(self, view_maps: ViewMaps, options: Options) -> np.ndarray:
+        return fuse(self.maps(view_maps), options.learned.weights[self._name])
 
 
 class SvmDetector(WeightedDetector):
@@ -87,23 +87,23 @@ class SvmDetector(WeightedDetector):
     the prediction: the same function, without the blur of two resizings.
     """
 
-    def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
+    def fused(self, view_maps: ViewMaps, options: Options) -> np.ndarray:
         models = options.learned.svms[self._name]
-        rows = np.stack(list(self.maps(sight).values()), axis=1)
+        rows = np.stack(list(self.maps(view_maps).values()), axis=1)
         if len(models) == 1:
             return next(iter(models.values())).predict(rows)
         values = np.zeros(len(rows))
         for view, model in models.items():
-            part = sight.pixels_of_view(view)
+            part = view_maps.pixels_of_view(view)
             values[part] = model.predict(rows[part])
         return values
 
-    def find(self, mesh: Mesh, sight: ViewMaps, options: Options, count: int | None = None) -> Detection:
+    def find(self, mesh: Mesh, view_maps: ViewMaps, options: Options, count: int | None = None) -> Detection:
         """As of any map, but of its strong points 32 stay, those far from each other (T3.2.3).
 
         An SVM takes far more of a map for salient than the other methods do.
         """
-        detection = super().find(mesh, sight, options)
+        detection = super().find(mesh, view_maps, options)
         far = select_far_points(mesh.vertices[detection.points], POINTS if count is None else min(POINTS, count))
         points = detection.points[np.sort(far)]
         if count is not None and detection.saliency is not None:
@@ -118,16 +118,16 @@ class MergedDetector(FusedDetector):
         super().__init__(dict.fromkeys(channel for part in parts for channel in part.channels))
         self.parts = parts
 
-    def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
-        return self.parts[0].fused(sight, options)
+    def fused(self, view_maps: ViewMaps, options: Options) -> np.ndarray:
+        return self.parts[0].fused(view_maps, options)
 
 
-def _candidates(sight, values, options, count):
+def _candidates(view_maps, values, options, count):
     """The points of each view of a map (p,), before they are merged: (vertices, values, strong), each (c,)."""
-    select, radius = SELECTIONS[options.selection], options.radius * sight.pixels_per_unit
+    select, radius = SELECTIONS[options.selection], options.radius * view_maps.pixels_per_unit
     parts = []
-    for view in range(len(sight.viewpoints)):
-        image, ids = sight.cropped_image(values, view)
+    for view in range(len(view_maps.viewpoints)):
+        image, ids = view_maps.cropped_image(values, view)
         selected = select(image, radius, count)
         strong = np.arange(len(selected.rows)) < selected.strong
         parts.append((ids[selected.rows, selected.columns], selected.values, strong))
@@ -209,13 +209,13 @@ class SurfaceDetector:
         """values: mesh -> (n,) f8, at least zero; points: (mesh, values) -> (k,) most salient first, None for peaks."""
         self._values, self._points = values, points
 
-    def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
+    def saliency(self, mesh: Mesh, view_maps: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1."""
         return scaled(self._values(mesh))
 
-    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
+    def find(self, mesh: Mesh, view_maps: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: the detector's own points are strong; count continues them by the value."""
-        saliency = self.saliency(mesh, sight, options)
+        saliency = self.saliency(mesh, view_maps, options)
         strong = peaks(mesh, saliency, options) if self._points is None else self._points(mesh, saliency)
         points = strong if count is None else continue_on_surface(mesh, strong, saliency, options.radius, count)
         return Detection(points, min(len(strong), len(points)), saliency)

@@ -198,7 +198,7 @@ class Looked:
         self.mesh = prepared(mesh, up)
 
     @cached_property
-    def sight(self) -> Any:
+    def view_maps(self) -> Any:
         """The maps, or the samples, that the detector uses for every count."""
         if isinstance(self.detector, SampledDetector):
             return self.detector.seen(self.mesh, self.options)
@@ -210,7 +210,7 @@ class Looked:
 
     def detect(self, count: int | None = None) -> Detection:
         """The Detection of `count` points, None for those past the method's own threshold; ValueError below 1."""
-        detection = self.detector.find(self.mesh, self.sight, self.options, _check(count))
+        detection = self.detector.find(self.mesh, self.view_maps, self.options, _check(count))
         if detection.saliency is None:
             return detection
         scores = scores_of(self.mesh, detection.points, detection.saliency, self._places)

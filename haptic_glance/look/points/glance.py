@@ -75,7 +75,7 @@ class SampledDetector(ABC):
         """(k,) the vertices that stand for the samples of these ids (k,)."""
         return nearest_vertices(mesh, mesh.vertices[mesh.used], samples.points[ids])
 
-    def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
+    def saliency(self, mesh: Mesh, view_maps: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
         if not mesh.face_areas.sum() > 0:
             return np.zeros(len(mesh.vertices))
@@ -90,12 +90,12 @@ class SampledDetector(ABC):
         smooth = self._smooth(samples, values, options)
         return Seen(samples, smooth, *_on_vertices(mesh, samples, values, smooth))
 
-    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
+    def find(self, mesh: Mesh, view_maps: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: strong points are high peaks of the smooth values; a count visits more places.
 
-        sight: a Seen of the same mesh and options spares the work of `seen`; anything else is not looked at.
+        view_maps: a Seen of the same mesh and options spares the work of `seen`; anything else is not looked at.
         """
-        surface = sight if isinstance(sight, Seen) else self.seen(mesh, options)
+        surface = view_maps if isinstance(view_maps, Seen) else self.seen(mesh, options)
         if surface is None:
             return Detection(np.zeros(0, dtype=np.int64), 0, np.zeros(len(mesh.vertices)))
         samples, smooth = surface.samples, surface.smooth

@@ -1,8 +1,8 @@
 """The registry of methods. To add one, add an entry.
 
-A method has `channels`, the maps that it uses (none: it receives no Sight); `required_weights`, the name of the weights
-without which it cannot run, or None; and `find(mesh, sight, options, count=None) -> Detection`. All but those that only
-place points (random, farthest) have `saliency(mesh, sight, options) -> (n,)` too.
+A method has `channels`, the maps that it uses (none: it gets no view maps); `required_weights`, the name of the weights
+without which it cannot run, or None; and `find(mesh, view_maps, options, count=None) -> Detection`. All but those that
+place points (random, farthest) have `saliency(mesh, view_maps, options) -> (n,)` too.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -128,7 +128,7 @@ def split_runnable(methods: Iterable[str], learned: LearnedWeights) -> tuple[lis
 
 
 def find_all(
-    mesh: Mesh, sight: ViewMaps | None, methods: Iterable[str], options: Options, count: int | None,
+    mesh: Mesh, view_maps: ViewMaps | None, methods: Iterable[str], options: Options, count: int | None,
     earlier: Mapping[str, Detection] | None = None,
 ) -> tuple[dict[str, Detection], dict[str, float]]:  # fmt: skip
     """Runs methods on one object: (dict method -> Detection, dict method -> seconds).
@@ -141,7 +141,9 @@ def find_all(
     detections, seconds = {}, {}
     for method in methods:
         with Stopwatch() as watch:
-            detections[method] = (earlier or {}).get(method) or method_named(method).find(mesh, sight, options, count)
+            detections[method] = (earlier or {}).get(method) or method_named(method).find(
+                mesh, view_maps, options, count
+            )
         seconds[method] = watch.seconds
     strong = next((result.strong for result in detections.values() if result.strong is not None), count)
     for method, result in detections.items():

@@ -80,15 +80,15 @@ class Detector(Protocol):
     @property
     def required_weights(self) -> str | None: ...
 
-    # sight: a ViewMaps, or None where the method has no channels
-    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None, /) -> Detection: ...
+    # view_maps: a ViewMaps, or None where the method has no channels
+    def find(self, mesh: Mesh, view_maps: Any, options: Options, count: int | None = None, /) -> Detection: ...
 
 
 @runtime_checkable
 class HasSaliency(Protocol):
     """A Detector that gives each vertex a saliency: all but those that only place points."""
 
-    def saliency(self, mesh: Mesh, sight: Any, options: Options, /) -> np.ndarray: ...
+    def saliency(self, mesh: Mesh, view_maps: Any, options: Options, /) -> np.ndarray: ...
 
 
 FADING = 0.5  # deviation of the inhibition, in radii
