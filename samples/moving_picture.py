@@ -13,7 +13,7 @@ from haptic_glance import find_points, saliency, simplify
 from haptic_glance.base.rng import rng
 from haptic_glance.gallery.demo import sample
 from haptic_glance.know import Exploration, known_objects, learn, place_at
-from haptic_glance.lod.pictures import vivid
+from haptic_glance.lod.mesh_pictures import vivid
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh import Mesh, load, normalise, rotate_to_z_up
 from haptic_glance.touch import Surface

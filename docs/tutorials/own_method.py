@@ -18,12 +18,12 @@ from scipy.spatial import KDTree
 from haptic_glance import METHODS, find_points, load, normalise, saliency, simplify
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 from haptic_glance.look.agreement import GroundTruth, agreement
 from haptic_glance.look.points.detectors import SurfaceDetector
 from haptic_glance.mesh import rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
-from stages.stability.measures import TOLERANCE, repeatability
+from stages.stability.repeatability import TOLERANCE, repeatability
 
 
 def thin_parts(mesh: Mesh) -> np.ndarray:

@@ -31,7 +31,7 @@ from haptic_glance import (
     write_any,
 )
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 
 folder = Path(tempfile.mkdtemp())
 clean = load(sample())

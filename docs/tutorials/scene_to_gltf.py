@@ -16,10 +16,10 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import Placed, Scene, budget, fly, load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import draw
+from haptic_glance.lod.mesh_pictures import draw
 from haptic_glance.lod.scene import build_lod_chain
 from haptic_glance.mesh import normalise, rotate_to_z_up
-from stages.scene.export import describe, metres_per_unit, read_lod, write_lod
+from stages.scene.level_files import describe, metres_per_unit, read_lod, write_lod
 
 SIZE = 2.0  # metres, the longest side of the animal
 

@@ -21,7 +21,7 @@ import trimesh
 from haptic_glance import load, saliency
 from haptic_glance.gallery.demo import sample
 from haptic_glance.lod import write_weights
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 
 mesh = load(sample())
 weights = saliency(mesh)

@@ -26,7 +26,7 @@ from haptic_glance.base.files import existing, said_of, write_text
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.export import FORMATS, write_any
-from haptic_glance.lod.pictures import check_look, coloured, write_look
+from haptic_glance.lod.mesh_pictures import check_look, coloured, write_look
 from haptic_glance.lod.topology import parts_of
 from haptic_glance.lod.weight_files import check_suffix, write_weights
 from haptic_glance.look.points import Detection, detect

@@ -147,7 +147,7 @@ def check_paths(options: argparse.Namespace) -> None:
         raise ValueError("--format is for the files in a folder: --out says that of one file")
     check_outputs(options.mesh, options.out if one_file(options) else None, options.picture)
     if options.picture:
-        from haptic_glance.lod.pictures import check_picture
+        from haptic_glance.lod.mesh_pictures import check_picture
 
         check_picture(options.picture)
 
@@ -314,7 +314,7 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, original: Mesh
 
 def draw(task: SimplificationTask, level: Mesh, path: Path) -> None:
     """Writes the picture of the mesh before and after."""
-    from haptic_glance.lod.pictures import write_picture
+    from haptic_glance.lod.mesh_pictures import write_picture
 
     points = task.points[task.points_kept(level)]
     write_picture(path, task.upright(task.mesh), task.upright(level), task.saliency, points, task.source.up)

@@ -212,7 +212,7 @@ def run(argv: list[str]) -> None:
     options = parse_options(argv)
     if options.show:
         with from_extra("--show needs matplotlib, which "):
-            from haptic_glance.touch.pictures import check_window
+            from haptic_glance.touch.imprint_pictures import check_window
 
         check_window()
     with about(options.mesh):
@@ -248,7 +248,7 @@ def run(argv: list[str]) -> None:
     print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
     report(said_of([options.out / name for name in file_names], before))
     if options.show:
-        from haptic_glance.touch.pictures import open_window
+        from haptic_glance.touch.imprint_pictures import open_window
 
         open_window(options.out / PICTURE)
 
@@ -303,7 +303,7 @@ def draw_picture(
 ) -> None:  # fmt: skip
     """Writes imprints.png; MissingExtra without matplotlib."""
     with from_extra("it is drawn by matplotlib, which "):
-        from haptic_glance.touch.pictures import write_picture
+        from haptic_glance.touch.imprint_pictures import write_picture
 
     report("drawing")
     scale = "the depth" if options.depth else "the imprint's relief"

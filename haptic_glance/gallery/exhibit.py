@@ -15,7 +15,7 @@ from haptic_glance.cli.touch import ARRAYS, TABLE, places_rows, saved_arrays
 from haptic_glance.cli.touch import as_csv as places_csv
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, vertex_errors
 from haptic_glance.lod.export import face_count, level_path, write_any
-from haptic_glance.lod.pictures import coloured, look
+from haptic_glance.lod.mesh_pictures import coloured, look
 from haptic_glance.lod.simplify import BACKEND
 from haptic_glance.lod.task import SimplificationTask, infeasible, repaired
 from haptic_glance.lod.topology import moved_parts, parts_of

@@ -17,7 +17,7 @@ from scipy.spatial import KDTree
 from haptic_glance.base.packing import SHADES, pack, viewer_data
 from haptic_glance.base.packing import Level as Drawn
 from haptic_glance.lod.export import shown_mesh
-from haptic_glance.lod.pictures import viridis, vivid
+from haptic_glance.lod.mesh_pictures import viridis, vivid
 from haptic_glance.lod.task import number
 from haptic_glance.mesh import rotate_to_z_up
 

@@ -3,12 +3,12 @@
 from .belief import Calibration, calibrate
 from .classifiers import CLASSIFIERS, classifier
 from .exploration import Exploration
-from .explore import STRATEGIES, explore, stop
+from .exploration_trial import LIKELIHOODS, SPLITS, Trial, split_touches
 from .features import FEATURES, confusable, features, similarity
+from .joined_touches import concatenate_touches, draw_combinations, touch_map
 from .library import Belief, Library, known_objects, learn, place_at, primitives, sample_places, touched
+from .planner import STRATEGIES, explore, stop
 from .protocol import evaluate, random_holdout, region_holdout
-from .touches import concatenate_touches, draw_combinations, touch_map
-from .trial import LIKELIHOODS, SPLITS, Trial, split_touches
 from .unknown import NONE
 
 __all__ = [

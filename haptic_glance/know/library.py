@@ -44,8 +44,8 @@ from .belief import (
     place_kernel,
 )
 from .components import COMPONENTS, Components
-from .explore import State, by_gain
 from .features import FEATURES, features
+from .planner import State, by_gain
 from .unknown import NONE, Verifier, check_unknown, log_pooled
 
 SURE = 0.95  # belief in one object at which it is known

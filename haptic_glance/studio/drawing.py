@@ -9,7 +9,7 @@ from html import escape
 import numpy as np
 
 from haptic_glance.gallery.page import data_uri
-from haptic_glance.lod.pictures import viridis
+from haptic_glance.lod.mesh_pictures import viridis
 
 from .feeling import Felt
 from .scene import RED, Scene

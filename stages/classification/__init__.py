@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from stages.engine.settings import REQUIRED, setting
 
 COLUMNS = {
-    "variant": "plain, or the name of a further experiment: see stages/classification/trials.py",
+    "variant": "plain, or the name of a further experiment: see stages/classification/touch_trials.py",
     "set": "number of a random set of objects, of those that are drawn",
     "scaling": "of samples before the classifier: a name of haptic_glance.know.classifiers.SCALINGS",
     "classifier": "a name of haptic_glance.know.CLASSIFIERS",

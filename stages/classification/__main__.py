@@ -33,8 +33,8 @@ from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
 from .multi_touch import MultiTouchTrials, evaluate_variants
-from .recorded import alike, feature_cost_rows, gather, similar_share_rows
-from .trials import OF_NAMED_SETS, TouchSet, drawn_sets, set_of
+from .touch_readers import alike, feature_cost_rows, gather, similar_share_rows
+from .touch_trials import OF_NAMED_SETS, TouchSet, drawn_sets, set_of
 
 METRICS = {  # (metric, split): the name of their mean in reports/metrics
     ("accuracy", Split.RANDOM): "accuracy_holdout",

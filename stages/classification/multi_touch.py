@@ -8,11 +8,11 @@ import numpy as np
 
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know.classifiers import COMPONENTS, TOUCH, TRAINING
+from haptic_glance.know.joined_touches import concatenate_touches, draw_combinations, touch_map
 from haptic_glance.know.protocol import VALIDITY, Prepared, random_holdout, region_holdout, repetition_seed
 from haptic_glance.know.split import Split
-from haptic_glance.know.touches import concatenate_touches, draw_combinations, touch_map
 
-from .trials import NO_DISTANT_TOUCH, OTHERS, TouchSet, Trial, selection_trials, single_touch_trials
+from .touch_trials import NO_DISTANT_TOUCH, OTHERS, TouchSet, Trial, selection_trials, single_touch_trials
 
 # Of combining the touches of one side of a split, see trials.py.
 VARIANTS = ("_unplaced", "_ordered", "_disjoint", "_many")

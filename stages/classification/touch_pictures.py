@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from haptic_glance.base.files import read_arrays
 from haptic_glance.know.features import SIMILARITY_THRESHOLD, similarity
 from haptic_glance.touch import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
-from haptic_glance.touch.pictures import draw
+from haptic_glance.touch.imprint_pictures import draw
 from stages.charts.datasets import dataset_text
 from stages.charts.drawing import GREY, INK, PALE, colours, label, plt, show, vivid
 from stages.charts.items import Figure

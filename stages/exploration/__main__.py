@@ -26,9 +26,9 @@ from haptic_glance.base.files import write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know import classifier, features
-from haptic_glance.know.explore import STRATEGIES, explore, stop
+from haptic_glance.know.exploration_trial import SPLITS, Trial, split_touches
+from haptic_glance.know.planner import STRATEGIES, explore, stop
 from haptic_glance.know.split import Split
-from haptic_glance.know.trial import SPLITS, Trial, split_touches
 from stages.classification import Params as Classification
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments

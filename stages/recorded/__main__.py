@@ -4,7 +4,7 @@ Reads the archive that recorded.folder names. Writes reports/measurements/SET/re
 the recordings. A data set is one kind of recording, recorded.kind: images of a pressure array, or grasps of a hand.
 """
 
-from stages.classification.recorded import read_grasps, read_pressure_images
+from stages.classification.touch_readers import read_grasps, read_pressure_images
 from stages.engine.run import StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 

@@ -17,7 +17,7 @@ from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know import CLASSIFIERS
 from haptic_glance.know.classifiers import COMPONENTS
 from haptic_glance.know.split import Split
-from stages.classification.recorded import PALMS, Grasps
+from stages.classification.touch_readers import PALMS, Grasps
 from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 

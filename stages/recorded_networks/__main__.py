@@ -20,7 +20,7 @@ from stages.recorded import Params as RecordedParams
 
 from . import COLUMNS, Params
 from .data import SOURCES, neighbour_rows
-from .trial import Trial, process, trials
+from .recorded_training import Trial, process, trials
 
 
 def run(workspace: Workspace) -> None:

@@ -20,11 +20,11 @@ from haptic_glance.deep.modes import Task
 from haptic_glance.deep.network import Network, build, recalibrate
 from haptic_glance.know import classifier
 from haptic_glance.know.split import Split
-from stages.classification.recorded import read_grasps, read_pressure_images
+from stages.classification.touch_readers import read_grasps, read_pressure_images
 from stages.recorded.biotac_grasps import Model, publisher_split_rows, recognition_rows
 from stages.recorded.pressure_images import describe
 from stages.recorded.splits import SPLITS, split_number
-from stages.transfer.recorded import (
+from stages.transfer.recorded_images import (
     BIGS,
     Recorded,
     grasp_images,

@@ -14,7 +14,7 @@ from haptic_glance.gallery.exhibit import Exhibit, Level
 from haptic_glance.gallery.page import build_page
 from haptic_glance.lod import vertex_errors
 from haptic_glance.lod.export import write_any
-from haptic_glance.lod.pictures import coloured, look
+from haptic_glance.lod.mesh_pictures import coloured, look
 from haptic_glance.look.points import Detection
 from haptic_glance.look.points.find import scores_of
 from haptic_glance.touch.places import UserMesh

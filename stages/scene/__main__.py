@@ -19,7 +19,7 @@ from stages.engine.settings import Workspace, workspace_of_arguments
 
 from . import COLUMNS, Params
 from .compare import OURS, PLAIN, write_chain
-from .export import export
+from .level_files import export
 from .measure import (
     CURVE,
     MESH,

@@ -16,7 +16,7 @@ import pandas as pd
 from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_table
 from haptic_glance.lod.scene.camera import Placed, Scene, fly
 from haptic_glance.lod.scene.frames import Frames, Plan
-from haptic_glance.lod.scene.pictures import displacement_picture, shaded
+from haptic_glance.lod.scene.level_renders import displacement_picture, shaded
 from haptic_glance.lod.task import variant
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.run import Rows

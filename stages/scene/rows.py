@@ -6,7 +6,7 @@ import numpy as np
 
 from haptic_glance.base.rng import rng
 from haptic_glance.lod.scene.frames import Plan
-from haptic_glance.lod.scene.pictures import picture_error
+from haptic_glance.lod.scene.level_renders import picture_error
 from stages.engine.rows import named_means
 
 from .compare import MethodPlan, SceneSetup

@@ -23,7 +23,7 @@ from stages.meshes.collect import read_classes
 
 from . import COLUMNS, Params
 from .networks import ImageNet, NormalNet, layers
-from .trial import SPLITS, Trial, plan, process
+from .sequence_trials import SPLITS, Trial, plan, process
 
 
 def confusion_rows(folder: Path, trials: list[Trial], classes: list[str]) -> Rows:

@@ -25,7 +25,7 @@ from haptic_glance.know.classifiers import COMPONENTS
 from haptic_glance.know.split import Split
 from haptic_glance.mesh.mesh import Mesh, corner_sum
 from haptic_glance.touch import Skin, Surface, distances_at, indent, press_many, sensor_axes, touchable
-from stages.classification.recorded import read_pressure_images
+from stages.classification.touch_readers import read_pressure_images
 from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments

@@ -13,7 +13,14 @@ from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import orient
 
-from .measures import TOLERANCE, at_original_vertices, chance_repeatability, drift, maps_under_conditions, repeatability
+from .repeatability import (
+    TOLERANCE,
+    at_original_vertices,
+    chance_repeatability,
+    drift,
+    maps_under_conditions,
+    repeatability,
+)
 
 UNPERTURBED = "none"  # the perturbation in the rows of the unperturbed object
 

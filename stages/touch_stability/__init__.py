@@ -16,7 +16,7 @@ COLUMNS = {
 
 
 def _severities():
-    from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+    from haptic_glance.disturb.touch_disturbances import TOUCH_PERTURBATIONS
 
     return TOUCH_PERTURBATIONS
 

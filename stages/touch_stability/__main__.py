@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+from haptic_glance.disturb.touch_disturbances import TOUCH_PERTURBATIONS
 from haptic_glance.know import SPLITS
 from stages.classification import Params as Classification
 from stages.engine.run import Rows, StageRun
@@ -24,7 +24,7 @@ from stages.engine.statistics import breaking_point, lead_left
 from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
-from .trial import CLEAN, process, trial
+from .disturbed_trials import CLEAN, process, trial
 
 
 def summary(rows: Rows) -> dict[str, dict[str, Any]]:

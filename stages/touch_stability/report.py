@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+from haptic_glance.disturb.touch_disturbances import TOUCH_PERTURBATIONS
 from haptic_glance.know.split import shared_by
 from stages.charts.breaking import ACCURACY, Curves, broken, degradation
 from stages.charts.drawing import GREY, MARKERS, label
@@ -16,7 +16,7 @@ from stages.charts.items import Figure, Table
 from stages.charts.results import Results
 from stages.charts.tables import grouped
 from stages.engine.statistics import breaking_point, interval, lead_left
-from stages.touch_stability.trial import CLEAN
+from stages.touch_stability.disturbed_trials import CLEAN
 
 STAGE = "touch_stability"
 DENOISED = "household_denoised"  # the set whose touches are also denoised

@@ -21,8 +21,8 @@ from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes.collect import read_classes
 
 from . import COLUMNS, Params, hybrid, hybrid_data, touches, trial
+from .imprint_images import count_touchable_vertices
 from .plan import Plan, check, plan, seen, summary, trial_row
-from .touches import count_touchable_vertices
 
 MADE = ("transfer/imprints", "transfer/hybrid/pictures")  # touches and pictures of all objects
 

@@ -20,18 +20,18 @@ from haptic_glance.deep.hybrid import PRECISIONS, SENSES, HybridNet, load, save,
 from haptic_glance.deep.images import augmentation, normalise
 from haptic_glance.deep.modes import finetuned_except, frozen_modules
 from haptic_glance.deep.network import Network, build, count_parameters
-from haptic_glance.deep.pictures import as_images
+from haptic_glance.deep.rendered_views import as_images
 from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import CONVERGED, Learning, accuracy, predict_probabilities, train_model
 from haptic_glance.deep.weights import available_weights
 from stages.engine.statistics import interval_metrics, stratified_split
 
 from . import Params, fusion
-from .export import export_onnx, onnx_scores
 from .hybrid_data import SenseData, fused_rows, in_batches, read_pictures, row, sense_scores, single_sense
+from .imprint_images import Touches, read_touches, sensor_arrays
 from .new_object import TOUCH, new_object_rows
+from .onnx_export import export_onnx, onnx_scores
 from .plan import by_objects, by_touches, middle_of
-from .touches import Touches, read_touches, sensor_arrays
 
 PAIR_METRICS = ("max_difference", "size_ratio")  # metrics of the summary of both senses together
 

@@ -15,11 +15,11 @@ from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.deep.device import device_of, explain_out_of_memory
 from haptic_glance.deep.hybrid import SENSES, HybridNet, Scores, join_senses
-from haptic_glance.deep.pictures import as_images, take_pictures, viewpoints
+from haptic_glance.deep.rendered_views import as_images, take_pictures, viewpoints
 from haptic_glance.disturb.picture import IMPRINT, MISSING, PICTURE, damage
 
 from . import Params, fusion
-from .touches import Touches
+from .imprint_images import Touches
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from haptic_glance.deep.weights import available_weights, imagenet_state
 from stages.engine.statistics import Split, interval_tree, stratified_split
 
 from . import Params
-from .touches import sensor_arrays
+from .imprint_images import sensor_arrays
 
 PRINTED_RATE = "printed_rate"
 # Learning rates of T table 5.4. T table 5.3 has one for all networks and modes.

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from PIL import Image
 
-from stages.classification.recorded import ELECTRODES, PALMS, read_grasps, read_pressure_images
+from stages.classification.touch_readers import ELECTRODES, PALMS, read_grasps, read_pressure_images
 
 SHARED = Path(__file__).parents[2].parent / "shared/data"
 

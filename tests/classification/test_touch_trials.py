@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from stages.classification.multi_touch import MultiTouchTrials, evaluate_variants
-from stages.classification.recorded import alike
-from stages.classification.trials import (
+from stages.classification.touch_readers import alike
+from stages.classification.touch_trials import (
     TouchSet,
     drawn_sets,
     least_alike,

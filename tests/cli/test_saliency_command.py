@@ -11,7 +11,7 @@ from PIL import Image
 
 from haptic_glance.cli import points
 from haptic_glance.cli.saliency import COLUMNS, as_csv, finely, run
-from haptic_glance.lod.pictures import places, visible
+from haptic_glance.lod.mesh_pictures import places, visible
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.mesh import load, normalise
 from haptic_glance.mesh.mesh import Mesh
@@ -131,7 +131,7 @@ def test_a_file_that_cannot_be_read_is_named_and_the_mesh_is_not_overwritten(egg
 @pytest.mark.slow
 def test_the_picture_has_the_ranks_of_the_visible_points_and_the_others_are_counted(egg, capsys, monkeypatch):
     marked = {}
-    monkeypatch.setattr("haptic_glance.lod.pictures.mark", lambda image, x, y, text: marked.update({text: (x, y)}))
+    monkeypatch.setattr("haptic_glance.lod.mesh_pictures.mark", lambda image, x, y, text: marked.update({text: (x, y)}))
     run([str(egg), "--picture", str(egg.with_suffix(".png")), "--count", "8", "--json"])
     shown = capsys.readouterr()
     ids = [row["vertex"] for row in json.loads(shown.out)]

@@ -13,9 +13,10 @@ from haptic_glance.cli.touch import POINT, parse_options, parser, run
 from haptic_glance.look.points import find_points
 from haptic_glance.mesh import load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import pictures, press_many
+from haptic_glance.touch import imprint_pictures as pictures
 from haptic_glance.touch import places as user_mesh
-from haptic_glance.touch.pictures import CANDIDATES, best_views, visible, write_picture
+from haptic_glance.touch import press_many
+from haptic_glance.touch.imprint_pictures import CANDIDATES, best_views, visible, write_picture
 from haptic_glance.touch.places import UserMesh
 from haptic_glance.touch.skin import Layer
 

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS, Touches, rotations_about, snap_with_blended_normals
+from haptic_glance.disturb.touch_disturbances import (
+    TOUCH_PERTURBATIONS,
+    Touches,
+    rotations_about,
+    snap_with_blended_normals,
+)
 from haptic_glance.mesh.mesh import Mesh
 
 DISTURBING = [name for name, known in TOUCH_PERTURBATIONS.items() if known.apply]

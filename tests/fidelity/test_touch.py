@@ -9,7 +9,7 @@ import trimesh
 from scipy import ndimage, stats
 
 from haptic_glance.know.features import FEATURES, SIMILARITY_THRESHOLD, confusable, features, similarity
-from haptic_glance.know.touches import concatenate_touches, draw_combinations, touch_map
+from haptic_glance.know.joined_touches import concatenate_touches, draw_combinations, touch_map
 from haptic_glance.lod import simplify
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch.distances import adaptive_distances, distances

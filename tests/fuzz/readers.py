@@ -27,8 +27,8 @@ from haptic_glance.mesh import clean, load, normalise
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.settings import load_params
 from stages.meshes.sources import FIXATION_MAPS, collection_files
-from stages.scene.export import read_lod
-from stages.transfer.recorded import read_picture
+from stages.scene.level_files import read_lod
+from stages.transfer.recorded_images import read_picture
 from stages.weights.gaze import fixation_files, fixations_on_vertices, read_gaze
 from stages.weights.ground_truth import read_interest_points
 

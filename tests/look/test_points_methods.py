@@ -13,7 +13,7 @@ from haptic_glance.look.points import METHODS, detect, find_points, saliency
 from haptic_glance.look.points.find import Looked, check_name
 from haptic_glance.look.points.methods import MEANT
 from haptic_glance.look.points.options import Options
-from haptic_glance.look.points.touch import CELLS, DISC, WIDTH, imprints, pressed, recurrence, spread
+from haptic_glance.look.points.recurring_imprints import CELLS, DISC, WIDTH, imprints, pressed, recurrence, spread
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.touch import Surface, press_at

@@ -14,7 +14,7 @@ from trimesh.transformations import rotation_matrix
 
 from haptic_glance.lod import simplify, write_any
 from haptic_glance.lod.borders import close_borders, cut_borders
-from haptic_glance.lod.pictures import coloured
+from haptic_glance.lod.mesh_pictures import coloured
 from haptic_glance.lod.task import SimplificationTask, repaired
 from haptic_glance.mesh import as_mesh, clean, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import axis_named, to_z_up

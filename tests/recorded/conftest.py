@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stages.classification.recorded import ELECTRODES, PALMS, Grasps
+from stages.classification.touch_readers import ELECTRODES, PALMS, Grasps
 
 
 def touches(classes=7, count=12, noise=0.2, seed=0):

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import read_json
-from stages.classification.recorded import ELECTRODES, PALMS
+from stages.classification.touch_readers import ELECTRODES, PALMS
 from stages.engine.rows import read_rows
 from stages.recorded import pressure_images
 from stages.recorded.__main__ import run

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 import torch
 
-from stages.classification.recorded import ELECTRODES, PALMS, Grasps
+from stages.classification.touch_readers import ELECTRODES, PALMS, Grasps
 from stages.engine.rows import read_rows
 from stages.engine.settings import check_section
 from stages.recorded.biotac_grasps import Model
@@ -17,8 +17,8 @@ from stages.recorded.pressure_images import process as image_rows
 from stages.recorded_networks import Params, data, trial
 from stages.recorded_networks import __main__ as stage
 from stages.recorded_networks.data import SOURCES, Recording, neighbour_rows, object_split, parts
-from stages.recorded_networks.trial import Run, Trial, passes, process, trials
-from stages.transfer.recorded import Recorded
+from stages.recorded_networks.recorded_training import Run, Trial, passes, process, trials
+from stages.transfer.recorded_images import Recorded
 
 pytestmark = pytest.mark.slow
 

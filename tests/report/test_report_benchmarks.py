@@ -1,7 +1,6 @@
 """Benchmarks in the report: the chart of kernels over commits."""
 
 import pandas as pd
-
 from stages.report.stability import costs
 
 

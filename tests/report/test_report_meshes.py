@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 import pandas as pd
 import pytest
-from stages.report.meshes import pictures
 
 from haptic_glance.base.files import write_arrays, write_mesh
 from stages.charts.results import NotRun
+from stages.lod import level_pictures as pictures
 from stages.lod import report as meshes
 from stages.lod.error_tables import data_sets, face_counts, paired_cells
 from stages.report.parts import build_item

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from stages.report.meshes import pictures
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh.mesh import Mesh
 from stages.charts.drawing import VIEWPOINT, colours, picture, visible, vivid
+from stages.lod import level_pictures as pictures
 from stages.lod.error_figures import METHODS
 from stages.lod.level_pictures import against_the_mean, density, faces_an_area
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.lod.scene import Camera, Placed, Scene, fly
-from haptic_glance.lod.scene.pictures import pixel_box, rays_of, render_level
+from haptic_glance.lod.scene.level_renders import pixel_box, rays_of, render_level
 from haptic_glance.mesh.mesh import Mesh
 
 

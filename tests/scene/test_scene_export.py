@@ -13,7 +13,7 @@ import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.srgb import decoded
-from stages.scene.export import (
+from stages.scene.level_files import (
     check_glb,
     describe,
     metres_per_unit,
@@ -121,7 +121,7 @@ def test_one_level_alone_needs_no_extension_and_a_join_that_goes_wrong_is_named(
     assert "extensionsUsed" not in nodes(tmp_path / "one.glb")
     with pytest.raises(ValueError, match="no MSFT_lod"):
         read_lod(tmp_path / "one.glb")
-    monkeypatch.setattr("stages.scene.export.read_lod", lambda path: ["two_1"])
+    monkeypatch.setattr("stages.scene.level_files.read_lod", lambda path: ["two_1"])
     with pytest.raises(ValueError, match=r"lod\.glb: MSFT_lod came back as two_1"):
         write_lod(tmp_path / "lod.glb", painted, rows_of(painted, make_scene()), 60)
 

@@ -16,7 +16,7 @@ from stages.scene import Params, __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
 from stages.scene.compare import MethodPlan, SceneSetup
-from stages.scene.export import export
+from stages.scene.level_files import export
 from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
 from stages.scene.rivals import full
 from stages.scene.rows import summary

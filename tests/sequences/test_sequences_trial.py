@@ -9,10 +9,10 @@ import pytest
 
 from haptic_glance.base.files import read_arrays
 from stages.contours.contours import Sequences, write_sequences
-from stages.sequences import trial as trials
+from stages.sequences import sequence_trials as trials
 from stages.sequences.__main__ import confusion_rows, layer_rows, summary
 from stages.sequences.classifiers import CONVENTIONAL
-from stages.sequences.trial import (
+from stages.sequences.sequence_trials import (
     Trial,
     count_sequences,
     downsample,

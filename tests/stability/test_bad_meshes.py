@@ -12,7 +12,7 @@ from haptic_glance.look.points.options import Options
 from haptic_glance.look.weights import LearnedWeights
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
-from stages.stability.measures import maps_under_conditions
+from stages.stability.repeatability import maps_under_conditions
 
 SIZE = (90, 120)
 COUNT = 5

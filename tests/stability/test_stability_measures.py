@@ -9,7 +9,7 @@ from haptic_glance.look.weights.svm import select_far_points
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.statistics import breaking_point
 from stages.stability.breaking import breaking_points, middle_severity, summarise
-from stages.stability.measures import at_original_vertices, chance_repeatability, drift, repeatability
+from stages.stability.repeatability import at_original_vertices, chance_repeatability, drift, repeatability
 
 GRID = np.stack([*np.mgrid[:4, :5].reshape(2, -1), np.zeros(20)], axis=1).astype(float)
 

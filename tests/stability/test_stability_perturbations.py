@@ -16,7 +16,7 @@ from haptic_glance.look.views import render
 from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.rays import RayScene
-from stages.stability.measures import corner_normals, maps_under_conditions, relit
+from stages.stability.repeatability import corner_normals, maps_under_conditions, relit
 
 SIZE = (120, 160)
 MILD = defaultdict(lambda: 0.5, {

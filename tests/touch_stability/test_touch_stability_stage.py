@@ -14,7 +14,7 @@ from stages.imprints.imprints import Imprints, write_imprints
 from stages.touch_stability import Params
 from stages.touch_stability import __main__ as stage
 from stages.touch_stability.denoisers import DENOISERS
-from stages.touch_stability.trial import CLEAN, first_of_each, recognition_rows
+from stages.touch_stability.disturbed_trials import CLEAN, first_of_each, recognition_rows
 
 SEVERITIES = {"noise": [0.05, 1.0], "object_turned": [90.0], "coarse_model": [60.0], "few_touches": [8.0]}
 SETTINGS = {

@@ -24,8 +24,8 @@ from haptic_glance.deep.hybrid import (
 )
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
-from stages.transfer.export import export_onnx, onnx_scores
 from stages.transfer.hybrid_data import in_batches
+from stages.transfer.onnx_export import export_onnx, onnx_scores
 
 pytestmark = pytest.mark.slow
 

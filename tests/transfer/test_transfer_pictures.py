@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.deep.hybrid import present
-from haptic_glance.deep.pictures import ELEVATIONS, imprint_images, picture_images, take_pictures, viewpoints
+from haptic_glance.deep.rendered_views import ELEVATIONS, imprint_images, picture_images, take_pictures, viewpoints
 from haptic_glance.disturb.picture import PICTURES, damage, damage_pictures
 from haptic_glance.mesh.mesh import Mesh
 from stages.transfer.hybrid_data import pair_pictures

@@ -10,8 +10,8 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.engine.statistics import stratified_split
 from stages.transfer import __main__ as stage
 from stages.transfer import plan as planning
+from stages.transfer.imprint_images import choose_vertices
 from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate
-from stages.transfer.touches import choose_vertices
 from tests.shapes import flat_grid
 
 pytestmark = pytest.mark.slow

@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 from scipy.io import savemat
 
-from stages.classification.recorded import Grasps, read_grasps
-from stages.transfer.recorded import (
+from stages.classification.touch_readers import Grasps, read_grasps
+from stages.transfer.recorded_images import (
     COLUMNS,
     GRID,
     ROWS,

@@ -16,9 +16,9 @@ from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.transfer import __main__ as stage
 from stages.transfer import plan, trial
-from stages.transfer.export import network_parts, weight_changes
+from stages.transfer.imprint_images import read_touches
+from stages.transfer.onnx_export import network_parts, weight_changes
 from stages.transfer.plan import Trial, summary, trial_row
-from stages.transfer.touches import read_touches
 
 pytestmark = pytest.mark.slow
 

@@ -12,7 +12,7 @@ from trimesh.transformations import rotation_matrix
 
 from haptic_glance import Mesh, load, normalise, saliency
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 from haptic_glance.mesh import rotate_to_z_up
 
 upright = normalise(rotate_to_z_up(load(sample())))

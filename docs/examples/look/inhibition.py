@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import find_points, load, saliency
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 
 mesh = load(sample())
 values = saliency(mesh)

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import METHODS, load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 
 SHOWN = {
     "glance": "glance: learned from gaze",

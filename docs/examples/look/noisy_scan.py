@@ -15,7 +15,7 @@ from haptic_glance import find_points, load, normalise
 from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.gallery.demo import sample
 from haptic_glance.mesh import rotate_to_z_up
-from stages.stability.measures import TOLERANCE, repeatability
+from stages.stability.repeatability import TOLERANCE, repeatability
 
 COUNT, SEVERITIES = 30, [0.0005, 0.001, 0.0025, 0.005]
 

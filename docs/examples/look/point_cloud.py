@@ -14,7 +14,7 @@ import numpy as np
 
 from haptic_glance import Cloud, detect, load, normalise, surface_of
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 from haptic_glance.mesh import rotate_to_z_up
 
 whole = normalise(rotate_to_z_up(load(sample())))

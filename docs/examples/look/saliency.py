@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import detect, load
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 
 mesh = load(sample())
 detection = detect(mesh, count=10)  # saliency and points from one look

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import load, metro, normalise, saliency, simplify, to_trimesh, write_any
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import coloured
+from haptic_glance.lod.mesh_pictures import coloured
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 from haptic_glance import load, normalise, saliency, simplify
 from haptic_glance.gallery.demo import sample
 from haptic_glance.lod import vertex_errors
-from haptic_glance.lod.pictures import coloured, draw
+from haptic_glance.lod.mesh_pictures import coloured, draw
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))

@@ -12,7 +12,7 @@ import numpy as np
 
 from haptic_glance import find_points, load, metro, normalise, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import draw
+from haptic_glance.lod.mesh_pictures import draw
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))

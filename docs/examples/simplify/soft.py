@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import coloured, draw
+from haptic_glance.lod.mesh_pictures import coloured, draw
 from haptic_glance.mesh import normalise, rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 from haptic_glance import load, normalise, saliency, simplify
 from haptic_glance.gallery.demo import sample
 from haptic_glance.lod.measures import fewest_faces
-from haptic_glance.lod.pictures import draw
+from haptic_glance.lod.mesh_pictures import draw
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))

@@ -11,7 +11,7 @@ import numpy as np
 
 from haptic_glance import detect, load, normalise, press_many
 from haptic_glance.gallery.demo import sample
-from haptic_glance.lod.pictures import look
+from haptic_glance.lod.mesh_pictures import look
 from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))

@@ -11,7 +11,7 @@ import numpy as np
 
 from haptic_glance.base.packing import SHADES, pack, viewer_data
 from haptic_glance.lod.export import shown_mesh
-from haptic_glance.lod.pictures import viridis, vivid
+from haptic_glance.lod.mesh_pictures import viridis, vivid
 from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.mesh.materials import bake_texture

@@ -15,7 +15,7 @@ from haptic_glance.mesh.mesh import Mesh
 
 from .camera import Scene
 from .chain import Level
-from .pictures import (
+from .level_renders import (
     Rendering,
     nearest_two,
     pixel_box,

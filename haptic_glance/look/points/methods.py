@@ -32,7 +32,7 @@ from .detectors import (
 from .fuse import CLASSICAL, COMBINATIONS, WITHOUT_COLOUR
 from .glance import GlanceDetector, deep_features
 from .options import Detection, Detector, Options
-from .touch import TouchDetector
+from .recurring_imprints import TouchDetector
 
 SUMMED = "Summed"  # behind the name of a method: with the sums of T eq. 3.1 to 3.6
 SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5

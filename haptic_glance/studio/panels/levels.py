@@ -14,7 +14,7 @@ from scipy.spatial import KDTree
 
 from haptic_glance.base.jit import kernel_folder
 from haptic_glance.lod import InfeasibleTarget, metro, neighbourhoods, vertex_errors
-from haptic_glance.lod.pictures import viridis, vivid
+from haptic_glance.lod.mesh_pictures import viridis, vivid
 from haptic_glance.lod.simplify import BACKEND
 from haptic_glance.lod.task import SimplificationTask, repaired
 from haptic_glance.look.points import saliency

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import viser
 
-from haptic_glance.lod.pictures import coloured
+from haptic_glance.lod.mesh_pictures import coloured
 from haptic_glance.look.points import METHODS
 from haptic_glance.look.points.methods import split_runnable
 from haptic_glance.look.points.reasons import contributions, reasons

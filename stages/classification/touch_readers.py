@@ -17,7 +17,7 @@ from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know.features import SIMILARITY_THRESHOLD, features, image_features, similarity, wavelet_features
 from stages.imprints.imprints import read_imprints
 
-from .trials import THESIS_COUNT, TouchSet
+from .touch_trials import THESIS_COUNT, TouchSet
 
 FINGERS = ("ff", "mf", "th")  # first and middle finger, thumb
 ELECTRODES = [f"{finger}_biotac_{k}" for finger in FINGERS for k in range(1, 25)]

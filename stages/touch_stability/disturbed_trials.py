@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_limits
 from haptic_glance.base.files import files_below, read_arrays, read_mesh, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.disturb.touches import SOFT, TOUCH_PERTURBATIONS, Touches
+from haptic_glance.disturb.touch_disturbances import SOFT, TOUCH_PERTURBATIONS, Touches
 from haptic_glance.know import SPLITS, classifier, features, split_touches
 from haptic_glance.know import features as features_of
 from haptic_glance.look.weights.weights import GLANCE

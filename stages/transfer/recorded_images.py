@@ -61,7 +61,7 @@ from scipy.interpolate import griddata
 
 from haptic_glance.base.files import open_picture
 from haptic_glance.base.lazy import cv2
-from stages.classification.recorded import Grasps, open_root
+from stages.classification.touch_readers import Grasps, open_root
 from stages.meshes.sources import read_mat
 
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp")
@@ -255,7 +255,7 @@ TARGETS = ("objects", "slipped")
 
 
 def grasp_images(grasps: Grasps, target: str = "objects") -> Recorded:
-    """The Recorded of Grasps (stages.classification.recorded.read_grasps): images (k, 12, 11, 3), groups: the object.
+    """The Recorded of Grasps (`touch_readers.read_grasps`): images (k, 12, 11, 3), groups: the object.
 
     target: the classes, `objects` for the grasped objects or `slipped` for `slipped` and `stable`. Red is the first
     finger, green the middle one, blue the thumb. Each electrode's readings are scaled by their own mean and deviation

@@ -26,9 +26,9 @@ from haptic_glance.deep.training import (
 from stages.engine.statistics import Split
 
 from . import Params
-from .export import network_parts, weight_changes
+from .imprint_images import Touches, read_touches
+from .onnx_export import network_parts, weight_changes
 from .plan import PRINTED_RATE, Trial, by_objects, by_touches, printed_rate
-from .touches import Touches, read_touches
 
 
 @explain_out_of_memory()
