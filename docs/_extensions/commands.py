@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from itertools import takewhile
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -61,7 +62,8 @@ class Command:
 
 def commands() -> list[Command]:
     """The commands that test claims, the default run first, then those with most claims."""
-    written = {row["key"]: row for row in rows_of(REPORTS / "claims.csv").to_dict("records")}
+    records: list[Any] = rows_of(REPORTS / "claims.csv").to_dict("records")
+    written = {row["key"]: row for row in records}
     by_text: dict[str, Command] = {}
     for claim in load():
         if written.get(claim.key, {"pairs": "0"})["pairs"] == "0":

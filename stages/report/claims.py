@@ -159,7 +159,7 @@ def _read(path: Path) -> list[Claim]:
     if not isinstance(content, dict) or not isinstance(content.get("claims"), list):
         raise ClaimError(f"{place}: no list `claims`")
     _known(content, ("defaults", "readings", "claims"), place)
-    (entries,) = (value for name, value in node.value if name.value == "claims")
+    (entries,) = (value for name, value in node.value if name.value == "claims")  # pyright: ignore
     lines = [entry.start_mark.line + 1 for entry in entries.value]
     return [_claim(entry, content, f"{place}:{line}") for entry, line in zip(content["claims"], lines, strict=True)]
 
@@ -261,10 +261,11 @@ class Words:
     def _sides(self, claim: Claim) -> str:
         text = self._side(claim.first)
         if claim.second:
-            is_number = not isinstance(claim.second, Mapping)
-            second = number(claim.scale * claim.second) if is_number else self._side(claim.second)
-            text, second = text or _metric(claim, claim.first), second or _metric(claim, claim.other)
-            text += f" minus {second}"
+            if isinstance(claim.second, Mapping):
+                second = self._side(claim.second) or _metric(claim, claim.second)
+            else:
+                second = number(claim.scale * claim.second)
+            text = f"{text or _metric(claim, claim.first)} minus {second}"
         if claim.contrast:
             text = f"{text}: {' minus '.join(map(self._side, claim.contrast))}"
         return text + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")

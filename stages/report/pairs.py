@@ -135,14 +135,14 @@ def _side_rows(
 ) -> SideRows:
     """The SideRows of a selection, which the check of a claim and its difference both ask for."""
     where = {**claim.where, **(extra or {}), **selection}
-    dataset = where.pop("dataset", claim.sets[0])
+    dataset = str(where.pop("dataset", claim.sets[0]))
     keys = (*claim.over, *claim.within)
     query = (claim.stage, dataset, keys, claim.checked, repr(where), repr(other))
     return results.cached_recently(query, lambda: _select(results, claim, where, dataset, other))
 
 
 def _select(
-    results: Measurements, claim: Claim, where: dict[str, object], dataset: str | None, other: Side | float | None
+    results: Measurements, claim: Claim, where: dict[str, object], dataset: str, other: Side | float | None
 ) -> SideRows:
     picks = {column: value for column, value in where.items() if isinstance(value, Pick)}
     plain = {column: value for column, value in where.items() if column not in picks}
