@@ -41,14 +41,14 @@ YOURS = "yours"
 SAME = 0.02  # NSS of HUMAN; surfaces of clouds may differ a little between machines
 HUMAN = "human"  # the gaze itself, spread over the surface: no method
 COST = "seconds: of the median object, without the pictures that some methods read"
-PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
+PER_OBJECT = ("svm+object", "svm+viewpoint")  # T3.2.3: an SVM for the object itself
 
 Gazed = dict[str, tuple[Mesh, Any]]
 
 
 def has_seen(method: str) -> bool:
     """True for a method that learned from the very object that it is judged on."""
-    return method in PER_OBJECT or method.endswith("_seen")
+    return method in PER_OBJECT or method.endswith("+seen")
 
 
 def run(argv: Sequence[str]) -> None:

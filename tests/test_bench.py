@@ -118,7 +118,7 @@ def test_a_method_is_judged_beside_the_committed_rows(file, toys, capsys):
     assert all(low < table["glance"][metric] < high for metric in bench.SCORES
                for low, high in [(table["glance"][f"{metric}_low"], table["glance"][f"{metric}_high"])])  # fmt: skip
     assert table["glance"]["values"]["cow"].keys() == {*bench.SCORES, "seconds"}
-    assert table["svm_object"]["has_seen"] and not table["svm"]["has_seen"]
+    assert table["svm+object"]["has_seen"] and not table["svm"]["has_seen"]
 
 
 @pytest.mark.slow

@@ -10,8 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from haptic_glance.look.points import METHODS
-from haptic_glance.look.points.methods import meant
+from haptic_glance.look.points.methods import METHODS, is_method, meant
 from haptic_glance.mesh import clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.materials import bake_texture, flat_texture, merge_equal_rows
 from haptic_glance.mesh.mesh import Mesh
@@ -225,7 +224,7 @@ def variant(name: str) -> Variant:
     method, dash, rule = name.partition("-")
     suffixes = [suffix for suffix in (*NEIGHBOURHOODS, SOFT) if suffix != "fixed"]
     methods = (PLAIN, QSLIM, *METHODS)
-    if method not in METHODS:
+    if not is_method(method):
         hint = meant(method.lower(), methods) or f"; methods are {', '.join(methods)}"
         raise ValueError(f"{name!r}: unknown method {method!r}{hint}")
     if dash and rule not in suffixes:

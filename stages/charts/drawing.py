@@ -27,7 +27,7 @@ from PIL import Image
 
 from haptic_glance.base.files import whole_file
 from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
-from haptic_glance.look.points.methods import SUMMED
+from haptic_glance.look.points.methods import PLUS, SUMS
 from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.rays import RayScene, barycentric
 
@@ -49,10 +49,10 @@ LABELS = {
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",
     "guided_ed": "guided by ED",
-    "guided_ssim_object": "guided by SSIM on the object",
-    "svm_nearest": "thesis, SVM of the nearest object",
-    "svm_object": "thesis, SVM of the object",
-    "svm_viewpoint": "thesis, SVM of each view",
+    "guided_ssim+object": "guided by SSIM on the object",
+    "svm+nearest": "thesis, SVM of the nearest object",
+    "svm+object": "thesis, SVM of the object",
+    "svm+viewpoint": "thesis, SVM of each view",
     "leifman": "regions of interest",
     "song": "spectral saliency",
     "tasse": "cluster-based saliency",
@@ -120,12 +120,12 @@ SETTINGS: dict[Any, Any] = {
 
 
 def label(name: object) -> str:
-    """A method's name in words, with its way of keeping neighbourhoods where there is one, but without `_seen`."""
+    """A method's name in words, with its way of keeping neighbourhoods where there is one, but without `+seen`."""
     text = str(name)
     base, _, way = text.rpartition("-")
-    if text.endswith(SUMMED):
-        return f"{label(text.removesuffix(SUMMED))}, sums"
-    words = LABELS.get(text) or LABELS.get(text.removesuffix("_seen")) or text.replace("_", " ")
+    if text.endswith(PLUS + SUMS):
+        return f"{label(text.removesuffix(PLUS + SUMS))}, sums"
+    words = LABELS.get(text) or LABELS.get(text.removesuffix("+seen")) or text.replace("_", " ").replace(PLUS, " ")
     return f"{label(base)}, {way}" if way in WAYS else words
 
 

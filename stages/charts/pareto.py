@@ -16,7 +16,7 @@ from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from haptic_glance.base.timing import CLOCK, WALL
-from haptic_glance.look.points import METHODS
+from haptic_glance.look.points.methods import is_method, method_named
 from stages.charts.results import NotRun, Results
 
 from .drawing import CYCLE, INK, MARKERS, SETTINGS, Spot, colours, label, place_names, plain_logarithm, plt
@@ -262,7 +262,7 @@ def attention_seconds(results: Results, dataset: str | None = None) -> dict[str,
 
 def _maps(method: str, views: float, channels: pd.Series) -> float:
     """Seconds of the pictures and maps that a method reads; 0 for one that reads none (blind touch)."""
-    own_channels = METHODS[method].channels if method in METHODS else ()
+    own_channels = method_named(method).channels if is_method(method) else ()
     missing = [name for name in own_channels if name not in channels]
     if missing:
         raise NotRun(f"no seconds of the channels {', '.join(missing)}", "conspicuity")

@@ -45,7 +45,7 @@ METHODS = {  # sampling of the thesis: its method; enhanced visual attention is 
     "blind_touch": "random", "hks": "heat_kernel", "salient_points": "salient_points",
     "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": EQUAL,
 }  # fmt: skip
-BLIND = ("random", *(f"random_{draw}" for draw in range(2, 6)))  # draws of blind touch
+BLIND = ("random", *(f"random+{draw}" for draw in range(2, 6)))  # draws of blind touch
 # The mean share of six objects that two random sets have in common: a deck is dealt again when it is used up.
 COMMON = {SETS_4_2[0]: 0.0859, SETS_4_2[1]: 0.0270, SETS_4_2[2]: 0.0}
 

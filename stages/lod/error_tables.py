@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from haptic_glance.look.points.methods import METHODS, SUMMED
+from haptic_glance.look.points.methods import METHODS, PLUS, SUMS
 from haptic_glance.look.weights.weights import GLANCE
 from stages.charts.datasets import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, dataset_text
 from stages.charts.drawing import WAYS, label
@@ -63,7 +63,8 @@ def paired_cells(
     times = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
     rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
-    asked = rows["method"].isin(list(methods)) if methods is not None else ~rows["method"].str.contains(SUMMED)
+    sums = rows["method"].str.contains(PLUS + SUMS, regex=False)
+    asked = rows["method"].isin(list(methods)) if methods is not None else ~sums
     rows = rows[asked]
     rows = rows.merge(times, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
     methods_met = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
@@ -128,7 +129,7 @@ COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
 # T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
 RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
 PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM, learned from other objects than the simplified
-PRINTED = ("guided_ed_seen", "guided_ssim_seen", "svm_object")  # the same, learned from that object too, as printed
+PRINTED = ("guided_ed+seen", "guided_ssim+seen", "svm+object")  # the same, learned from that object too, as printed
 ADAPTIVE = tuple(f"{name}-adaptive" for name in PROPOSED)
 PRINTED_ADAPTIVE = tuple(f"{name}-adaptive" for name in PRINTED)
 UNSEEN = dict(zip(PRINTED + PRINTED_ADAPTIVE, PROPOSED + ADAPTIVE, strict=True))
@@ -151,7 +152,7 @@ def fixed(method: str) -> bool:
 
 def is_drawn(method: str) -> bool:
     """Whether a method is one of T figure 3.5, or beside these: fixed neighbourhoods, and maps that are no sums."""
-    return fixed(method) and SUMMED not in method
+    return fixed(method) and PLUS + SUMS not in method
 
 
 def short(method: str) -> str:

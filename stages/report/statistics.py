@@ -201,7 +201,7 @@ def _by_method(results: Measurements, claim: Claim, metric: str, column: str) ->
 
 def _keeps_rings(method: str) -> bool:
     """Whether a method keeps points with neighbourhoods of fixed size, found on maps that are no sums."""
-    return method not in UNRANKED and method.rpartition("-")[2] not in WAYS and "Summed" not in method
+    return method not in UNRANKED and method.rpartition("-")[2] not in WAYS and "+sums" not in method
 
 
 def unlike_more_accurate(results: Measurements, claim: Claim) -> pd.Series:

@@ -87,7 +87,7 @@ MEANS = {
     "cc": "CC", "sim": "SIM", "kl": "KL", COUNTED: "points", "fne@0.05": "FNE", "fpe@0.05": "FPE", "wme@0.05": "WME",
 }  # fmt: skip
 NAMED = 5  # methods that a sentence names at most
-PEEKED = {"guided_ssim": "guided_ssim_seen", "guided_ed": "guided_ed_seen", "svm": "svm_object"}
+PEEKED = {"guided_ssim": "guided_ssim+seen", "guided_ed": "guided_ed+seen", "svm": "svm+object"}
 
 
 def against_gaze(results: Results) -> Table:

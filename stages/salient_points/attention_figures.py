@@ -40,7 +40,7 @@ from stages.weights.ground_truth import gts_map, visible_points
 COLOUR = ("color", "dkl")  # the thesis's RGB and DKL features
 KEPT = 0.3  # of the object's pixels: the thesis retains 30 % of the highest values (T3.1.1)
 FADED = 0.78  # of what lies outside of the regions
-MACHINES = ("svm_object", "svm")  # the thesis's, one for the object itself; and one that has not seen it
+MACHINES = ("svm+object", "svm")  # the thesis's, one for the object itself; and one that has not seen it
 MARGIN = 4  # pixels kept round the object
 RED = "#D81B1B"
 

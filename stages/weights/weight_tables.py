@@ -22,7 +22,7 @@ from stages.charts.tables import (
 from stages.engine.statistics import interval
 
 MEAN = ["mean", "low", "high"]
-KINDS = {"guided_ssim": "SSIM", "guided_ed": "1 − ED", "guided_ssim_object": "SSIM, object"}
+KINDS = {"guided_ssim": "SSIM", "guided_ed": "1 − ED", "guided_ssim+object": "SSIM, object"}
 PRINTED = {"ssim": "guided_ssim", "one_minus_ed": "guided_ed"}  # columns of the thesis's weights
 TRAINING = {"one_for_all": "one for all", "one_per_object": "one per object", "one_per_viewpoint": "one per viewpoint"}
 VALIDATION = {"pixels": "random pixels", "views": "whole views", "objects": "whole objects"}

@@ -88,7 +88,7 @@ def test_backgrounds(settings, agreement):
 
 def test_table_3_2(settings, agreement):
     """T3.2.9, table 3.2, figures 3.22 to 3.26: colours, methods, selection, faces; four to eight views."""
-    guided = ("guided_ed_seen", "guided_ssim_seen", "svm_object")
+    guided = ("guided_ed+seen", "guided_ssim+seen", "svm+object")
     printed = ON_BLACK | QSLIM | {
         "meshes.colours": "palette",
         "views.material": lambda material: min(material.specular if hasattr(material, "specular")

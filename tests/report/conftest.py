@@ -124,7 +124,7 @@ def judged(offsets=None):
     """Rows of agreement with a known truth: each mesh adds its own level to every method, and a little noise."""
     means = {
         "glance": 1.5, "itti": 0.2, "VisAtt": 0.2, "VisAttAll": 0.2, "equal": 0.3, "guided_ssim": 0.1,
-        "guided_ed": 0.5, "thesis_ssim": 0.3, "facing_viewer": 0.7, "svm_object": 0.9, "human": 2.0,
+        "guided_ed": 0.5, "thesis_ssim": 0.3, "facing_viewer": 0.7, "svm+object": 0.9, "human": 2.0,
     }  # fmt: skip
     random, rows = np.random.default_rng(0), []
     for name, level in zip("abcdef", np.linspace(-0.5, 0.5, 6), strict=True):
@@ -146,7 +146,7 @@ def learned_weights(count=6, **more):
     values, rows = np.random.default_rng(1).random((count, len(CHANNELS))), []
     for channel, value in more.items():
         values[:, list(CHANNELS).index(channel)] += value
-    for method in ("guided_ssim", "guided_ed", "guided_ssim_object"):
+    for method in ("guided_ssim", "guided_ed", "guided_ssim+object"):
         for fold in range(-1, count):
             mean = np.delete(values, fold, axis=0).mean(axis=0) if fold >= 0 else values.mean(axis=0)
             left_out = "abcdef"[fold] if fold >= 0 else ""

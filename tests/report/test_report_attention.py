@@ -72,7 +72,7 @@ def test_sentences_follow_from_the_numbers(marked, small):
 def test_table_of_gaze_stands_without_our_method_or_the_ceiling(marked, small):
     rows = small.judged()
     table = table_of("attention_gaze", marked(rows[~rows["method"].isin(["glance", "human"])]))
-    assert table.frame["method"].iloc[0] == "svm_object"
+    assert table.frame["method"].iloc[0] == "svm+object"
     assert (table.shown["ours − it, NSS"] == "–").all()
 
 

@@ -188,7 +188,7 @@ def test_random_points_are_uniform_over_the_area():
 def test_random_points_depend_on_seed_name_and_number_of_the_draw_alone(ball):
     draws = {
         key: find_points(ball, key[0], 20, seed=key[1], name=key[2]).tolist()
-        for key in (("random", 3, "duck"), ("random", 3, "cup"), ("random", 4, "duck"), ("random_2", 3, "duck"))
+        for key in (("random", 3, "duck"), ("random", 3, "cup"), ("random", 4, "duck"), ("random+2", 3, "duck"))
     }
     assert len(set(map(tuple, draws.values()))) == 4
     assert find_points(ball, "random", 20, seed=3, name="duck").tolist() == draws["random", 3, "duck"]

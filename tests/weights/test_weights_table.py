@@ -77,15 +77,15 @@ def test_an_object_with_ground_truth_takes_weights_that_have_not_seen_it(table):
     (table / "ground_truth/hand.npz").touch()
     hand, elephant = (read_learned_weights(table, name, None).weights for name in ("hand", "elephant"))
     assert hand["guided_ssim"] == pytest.approx({"edge": 0.9, "color": 0.2})  # of the cup and the duck
-    assert hand["guided_ssim_seen"]["color"] > 0.3  # the hand itself says 0.85
-    assert elephant["guided_ssim"] == hand["guided_ssim_seen"]
+    assert hand["guided_ssim+seen"]["color"] > 0.3  # the hand itself says 0.85
+    assert elephant["guided_ssim"] == hand["guided_ssim+seen"]
     assert "glance_deep" not in hand and elephant["glance_deep"] == DEEP["glance_deep"]
 
 
 def test_the_nearer_channel_and_the_likelier_feature_win(table):
     learned = read_learned_weights(table, "hand", None).weights
     assert learned["guided_ed"] == pytest.approx({"edge": 1, "color": 0})
-    assert learned["guided_ssim_object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
+    assert learned["guided_ssim+object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
     for method, features in GLANCES.items():
         assert list(learned[method]) == list(features)
         assert learned[method].pop("seen") == pytest.approx(1, abs=0.3)
@@ -102,7 +102,7 @@ def test_the_glance_keeps_its_published_weights_where_the_ground_truth_is_no_gaz
 def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_it(only_cup):
     assert {row["left_out"] for row in learned_weight_rows({"cup": TRAINING_DATA["cup"]})} == {""}
     cup = only_cup("cup", "fixations")
-    assert not {"guided_ed", *GLANCES} & set(cup) and {"guided_ed_seen", "equal"} <= set(cup)
+    assert not {"guided_ed", *GLANCES} & set(cup) and {"guided_ed+seen", "equal"} <= set(cup)
     assert {*GLANCES} <= set(only_cup("duck", "fixations"))
     assert {*GLANCES} <= set(only_cup("cup", "gaze"))  # published weights have not seen it
 

@@ -25,7 +25,7 @@ from ..weights import LearnedWeights
 from ..weights import weights as published
 from ..weights.weights import GLANCE
 from .glance import SampledDetector
-from .methods import MAIN, METHODS, SVMS, meant, method_for, method_named, split_runnable
+from .methods import MAIN, METHODS, is_method, meant, method_for, method_named, split_runnable
 from .options import RADIUS, Detection, HasSaliency, Options, tied
 
 VIEW_SIZE = (900, 1200)  # rows, columns of the views; T3.2.6
@@ -285,7 +285,7 @@ def _chosen(viewpoints):
 def _learned(method, weights):
     """The published weights, those of the method replaced by the caller's."""
     required, learned = method_named(method).required_weights, LearnedWeights()
-    if required in SVMS:
+    if required.startswith("svm"):
         raise ValueError(f"method {method!r} needs an SVM that the stage `weights` trains: run the pipeline for it")
     if weights is None:
         if required not in {None, *learned.weights}:
@@ -313,7 +313,7 @@ def check_name(method: str, first: Sequence[str] = (), points_alone: bool = Fals
 
     first: names that the command adds. points_alone: also methods that place points and have no saliency.
     """
-    runs, learned = split_runnable(METHODS, LearnedWeights())
+    runs, _ = split_runnable(METHODS, LearnedWeights())
     runs.remove("random")  # which no command needs: touch has --at random
     usable = [*first, *(name for name in runs if points_alone or hasattr(METHODS[name], "saliency"))]
     if method in usable:
@@ -321,7 +321,8 @@ def check_name(method: str, first: Sequence[str] = (), points_alone: bool = Fals
     spelling = method.lower().replace("-", "_").replace(" ", "_")
     hint = meant(spelling, usable)
     reason = f"there is no such method{hint}"
-    if method in METHODS:
-        reason = "its weights are learned in the pipeline" if method in learned else "it has no saliency"
-    advice = "" if hint and method not in METHODS else f"; choose one of {', '.join([*first, *MAIN])}"
+    if is_method(method):
+        learned = method_named(method).required_weights
+        reason = "its weights are learned in the pipeline" if learned else "it has no saliency"
+    advice = "" if hint and not is_method(method) else f"; choose one of {', '.join([*first, *MAIN])}"
     raise ValueError(f"--method {method}: {reason}{advice}")

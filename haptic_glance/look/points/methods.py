@@ -34,43 +34,27 @@ from .glance import GlanceDetector, deep_features
 from .options import Detection, Detector, Options
 from .recurring_imprints import TouchDetector
 
-SUMMED = "Summed"  # behind the name of a method: with the sums of T eq. 3.1 to 3.6
+PLUS = "+"  # between the name of a method and its option
+SUMS = "sums"  # the option: with the sums of T eq. 3.1 to 3.6, in place of means
 SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5
-WEIGHTED = (
-    "equal",
-    "thesis_ssim",
-    "thesis_ed",
-    "guided_ssim",
-    "guided_ed",
-    "guided_ssim_object",
-    "guided_ssim_seen",
-    "guided_ed_seen",
-)
-SVMS = ("svm", "svm_nearest", "svm_seen", "svm_object", "svm_viewpoint")  # T3.2.3
+WEIGHTED = ("equal", "thesis_ssim", "thesis_ed", "guided_ssim", "guided_ed")
 PUBLISHED = {
     "mesh_saliency": mesh_saliency, "salient_points": salient_points, "sift": sift, "harris": harris,
     "corners": corners, "heat_kernel": heat_kernel, "leifman": leifman, "song": song, "tasse": tasse,
 }  # fmt: skip
+MAPS = COMBINATIONS | WITHOUT_COLOUR
 
 METHODS: dict[str, Detector] = {
     **{name: GlanceDetector(name) for name in GLANCES},
     **{name: GlanceDetector(name, deep_features) for name in DEEP},
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),
-    **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
-    **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
-    **{
-        f"{name}{SUMMED}": SummedDetector(channels)
-        for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()
-        if name != "Curv"  # a channel alone has the same points
-    },
-    f"VisAttCurvP{SUMMED}": MergedDetector(SummedDetector(CLASSICAL), FusedDetector(COMBINATIONS["Curv"])),
-    f"VisAttSymP{SUMMED}": MergedDetector(SummedDetector(CLASSICAL), FusedDetector(["symmetry"])),
+    **{name: FusedDetector(channels) for name, channels in MAPS.items()},
     "VisAttCurvP": MergedDetector(FusedDetector(CLASSICAL), FusedDetector(COMBINATIONS["Curv"])),
     "VisAttSymP": MergedDetector(FusedDetector(CLASSICAL), FusedDetector(["symmetry"])),
     **{name: FusedDetector([channel]) for name, channel in SYMMETRIES.items()},
     **{name: WeightedDetector(name, CHANNELS) for name in WEIGHTED},
-    **{name: SvmDetector(name, CHANNELS) for name in SVMS},
+    "svm": SvmDetector("svm", CHANNELS),
     **{name: SurfaceDetector(paper.saliency, paper.points) for name, paper in PUBLISHED.items()},
     "spectral_residual": FusedDetector(["spectral_residual"]),
     "fine_grained": FusedDetector(["fine_grained"]),
@@ -79,6 +63,22 @@ METHODS: dict[str, Detector] = {
     "height": SurfaceDetector(height),
     "centre_distance": SurfaceDetector(centre_distance),
     "facing_viewer": SurfaceDetector(facing_viewer),
+}
+
+# Options of methods, by name: another draw of random points; sums of maps (a single channel has the same points); and
+# what weights were learned from: the object's own pixels, all objects with the judged one, the nearest, or each view.
+OPTIONS: dict[str, dict[str, Detector]] = {
+    "random": {str(draw): RandomPoints(draw) for draw in range(2, 6)},
+    **{name: {SUMS: SummedDetector(channels)} for name, channels in MAPS.items() if name != "Curv"},
+    "VisAttCurvP": {SUMS: MergedDetector(SummedDetector(CLASSICAL), FusedDetector(COMBINATIONS["Curv"]))},
+    "VisAttSymP": {SUMS: MergedDetector(SummedDetector(CLASSICAL), FusedDetector(["symmetry"]))},
+    **{
+        name: {option: WeightedDetector(f"{name}{PLUS}{option}", CHANNELS) for option in options}
+        for name, options in (("guided_ssim", ("object", "seen")), ("guided_ed", ("seen",)))
+    },
+    "svm": {
+        option: SvmDetector(f"svm{PLUS}{option}", CHANNELS) for option in ("nearest", "seen", "object", "viewpoint")
+    },  # T3.2.3
 }
 
 PURPOSES = {"look": GLANCE, "touch": "touch"}  # what places are for: the method that finds them
@@ -93,11 +93,24 @@ MEANT = {  # in other words, and in the thesis's
 
 
 def method_named(method: str) -> Detector:
-    """The entry of METHODS; ValueError with the nearest name for an unknown one."""
-    if method not in METHODS:
-        hint = meant(str(method).lower(), list(METHODS))
+    """The entry of METHODS, or of OPTIONS for a name with an option, such as `VisAttAll+sums` or `random+2`.
+
+    Raises ValueError with the nearest name for an unknown one.
+    """
+    name, plus, option = str(method).partition(PLUS)
+    if name not in METHODS:
+        hint = meant(name.lower(), list(METHODS))
         raise ValueError(f"unknown method {method!r}{hint or ': choose one of ' + ', '.join(MAIN)}")
-    return METHODS[method]
+    options = OPTIONS.get(name, {})
+    if plus and option not in options:
+        raise ValueError(f"{name} has no option {option!r}: it has {', '.join(options) or 'none'}")
+    return options[option] if plus else METHODS[name]
+
+
+def is_method(method: str) -> bool:
+    """Whether `method_named` knows a name."""
+    name, plus, option = method.partition(PLUS)
+    return name in METHODS and (not plus or option in OPTIONS.get(name, {}))
 
 
 def method_for(purpose: str, method: str | None = None) -> str:

@@ -106,7 +106,7 @@ def weights(method: str) -> dict[str, float]:
     return dict(METHODS[method])
 
 
-SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
+SEEN_SUFFIX = "+seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
 
 
 def published_weights() -> dict[str, dict[str, float]]:
@@ -127,8 +127,8 @@ def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWe
 
     For an object with ground truth, learned weights are those that leave it out; with SEEN_SUFFIX in the name, those
     learned from all objects. If it is the only object with ground truth, weights that leave it out do not exist, and
-    the methods are missing. The SVMs are `svm`, trained on all other objects; `svm_nearest`, that of the other object
-    nearest in convexity; and, for an object with ground truth, `svm_object` and `svm_viewpoint`, trained on the object
+    the methods are missing. The SVMs are `svm`, trained on all other objects; `svm+nearest`, that of the other object
+    nearest in convexity; and, for an object with ground truth, `svm+object` and `svm+viewpoint`, trained on the object
     itself and on each of its views (T3.2.3).
     """
     table = read_table(Path(folder) / "weights.csv").fillna({"left_out": ALL})
@@ -161,14 +161,14 @@ def _svms(folder, name, mesh):
     path = folder / "svm" / f"{name}.npz"
     others = {other: value for other, value in convexities.items() if other != name}
     svms = {"svm": read_models(path, "without") if path.exists() else read_models(folder / "svm.npz", "all")}
-    svms["svm_seen"] = read_models(folder / "svm.npz", "all")
+    svms["svm+seen"] = read_models(folder / "svm.npz", "all")
     if others:  # their names are texts, which pandas does not tell
-        svms["svm_nearest"] = read_models(
+        svms["svm+nearest"] = read_models(
             folder / "svm" / f"{nearest_convexity(convexity(mesh), others)}.npz",  # pyright: ignore[reportArgumentType]
             "object",
         )
-    svms["svm_object"] = read_models(path, "object")
-    svms["svm_viewpoint"] = read_models(path, "view")
+    svms["svm+object"] = read_models(path, "object")
+    svms["svm+viewpoint"] = read_models(path, "view")
     return {kind: models for kind, models in svms.items() if models}
 
 
@@ -213,7 +213,7 @@ def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list
         learned = {
             "guided_ed": average([per_object[name][0] for name in names]),
             "guided_ssim": average([per_object[name][1] for name in names]),
-            "guided_ssim_object": average([per_object[name][2] for name in names]),
+            "guided_ssim+object": average([per_object[name][2] for name in names]),
             **{method: _glance([training_data[name] for name in names], method) for method in GLANCES},
         }
         rows += [
