@@ -28,7 +28,6 @@ DATASETS = {
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "household_denoised": "household, denoised",
-    "schunk": "recorded hand with arrays",
 }  # fmt: skip
 
 

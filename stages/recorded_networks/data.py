@@ -25,12 +25,10 @@ from stages.recorded.biotac_grasps import Model, publisher_split_rows, recogniti
 from stages.recorded.pressure_images import describe
 from stages.recorded.splits import SPLITS, split_number
 from stages.transfer.recorded_images import (
-    BIGS,
     Recorded,
     grasp_images,
     pressure_images,
     read_bigs,
-    read_schunk,
     read_vitac,
     read_vt60,
 )
@@ -74,15 +72,9 @@ def _bigs(path: Path) -> dict[str, Recording]:
     return {name: Recording(touches, BY_OBJECT, False) for name, touches in kinds.items()}
 
 
-def _schunk(path: Path) -> dict[str, Recording]:
-    cells = {"schunk": None, "schunk_instant": (27, 6), "schunk_coarse": BIGS}
-    kinds = {name: read_schunk(path, number) for name, number in cells.items()}
-    return {name: Recording(touches, BY_OBJECT, False) for name, touches in kinds.items()}
-
-
 # {kind of recording: reader of {what is recognised: Recording}}
 SOURCES: dict[str, Callable[[Path], dict[str, Recording]]] = {
-    "pressure_images": _pressure, "biotac_grasps": _grasps, "bigs": _bigs, "schunk": _schunk,
+    "pressure_images": _pressure, "biotac_grasps": _grasps, "bigs": _bigs,
     "vitac": lambda path: {"vitac": Recording(read_vitac(path), BY_OBJECT, True)},
     "vt60": lambda path: {"vt60": Recording(read_vt60(path), BY_OBJECT, True)},
 }  # fmt: skip

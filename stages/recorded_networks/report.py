@@ -40,9 +40,6 @@ DATA = {
     "vitac": "ViTac (GelSight)",
     "bigs": "BiGS (Barrett hand)",
     "bigs_instant": "BiGS, one reading of 7 x 3 cells",
-    "schunk": "hand with arrays, 5 objects, 294 readings as one picture",
-    "schunk_instant": "hand with arrays, 5 objects, one reading of 27 x 6 cells",
-    "schunk_coarse": "hand with arrays, 5 objects, one reading of 7 x 3 cells",
 }
 SPLITS = {
     Split.RANDOM: "touches at random",

@@ -9,13 +9,6 @@ electrodes 1 to 19 in columns separated by commas. Other folders than `success`,
 the thesis. To get it: download the data set from the authors' page named in the paper, and write the electrode readings
 of each finger of each grasp into such a table.
 
-`read_schunk`: grasps by a Schunk hand with two pressure arrays on each of three fingers, over time: as BiGS, with more
-cells. Data: Drimus, Kootstra, Bilberg, Kragic, Design of a flexible tactile sensor for classification of rigid and
-deformable objects, Robotics and Autonomous Systems 62(1), 2014; in the form that Madry, Bo, Kragic, Fox, ST-HMP:
-unsupervised spatio-temporal feature learning for tactile data, ICRA 2014, publish with their code (GitHub:
-mmadry/st-hmp). Layout: `OBJECT/grasp-NUMBER.mat` with TS, six arrays (rows, 6, samples): the proximal (14 rows) and the
-distal one (13 rows) of each finger in turn.
-
 `grasp_images`: grasps by BioTac SP fingertips as colour images, one finger per channel, similar to BiGS. BiGS has a
 series of 700 samples per finger, BTS3 one instant of 24 electrodes. So the electrodes are arranged as on the finger and
 the gaps are filled. As there, three parts make the three colours.
@@ -53,16 +46,13 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from PIL import Image
 from scipy.interpolate import griddata
 
 from haptic_glance.base.files import open_picture
-from haptic_glance.base.lazy import cv2
-from stages.classification.touch_readers import Grasps, open_root
-from stages.meshes.sources import read_mat
+from stages.classification.touch_readers import Grasps
 
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp")
 SIZE = 224  # pixels a side to which camera pictures are resized: the input size of the networks
@@ -197,51 +187,6 @@ def _changes(file):
             f"{file}: {lines} lines of {columns} numbers, all finite; expected is {BIGS_LAYOUT}, or remove it"
         )
     return np.moveaxis(electrode_grid(readings[:SAMPLES] - readings[0]), 0, 2)
-
-
-SCHUNK_LAYOUT = "the grasps of st-hmp: OBJECT/grasp-NUMBER.mat, in each TS, six arrays of 14 or 13 x 6 cells over time"
-SCHUNK_FINGERS = 3
-SCHUNK_SAMPLES = 294  # of the 324 or more of each grasp: 27 x 6 cells x 294 are 126 x 126 x 3 numbers
-BIGS = (7, 3)  # cells of BiGS's fingertip
-
-
-def read_schunk(path: str | Path, cells: tuple[int, int] | None = None) -> Recorded:
-    """The Recorded of one picture per finger of a grasp; groups: the grasp, OBJECT/FILE.
-
-    path: the zip file, or a folder with the same in it. Without `cells`, 126 x 126 x 3: the first 294 readings of a
-    finger's 27 x 6 cells minus the first, reshaped as BiGS is. With cells (rows, columns): the strongest instant alone,
-    its cells averaged to so many. Raises ValueError that names the file and the remedy.
-    """
-    root, series, labels, groups = open_root(path, SCHUNK_LAYOUT), [], [], []
-    names = sorted(entry.name for entry in root.iterdir() if entry.is_dir() and not entry.name.startswith("_"))
-    for label, name in enumerate(names):
-        for grasp in sorted((root / name).iterdir(), key=lambda file: file.name):
-            series += fingers(grasp)
-            labels += [label] * SCHUNK_FINGERS
-            groups += [f"{name}/{grasp.name}"] * SCHUNK_FINGERS
-    if not series:
-        raise ValueError(f"{path} holds no grasp; expected is {SCHUNK_LAYOUT}")
-    grey = as_grey(np.stack(series))
-    if cells is None:
-        pictures = [colour_image(entry) for entry in grey]
-    else:
-        pictures = [cv2.resize(strongest_instant(entry), cells[::-1], interpolation=cv2.INTER_AREA) for entry in grey]
-    return Recorded(np.stack(pictures), np.array(labels), names, np.array(groups))
-
-
-def fingers(file: Any) -> list[np.ndarray]:
-    """(27, 6, 294) f4 of each finger, the distal array above the proximal: how its readings differ from the first."""
-    try:
-        (cells,) = read_mat(file.read_bytes(), ["TS"])
-        arrays = [np.asarray(array, np.float32) for array in cells.ravel()]
-        pairs = [np.concatenate([distal, proximal]) for proximal, distal in zip(arrays[::2], arrays[1::2], strict=True)]
-        changes = [(array - array[..., :1])[..., :SCHUNK_SAMPLES] for array in pairs]
-    except (ValueError, TypeError, IndexError) as error:
-        raise ValueError(f"{file} is not such a grasp ({error}); expected is {SCHUNK_LAYOUT}") from None
-    shapes = [array.shape for array in changes]
-    if shapes != [(27, 6, SCHUNK_SAMPLES)] * SCHUNK_FINGERS or not np.isfinite(changes).all():
-        raise ValueError(f"{file}: fingers of {shapes}, not three of {(27, 6, SCHUNK_SAMPLES)}, all finite; remove it")
-    return changes
 
 
 CELLS = (12, 11)

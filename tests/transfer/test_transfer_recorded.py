@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from scipy.io import savemat
 
 from stages.classification.touch_readers import Grasps, read_grasps
 from stages.transfer.recorded_images import (
@@ -21,7 +20,6 @@ from stages.transfer.recorded_images import (
     pressure_images,
     read_bigs,
     read_picture,
-    read_schunk,
     read_vitac,
     read_vt60,
     strongest_instant,
@@ -168,45 +166,6 @@ def test_bigs_names_what_is_missing(bigs):
     (bigs / "ball").rename(bigs / "tube")
     with pytest.raises(ValueError, match="ball/success is not a folder"):
         read_bigs(bigs)
-
-
-@pytest.fixture
-def schunk(tmp_path):
-    """Two objects, two grasps each: the distal array of each finger is pressed in its first row, from sample 10 on."""
-    for name in ("ball", "duck"):
-        for grasp in range(2):
-            arrays = np.empty((1, 6), object)
-            for finger in range(3):
-                arrays[0, 2 * finger] = np.full((14, 6, 300), 5.0)
-                arrays[0, 2 * finger + 1] = np.full((13, 6, 300), 7.0)
-                arrays[0, 2 * finger + 1][0, :, 10:] += 10 * (finger + 1)
-            (tmp_path / name).mkdir(exist_ok=True)
-            savemat(tmp_path / name / f"grasp-{grasp}.mat", {"TS": arrays})
-    (tmp_path / "_setup").mkdir()
-    return tmp_path
-
-
-def test_schunk_has_a_picture_a_finger_of_all_readings_or_of_one(schunk):
-    whole, instant, coarse = (read_schunk(schunk, cells) for cells in (None, (27, 6), (7, 3)))
-    assert whole.images.shape == (12, 126, 126, 3) and instant.images.shape == (12, 27, 6)
-    assert coarse.images.shape == (12, 7, 3)
-    assert whole.classes == ["ball", "duck"] and whole.groups.tolist() == coarse.groups.tolist()
-    assert whole.groups[:4].tolist() == ["ball/grasp-0.mat"] * 3 + ["ball/grasp-1.mat"]
-    assert (instant.images[:3, 0] > 128).all() and (instant.images[:, 1:] == 128).all()  # the distal array comes first
-    assert (np.diff(instant.images[:3, 0, 0].astype(int)) > 0).all()  # fingers in their order, on one scale
-    assert (coarse.images[:3, 0] > 128).all() and (coarse.images[:, 1:] == 128).all()
-
-
-def test_schunk_names_a_grasp_that_does_not_fit(schunk):
-    bad = schunk / "duck/grasp-1.mat"
-    savemat(bad, {"TS": np.zeros((3, 3))})
-    with pytest.raises(ValueError, match="duck/grasp-1.mat"):
-        read_schunk(schunk)
-    bad.write_text("no grasp")
-    with pytest.raises(ValueError, match="duck/grasp-1.mat is not such a grasp"):
-        read_schunk(schunk)
-    with pytest.raises(ValueError, match="nowhere does not exist: give the path of the grasps of st-hmp"):
-        read_schunk(schunk / "nowhere")
 
 
 def test_reshape_is_matlabs():
