@@ -47,11 +47,11 @@ from stages.lod.error_tables import (  # fmt: skip
     UNITS,
     WEIGHTED,
     by_object,
-    data_sets,
     face_counts,
     is_drawn,
     ordered,
     paired_cells,
+    rows_by_set,
     short,
     size,
     target_text,
@@ -70,8 +70,7 @@ FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes a
 
 def figure_3_4(results: Results) -> Figure:
     """Metro and SSIM error by combination of channels, a panel for each of up to three face counts."""
-    dataset = results.printed(SECTION_3_1, "lod")
-    rows = paired_cells(results, methods=COMBINATIONS, dataset=dataset)
+    rows = paired_cells(results.rows("lod", results.printed(SECTION_3_1, "lod")), methods=COMBINATIONS)
     methods, targets = [name for name in COMBINATIONS if name in set(rows["method"])], face_counts(rows)[:3]
     if CLASSICAL not in methods or len(methods) < 2 or not targets:
         raise NotRun(f"no face count that all of two combinations reach on {FEWEST} objects", "lod", runnable=False)
@@ -89,8 +88,8 @@ def figure_3_4(results: Results) -> Figure:
 
 def figure_3_5(results: Results) -> Figure:
     """Six panels, a row each method: distances, the same by face count, errors as seen, number of points."""
-    dataset = results.printed(SECTION_3_1, "lod")
-    rows = paired_cells(results, methods=filter(is_drawn, set(results.rows("lod", dataset)["method"])), dataset=dataset)
+    rows = results.rows("lod", results.printed(SECTION_3_1, "lod"))
+    rows = paired_cells(rows, methods=filter(is_drawn, set(rows["method"])))
     methods, targets = ordered(set(rows["method"])), face_counts(rows)[:2]
     if PLAIN not in methods or len(methods) < 3:
         raise NotRun("no face count that plain QEM and two other methods reach", "lod", runnable=False)
@@ -114,7 +113,9 @@ def figure_3_5(results: Results) -> Figure:
 
 def figure_3_23(results: Results) -> Figure:
     """A row of panels for each data set, a panel for each error and face count, a box for each method."""
-    by_set = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, PROPOSED)}
+    by_set = {
+        dataset_text(name): paired_cells(rows, METRICS, BOXES) for name, rows in rows_by_set(results, PROPOSED).items()
+    }
     by_set = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in by_set.items()}
     groups = {name: rows for name, rows in by_set.items() if PLAIN in set(rows["method"])}
     require_rows(
@@ -212,7 +213,7 @@ DRAWN = (*METRICS, "salient_error")
 
 def simplification(results: Results) -> Figure:
     """Three errors against cost as a ratio to plain QEM, with a front for each share of the faces."""
-    rows = paired_cells(results, DRAWN, METHODS)
+    rows = paired_cells(results.rows("lod"), DRAWN, METHODS)
     rows = rows[rows["target"].str.endswith("%")]
     if PLAIN not in set(rows["method"]):
         message = "no share of the faces that plain QEM and all methods reach on the same object"

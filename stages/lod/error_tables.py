@@ -4,7 +4,7 @@ Errors are compared on the same objects and targets only. The constants hold the
 short names and the order of T figure 3.6.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -32,34 +32,29 @@ METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
-def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
-    """The sets with meshes simplified by any of these methods (none: by any), those that are switched on first.
+def rows_by_set(results: Results, methods: Iterable[str] = ()) -> dict[str, pd.DataFrame]:
+    """{set: its rows of lod} where any of these methods (none: any) simplified meshes, those switched on first.
 
-    Without those of one method on other backgrounds.
+    Without the sets of one method on other backgrounds.
     """
-    names, methods = results.datasets("lod"), [*methods]
-    sets = [
-        name for name in names
-        if name not in (ON_GREY, ON_WHITE)
-        and (not methods or {*methods} & {*results.rows("lod", name)["method"].replace(UNSEEN)})
-    ]  # fmt: skip
-    if names and methods:
-        return require_rows(sets, f"no mesh was simplified by {either(methods)}", "lod", runnable=False)
-    return require_rows(sets, "no measurements of lod", "lod")
+    wanted = {*methods}
+    rows = {name: results.rows("lod", name) for name in results.datasets("lod") if name not in (ON_GREY, ON_WHITE)}
+    rows = {name: part for name, part in rows.items() if not wanted or wanted & {*part["method"].replace(UNSEEN)}}
+    message = f"no mesh was simplified by {either([*wanted])}" if wanted else "no measurements of lod"
+    return require_rows(rows, message, "lod", runnable=not wanted)
 
 
 def paired_cells(
-    results: Results, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None,
-    dataset: str | None = None, whole: bool = False,
-) -> pd.DataFrame:  # fmt: skip
+    rows: pd.DataFrame, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None, whole: bool = False
+) -> pd.DataFrame:
     """Rows of these errors and methods (None: of all but sums), only where all that were run reach the target.
 
     `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
     only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm. Methods that have
     learned from the object itself, as printed, have the names of those that have not.
     """
-    rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"])
-    rows["method"] = rows["method"].replace(UNSEEN)
+    rows = rows[rows["metric"].isin([*metrics, "faces"])].dropna(subset=["value"])
+    rows = rows.assign(method=rows["method"].replace(UNSEEN))
     times = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
     rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
@@ -182,7 +177,7 @@ def combinations(results: Results) -> Table:
         raise NotRun("the combinations of T3.1.5 are judged on the project's own data sets", OWN_FOLDER, runnable=False)
     averages, reached = [], ""
     with suppress(NotRun):  # the list is worth having without the errors
-        rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
+        rows = paired_cells(results.rows("lod", results.printed(SECTION_3_1, "lod")), methods=COMBINATIONS)
         averages = means(rows, ["method", "metric"])
         counts = rows.groupby("target")["item"].nunique()
         reached = ": " + ", ".join(f"{counts[name]} at {target_text(name)}" for name in sorted(counts.index, key=size))
@@ -199,7 +194,7 @@ def combinations(results: Results) -> Table:
 
 def every_detector(results: Results) -> Table:
     """Errors and numbers of points of every method, on every data set."""
-    by_set = {dataset_text(name): paired_cells(results, dataset=name) for name in data_sets(results)}
+    by_set = {dataset_text(name): paired_cells(rows) for name, rows in rows_by_set(results).items()}
     by_set = {data: rows for data, rows in by_set.items() if PLAIN in set(rows["method"])}
     require_rows(
         by_set, "no face count that plain QEM and all other methods reach on one object", "lod", runnable=False
@@ -239,11 +234,12 @@ def _methods_wide(frame: pd.DataFrame) -> pd.DataFrame:
 
 def table_3_2(results: Results) -> Table:
     """Errors by method and face count, on all objects and where nothing shrank, beside the thesis's."""
-    parts = require_rows(
-        list(_parts(results)), "no face count that all methods of the table reach", "lod", runnable=False
-    )
+    rows, thesis = rows_by_set(results, OF_T3_2), results.thesis("table_3_2_lod_errors")
+    parts = list(_parts(rows))
+    if not parts:
+        raise NotRun("no face count that all methods of the table reach", "lod", runnable=False)
     frame = compared(pd.concat(parts), ["data", "nothing_shrunk", "target", "method", "metric"])
-    thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
+    thesis = thesis.melt(["method", "faces"], METRICS, "metric", "thesis")
     thesis = thesis[:0] if results.own_meshes else thesis
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
@@ -264,12 +260,12 @@ def table_3_2(results: Results) -> Table:
     return Table(frame, text_table, words, best, answer)
 
 
-def _parts(results: Results) -> Iterator[pd.DataFrame]:
+def _parts(by_set: Mapping[str, pd.DataFrame]) -> Iterator[pd.DataFrame]:
     """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
-    for name in sorted(data_sets(results, OF_T3_2), key=lambda name: name != SECTION_3_2):
+    for name in sorted(by_set, key=lambda name: name != SECTION_3_2):
         total = np.inf
         for whole in (False, True):
-            rows = paired_cells(results, METRICS, GUIDED, name, whole)
+            rows = paired_cells(by_set[name], METRICS, GUIDED, whole)
             rows = rows[rows["target"].isin(face_counts(rows))]
             if 0 < len(rows) < total:
                 yield rows.assign(data=dataset_text(name), nothing_shrunk=whole)
