@@ -93,7 +93,7 @@ def test_the_page_needs_nothing_but_itself_and_claims_nothing(whole):
 
 def test_a_notebook_shows_a_mesh_in_its_own_colours_on_a_light_page_of_its_own(scans):
     mesh = load(scans / "pear.ply")
-    for values in (None, mesh.vertices[:, 2]):
+    for values in (None, mesh.vertices[:, 2] + 8):
         page = show(replace(mesh, colors=np.full((len(mesh.vertices), 3), 90, np.uint8)), values).html
         (item,) = page_data(page)["objects"]
         assert not re.search(r'(src|href)="', page) and len(page) < 60_000 and item["faces"] == 1280
@@ -102,6 +102,8 @@ def test_a_notebook_shows_a_mesh_in_its_own_colours_on_a_light_page_of_its_own(s
         assert (store[at : at + count].reshape(-1, 3).cumsum(axis=0, dtype=np.uint8) == 90).all()
         assert list(item["saliency"]) == ([] if values is None else ["values"]) and not item["ladders"]
     assert "tints" not in page_data(show(mesh).html)["objects"][0]
+    with pytest.raises(ValueError, match="finite and 0 or more"):
+        show(mesh, mesh.vertices[:, 2])
 
 
 def test_regions_of_the_page_have_names_of_their_own(whole):
