@@ -103,12 +103,6 @@ def test_a_downloaded_file_is_read_as_tensors_alone_and_by_its_hash(hub):
         weights.imagenet_state("mobilenet_v2", "download")
 
 
-@pytest.mark.parametrize(("network", "source"), [("lenet", "package"), ("mobilenet_v2", "mail")])
-def test_unknown_names_are_refused_with_the_known_ones(network, source):
-    with pytest.raises(ValueError, match="known: "):
-        weights.imagenet_state(network, source)
-
-
 FILES = {
     "mobilenet_v2": PACKAGE.filename,
     "efficientnet_lite0": weights.PACKAGES["efficientnet_lite0"].filename,

@@ -7,7 +7,7 @@ from skimage.metrics import structural_similarity
 
 from haptic_glance.base.similarity import local_moments
 from haptic_glance.lod import perceptual, picture_errors, simplify, take_pictures
-from haptic_glance.lod.perceptual import analyse, ssim_error
+from haptic_glance.lod.perceptual import ssim_error
 from haptic_glance.look.views import FOUR
 from haptic_glance.mesh.mesh import Mesh
 
@@ -28,13 +28,6 @@ def test_errors_are_means_over_the_views():
     errors = picture_errors(reference, other)
     assert errors == pytest.approx({name: (alone[0][name] + alone[1][name]) / 2 for name in errors}, rel=1e-12)
     assert alone[0]["ssim"] == ssim_error(reference[0], other[0]) > 0
-
-
-def test_pictures_made_once_give_the_same_error():
-    coarse, reference = simplify(RING, 300), take_pictures(RING, FOUR[:2], SMALL)
-    assert reference.shape == (2, *SMALL)
-    pictures = take_pictures(coarse, FOUR[:2], SMALL)
-    assert picture_errors(reference, pictures, analyse(reference)) == perceptual(RING, coarse, FOUR[:2], SMALL)
 
 
 @pytest.mark.parametrize("corner", [(2, 5), (38, 55), (58, 95)])

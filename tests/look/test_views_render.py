@@ -67,13 +67,6 @@ def test_plane_seen_from_behind_is_lit_too_and_edges_of_a_cube_stay_sharp(shapes
     assert set(np.unique(cube.rgb[cube.mask])) == {round(GREY * np.cos(np.radians(angle))) for angle in (30, 60)}
 
 
-def test_the_material_holds_for_one_picture_alone(shapes, renderer):
-    materials = (Material(), SHINY, Material(), SHINY)
-    pictures = [render(shapes["coloured"], FRONT, SIZE, renderer, material=material).rgb for material in materials]
-    assert (pictures[0] == pictures[2]).all() and (pictures[1] == pictures[3]).all()
-    assert (pictures[0] != pictures[1]).any()
-
-
 def test_the_order_of_vertices_does_not_matter(shapes, renderer):
     mesh = shapes["coloured"]
     new = np.random.default_rng(0).permutation(len(mesh.vertices))

@@ -2,7 +2,6 @@
 
 import argparse
 import warnings
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,7 +17,6 @@ from haptic_glance.lod.mesh_pictures import coloured
 from haptic_glance.lod.task import SimplificationTask, repaired
 from haptic_glance.mesh import as_mesh, clean, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import axis_named, to_z_up
-from haptic_glance.mesh.files import load_as_stated
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.plane import _submesh
@@ -31,12 +29,6 @@ from stages.meshes.sources import SOURCES
 BALL = trimesh.creation.icosphere(2)
 PLAIN = Texture(np.zeros((len(BALL.faces), 3, 2)), np.zeros(len(BALL.faces), int), (np.full((1, 1, 4), 255, np.uint8),))
 LYING = Mesh(BALL.vertices, BALL.faces[:, ::-1], None, PLAIN, "y")
-
-
-@pytest.mark.parametrize(("suffix", "up"), [("glb", "y"), ("stl", "z"), ("obj", "z"), ("ply", "z"), ("off", "z")])
-def test_a_file_gives_the_axis_of_its_format(tmp_path, suffix, up):
-    BALL.export(tmp_path / f"ball.{suffix}")
-    assert load(tmp_path / f"ball.{suffix}").up == up
 
 
 def _task():
@@ -73,14 +65,6 @@ def test_turned_upright_a_mesh_is_z_up_by_its_own_axis():
 
 ALL = "x, y, z, -x, -y, -z, auto, or a vector of three numbers that is not zero, such as 0,1,1"
 NONE = ["w", "", "--y", "0,0,0", "1,2", "1,2,3,4", "nan,0,1", (0, 1), (0, 1, "a"), None, 3, [[0, 0, 1]]]
-
-
-def test_the_name_of_any_axis_names_it_and_a_copy_of_its_mesh_is_equal():
-    random = np.random.default_rng(0)
-    for up in random.normal(size=(300, 3)) * 10 ** random.uniform(-8, 8, (300, 3)):
-        assert axis_named(axis_named(up)) == axis_named(up)
-    leaning = Mesh(BALL.vertices, BALL.faces, up=axis_named([-6.18488455e-03, 6.44222175e-06, -1.03488338e-04]))
-    assert replace(leaning) == leaning
 
 
 @pytest.mark.parametrize("up", NONE, ids=str)
@@ -126,25 +110,11 @@ def test_a_guess_is_told_from_what_a_file_says():
     assert upright_by(known, Path("a.stl"), "x") == (Mesh(cone.vertices, cone.faces, up="x"), "x up")
 
 
-@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off"])
-def test_a_file_of_ours_states_its_axis(tmp_path, suffix):
-    mesh = Mesh(BALL.vertices, BALL.faces, up="-0.48,0.6,0.64")
-    write_any(tmp_path / f"ball.{suffix}", mesh)
-    stated = load_as_stated(tmp_path / f"ball.{suffix}")
-    assert stated.up == mesh.up and upright_by(stated, Path(f"a.{suffix}"), None)[1].endswith("the file says")
-
-
 def command(argv):
     parser = argparse.ArgumentParser("prog")
     add_up(parser)
     parser.add_argument("--count", type=int)
     return parser.parse_args(argv)
-
-
-@pytest.mark.parametrize("text", ["-y", "-0.5,0,1", "Z", "auto"])
-def test_a_command_takes_every_axis(text):
-    assert command(["--up", text, "--count", "3"]).up == axis_named(text) == command([f"--up={text}"]).up
-    assert command(["--count", "3"]).up is None and command(["--up", text, "--count", "3"]).count == 3
 
 
 def test_a_command_refuses_what_is_no_axis(capsys):

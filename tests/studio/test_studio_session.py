@@ -17,26 +17,13 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job, Stopped
 from haptic_glance.studio.panels.levels import HARD, SOFT, Levels
 from haptic_glance.studio.panels.look import views_of
-from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
-from haptic_glance.studio.window import Window
 
 PATIENCE = 300  # seconds, on a machine with other work
 
 
 def quiet(share, text):
     """Reports nothing."""
-
-
-def test_sessions_share_nothing_and_another_mesh_leaves_nothing_of_the_last_one(mesh):
-    session, other = Session(), Session()
-    with pytest.raises(ValueError, match="open or upload one"):
-        session.look()
-    session.put(Specimen(mesh, "one"))
-    session.method, session.kept["Touch"] = "height", "something"
-    assert other.specimen is None and other.method == "glance" and other.kept == {}
-    session.put(Specimen(mesh, "two"))
-    assert session.kept == {} and session.on_table.name == "two"
 
 
 @pytest.mark.slow
@@ -214,40 +201,6 @@ def test_the_twelve_views_show_the_object(mesh):
     assert image.shape == (4 * 150, 3 * 200, 3) and image.dtype == np.uint8
     tiles = image.reshape(4, 150, 3, 200, 3).swapaxes(1, 2).reshape(12, -1, 3)
     assert all((tile != 255).any(axis=1).mean() > 0.2 for tile in tiles)
-
-
-class Shown:
-    """A window with one panel, which note what is asked of them, and a scene of names."""
-
-    title = "Touch"
-
-    def __init__(self):
-        self.jobs, self.session, self.asked, self.panels, self.panel = {}, Session(), [], [self], self
-        self.scene = self.opening = self
-
-    def run(self, title, work):
-        work()
-
-    def clear(self, *names):
-        self.asked.append("clear")
-
-    def named(self, specimen):
-        self.asked.append("name")
-
-    def on_hide(self):
-        self.asked.append("hide")
-
-    def on_mesh(self):
-        self.asked.append(f"mesh {self.session.on_table.name}")
-
-    def on_show(self):
-        self.asked.append("show")
-
-
-def test_another_mesh_takes_the_drawings_of_the_panel_away(mesh):
-    window = Shown()
-    Window.put(window, Specimen(mesh, "ball"))
-    assert window.asked == ["hide", "clear", "name", "mesh ball", "show"]
 
 
 class Log(list):
