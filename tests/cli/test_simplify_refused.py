@@ -121,21 +121,6 @@ def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, 
     assert sorted(tmp_path.iterdir()) == before
 
 
-@pytest.mark.parametrize(
-    ("options", "reason"),
-    [
-        (["--method", "nosuch"], "--method nosuch: there is no such method"),
-        (["--method", "random"], "--method random: it has no saliency"),
-        (["--method", "svm"], "--method svm: its weights are learned in the pipeline"),
-        (["--seed", "-1"], "--seed -1: give 0 or more"),
-    ],
-)
-def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch, options, reason):
-    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before they were refused"))
-    with pytest.raises(ValueError, match=reason):
-        run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
-
-
 def test_a_mesh_full_of_holes_is_told_what_is_feasible(simplified, tmp_path):
     ball = bumpy()
     apart = np.arange(len(ball.faces)) % 9 > 0  # triangles are missing all over it

@@ -76,17 +76,6 @@ def test_vertices_feel_what_press_feels_and_relief_has_the_units_of_the_file(tou
     assert f"1 unit is {arrays['unit']:.4g}" in printed
 
 
-def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
-    shape = trimesh.creation.icosphere(subdivisions=2)
-    trimesh.Trimesh(shape.vertices + 1e6, shape.faces, process=False).export(tmp_path / "far.obj", digits=12)
-    _, table, printed, _ = touched("--at", 3, 100, source=tmp_path / "far.obj")
-    assert np.allclose(table[["x", "y", "z"]], 1e6 + shape.vertices[[3, 100]], rtol=0, atol=1e-4)
-    assert len({line.split()[2] for line in printed.splitlines() if line[:5].strip().isdigit()}) == 2
-    with pytest.raises(ValueError, match="the nearest place is --at") as raised:
-        run([str(tmp_path / "far.obj"), "--at", "1000000,1000000,1000002", "--out", str(tmp_path / "off")])
-    touched("--at", str(raised.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
-
-
 def test_position_of_a_vertex_feels_as_the_vertex_and_may_be_negative(touched, file):
     vertices = load(file).vertices
     lowest = vertices[:, 1].argmin()

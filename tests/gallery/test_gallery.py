@@ -210,18 +210,6 @@ def test_vertices_that_a_file_doubles_are_touched_where_they_are(tmp_path, capsy
     assert len(points) == 3 and points == pytest.approx(places, rel=1e-5)
 
 
-def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):
-    with pytest.raises(ValueError, match="--count 0: give 1 or more"):
-        run([str(scans), "--count", "0"])
-    with pytest.raises(ValueError, match="is a file: name a folder"):
-        run([str(scans), "--out", str(scans / "pear.ply")])
-    with pytest.raises(ValueError, match="gone: no such file or folder"):
-        run([str(tmp_path / "gone"), "--out", str(tmp_path / "out")])
-    with pytest.raises(ValueError, match="no mesh in this folder"):
-        run([str(tmp_path), "--out", str(tmp_path / "out")])
-    assert not (tmp_path / "out").exists()
-
-
 def test_data_do_not_end_the_script_that_holds_them():
     """A name of a file may hold anything; after `<!--<script>` the end of the script would not count as such."""
     value = ["</script>", "<!--<script>"]

@@ -228,13 +228,6 @@ def test_a_touch_away_from_all_objects_says_nothing_and_one_in_another_unit_is_r
     assert blind.belief().after(flat, [0, 0, 3.0]).touches == 1
 
 
-def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
-    trimesh.Trimesh(30 * shapes["box"].vertices, shapes["box"].faces).export(tmp_path / "box.ply")
-    with pytest.warns(UserWarning, match="box does not say which axis points up"):
-        library = learn({"box": tmp_path / "box.ply", "ball": shapes["ball"]}, placed=False)
-    assert np.linalg.norm(library._positions, axis=1).max() < 0.51
-
-
 @pytest.mark.parametrize(
     ("names", "samples", "positions", "words"),
     [
@@ -249,13 +242,6 @@ def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
 def test_samples_that_do_not_fit_a_library_are_named(names, samples, positions, words):
     with pytest.raises(ValueError, match=words):
         Library(names, samples.tolist(), positions, False)
-
-
-def test_bytes_are_as_likely_as_the_shares_that_they_are(library):
-    images, places = np.arange(256, dtype=np.uint8).reshape(1, *CELLS), np.zeros((1, 3))
-    assert np.allclose(library.log_likelihoods(images, places), library.log_likelihoods(images / 255, places))
-    with pytest.raises(ValueError, match="images must be bytes, or numbers in 0..1"):
-        library.log_likelihoods(images.astype(float), places)
 
 
 def test_places_depend_on_the_surface_and_not_on_the_order_in_which_a_file_has_it(shapes):

@@ -34,12 +34,6 @@ def test_rows_are_equal_from_run_to_run_but_for_the_seconds(bumps):
     assert [row["repetition"] for row in rows] == [0, 0, 1, 1]
 
 
-def test_bytes_are_the_imprints_whose_shares_they_are():
-    images = np.random.default_rng(0).random((12, 16, 16))
-    rows = evaluate({"shares": images, "bytes": np.round(images * 255).astype(np.uint8)}, "knn", 3)
-    assert max(row["value"] for row in rows) <= 0.5
-
-
 def test_every_object_gives_as_many_as_the_poorest(bumps):
     images = bumps(count=20)
     images["cup"] = images["cup"][:12]

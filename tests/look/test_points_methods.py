@@ -14,10 +14,10 @@ from haptic_glance.look.points.find import Looked, check_name
 from haptic_glance.look.points.methods import MEANT
 from haptic_glance.look.points.recurring_imprints import CELLS, DISC, WIDTH, imprints, pressed, recurrence, spread
 from haptic_glance.mesh import normalise
-from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, press_at
 from haptic_glance.touch.surface import sensor_axes
-from tests.shapes import ball_mesh, mesh_of, raised_ball
+from tests.shapes import mesh_of, raised_ball
 
 
 @pytest.mark.parametrize(
@@ -47,13 +47,6 @@ def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_lis
         check_name("xyzzy", ["qem"])
     assert set(MEANT.values()) <= set(METHODS) and not set(MEANT) & set(METHODS)
     assert all(set(method.channels) <= {*CHANNELS, *OTHERS} for method in METHODS.values())
-
-
-def test_views_show_a_texture_as_the_colours_of_the_vertices():
-    vertices, faces = ball_mesh(1).vertices, ball_mesh(1).faces
-    red = Texture(np.zeros((len(faces), 3, 2)), np.zeros(len(faces)), (np.array([[[255, 0, 0, 255]]], np.uint8),))
-    seen = Looked(Mesh(vertices, faces, None, red)).mesh
-    assert seen.texture is None and seen.colors.tolist() == [[255, 0, 0]] * len(vertices)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,5 @@
 """The axis that points up: known from a GLB, guessed from the shape elsewhere, kept through all work on a mesh."""
 
-import argparse
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,7 +20,7 @@ from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.plane import _submesh
 from haptic_glance.mesh.repair import orient
-from haptic_glance.mesh.up import add_up, upright_by, upright_for
+from haptic_glance.mesh.up import upright_by, upright_for
 from haptic_glance.mesh.upright import CANDIDATES, MOST, SURE, WEIGHTS, _pieces, features, probable_up
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import SOURCES
@@ -108,20 +107,6 @@ def test_a_guess_is_told_from_what_a_file_says():
     hardly = "z is up, but the shape hardly tells (probability 0.50; OBJ files do not store it; say --up z or --up y)"
     assert upright_by(ball, Path("a.obj"), None)[1] == f"assuming {hardly}"
     assert upright_by(known, Path("a.stl"), "x") == (Mesh(cone.vertices, cone.faces, up="x"), "x up")
-
-
-def command(argv):
-    parser = argparse.ArgumentParser("prog")
-    add_up(parser)
-    parser.add_argument("--count", type=int)
-    return parser.parse_args(argv)
-
-
-def test_a_command_refuses_what_is_no_axis(capsys):
-    with pytest.raises(SystemExit):
-        command(["--up=-w"])
-    words = f"prog: error: argument --up: unknown up axis '-w': choose one of {ALL}"
-    assert capsys.readouterr().err.splitlines()[-1] == words
 
 
 def test_a_mesh_is_turned_for_a_glb_alone_and_as_other_programs_turn_it_back():

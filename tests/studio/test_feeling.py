@@ -8,7 +8,6 @@ from haptic_glance.know import place_at
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.feeling import (
-    CONTOURS,
     LAYER,
     NEWTONS,
     RIGID,
@@ -110,10 +109,3 @@ def test_cells_that_meet_nothing_are_not_drawn():
     places, _ = felt.contacts
     assert len(places) == 32 and places[:, 0].max() < 0.5
     assert np.isinf(felt.depths).sum() == 32
-
-
-def test_contours_are_felt_at_vertices_alone(torus):
-    felt = feel(torus, at_vertex(torus, 5), Sensor(kind=CONTOURS))
-    assert len(np.unique(felt.pressed)) <= 17
-    with pytest.raises(ValueError, match="vertices alone"):
-        feel(torus, Places(np.array([-1]), UP, UP), Sensor(kind=CONTOURS))

@@ -16,7 +16,6 @@ from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job, Stopped
 from haptic_glance.studio.panels.levels import HARD, SOFT, Levels
-from haptic_glance.studio.panels.look import views_of
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
 
 PATIENCE = 300  # seconds, on a machine with other work
@@ -193,14 +192,6 @@ def test_a_level_comes_back_in_the_units_of_the_file(tmp_path, mesh, suffix):
     again = load(path)
     assert len(again.faces) == 300 and again.diagonal == pytest.approx(far.diagonal, rel=0.05)
     assert rotate_to_z_up(again).vertices[:, 2].mean() == pytest.approx(far.vertices[:, 2].mean(), abs=3)
-
-
-def test_the_twelve_views_show_the_object(mesh):
-    specimen = Specimen(mesh, "ball")
-    image = views_of(specimen.mesh, specimen.look("height").saliency, quiet)
-    assert image.shape == (4 * 150, 3 * 200, 3) and image.dtype == np.uint8
-    tiles = image.reshape(4, 150, 3, 200, 3).swapaxes(1, 2).reshape(12, -1, 3)
-    assert all((tile != 255).any(axis=1).mean() > 0.2 for tile in tiles)
 
 
 class Log(list):

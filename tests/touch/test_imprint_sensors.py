@@ -18,7 +18,7 @@ from haptic_glance.touch import (
     sensor_axes,
     sensor_normals,
 )
-from haptic_glance.touch.quasi_tangent import CONTOURS, SENSORS, touch
+from haptic_glance.touch.quasi_tangent import SENSORS, touch
 
 FLAT = np.eye(3)[None]  # right +x, up +y, normal +z
 
@@ -229,12 +229,6 @@ def test_the_array_feels_its_distances(ball, contact):
     np.testing.assert_array_equal(felt.depths, expected)
     np.testing.assert_array_equal(felt.images, normalise(expected, PITCH))
     assert felt.depths.max() <= felt.reach
-
-
-def test_the_contour_sensor_feels_contours(ball):
-    felt = touch(Surface(ball), [0, 5], CELLS, PITCH, CONTOURS)
-    np.testing.assert_array_equal(felt.images, contour_imprints(ball, [0, 5], CELLS, PITCH))
-    assert felt.reach == 0.25 * 16 * PITCH and felt.depths.max() <= felt.reach
 
 
 @pytest.mark.parametrize("sensor", SENSORS)
