@@ -160,15 +160,6 @@ def smooth():
     return Mesh(0.5 * ball.vertices, ball.faces)
 
 
-def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_said(simplified, tmp_path):
-    write_any(tmp_path / "smooth.ply", smooth())
-    _, table, messages = simplified("--faces", 60, source=tmp_path / "smooth.ply")
-    assert "the pictures show all meshes at 9" in messages
-    pictures = [line.split()[-2:] for line in table.splitlines() if "SSIM" in line or "pyramid" in line]
-    assert len(pictures) == 3 and all(0 < float(value) < 1 for values in pictures for value in values)
-    assert "the pictures show" not in simplified("--faces", 600, source=tmp_path / "smooth.ply")[2]
-
-
 def test_meshes_within_the_frame_are_left_and_others_shrink_by_the_same():
     ball = smooth()
     fits = Mesh(1.04 * ball.vertices, ball.faces)

@@ -1,13 +1,11 @@
 """Every network ends at its last maps, starts usable, and refuses what is not its own."""
 
-import sys
 from types import SimpleNamespace
 
 import pytest
 import torch
 
 from haptic_glance.base.files import sha256
-from haptic_glance.deep import architectures
 from haptic_glance.deep.architectures import torchvision
 from haptic_glance.deep.converters import convert_googlenet
 from haptic_glance.deep.device import cost
@@ -97,29 +95,3 @@ def test_features_get_mean_zero_and_deviation_one_whatever_their_size():
     scaled = ScaledHead(torch.nn.Identity(), 3)
     scaled.fit(features)
     assert torch.allclose(scaled(features), torch.tensor([[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]]))
-
-
-def test_torchvisions_schemas_are_declared_after_the_known_failure_only_and_half_modules_dropped(monkeypatch):
-    calls, modules = [], {"torchvision": 1, "torchvision.extension": 1, "torchvision_other": 1, "sys": sys}
-
-    def half_import(name):
-        calls.append(name)
-        if len(calls) == 1:
-            raise RuntimeError("operator torchvision::nms does not exist")
-        return "second"
-
-    class Library:
-        def __init__(self, namespace, kind):
-            self.made = [namespace, kind]
-
-        def define(self, schema):
-            self.made.append(schema.partition("(")[0])
-
-    monkeypatch.setattr(architectures, "_declared", [])
-    monkeypatch.setattr(architectures.sys, "modules", modules)
-    monkeypatch.setattr(architectures.importlib, "import_module", half_import)
-    monkeypatch.setattr(torch.library, "Library", Library)
-    assert architectures.load() == "second"
-    assert set(modules) == {"torchvision_other", "sys"}
-    assert architectures._declared.pop().made == ["torchvision", "FRAGMENT", "nms", "qnms"]
-    assert architectures.load() == "second" and not architectures._declared  # nothing where the import works

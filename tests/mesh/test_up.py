@@ -20,7 +20,7 @@ from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.plane import _submesh
 from haptic_glance.mesh.repair import orient
-from haptic_glance.mesh.up import upright_by, upright_for
+from haptic_glance.mesh.up import upright_for
 from haptic_glance.mesh.upright import CANDIDATES, MOST, SURE, WEIGHTS, _pieces, features, probable_up
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import SOURCES
@@ -93,20 +93,6 @@ def test_any_axis_becomes_z_without_a_mirror(up):
     assert turn @ vector == pytest.approx([0, 0, 1], abs=1e-9)
     assert turn @ turn.T == pytest.approx(np.eye(3)) and np.linalg.det(turn) == pytest.approx(1)
     assert rotate_to_z_up(LYING, up) == rotate_to_z_up(LYING, vector) and rotate_to_z_up(LYING, up).up == "z"
-
-
-def test_a_guess_is_told_from_what_a_file_says():
-    cone = trimesh.creation.cone(0.4, 1)
-    known, stated = Mesh(cone.vertices, cone.faces, up="auto"), Mesh(cone.vertices, cone.faces, up="-y")
-    assert upright_by(LYING, Path("a.glb"), None) == (LYING, "y up, as in every GLB")
-    assert upright_by(stated, Path("a.stl"), None) == (stated, "-y up, as the file says")
-    sure = "assuming z is up (probability 0.99; STL files do not store it; --up y for the other)"
-    assert upright_by(known, Path("a.stl"), None) == (Mesh(cone.vertices, cone.faces), sure)
-    assert upright_by(stated, Path("a.stl"), "auto") == (Mesh(cone.vertices, cone.faces), sure)
-    ball = Mesh(BALL.vertices, BALL.faces, up="auto")
-    hardly = "z is up, but the shape hardly tells (probability 0.50; OBJ files do not store it; say --up z or --up y)"
-    assert upright_by(ball, Path("a.obj"), None)[1] == f"assuming {hardly}"
-    assert upright_by(known, Path("a.stl"), "x") == (Mesh(cone.vertices, cone.faces, up="x"), "x up")
 
 
 def test_a_mesh_is_turned_for_a_glb_alone_and_as_other_programs_turn_it_back():

@@ -7,13 +7,11 @@ from threading import Event
 
 import numpy as np
 import pytest
-import trimesh
 
 from haptic_glance.base.files import write_mesh
-from haptic_glance.look.points import METHODS, detect
+from haptic_glance.look.points import detect
 from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
-from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job, Stopped
 from haptic_glance.studio.panels.levels import HARD, SOFT, Levels
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
@@ -35,19 +33,6 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert np.array_equal(looks[0].saliency, detection.saliency) and set(looks[0].vertices) == set(detection.points)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("method", ["glance", "touch"])
-def test_another_count_needs_no_other_look(mesh, monkeypatch, method):
-    specimen = Specimen(mesh, "ball")
-    first = specimen.look(method, 3)
-    monkeypatch.setattr(METHODS[method].__class__, "_values", None)
-    more = specimen.look(method, 5)
-    monkeypatch.undo()
-    detection = detect(mesh, method, 5)
-    assert set(more.vertices) == set(detection.points) and np.array_equal(more.saliency, detection.saliency)
-    assert more.drawn is first.drawn
-
-
 def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
     specimen = Specimen(mesh, "ball")
     known = specimen.look("height", 3)
@@ -59,17 +44,6 @@ def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
         specimen.look("height", 4, stop)
     assert specimen.look("height", 3, stop) is known
     assert specimen._looks.keys() == {("height", 3)}
-
-
-@pytest.mark.slow
-def test_a_mesh_of_long_edges_is_drawn_on_a_finer_copy(mesh):
-    box = trimesh.creation.box((1.0, 2.0, 0.5))
-    look = Specimen(Mesh(box.vertices, box.faces), "box").look()
-    fine, values = look.drawn
-    assert len(look.saliency) == 8 and len(values) == len(fine.vertices) > 1000
-    assert np.ptp(fine.vertices, axis=0) == pytest.approx(np.array([1, 2, 0.5]) / np.sqrt(5.25))
-    round_one = Specimen(mesh, "ball")
-    assert round_one.look().drawn[0] is round_one.mesh
 
 
 @pytest.mark.slow
