@@ -203,8 +203,9 @@ def test_an_exploration_turns_its_arrays_as_those_of_its_library_were(shapes, bl
         felt_again = press_at(exploration.surface, exploration.positions[-1:], exploration.axes[-1:], CELLS, PITCH)[0]
         assert np.array_equal(image, felt_again)
     any_way, upright = (exploration.axes for exploration in explorations)
-    assert np.array_equal(upright, sensor_axes(explorations[1].normals))
-    turns = np.degrees(np.arccos(np.clip((any_way[:, 1] * sensor_axes(explorations[0].normals)[:, 1]).sum(1), -1, 1)))
+    normals = [exploration.candidates.normals[:20] for exploration in explorations]
+    assert np.array_equal(upright, sensor_axes(normals[1]))
+    turns = np.degrees(np.arccos(np.clip((any_way[:, 1] * sensor_axes(normals[0])[:, 1]).sum(1), -1, 1)))
     assert turns.min() < 40 and turns.max() > 140 and len(np.unique(turns)) == 20
 
 

@@ -24,6 +24,9 @@ ALIKE = {  # of those whose answer a moved mesh may change a little: ties are to
     "song": 0.99, "tasse": 0.99, "mesh_saliency": 0.99, "salient_points": 0.99,
 }  # fmt: skip
 SMOOTH = ("mesh_saliency", "salient_points", "sift", "tasse")  # which see nothing where all places are alike
+DRAWS = [name for name, method in METHODS.items() if isinstance(method, RandomPoints)]  # by the order of the faces
+IN_ANY_ORDER = [name for name in METHODS if name not in DRAWS]
+OF_THE_SURFACE = [name for name in IN_ANY_ORDER if not METHODS[name].channels]  # they look from no fixed place
 QUARTER = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
 
 
@@ -116,9 +119,8 @@ def test_as_many_points_as_asked_for(find, bumpy, count):
     assert len(points) == len(set(points.tolist())) == count
 
 
+@pytest.mark.parametrize("name", IN_ANY_ORDER, indirect=True, scope="module")
 def test_the_order_of_vertices_and_faces_changes_nothing(name, find, found, bumpy):
-    if isinstance(METHODS[name], RandomPoints):
-        pytest.skip("its draws go by the order of the faces")
     order = np.random.default_rng(5).permutation(len(bumpy.vertices))
     place = np.argsort(order)
     shuffled = Mesh(bumpy.vertices[order], np.roll(place[bumpy.faces][::-1], 1, axis=1))
@@ -128,9 +130,8 @@ def test_the_order_of_vertices_and_faces_changes_nothing(name, find, found, bump
         assert np.allclose(other.saliency, found.saliency[order], rtol=0, atol=1e-4)
 
 
+@pytest.mark.parametrize("name", OF_THE_SURFACE, indirect=True, scope="module")
 def test_a_turn_about_the_vertical_does_not_change_a_method_of_the_surface(name, find, found, bumpy):
-    if METHODS[name].channels or isinstance(METHODS[name], RandomPoints):
-        pytest.skip("it looks from fixed places, or draws")
     other = find(Mesh(bumpy.vertices @ QUARTER.T, bumpy.faces), 7 if without_threshold(name) else None)
     if found.saliency is not None:
         assert np.corrcoef(other.saliency, found.saliency)[0, 1] > ALIKE.get(name, EXACTLY)
@@ -182,7 +183,7 @@ def test_odd_meshes_give_finite_values_and_points_on_the_surface(name, find, bum
         try:
             detection = find(mesh, 3 if without_threshold(name) else None)
         except ValueError as error:  # a view of nothing, or nothing to draw from, is refused with the reason
-            assert str(error) and (METHODS[name].channels or isinstance(METHODS[name], RandomPoints)), odd
+            assert str(error) and (METHODS[name].channels or name in DRAWS), odd
             continue
         points, values = detection.points, detection.saliency
         assert points.dtype == np.int64 and np.isin(points, mesh.faces).all(), odd
