@@ -27,14 +27,6 @@ def test_a_long_step_says_that_it_still_goes_on(hasty, capsys):
     assert capsys.readouterr().err == ""  # the block has ended
 
 
-def test_what_reports_nothing_stays_silent(hasty, capsys):
-    progress.report("touch", "an earlier command")
-    capsys.readouterr()
-    with progress.no_silence():
-        time.sleep(0.3)
-    assert capsys.readouterr().err == ""
-
-
 @pytest.mark.slow
 def test_each_command_runs_with_such_lines(hasty, capsys, monkeypatch):
     def work(argv):

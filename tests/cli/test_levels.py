@@ -1,20 +1,17 @@
 """`haptic-glance simplify`: several levels from one look, folders, the nodes of a scene, and which axis points up."""
 
 import json
-import shutil
 
 import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.base.extras import MissingExtra
 from haptic_glance.cli import simplify
 from haptic_glance.cli.simplify import run
 from haptic_glance.lod import measures
 from haptic_glance.lod.export import level_path, levels, write_any
 from haptic_glance.lod.topology import moved_parts, parts_of
 from haptic_glance.mesh import load, rotate_to_z_up
-from haptic_glance.mesh.files import load_unnamed
 from haptic_glance.mesh.mesh import Mesh
 
 
@@ -69,11 +66,6 @@ def test_a_level_that_cannot_be_had_is_named_and_does_not_cost_the_others(file, 
     assert f"simplify: no level {level}: {reason}" in capsys.readouterr().err
 
 
-def test_where_no_level_is_feasible_nothing_is_written(file, tmp_path):
-    with pytest.raises(ValueError, match="egg.ply: no level is feasible"):
-        run([str(file), "--levels", "2", "--out", str(tmp_path / "out")])
-
-
 def test_a_folder_goes_through_at_once_and_what_is_broken_is_named(folder, tmp_path, capsys):
     assert run([str(folder), "--faces", "300", "--format", "glb", "--json", "--out", str(tmp_path / "out")]) == 1
     shown = capsys.readouterr()
@@ -81,37 +73,6 @@ def test_a_folder_goes_through_at_once_and_what_is_broken_is_named(folder, tmp_p
     assert row["faces"] == 1280 and row["levels"][0]["faces"] == 300 and row["levels"][0]["mean"] > 0
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_300.glb"]
     assert "simplify: " in shown.err and "bad.stl: " in shown.err and "notes" not in shown.err
-
-
-@pytest.mark.parametrize(
-    ("options", "reason"),
-    [
-        (["--levels", "9%", "--out", "x.glb"], "name a folder, since there are several results"),
-        (["--levels", "9%", "--out", "x", "--picture", "x.png"], "--picture is for one result"),
-        (["--faces", "9%", "--out", "x.glb", "--format", "obj"], "--format is for the files in a folder"),
-    ],
-)
-def test_options_of_one_result_and_of_several_do_not_mix(file, options, reason):
-    with pytest.raises(ValueError, match=reason):
-        run([str(file), *options])
-
-
-def test_a_file_that_needs_an_extra_does_not_stop_a_folder(file, tmp_path, monkeypatch, capsys):
-    def no_clouds(path):
-        if path.stem == "cloud":
-            raise MissingExtra("pymeshlab is not installed")
-        return load_unnamed(path)
-
-    monkeypatch.setattr(simplify, "load_unnamed", no_clouds)
-    scans = tmp_path / "scans"
-    scans.mkdir()
-    (scans / "cloud.ply").touch()
-    shutil.copy(file, scans / "solid.ply")
-    assert run([str(scans), "--levels", "30%", "--out", str(tmp_path / "levels")]) == 1
-    assert "cloud.ply: pymeshlab is not installed" in capsys.readouterr().err
-    assert [path.name for path in (tmp_path / "levels").iterdir()] == ["solid_30pct.ply"]
-    with pytest.raises(MissingExtra, match=r"cloud.ply: pymeshlab is not installed"):
-        run([str(scans / "cloud.ply"), "--faces", "300", "--out", str(tmp_path / "x.glb")])
 
 
 def test_the_meshes_are_not_written_over(folder, file):

@@ -99,21 +99,6 @@ def test_what_cannot_be_done_is_named_before_anything_is_computed(egg, options, 
         run([str(egg), *options])
 
 
-@pytest.mark.parametrize(("scale", "reason"), [(0, "the surface has no area"), (1e200, "so large that areas overflow")])
-def test_a_surface_that_nobody_can_see_is_refused(tmp_path, scale, reason):
-    corners = "".join(f"v {x * scale:g} {y * scale:g} 0\n" for x, y in ((0, 0), (1, 0), (0, 1)))
-    (tmp_path / "thin.obj").write_text(f"{corners}f 1 2 3\n")
-    with pytest.raises(ValueError, match=f"thin.obj: .*{reason}"):
-        run([str(tmp_path / "thin.obj"), "--json"])
-
-
-def test_fewer_places_than_asked_for_are_said_and_a_folder_is_made(tmp_path, capsys):
-    (tmp_path / "four.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2")
-    out = tmp_path / "new/folder/look.ply"
-    run([str(tmp_path / "four.off"), "--method", "height", "--count", "9", "--out", str(out)])
-    assert "4 of 9 places: the mesh has no more" in capsys.readouterr().err and out.is_file()
-
-
 def test_a_file_that_cannot_be_read_is_named_and_the_mesh_is_not_overwritten(egg, tmp_path):
     (tmp_path / "broken.stl").write_bytes(b"solid nothing")
     for plain, reason in (("broken.stl", "truncated"), ("nowhere.stl", "no such file"), ("", "is a folder")):

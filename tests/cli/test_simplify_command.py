@@ -1,6 +1,5 @@
 """`haptic-glance simplify MESH`: a person's own mesh, from file to file."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,13 +7,12 @@ import pytest
 import trimesh
 from PIL import Image
 
-from haptic_glance.cli.simplify import run
 from haptic_glance.lod import colour_error, metro, simplify
-from haptic_glance.lod.export import FORMATS, write_any
+from haptic_glance.lod.export import write_any
 from haptic_glance.lod.feasibility import SimplifyError
 from haptic_glance.lod.measures import fewest_faces
 from haptic_glance.lod.perceptual import within_frame
-from haptic_glance.lod.task import SimplificationTask, repaired
+from haptic_glance.lod.task import repaired
 from haptic_glance.look.views import TWELVE, render
 from haptic_glance.mesh import load
 from haptic_glance.mesh.mesh import Mesh, Texture
@@ -83,19 +81,6 @@ def test_pictures_go_along(simplified, tmp_path, out):
     standing = simple.vertices * [1, -1, 1] if out == "out.obj" else simple.vertices[:, [0, 2, 1]]  # a GLB is y up
     want = 0.5 + (standing[simple.faces][..., :2] * [1, -1] - PLACE[:2]) / 100
     assert np.abs(simple.texture.uv - want).max() < 0.02
-
-
-def test_materials_beside_the_result_are_said_to_be_written_or_replaced(simplified, tmp_path):
-    write_any(tmp_path / "wrapped.obj", textured())
-    names = ", ".join(str(tmp_path / name) for name in ("out.obj", "out_0.png", "out.mtl"))
-    for kind in ("written", "replaced"):
-        assert f"{kind}: {names}\n" in simplified("--faces", 500, source=tmp_path / "wrapped.obj")[2]
-
-
-def test_format_without_colours_says_so(simplified, tmp_path):
-    write_any(tmp_path / "wrapped.obj", textured())
-    _, _, messages = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")
-    assert ".stl files have no colours" in messages
 
 
 @pytest.mark.slow
@@ -175,22 +160,6 @@ def smooth():
     return Mesh(0.5 * ball.vertices, ball.faces)
 
 
-def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_said(simplified, tmp_path):
-    write_any(tmp_path / "smooth.ply", smooth())
-    _, table, messages = simplified("--faces", 60, source=tmp_path / "smooth.ply")
-    assert "the pictures show all meshes at 9" in messages
-    pictures = [line.split()[-2:] for line in table.splitlines() if "SSIM" in line or "pyramid" in line]
-    assert len(pictures) == 3 and all(0 < float(value) < 1 for values in pictures for value in values)
-    assert "the pictures show" not in simplified("--faces", 600, source=tmp_path / "smooth.ply")[2]
-
-
-def test_a_black_mesh_has_no_errors_of_pictures_in_place_of_zeros(simplified, tmp_path):
-    write_any(tmp_path / "black.ply", replace(smooth(), colors=np.zeros((642, 3), dtype=np.uint8)))
-    _, table, messages = simplified("--faces", 600, source=tmp_path / "black.ply")
-    assert "no errors of the pictures: the mesh is as black as their background" in messages
-    assert rows(table)["1 - SSIM of the pictures"] == ["-", "-", "-"]
-
-
 def test_meshes_within_the_frame_are_left_and_others_shrink_by_the_same():
     ball = smooth()
     fits = Mesh(1.04 * ball.vertices, ball.faces)
@@ -253,37 +222,8 @@ def test_nothing_sound_means_the_mesh_itself():
         fewest_faces(mesh, fails, 4, np.nan)
 
 
-@pytest.mark.parametrize(("missing", "remedy"), [(0, "more faces$"), (1, "more faces, or let .* --free-borders$")])
-def test_a_faulty_result_of_a_mesh_with_a_boundary_names_both_remedies(tmp_path, monkeypatch, missing, remedy):
-    def fails(task, faces):
-        raise SimplifyError("100 faces leave 2 new folded pairs of faces: ask for more faces")
-
-    monkeypatch.setattr(SimplificationTask, "simplified", fails)
-    ball = trimesh.creation.icosphere(2)
-    trimesh.Trimesh(ball.vertices, ball.faces[missing:]).export(tmp_path / "ball.ply")
-    with pytest.raises(ValueError, match=remedy):
-        run([str(tmp_path / "ball.ply"), "--faces", "100", "--out", str(tmp_path / "small.ply")])
-
-
-@pytest.mark.parametrize("suffix", FORMATS)
-def test_every_format_that_is_written_reads_back(tmp_path, suffix):
-    mesh = textured()
-    write_any(tmp_path / f"my ball{suffix}", mesh)
-    again = load(tmp_path / f"my ball{suffix}")
-    assert len(again.faces) == len(mesh.faces) and again.watertight
-    assert metro(mesh, again)["max"] < 1e-6
-    assert (again.texture is not None) == (suffix in (".glb", ".obj"))
-
-
 def test_small_units_keep_their_digits(tmp_path):
     mesh = bumpy()
     tiny = Mesh(1e-6 * (mesh.vertices - PLACE), mesh.faces)
     write_any(tmp_path / "tiny.obj", tiny)
     assert np.abs(load(tmp_path / "tiny.obj").vertices - tiny.vertices).max() < 1e-8 * tiny.diagonal
-
-
-def test_large_units_keep_texture_coordinates(tmp_path):
-    mesh = textured()
-    write_any(tmp_path / "large.obj", replace(mesh, vertices=1e8 * mesh.vertices))
-    again = load(tmp_path / "large.obj")
-    assert again.texture is not None and np.abs(again.texture.uv - mesh.texture.uv).max() < 1e-6

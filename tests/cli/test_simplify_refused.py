@@ -3,12 +3,10 @@
 import json
 import os
 import re
-import sys
 
 import numpy as np
 import pytest
 
-from haptic_glance.base.extras import MissingExtra
 from haptic_glance.cli import simplify as command
 from haptic_glance.cli.simplify import check_outputs, parser, run, share
 from haptic_glance.lod.export import write_any
@@ -86,39 +84,22 @@ def test_the_picture_that_a_mesh_is_made_of_is_never_written_over(tmp_path, name
         check_outputs(tmp_path / name, tmp_path / "a.png")
 
 
-def test_results_in_a_folder_spare_the_materials_of_others(file, tmp_path):
-    (tmp_path / "results").mkdir()
-    (tmp_path / "results" / "ball_50pct.mtl").write_text("mine")
-    with pytest.raises(ValueError, match="ball_50pct.mtl is not of this mesh"):
-        run([str(file), "--levels", "50%", "--out", str(tmp_path / "results")])
-
-
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
         (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
         (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the mesh has only 1,280 faces"),
         (["--faces", "many", "--out", "x.glb"], "^--faces='many' is not a face count"),
-        (["--faces", "", "--out", "x.glb"], "^--faces='' is not a face count"),
-        (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
         (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
         (["--faces", "300", "--out", "ball.obj/x.glb"], "ball.obj is a file: name a folder"),
         (["--faces", "300", "--out", "folder.glb"], "is a folder"),
         ([*GLB, "--picture", "x.txt"], "pictures are written as"),
         ([*GLB, "--method", "guess"], "there is no such method; choose one of qem, glance"),
         ([*GLB, "--keep", "3"], "--keep has no effect where no faces are frozen"),
-        ([*GLB, "--rings", "-1"], "--rings has no effect where no faces are frozen"),
-        ([*GLB, "--shrink"], "add --neighbourhood fixed or adaptive or area"),
         ([*GLB, "--method", "qem", "--shrink"], "--shrink has no effect with"),
-        ([*GLB, "--method", "qem", *HARD], "--neighbourhood has no effect with --method"),
-        ([*GLB, "--neighbourhood", "area", "--rings", "2"], "it is for fixed"),
-        ([*GLB, *HARD, "--rings", "-1"], "--rings -1: give 0"),
-        ([*GLB, *HARD, "--keep", "0"], "--keep 0: give 1 or more points"),
         (["--faces", "90", "--out", "x.glb", *HARD, "--keep", "9"], r"ask for \d+ faces or more.* let them --shrink"),
         ([*GLB, "--attributes", "colors=1"], "the mesh has no colors"),
-        ([*GLB, "--attributes", "weight=1"], "unknown attribute 'weight'"),
         ([*GLB, "--attributes", "normals=0.1", "--backend", "pymeshlab"], "has no effect with --backend pymeshlab"),
-        ([*GLB, "--free-borders", "--backend", "pymeshlab"], "--free-borders has no effect with --backend pymeshlab"),
     ],
 )
 def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, options, reason):
@@ -128,29 +109,6 @@ def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, 
     with pytest.raises(ValueError, match=reason):
         run([str(file), "--method", "height", *in_folder])
     assert sorted(tmp_path.iterdir()) == before
-
-
-@pytest.mark.parametrize(
-    ("options", "reason"),
-    [
-        (["--method", "nosuch"], "--method nosuch: there is no such method"),
-        (["--method", "random"], "--method random: it has no saliency"),
-        (["--method", "svm"], "--method svm: its weights are learned in the pipeline"),
-        (["--seed", "-1"], "--seed -1: give 0 or more"),
-    ],
-)
-def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch, options, reason):
-    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before they were refused"))
-    with pytest.raises(ValueError, match=reason):
-        run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
-
-
-def test_a_backend_that_is_not_installed_is_named_before_the_mesh_is_read(file, tmp_path, monkeypatch):
-    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before the backend was named"))
-    monkeypatch.setitem(sys.modules, "pymeshlab", None)
-    options = ["--faces", "300", "--out", str(tmp_path / "x.glb"), "--backend", "pymeshlab"]
-    with pytest.raises(MissingExtra, match=r"^--backend pymeshlab: pymeshlab is not installed: pip .*pipeline"):
-        run([str(file), *options])
 
 
 def test_a_mesh_full_of_holes_is_told_what_is_feasible(simplified, tmp_path):
@@ -188,23 +146,6 @@ def test_a_mesh_that_cannot_be_simplified_is_named_with_the_reason(simplified, t
         simplified("--faces", *options, source=tmp_path / "odd.ply")
 
 
-def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_components(simplified):
-    with pytest.raises(ValueError, match="1,280 faces around 642 points are frozen") as refused:
-        simplified("--faces", 100, *HARD, "--keep", 100000, "--rings", 50)
-    remedies = str(refused.value).split(": ", 2)[-1]
-    assert remedies.startswith("--keep fewer points, or take fewer --rings, or let them --shrink")
-    assert "join" not in remedies and "ask for" not in remedies
-
-
-def test_a_mesh_too_small_for_its_digits_is_refused_with_the_reason(simplified, tmp_path):
-    ball = bumpy()
-    lines = [f"v {x * 1e-30:.8f} {y * 1e-30:.8f} {z * 1e-30:.8f}" for x, y, z in ball.vertices]
-    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in ball.faces]
-    (tmp_path / "tiny.obj").write_text("\n".join(lines))
-    with pytest.raises(ValueError, match="tiny.obj: its extent is 0: export it in smaller units, or with more digits"):
-        simplified("--faces", 9, source=tmp_path / "tiny.obj")
-
-
 PERCENT = "not a share of the diagonal"
 
 
@@ -213,11 +154,9 @@ PERCENT = "not a share of the diagonal"
     [
         ("--tolerance=0.2", "'0.2': write 20%, 0.2% or "), ("--tolerance=0.01", "'0.01': write 1%, 0.01% or "),
         ("--tolerance=2", "'2': write 2% or "), ("--tolerance=0", "rounding alone exceeds 0"),
-        ("--tolerance=0%", "rounding alone exceeds 0"), ("--tolerance=-1", PERCENT), ("--tolerance=150%", PERCENT),
-        ("--tolerance=much", PERCENT), ("--tolerance=nan", PERCENT), ("--tolerance=", PERCENT),
-        ("--attributes=uv", "such as"), ("--attributes=uv=much", "such as"), ("--attributes=uv=1=2", "such as"),
-        ("--levels=", "--levels="), ("--levels=50%,", "--levels="), ("--levels=half", "--levels="),
-        ("--levels=120%", "--levels="), ("--levels=0", "--levels="),
+        ("--tolerance=-1", PERCENT), 
+        ("--attributes=uv", "such as"), 
+        ("--levels=", "--levels="), 
     ],
 )  # fmt: skip
 def test_a_value_that_cannot_be_read_is_named_with_its_form(option, reason, capsys):

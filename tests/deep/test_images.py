@@ -54,7 +54,6 @@ def test_augmentation_moves_images_but_no_value_range_and_no_channel_and_no_cont
         (np.zeros((4, 4)), "shape"),
         (np.zeros((0, 4, 4)), "empty"),
         (np.full((1, 4, 4), np.nan), "0..1"),
-        (np.full((1, 4, 4), 1.5), "0..1"),
         ([np.zeros((4, 4)), np.zeros((4, 5))], r"several sizes, \(4, 4\), \(4, 5\)"),
     ],
 )

@@ -13,7 +13,6 @@ from haptic_glance.deep.training import (
     Diverged,
     Learning,
     accuracy,
-    check_passes,
     predict_probabilities,
     resume,
     save,
@@ -131,17 +130,6 @@ def test_a_training_that_diverges_says_in_which_pass_and_leaves_no_checkpoint(tm
     assert not list(tmp_path.iterdir())
     points = torch.where(torch.arange(120)[:, None] == FIT[3], float("inf"), POINTS)
     assert not bool(learn(linear(points), None).weight.isfinite().all())  # as before where nobody asks for the curve
-
-
-def test_unknown_passes_and_patience_are_refused():
-    with pytest.raises(ValueError, match="some.passes: many not known, choose from printed, converged"):
-        check_passes(["printed", "many"], "some.passes")
-    with pytest.raises(ValueError, match="some.passes: none"):
-        check_passes([], "some.passes")
-    with pytest.raises(ValueError, match="patience must be 1"):
-        Learning(VALIDATION, 0)
-    with pytest.raises(ValueError, match="no validation touches"):
-        Learning(VALIDATION[:0])
 
 
 IMPRINTS = np.random.default_rng(0).random((80, 16, 16)).astype(np.float32)

@@ -1,12 +1,9 @@
 """What learns in each mode, and that it learns."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import torch
 
-from haptic_glance.deep.device import choose_device
 from haptic_glance.deep.images import normalise, to_images
 from haptic_glance.deep.modes import MODES, finetuned_except, frozen_modules, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
@@ -153,29 +150,3 @@ def test_repeatable_puts_everything_back():
 
 def test_scores_that_are_not_finite_count_as_wrong():
     assert accuracy(torch.tensor([[0.9, 0.1], [float("nan"), float("nan")]]), [0, 0]) == 0.5
-
-
-def test_an_unknown_mode_names_the_known_ones():
-    with pytest.raises(ValueError, match="frozen, finetuned, and ranges of layers such as 18:139"):
-        mode_named("boiled")
-
-
-def test_too_little_memory_names_the_setting(imprints):
-    task = MODES["finetuned"](small(), imprints, SIZE, 1)
-
-    def too_much(ids):
-        raise torch.OutOfMemoryError("CUDA out of memory")
-
-    with pytest.raises(ValueError, match="smaller batch"):
-        train_model(replace(task, training_inputs=too_much), LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
-    with pytest.raises(ValueError, match="smaller batch"):
-        predict_probabilities(task.model, too_much, np.arange(8))
-
-
-def test_a_device_that_is_not_there_is_named(monkeypatch):
-    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    assert choose_device("auto").type == choose_device("cpu").type == "cpu"
-    with pytest.raises(ValueError, match="take auto or cpu"):
-        choose_device("cuda")
-    with pytest.raises(ValueError, match="unknown device 'abacus'"):
-        choose_device("abacus")

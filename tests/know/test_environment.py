@@ -70,13 +70,6 @@ def test_an_episode_ends_with_a_name_or_after_its_touches(task, belief, monkeypa
         task.step(0)
 
 
-def test_a_step_before_the_first_reset_asks_for_it(task):
-    with pytest.raises(gymnasium.error.ResetNeeded, match="call reset"):
-        TouchUntilSure(task.meshes).step(0)
-    with pytest.raises(gymnasium.error.ResetNeeded, match="call reset"):
-        TouchUntilSure(task.meshes).planned()
-
-
 def test_bad_input_is_named_and_changes_nothing(task):
     _, info = task.reset(seed=0)
     with pytest.raises(ValueError, match="unknown object 'sword': choose one of box, torus"):

@@ -74,14 +74,6 @@ def test_an_object_is_explored_as_a_mesh_too_but_in_another_scale_it_is_refused(
             Exploration(library, Mesh(cone.vertices * scale, cone.faces), rng(3, "cone"))
 
 
-def test_the_gain_is_none_where_the_object_is_known(library, shapes):
-    exploration = Exploration(library, Surface(shapes["torus"]), rng(3, "torus"))
-    first = library.gains(exploration.belief, exploration.expected)
-    exploration.finish()
-    known = library.gains(exploration.belief, exploration.expected)
-    assert 0.3 < first.max() < np.log(6) + 1e-9 and abs(known).max() < 0.2
-
-
 def test_the_belief_sums_to_one_and_begins_even(library, shapes):
     exploration = touched(library, shapes["cone"], 6)
     for belief in exploration.beliefs:
@@ -175,29 +167,6 @@ def test_an_object_may_lie_anywhere_unless_it_is_placed_and_a_known_place_helps(
     assert beliefs[0].known == "bump" and not beliefs[1].known
 
 
-def test_arguments_of_the_wrong_kind_are_named(library, shapes):
-    ball, box = shapes["ball"], shapes["box"]
-    with pytest.raises(TypeError, match=r"random must be a numpy.random.Generator such as .*, got 0"):
-        Exploration(library, ball, 0)
-    with pytest.raises(TypeError, match="meshes must be a mapping from names to meshes, got list"):
-        learn([ball, box])
-    for name in (1, ""):  # an empty name says of an exploration that nothing is known
-        with pytest.raises(TypeError, match=f"meshes must have texts as names, got {name!r}"):
-            learn({name: ball, "box": box})
-
-
-def test_what_cannot_be_learned_or_felt_is_named(library, shapes):
-    with pytest.raises(ValueError, match="at least two"):
-        learn({"ball": shapes["ball"]})
-    flat = Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
-    with pytest.raises(ValueError, match="nothing: cannot sample a mesh without area"):
-        learn({"ball": shapes["ball"], "nothing": flat})
-    with pytest.raises(ValueError, match="large: the object's diagonal is .* normalise it"):
-        learn({"ball": shapes["ball"], "large": Mesh(100 * shapes["ball"].vertices, shapes["ball"].faces)})
-    with pytest.raises(ValueError, match=r"learned with \(16, 16\) cells"):
-        library.log_likelihoods(np.zeros((1, 8, 8)), np.zeros((1, 3)))
-
-
 @pytest.mark.slow
 def test_a_library_that_was_learned_through_a_faulty_skin_is_right_where_an_ideal_one_is_sure_and_wrong(shapes, blind):
     skin, right = Skin(dead=0.02), []
@@ -234,16 +203,10 @@ def test_an_exploration_turns_its_arrays_as_those_of_its_library_were(shapes, bl
         felt_again = press_at(exploration.surface, exploration.positions[-1:], exploration.axes[-1:], CELLS, PITCH)[0]
         assert np.array_equal(image, felt_again)
     any_way, upright = (exploration.axes for exploration in explorations)
-    assert np.array_equal(upright, sensor_axes(explorations[1].normals))
-    turns = np.degrees(np.arccos(np.clip((any_way[:, 1] * sensor_axes(explorations[0].normals)[:, 1]).sum(1), -1, 1)))
+    normals = [exploration.candidates.normals[:20] for exploration in explorations]
+    assert np.array_equal(upright, sensor_axes(normals[1]))
+    turns = np.degrees(np.arccos(np.clip((any_way[:, 1] * sensor_axes(normals[0])[:, 1]).sum(1), -1, 1)))
     assert turns.min() < 40 and turns.max() > 140 and len(np.unique(turns)) == 20
-
-
-def test_equal_meshes_are_named_in_a_warning(shapes, recwarn):
-    learn({"ball": shapes["ball"], "box": shapes["box"]}, placed=False)
-    assert not recwarn.list
-    with pytest.warns(UserWarning, match="mug 1 and mug 2 are the same mesh"):
-        learn({"mug 1": shapes["capsule"], "mug 2": shapes["capsule"], "ball": shapes["ball"]}, placed=False)
 
 
 def test_a_mesh_in_two_formats_is_equal_and_a_mesh_with_as_many_faces_is_not(shapes, recwarn):
@@ -266,13 +229,6 @@ def test_a_touch_away_from_all_objects_says_nothing_and_one_in_another_unit_is_r
     assert blind.belief().after(flat, [0, 0, 3.0]).touches == 1
 
 
-def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
-    trimesh.Trimesh(30 * shapes["box"].vertices, shapes["box"].faces).export(tmp_path / "box.ply")
-    with pytest.warns(UserWarning, match="box does not say which axis points up"):
-        library = learn({"box": tmp_path / "box.ply", "ball": shapes["ball"]}, placed=False)
-    assert np.linalg.norm(library._positions, axis=1).max() < 0.51
-
-
 @pytest.mark.parametrize(
     ("names", "samples", "positions", "words"),
     [
@@ -280,7 +236,6 @@ def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
         (("a", "b", "c"), np.zeros((2, 9, 41)), np.zeros((2, 9, 3)), r"with 3 classes, .* got \(2, 9, 41\)"),
         (("a", "b"), np.zeros((2, 9, 41)), np.zeros((2, 8, 3)), r"got \(2, 9, 41\) and \(2, 8, 3\)"),
         (("a", "b"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), r"\(classes, touches, 41\) .* got \(2, 9, 4\)"),
-        (("a", "b"), np.zeros((2, 0, 41)), np.zeros((2, 0, 3)), r"got \(2, 0\) and"),
         (("a", "b"), np.full((2, 9, 41), np.nan), np.zeros((2, 9, 3)), "samples must be finite, got nan in touch 0"),
         (("a", "b"), np.full((2, 9, 41), 255), np.zeros((2, 9, 3)), "those of a are .* divide bytes by 255"),
     ],
@@ -288,13 +243,6 @@ def test_a_file_is_learned_in_any_scale(tmp_path, shapes):
 def test_samples_that_do_not_fit_a_library_are_named(names, samples, positions, words):
     with pytest.raises(ValueError, match=words):
         Library(names, samples.tolist(), positions, False)
-
-
-def test_bytes_are_as_likely_as_the_shares_that_they_are(library):
-    images, places = np.arange(256, dtype=np.uint8).reshape(1, *CELLS), np.zeros((1, 3))
-    assert np.allclose(library.log_likelihoods(images, places), library.log_likelihoods(images / 255, places))
-    with pytest.raises(ValueError, match="images must be bytes, or numbers in 0..1"):
-        library.log_likelihoods(images.astype(float), places)
 
 
 def test_places_depend_on_the_surface_and_not_on_the_order_in_which_a_file_has_it(shapes):
@@ -319,9 +267,7 @@ def test_a_mesh_with_y_up_is_learned_upright_and_explored_only_so(shapes):
     ("image", "position", "words"),
     [
         (np.full(CELLS, 200.0), np.zeros(3), "bytes, or numbers in 0..1"),
-        (np.full(CELLS, -1.0), np.zeros(3), "bytes, or numbers in 0..1"),
         (np.zeros(CELLS), 5, "three finite numbers"),
-        (np.zeros(CELLS), [[0, 0, 0]], "three finite numbers"),
     ],
 )
 def test_what_is_no_imprint_or_no_place_is_refused(blind, image, position, words):
@@ -382,9 +328,3 @@ def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes
     trimesh.Trimesh(shapes["box"].vertices, shapes["box"].faces).export(tmp_path / "small.stl")
     with pytest.warns(UserWarning, match="small.stl does not say which axis points up"):
         known_objects(tmp_path)
-
-
-def test_files_that_differ_in_their_suffix_alone_are_two_objects(tmp_path, shapes):
-    for shape, name in (("box", "thing.stl"), ("cone", "thing.ply")):
-        write_any(tmp_path / name, shapes[shape])
-    assert list(known_objects(str(tmp_path))[0]) == ["thing.ply", "thing.stl"]

@@ -16,15 +16,6 @@ def noise(*shape):
     return np.random.default_rng(0).normal(size=shape), np.repeat([0, 1], shape[0] // 2)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CLASSIFIERS)
-def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, name):
-    rows = evaluate(bumps(count=24), name, 3)
-    assert mean(rows, "random") > 0.8 and mean(rows, "folds") > 0.7
-    images = dict(zip("abc", np.random.default_rng(1).random((3, 40, 16, 16)), strict=True))
-    assert mean(evaluate(images, name, 4), "random") < 0.6
-
-
 def test_classifiers_are_the_thesis_s_behind_twelve_components():
     assert set(CLASSIFIERS) >= {"knn", "svm", "decision_tree", "naive_bayes", "deep_learning"}
     assert classifier("deep_learning", 5)[-1].get_params() == {"hidden": (50, 50), "epochs": 10, "seed": 5}
@@ -41,12 +32,6 @@ def test_rows_are_equal_from_run_to_run_but_for_the_seconds(bumps):
     rows = rows_of(images, 4)
     assert rows == rows_of(dict(reversed(images.items())), 4) != rows_of(images, 5)
     assert [row["repetition"] for row in rows] == [0, 0, 1, 1]
-
-
-def test_bytes_are_the_imprints_whose_shares_they_are():
-    images = np.random.default_rng(0).random((12, 16, 16))
-    rows = evaluate({"shares": images, "bytes": np.round(images * 255).astype(np.uint8)}, "knn", 3)
-    assert max(row["value"] for row in rows) <= 0.5
 
 
 def test_every_object_gives_as_many_as_the_poorest(bumps):
@@ -170,25 +155,3 @@ def test_located_samples_keep_the_place_behind_the_components():
     plain = classifier("knn").fit(samples[::2], labels[::2])[:-1]
     assert components.shape == (120, 15) and np.allclose(components[:, :12], plain.transform(samples))
     assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda bumps: evaluate(bumps(), "knm"), "did you mean knn"),
-        (lambda bumps: evaluate(bumps(), "perceptron of old"), "choose one of knn"),
-        (lambda bumps: evaluate(bumps() | {"cup": np.zeros((9, 16, 16))}, "knn"), "cup has 9 imprints"),
-        (lambda bumps: evaluate(bumps() | {"cup": np.zeros((20, 4, 4))}, "knn"), "at least 8 x 8"),
-        (lambda bumps: evaluate(bumps() | {"cup": np.zeros((20, 8, 8))}, "knn"), "imprints of several arrays"),
-        (lambda bumps: evaluate(bumps(("cup",)), "knn"), "two objects"),
-        (lambda bumps: evaluate(bumps() | {"cup": np.full((20, 16, 16), 9.0)}, "knn"), "bytes, or numbers in 0..1"),
-        (lambda bumps: evaluate(bumps(), "knn", 0), "repetitions must be 1 or more, got 0"),
-        (lambda _: classifier("knn", 0, "places"), "kind must be one of features, located, reduced"),
-        (lambda _: classifier("knn", scaling="none"), "scaling must be one of training, .*, min_max, got 'none'"),
-        (lambda _: protocol.region_holdout([0, 1, 1], np.zeros((3, 3)), 2.5, 0), "class 0 has 1 touches"),
-    ],
-)
-def test_wrong_arguments_are_named_with_what_is_right(bumps, call, words):
-    with pytest.raises(ValueError, match=words):
-        call(bumps)

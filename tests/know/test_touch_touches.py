@@ -67,14 +67,6 @@ def test_shared_are_those_that_another_object_has_too():
     assert not confusable(similarities, ["a", "a", "b", "b", "b"], among=[0, 1, 3]).tolist()[0]
 
 
-def test_what_cannot_be_compared_is_refused():
-    for bad in (np.zeros((9, 7)), np.full((1, 9, 7), np.nan)):
-        with pytest.raises(ValueError, match="images must be finite"):
-            similarity(bad)
-    with pytest.raises(ValueError, match=r"equal cells: \(9, 7\) and \(7, 9\)"):
-        similarity(IMAGES, np.zeros((1, 7, 9)))
-
-
 def test_a_control_of_selection_keeps_as_many_of_each_object():
     labels = np.array(["a"] * 5 + ["b"] * 5)
     kept = np.array([True, True, False, False, False] + [True] * 4 + [False])

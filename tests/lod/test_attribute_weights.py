@@ -144,13 +144,6 @@ def test_normals_of_an_edged_solid_come_out_closer():
     assert off(simplify(mesh, 800, attributes={"normals": 0.1})) < off(simplify(mesh, 800)) / 2
 
 
-def test_without_weights_nothing_changes():
-    mesh = sheet(24, disc, 0.1)
-    plain, zero = simplify(mesh, 300), simplify(mesh, 300, attributes={"colors": 0, "normals": 0.0})
-    for name in ("vertices", "faces", "colors"):
-        assert getattr(plain, name).tobytes() == getattr(zero, name).tobytes()
-
-
 def test_what_is_kept_keeps_its_colours():
     mesh = sheet(32, height=0.1)
     colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3))
@@ -237,21 +230,6 @@ def test_wedges_add_up_after_the_collapses():
             assert len(ring) <= len(members)
         assert set(ring) == members
     assert max(map(len, rings.values())) == 2  # on the seam
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"attributes": {"tangents": 1}}, "unknown attribute 'tangents'"),
-        ({"attributes": {"colors": -1}}, "colors must be 0 or more, got -1"),
-        ({"attributes": {"colors": np.nan}}, "must be 0 or more"),
-        ({"attributes": {"uv": 1}}, "the mesh has no uv"),
-        ({"attributes": COLORS, "backend": "pymeshlab"}, "pymeshlab has no attributes"),
-    ],
-)
-def test_weights_that_mean_nothing_are_refused(changes, message):
-    with pytest.raises(ValueError, match=message):
-        simplify(sheet(8, disc), 100, **changes)
 
 
 def test_colour_error_is_zero_on_the_mesh_itself_and_known_on_two_greys():

@@ -113,14 +113,6 @@ def normals_up(mesh):
     return mesh.face_crosses[:, 2] / np.linalg.norm(mesh.face_crosses, axis=1)
 
 
-def test_faces_without_area_do_no_harm():
-    mesh = MESHES["faces without area"]
-    simple = simplify(mesh, 160)
-    assert len(simple.faces) <= 160 and not faults(simple).added(faults(mesh))
-    on_ball = np.linalg.norm(simple.vertices, axis=1)
-    assert np.abs(on_ball[on_ball < 1] - 0.5).max() < 0.03
-
-
 def test_slivers_within_the_surface_do_no_harm():
     mesh = sheet(15)
     row = (np.arange(len(mesh.vertices)) // 16) == 7

@@ -1,7 +1,5 @@
 """Errors of surfaces: against shapes whose distance is known, two libraries, and damage whose place is known."""
 
-from dataclasses import replace
-
 import numpy as np
 import point_cloud_utils
 import pymeshlab
@@ -27,13 +25,6 @@ def square(height=0.0, side=1.0):
 def test_parallel_planes_are_their_distance_apart():
     errors = metro(square(), square(0.25), 500)
     assert errors == pytest.approx(dict.fromkeys(("mean", "rms", "max"), 0.25 / np.sqrt(2)), rel=1e-12)
-
-
-def test_vertices_edited_in_place_are_measured_where_they_are():
-    mesh, simple = replace(SPHERE), simplify(SPHERE, 200)
-    metro(mesh, simple)
-    mesh.vertices[:, 2] *= 3
-    assert metro(mesh, simple) == metro(replace(mesh), simple)
 
 
 def test_no_face_is_put_into_a_cell_outside_the_grid():
@@ -220,7 +211,6 @@ EMPTY = Mesh(np.zeros((3, 3)), np.zeros((0, 3), dtype=int))
         (lambda: metro(SPHERE, EMPTY), "without faces"),
         (lambda: SurfaceIndex(Mesh(1e120 * SPHERE.vertices, SPHERE.faces)), "out of range"),
         (lambda: SurfaceIndex(SPHERE).nearest([[np.nan, 0, 0]]), "points"),
-        (lambda: SurfaceIndex(SPHERE).nearest([[1e200, 0, 0]]), "points"),
         (lambda: salient_error(SPHERE, SPHERE, np.eye(len(UPPER))[0], 3), "more samples"),
         (lambda: salient_error(SPHERE, SPHERE, 0 * UPPER, 100), "zero on the whole surface"),
         (lambda: salient_error(SPHERE, SPHERE, np.ones(3), 100), "one value per vertex"),

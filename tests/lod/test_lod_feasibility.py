@@ -147,12 +147,6 @@ def test_the_smallest_count_is_searched_for_once_for_all_refused_targets(monkeyp
         assert (len(requests), caught.value.smallest) == (calls, smallest)
 
 
-def test_meshes_out_of_range_are_named():
-    for size in (1e70, 1e-70):
-        with pytest.raises(ValueError, match="out of range: scale it"):
-            simplify(Mesh(SPHERE.vertices * size, SPHERE.faces), 100)
-
-
 def test_infeasible_target_travels_between_processes():
     error = pickle.loads(pickle.dumps(InfeasibleTarget(100, 250, 80)))
     assert isinstance(error, ValueError)

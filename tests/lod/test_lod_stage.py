@@ -2,7 +2,6 @@
 
 import dataclasses
 import functools
-import re
 
 import numpy as np
 import pytest
@@ -191,15 +190,6 @@ def test_every_cell_has_a_row_and_one_without_a_mesh_a_note(rows):
     assert "saliency of random" in cell(rows, "random-area", "50%")["faces"]["note"]
 
 
-def test_a_failing_backend_becomes_a_note(tmp_path, monkeypatch):
-    def broken(*_, **__):
-        raise RuntimeError("no\nluck")
-
-    monkeypatch.setattr("stages.lod.cell.simplify", broken)
-    rows = measure_cells(new_subject(), "qem", tmp_path, dataclasses.replace(SETTINGS, targets=["50%"]), 0)
-    assert [row["note"] for row in rows] == ["no luck"]
-
-
 def test_summary_compares_only_cells_that_all_methods_reach():
     def row(method, target, metric, value, infeasible=False):
         return {"item": "a", "method": method, "target": target, "metric": metric, "value": value,
@@ -237,19 +227,11 @@ def test_targets_mean_face_counts_and_files(target, count):
     assert file_name("glance", target) == f"glance_{target.replace('%', 'pct')}.npz"
 
 
-@pytest.mark.parametrize("target", ["", "half", "-5", "0", "0%", "100%", "1.5k", "1.5", "0.25"])
-def test_bad_targets_are_named(target):
-    remedy = " must be 1 or more; for a share write 25%" if target == "0.25" else ""
-    with pytest.raises(ValueError, match=re.escape(repr(target) + remedy)):
-        face_count(target, 1000)
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [
         ("glanc", "unknown method 'glanc'"), ("glance-fixed", "endings are -adaptive, -area, -soft"),
-        ("glance-soft-area", "ends in 'soft-area'"), ("qem-soft", "unknown method 'qem'"),
-        ("-area", "unknown method ''"),
+        ("glance-soft-area", "ends in 'soft-area'"), 
     ],
 )  # fmt: skip
 def test_bad_names_of_methods_are_named(name, message):

@@ -13,15 +13,13 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from haptic_glance import as_mesh, simplify, to_trimesh
-from haptic_glance.cli.saliency import run as look_at
 from haptic_glance.cli.simplify import dropped_from, run
 from haptic_glance.lod.errors import colour_error
 from haptic_glance.lod.export import _in_pictures, write_any
 from haptic_glance.lod.task import repaired
-from haptic_glance.lod.topology import parts_of
 from haptic_glance.mesh import load
 from haptic_glance.mesh.gltf import as_glb, joined, opened, with_linear_colours
-from haptic_glance.mesh.materials import bake_texture, corner_colours, not_read, shown_at_corners
+from haptic_glance.mesh.materials import bake_texture, corner_colours, not_read
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.srgb import decoded, encoded
 
@@ -164,16 +162,6 @@ def test_a_node_of_two_primitives_keeps_its_name_and_each_run_writes_the_same_by
     assert first.read_bytes() == second.read_bytes()
 
 
-@pytest.mark.parametrize("names", [("wheel", "wheel_1"), ("wheel_1", "wheel")])
-def test_a_numbered_name_takes_no_other_part_s_place(tmp_path, names):
-    pixels = tuple(np.full((1, 1, 4), grey, np.uint8) for grey in (0, 255))
-    texture = Texture(np.zeros((4, 3, 2)), [0, 1, 0, 1], pixels)
-    mesh = Mesh(np.random.default_rng(0).random((12, 3)), np.arange(12).reshape(4, 3), None, texture)
-    write_any(tmp_path / "out.glb", mesh, dict(zip(names, np.arange(4).reshape(2, 2), strict=True)))
-    assert len(load(tmp_path / "out.glb").faces) == 4
-    assert parts_of(tmp_path / "out.glb").keys() == {"wheel", "wheel_1", "wheel_2", "wheel_1_1"}
-
-
 COLOURS = np.random.default_rng(0).integers(256, size=(42, 4), dtype=np.uint8)
 OTHERS = {  # a part beside one with colours: its colour, and what is dropped
     "no material": ({}, 255, []),
@@ -240,14 +228,6 @@ def test_a_part_without_a_colour_is_white_as_gltf_says(tmp_path):
     assert ["baseColorFactor" in material["pbrMetallicRoughness"] for material in materials].count(True) == 1
 
 
-@pytest.mark.parametrize("material", [{"name": "leaf"}, {"doubleSided": True}])
-def test_a_material_without_a_colour_is_kept(tmp_path, material):
-    (tmp_path / "leaf.glb").write_bytes(trimesh.Scene(ball(0, **material)).export(file_type="glb"))
-    write_any(tmp_path / "again.glb", load(tmp_path / "leaf.glb"))
-    (kept,) = materials_of(tmp_path / "again.glb")
-    assert material.items() <= kept.items()
-
-
 @pytest.mark.parametrize("flat", [True, False])
 def test_colours_of_faces_stay_apart_and_others_that_meet_are_blended(flat):
     box = trimesh.creation.box()
@@ -312,21 +292,6 @@ def test_a_material_file_does_not_darken_the_picture_and_names_the_maps_that_are
     assert dropped_from(tmp_path / "ball.obj", load(tmp_path / "ball.obj")).endswith(": map_Bump, Ks")
 
 
-def test_a_glb_of_weights_keeps_the_nodes_and_says_what_it_drops(tmp_path, capsys):
-    (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
-    rewritten(tmp_path / "art.glb", lambda tree: tree.update(animations=[{"channels": [], "samplers": []}]))
-    look_at([str(tmp_path / "art.glb"), "--method", "height", "--weights", str(tmp_path / "weights.glb")])
-    assert "dropped from art.glb, since they cannot be carried over: animations" in capsys.readouterr().err
-    assert parts_of(tmp_path / "weights.glb").keys() == {"varnish", "metal"}
-
-
-@pytest.mark.parametrize("out", ["out.obj", "out.ply"])
-def test_a_format_with_less_says_what_it_drops(simplified, out):
-    path, messages = simplified(out)
-    assert "dropped: " in messages and "normalTexture" in messages and "roughnessFactor" in messages
-    assert load(path).texture is not None or load(path).colors is not None
-
-
 def test_no_picture_beside_that_of_colour_is_decoded_for_reading_and_writing(tmp_path, monkeypatch):
     (tmp_path / "art.glb").write_bytes(art().export(file_type="glb"))
     decoded = []
@@ -359,14 +324,6 @@ def test_a_material_without_a_colour_keeps_the_rest_and_gives_no_colours(tmp_pat
     (material,) = materials_of(tmp_path / "again.glb")
     factors = {"roughnessFactor", "metallicFactor"}
     assert "normalTexture" in material and set(material["pbrMetallicRoughness"]) == factors
-
-
-def test_a_picture_of_one_pixel_stays_a_picture(tmp_path):
-    part = ball(0, baseColorTexture=Image.new("RGB", (1, 1), (200, 30, 30)))
-    (tmp_path / "red.glb").write_bytes(trimesh.Scene({"red": part}).export(file_type="glb"))
-    write_any(tmp_path / "again.glb", load(tmp_path / "red.glb"))
-    texture = load(tmp_path / "again.glb").texture
-    assert texture.images[0].ravel().tolist() == [200, 30, 30, 255] and "baseColorTexture" in texture.materials[0]
 
 
 def test_meshes_with_other_materials_differ():
@@ -470,11 +427,6 @@ def test_a_hard_edge_between_colours_of_vertices_stays_hard():
     colors = corner_colours(small.texture, np.arange(len(small.faces)))
     assert {(200, 0, 0), (0, 0, 200)} < set(map(tuple, colors[:, 0].tolist()))
     assert (colors == colors[:, :1]).all()
-
-
-def test_texture_coordinates_beyond_integers_are_no_colours_at_corners(recwarn):
-    texture = Texture(np.array([[[1e30, 0], [0, 1], [1, 1]]]), np.array([0]), (np.zeros((4, 4, 4), np.uint8),))
-    assert not shown_at_corners(texture).any() and not list(recwarn)
 
 
 def test_a_weight_of_texture_coordinates_spends_no_faces_on_colours_of_vertices():

@@ -58,13 +58,6 @@ def test_curvature_ignores_vertex_order_and_splitting_and_flips_with_the_winding
     np.testing.assert_allclose(mean_curvature(inward), -expected, rtol=1e-6)
 
 
-def test_of_two_balls_the_smaller_stands_out_in_curvature():
-    v, f = SPHERE.vertices, SPHERE.faces
-    balls = Mesh(np.r_[v * 0.2 - [0, 0.22, 0], v * 0.1 + [0, 0.3, 0]], np.r_[f, f + len(v)])
-    values = conspicuity(balls, render(balls, Viewpoint(0, 0), SIZE, "raster"), ["curvature"])["curvature"]
-    assert values[:, 60:].max() > 1.8 * values[:, :55].max() > 0
-
-
 def test_a_place_takes_the_corner_nearest_to_it():
     sliver = Mesh([[0, -0.4, 0], [0, 0.4, 0], [0, 0.4, 0.01]], [[0, 1, 2]])
     places = np.array([[0, -0.39, 1e-4], [0, 0.39, 1e-3], [0, 0.399, 9e-3]])

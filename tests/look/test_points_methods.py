@@ -8,17 +8,16 @@ from scipy.spatial import KDTree
 from haptic_glance import load
 from haptic_glance.gallery.demo import sample
 from haptic_glance.look.channels.channels import CHANNELS, OTHERS
-from haptic_glance.look.glance import Samples, samples_of_mesh
-from haptic_glance.look.points import METHODS, detect, find_points, saliency
+from haptic_glance.look.glance import samples_of_mesh
+from haptic_glance.look.points import METHODS, detect, find_points
 from haptic_glance.look.points.find import Looked, check_name
 from haptic_glance.look.points.methods import MEANT
-from haptic_glance.look.points.options import Options
 from haptic_glance.look.points.recurring_imprints import CELLS, DISC, WIDTH, imprints, pressed, recurrence, spread
 from haptic_glance.mesh import normalise
-from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, press_at
 from haptic_glance.touch.surface import sensor_axes
-from tests.shapes import ball_mesh, flat_grid, mesh_of, raised_ball
+from tests.shapes import mesh_of, raised_ball
 
 
 @pytest.mark.parametrize(
@@ -39,23 +38,6 @@ def test_a_name_that_cannot_run_is_answered_with_ours_or_the_reason(name, messag
         check_name(name)
 
 
-@pytest.mark.parametrize("method", ["height", "random"])
-def test_a_whole_number_of_any_type_is_a_count(method):
-    assert np.array_equal(find_points(ball_mesh(2), method, 3.0), find_points(ball_mesh(2), method, 3))
-
-
-@pytest.mark.parametrize("method", ["height", "centre_distance"])
-def test_a_vertex_in_no_face_counts_nothing(method):
-    ball = ball_mesh(2)
-    values = saliency(Mesh(np.r_[ball.vertices, [[0, 0, -99.0]]], ball.faces), method)
-    assert values.tolist() == [*saliency(ball, method), 0]
-
-
-def test_saliency_does_not_pay_for_a_smoothing_that_it_does_not_read(monkeypatch):
-    monkeypatch.setattr(Samples, "smoothed", None)
-    assert saliency(ball_mesh(2), smoothing=1.0).max() == 1
-
-
 def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_list():
     for name in ("glance", "glance_any_pose", "itti", "thesis_ssim"):
         check_name(name)
@@ -65,13 +47,6 @@ def test_names_that_run_pass_and_what_resembles_nothing_is_answered_with_the_lis
         check_name("xyzzy", ["qem"])
     assert set(MEANT.values()) <= set(METHODS) and not set(MEANT) & set(METHODS)
     assert all(set(method.channels) <= {*CHANNELS, *OTHERS} for method in METHODS.values())
-
-
-def test_views_show_a_texture_as_the_colours_of_the_vertices():
-    vertices, faces = ball_mesh(1).vertices, ball_mesh(1).faces
-    red = Texture(np.zeros((len(faces), 3, 2)), np.zeros(len(faces)), (np.array([[[255, 0, 0, 255]]], np.uint8),))
-    seen = Looked(Mesh(vertices, faces, None, red)).mesh
-    assert seen.texture is None and seen.colors.tolist() == [[255, 0, 0]] * len(vertices)
 
 
 @pytest.fixture(scope="module")
@@ -100,17 +75,6 @@ def test_the_order_and_the_number_of_faces_change_no_place_to_touch(bumpy):
     again = fine.vertices[find_points(fine, 12, purpose="touch")]
     edge = np.linalg.norm(bumpy.vertices[bumpy.faces[:, 0]] - bumpy.vertices[bumpy.faces[:, 1]], axis=1).max()
     assert np.linalg.norm(places - again, axis=1).max() < edge
-
-
-@pytest.mark.slow
-def test_as_many_places_to_touch_as_asked_for_where_there_are_any(bumpy):
-    face = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
-    for mesh, count in ((bumpy, 400), (ball_mesh(3), 7), (flat_grid(20, 30), 7), (face, 3)):
-        detection = detect(mesh, 7 if mesh is face else count, purpose="touch")
-        assert len(detection.points) == len(set(detection.points.tolist())) == count
-        assert detection.saliency.max() == 1
-        assert detection.saliency.min() > 0.5 or mesh is not ball_mesh(3)  # all of a sphere feels alike
-    assert len(METHODS["touch"].find(Mesh(np.zeros((3, 3)), face.faces), None, Options(), 7).points) == 0
 
 
 def test_small_arrays_feel_what_the_sensor_feels(bumpy):

@@ -82,9 +82,3 @@ def test_one_triangle_has_four_views_and_a_mesh_without_area_is_refused():
     for vertices, faces in ((np.zeros((0, 3)), np.zeros((0, 3), dtype=int)), (corners[[0, 1, 1]], [[0, 1, 2]])):
         with pytest.raises(ValueError, match="no visible surface"):
             best_viewpoints(Mesh(vertices, faces), flat_level)
-
-
-@pytest.mark.parametrize("level", [np.inf, np.zeros((2, 2))], ids=["infinite", "map"])
-def test_a_level_that_is_no_finite_number_names_the_view(level):
-    with pytest.raises(ValueError, match="az0_el0 must be one finite number"):
-        best_viewpoints(BALL, lambda view: level)

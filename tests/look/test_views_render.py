@@ -67,22 +67,6 @@ def test_plane_seen_from_behind_is_lit_too_and_edges_of_a_cube_stay_sharp(shapes
     assert set(np.unique(cube.rgb[cube.mask])) == {round(GREY * np.cos(np.radians(angle))) for angle in (30, 60)}
 
 
-def test_the_material_holds_for_one_picture_alone(shapes, renderer):
-    materials = (Material(), SHINY, Material(), SHINY)
-    pictures = [render(shapes["coloured"], FRONT, SIZE, renderer, material=material).rgb for material in materials]
-    assert (pictures[0] == pictures[2]).all() and (pictures[1] == pictures[3]).all()
-    assert (pictures[0] != pictures[1]).any()
-
-
-def test_the_order_of_vertices_does_not_matter(shapes, renderer):
-    mesh = shapes["coloured"]
-    new = np.random.default_rng(0).permutation(len(mesh.vertices))
-    old = np.argsort(new)
-    shuffled = Mesh(mesh.vertices[old], new[mesh.faces], mesh.colors[old])
-    drawn, again = (render(variant, Viewpoint(0, 30), SIZE, renderer, material=SHINY) for variant in (mesh, shuffled))
-    assert (drawn.face == again.face).all() and (drawn.rgb == again.rgb).all()
-
-
 @pytest.mark.parametrize(("background", "level"), [("black", 0), ("grey", 128), ("white", 255)])
 def test_background_has_its_colour_and_no_depth(shapes, renderer, background, level):
     view = render(shapes["torus"], FRONT, SIZE, renderer, background)

@@ -82,9 +82,3 @@ def test_the_nearest_in_convexity_is_found_and_of_equally_near_ones_the_first_by
     assert nearest_convexity(0.6, {"mug": 0.28, "elephant": 0.66, "cube": 1.0}) == "elephant"
     assert nearest_convexity(1.0, {"sphere": 1.0, "cube": 1 - 1e-12}) == "cube"
     assert nearest_convexity(0.5, {"b": 0.6, "a": 0.4}) == nearest_convexity(0.5, {"a": 0.4, "b": 0.6}) == "a"
-
-
-@pytest.mark.parametrize(("value", "others"), [(0.5, {}), (float("nan"), {"a": 0.5}), (0.5, {"a": float("inf")})])
-def test_nothing_to_choose_from_is_an_error(value, others):
-    with pytest.raises(ValueError, match="no other object to choose|must be finite"):
-        nearest_convexity(value, others)

@@ -6,7 +6,7 @@ import trimesh
 
 import haptic_glance
 from haptic_glance import Mesh, MeshError, Surface, as_mesh, load, normalise, to_trimesh
-from haptic_glance.mesh.files import mesh_files, names_of
+from haptic_glance.mesh.files import mesh_files
 
 EGG = trimesh.creation.icosphere(3)
 EGG.vertices *= [1, 1, 1.4]
@@ -65,13 +65,6 @@ def test_a_folder_gives_its_meshes_in_order_and_nothing_else(tmp_path):
     (tmp_path / "empty").mkdir()
     with pytest.raises(MeshError, match="empty: no mesh in this folder; the formats are .stl"):
         mesh_files(tmp_path / "empty")
-
-
-def test_files_of_one_stem_are_told_apart(tmp_path):
-    files = [tmp_path / name for name in ("a.ply", "a.stl", "b.stl")]
-    assert names_of(files) == ["a.ply", "a.stl", "b"]
-    files = [tmp_path / name for name in ("a.obj", "a.ply", "a.obj.stl", "x/c.stl", "y/c.stl")]
-    assert names_of(files) == ["a.obj", "a.ply", "a.obj.stl", str(files[3]), str(files[4])]
 
 
 def test_a_change_of_a_trimesh_object_leaves_its_mesh_alone():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from haptic_glance.base.extras import MissingExtra
 from haptic_glance.mesh import MeshError, load
 from haptic_glance.mesh.files import files_of
 
@@ -77,12 +76,6 @@ def test_a_concave_polygon_keeps_its_shape(tmp_path, element):
     assert np.linalg.norm(cross, axis=1).sum() / 2 == pytest.approx(2 * 6 + sides)
 
 
-def test_a_file_in_utf_16_is_read(tmp_path):
-    path = written(tmp_path)
-    path.write_text('<?xml version="1.0" encoding="utf-16"?>' + path.read_text(), encoding="utf-16")
-    assert len(load(path).faces) == 24
-
-
 def test_a_colour_is_srgb_and_a_part_without_a_material_stays_beside_it(tmp_path):
     texture = load(written(tmp_path)).texture
     pixels = [tuple(image[0, 0, :3].tolist()) for image in texture.images]
@@ -149,9 +142,3 @@ def test_a_polygon_with_a_hole_is_left_out_with_a_warning_and_concave_ones_besid
         mesh = load(written(tmp_path, **arrow, hole=(POLYGONS, hole)))
     assert len(mesh.faces) == 2 * 10
     assert mesh.face_areas.sum() == pytest.approx(whole.face_areas.sum() - (1 + 3) * 6)  # an arrow at each place
-
-
-def test_without_pycollada_the_message_names_the_extra(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "collada", None)
-    with pytest.raises(MissingExtra, match=r"robot.dae: pycollada, which reads .dae, is not installed: .*\[robots\]"):
-        load(written(tmp_path))

@@ -9,7 +9,7 @@ from PIL import Image
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from haptic_glance import Mesh, MeshError, as_mesh, clean, find_points, load, simplify
+from haptic_glance import Mesh, MeshError, as_mesh, clean, load
 from haptic_glance.__main__ import run
 from haptic_glance.cli.saliency import finely
 from haptic_glance.cli.simplify import dropped_from
@@ -18,7 +18,6 @@ from haptic_glance.mesh.files import files_of, parse
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.obj import not_read
 from haptic_glance.mesh.polygons import refined
-from haptic_glance.touch.press import as_shown
 from tests.shapes import ball_mesh
 
 
@@ -42,15 +41,6 @@ def test_a_surface_that_was_doubled_loses_one_of_its_sides(ball):
 def test_a_thin_sheet_on_a_body_keeps_both_sides(ball):
     faces = np.concatenate([ball.faces, ball.faces[:5, ::-1]])
     assert len(clean(Mesh(ball.vertices, faces))[0].faces) == 325
-
-
-@pytest.mark.slow
-def test_a_doubled_mesh_is_looked_at_touched_and_simplified(ball, tmp_path, capsys):
-    file = tmp_path / "sketch.obj"
-    trimesh.Trimesh(*(lambda m: (m.vertices, m.faces))(doubled(ball)), process=False).export(file)
-    mesh = load(file)
-    assert len(find_points(mesh, 3)) == 3 and len(simplify(mesh, 0.25).faces) <= 160
-    run("touch", [str(file), "--count", "2", "--out", str(tmp_path / "touched")])
 
 
 @pytest.mark.parametrize("binary", [False, True])
@@ -196,12 +186,6 @@ def test_the_saliency_of_long_triangles_is_drawn_on_a_finer_copy(tmp_path):
     assert np.asarray(Image.open(tmp_path / "a.png")).std() > 10
 
 
-def test_a_flat_place_has_little_contrast_in_a_picture():
-    images = np.linspace(0, 1, 16).reshape(1, 4, 4).repeat(2, axis=0)
-    shown = as_shown(images, [0.0001, 0.05], 0.01)
-    assert shown[0].max() == pytest.approx(0.1) and shown[1].max() == 1
-
-
 @pytest.mark.parametrize("named", ["maps/wood 1.png", "maps\\wood 1.png", "-o 0 -s 1 1.5 1 -clamp on maps/wood 1.png"])
 def test_the_picture_of_an_obj_is_found_however_its_material_names_it(tmp_path, named):
     (tmp_path / "maps").mkdir()
@@ -271,19 +255,6 @@ def test_a_ply_keeps_the_colours_of_its_faces_and_its_picture_through_a_command(
     clear = np.abs(x) > 0.3
     assert (np.ptp(less.colors[clear], axis=0) == [200, 0, 200]).all()
     assert ((less.colors[:, 0] > 100) == (x > 0))[clear].all()
-
-
-def test_a_picture_that_many_nodes_share_is_decoded_once(ball, monkeypatch):
-    picture, decoded = Image.new("RGB", (4, 4), "red"), []
-    visual = TextureVisuals(ball.vertices[:, :2], material=PBRMaterial(baseColorTexture=picture))
-    part = trimesh.Trimesh(ball.vertices, ball.faces, visual=visual, process=False)
-    scene = trimesh.Scene()
-    for place in range(3):
-        scene.add_geometry(part, geom_name="ball", transform=np.diag([1, 1, 1 + place, 1]))
-    plain = Image.Image.convert
-    monkeypatch.setattr(Image.Image, "convert", lambda self, *mode: decoded.append(self) or plain(self, *mode))
-    mesh = as_mesh(scene)
-    assert len(decoded) == 1 and len(mesh.faces) == 960 and [i.shape for i in mesh.texture.images] == [(4, 4, 4)]
 
 
 def test_a_baked_picture_is_multiplied_by_the_factor_beside_it(ball):

@@ -3,7 +3,6 @@
 import base64
 import io
 import json
-import warnings
 from urllib.parse import quote
 
 import numpy as np
@@ -130,17 +129,6 @@ def test_a_damaged_picture_is_left_out_by_name(first, picture, glb, tmp_path):
     assert len(load(tmp_path / "less.glb").faces) == 300
 
 
-def test_a_picture_beside_the_colour_that_is_too_large_to_open_harms_nothing(tmp_path, monkeypatch):
-    ball = trimesh.creation.icosphere(1)
-    material = PBRMaterial(baseColorTexture=Image.new("RGB", (8, 8)), emissiveTexture=Image.new("RGB", (32, 32)))
-    ball.visual = TextureVisuals(ball.vertices[:, :2] / 4 + 0.5, material=material)
-    ball.export(tmp_path / "ball.glb")
-    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 100)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", UserWarning)
-        assert load(tmp_path / "ball.glb").texture.images[0].shape == (8, 8, 4)
-
-
 def test_a_damaged_picture_beside_a_gltf_is_left_out_by_name(write, beside, tmp_path):
     path = write(beside)
     (tmp_path / "skin of it.png").write_bytes(b"no picture")
@@ -214,14 +202,6 @@ def test_normalised_integers_are_the_numbers_that_they_stand_for(kind):
     tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=stored)
     linear = stored / (1 if kind == "f4" else np.iinfo(kind).max)
     assert (parse(json.dumps(tree).encode(), ".gltf").colors == np.rint(255 * encoded(linear))).all()
-
-
-def test_a_colour_that_two_primitives_share_is_encoded_once():
-    linear = np.full((4, 4), 0.2, "f4")
-    tree = square({}, POSITION=SQUARE.astype("f4"), COLOR_0=linear)
-    tree["meshes"][0]["primitives"] *= 2
-    tree = json.loads(json.dumps(tree))
-    assert (parse(json.dumps(tree).encode(), ".gltf").colors == 124).all()
 
 
 @pytest.mark.parametrize("name", ["KHR_materials_unlit", "KHR_texture_transform"])

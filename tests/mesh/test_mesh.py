@@ -49,15 +49,10 @@ def test_vertex_in_no_face_has_a_zero_normal():
         (lambda: Mesh(np.zeros((3, 3)), np.full((1, 3), 0.5)), "whole numbers"),
         (lambda: Mesh(np.full((3, 3), np.nan), np.zeros((1, 3), int)), "NaN"),
         (lambda: Mesh(np.zeros((3, 3)), np.full((1, 3), 3)), "outside 0..2"),
-        (lambda: Mesh(np.zeros((3, 3)), np.full((1, 3), -1)), "outside 0..2"),
         (lambda: sample_surface(Mesh(CORNERS, [[0, 0, 1]]), np.array([0.5]), np.full((2, 1), 0.5)), "without area"),
         (lambda: sample_surface(Mesh(CORNERS, np.zeros((0, 3))), np.array([0.5]), np.full((2, 1), 0.5)), "area"),
         (lambda: Mesh(np.eye(3), [[0, 1, 2]], np.full((3, 3), 300)), r"colors must lie in 0\.\.255"),
-        (lambda: Mesh(np.eye(3), [[0, 1, 2]], np.full((3, 3), -1)), r"colors must lie in 0\.\.255"),
         (lambda: paint(colour=300), "must be whole numbers"),
-        (lambda: Texture(np.zeros((1, 3, 2)), [0], ([[[300, 0, 0, 0]]],)), "must be whole numbers"),
-        (lambda: paint(colour=0.5), "must be whole numbers"),
-        (lambda: paint(image=0.5), "must be whole numbers"),
     ],
 )
 def test_wrong_arguments_are_named_with_what_is_right(call, words):
@@ -115,10 +110,6 @@ def test_memory_that_a_caller_lends_is_copied():
     assert mesh.vertices[0, 0] == 1
 
 
-def test_a_mesh_without_vertices_has_no_diagonal():
-    assert Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)).diagonal == 0
-
-
 def paint(uv=0.0, image=0, colour=255):
     return Texture(np.full((1, 3, 2), uv), [image], (np.full((2, 2, 4), colour),))
 
@@ -129,12 +120,6 @@ def test_a_texture_keeps_its_paint_when_the_caller_s_arrays_change():
     uv += 1
     pixels += 1
     assert not texture.uv.any() and not texture.images[0].any()
-
-
-def test_coordinates_however_large_show_a_pixel():
-    with np.errstate(all="raise"):
-        shown = paint(uv=1e20).sample(np.array([0, 0]), np.array([[1e20, -1e20], [-0.25, 1.75]]))
-    assert shown.tolist() == [[255] * 3] * 2
 
 
 def test_coordinates_too_large_for_a_file_are_refused_and_those_of_a_file_become_zero():

@@ -1,8 +1,6 @@
 """The axis that points up: known from a GLB, guessed from the shape elsewhere, kept through all work on a mesh."""
 
-import argparse
 import warnings
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,12 +16,11 @@ from haptic_glance.lod.mesh_pictures import coloured
 from haptic_glance.lod.task import SimplificationTask, repaired
 from haptic_glance.mesh import as_mesh, clean, load, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import axis_named, to_z_up
-from haptic_glance.mesh.files import load_as_stated
 from haptic_glance.mesh.materials import bake_texture
 from haptic_glance.mesh.mesh import Mesh, Texture
 from haptic_glance.mesh.plane import _submesh
 from haptic_glance.mesh.repair import orient
-from haptic_glance.mesh.up import add_up, upright_by, upright_for
+from haptic_glance.mesh.up import upright_for
 from haptic_glance.mesh.upright import CANDIDATES, MOST, SURE, WEIGHTS, _pieces, features, probable_up
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import SOURCES
@@ -31,12 +28,6 @@ from stages.meshes.sources import SOURCES
 BALL = trimesh.creation.icosphere(2)
 PLAIN = Texture(np.zeros((len(BALL.faces), 3, 2)), np.zeros(len(BALL.faces), int), (np.full((1, 1, 4), 255, np.uint8),))
 LYING = Mesh(BALL.vertices, BALL.faces[:, ::-1], None, PLAIN, "y")
-
-
-@pytest.mark.parametrize(("suffix", "up"), [("glb", "y"), ("stl", "z"), ("obj", "z"), ("ply", "z"), ("off", "z")])
-def test_a_file_gives_the_axis_of_its_format(tmp_path, suffix, up):
-    BALL.export(tmp_path / f"ball.{suffix}")
-    assert load(tmp_path / f"ball.{suffix}").up == up
 
 
 def _task():
@@ -75,14 +66,6 @@ ALL = "x, y, z, -x, -y, -z, auto, or a vector of three numbers that is not zero,
 NONE = ["w", "", "--y", "0,0,0", "1,2", "1,2,3,4", "nan,0,1", (0, 1), (0, 1, "a"), None, 3, [[0, 0, 1]]]
 
 
-def test_the_name_of_any_axis_names_it_and_a_copy_of_its_mesh_is_equal():
-    random = np.random.default_rng(0)
-    for up in random.normal(size=(300, 3)) * 10 ** random.uniform(-8, 8, (300, 3)):
-        assert axis_named(axis_named(up)) == axis_named(up)
-    leaning = Mesh(BALL.vertices, BALL.faces, up=axis_named([-6.18488455e-03, 6.44222175e-06, -1.03488338e-04]))
-    assert replace(leaning) == leaning
-
-
 @pytest.mark.parametrize("up", NONE, ids=str)
 def test_what_is_no_axis_is_answered_by_the_axes_there_are(up):
     with pytest.raises(ValueError, match="unknown up axis .*: choose one of") as error:
@@ -110,48 +93,6 @@ def test_any_axis_becomes_z_without_a_mirror(up):
     assert turn @ vector == pytest.approx([0, 0, 1], abs=1e-9)
     assert turn @ turn.T == pytest.approx(np.eye(3)) and np.linalg.det(turn) == pytest.approx(1)
     assert rotate_to_z_up(LYING, up) == rotate_to_z_up(LYING, vector) and rotate_to_z_up(LYING, up).up == "z"
-
-
-def test_a_guess_is_told_from_what_a_file_says():
-    cone = trimesh.creation.cone(0.4, 1)
-    known, stated = Mesh(cone.vertices, cone.faces, up="auto"), Mesh(cone.vertices, cone.faces, up="-y")
-    assert upright_by(LYING, Path("a.glb"), None) == (LYING, "y up, as in every GLB")
-    assert upright_by(stated, Path("a.stl"), None) == (stated, "-y up, as the file says")
-    sure = "assuming z is up (probability 0.99; STL files do not store it; --up y for the other)"
-    assert upright_by(known, Path("a.stl"), None) == (Mesh(cone.vertices, cone.faces), sure)
-    assert upright_by(stated, Path("a.stl"), "auto") == (Mesh(cone.vertices, cone.faces), sure)
-    ball = Mesh(BALL.vertices, BALL.faces, up="auto")
-    hardly = "z is up, but the shape hardly tells (probability 0.50; OBJ files do not store it; say --up z or --up y)"
-    assert upright_by(ball, Path("a.obj"), None)[1] == f"assuming {hardly}"
-    assert upright_by(known, Path("a.stl"), "x") == (Mesh(cone.vertices, cone.faces, up="x"), "x up")
-
-
-@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off"])
-def test_a_file_of_ours_states_its_axis(tmp_path, suffix):
-    mesh = Mesh(BALL.vertices, BALL.faces, up="-0.48,0.6,0.64")
-    write_any(tmp_path / f"ball.{suffix}", mesh)
-    stated = load_as_stated(tmp_path / f"ball.{suffix}")
-    assert stated.up == mesh.up and upright_by(stated, Path(f"a.{suffix}"), None)[1].endswith("the file says")
-
-
-def command(argv):
-    parser = argparse.ArgumentParser("prog")
-    add_up(parser)
-    parser.add_argument("--count", type=int)
-    return parser.parse_args(argv)
-
-
-@pytest.mark.parametrize("text", ["-y", "-0.5,0,1", "Z", "auto"])
-def test_a_command_takes_every_axis(text):
-    assert command(["--up", text, "--count", "3"]).up == axis_named(text) == command([f"--up={text}"]).up
-    assert command(["--count", "3"]).up is None and command(["--up", text, "--count", "3"]).count == 3
-
-
-def test_a_command_refuses_what_is_no_axis(capsys):
-    with pytest.raises(SystemExit):
-        command(["--up=-w"])
-    words = f"prog: error: argument --up: unknown up axis '-w': choose one of {ALL}"
-    assert capsys.readouterr().err.splitlines()[-1] == words
 
 
 def test_a_mesh_is_turned_for_a_glb_alone_and_as_other_programs_turn_it_back():

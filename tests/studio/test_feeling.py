@@ -7,17 +7,13 @@ import trimesh
 from haptic_glance.know import place_at
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.studio.drawing import bars_html, grid_html
 from haptic_glance.studio.feeling import (
-    CONTOURS,
     LAYER,
     NEWTONS,
-    RAYS,
     RIGID,
     SENSORS,
     Sensor,
     feel,
-    feel_in_pose,
     turned,
 )
 from haptic_glance.touch import Surface, press, sensor_axes
@@ -113,30 +109,3 @@ def test_cells_that_meet_nothing_are_not_drawn():
     places, _ = felt.contacts
     assert len(places) == 32 and places[:, 0].max() < 0.5
     assert np.isinf(felt.depths).sum() == 32
-
-
-def test_contours_are_felt_at_vertices_alone(torus):
-    felt = feel(torus, at_vertex(torus, 5), Sensor(kind=CONTOURS))
-    assert len(np.unique(felt.pressed)) <= 17
-    with pytest.raises(ValueError, match="vertices alone"):
-        feel(torus, Places(np.array([-1]), UP, UP), Sensor(kind=CONTOURS))
-
-
-def test_rays_of_a_frame_are_those_of_the_sensor(torus):
-    place = at_vertex(torus, 5)
-    felt = feel(torus, place, Sensor(kind=RAYS), unit=3.0)
-    same = feel_in_pose(torus, place.positions[0], sensor_axes(place.normals)[0], Sensor(), 3.0)
-    assert np.array_equal(felt.pressed, same.pressed) and felt.span == same.span
-    assert np.array_equal(felt.depths, same.depths)
-
-
-def test_the_grid_has_a_pixel_a_cell_and_says_its_units():
-    html = grid_html(np.eye(4), (0.25, 0.0), "units of the file", "4 x 4 cells at <vertex>")
-    assert 'width="4" height="4"' in html and "image-rendering:pixelated" in html
-    assert ">0.25<" in html and ">0<" in html and "&lt;vertex&gt;, in units of the file" in html
-
-
-def test_bars_show_the_likeliest_and_count_the_rest():
-    html = bars_html({"a<b": 0.9, **{f"n{k}": 0.01 for k in range(10)}}, "a<b")
-    assert html.count('class="bar"') == 8 and "a&lt;b" in html and "and 3 more, 3% together" in html
-    assert html.index("a&lt;b") < html.index("n0") and "width:90.0%" in html

@@ -17,7 +17,6 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from haptic_glance.studio.app import Studio
-from haptic_glance.studio.command import parser
 from haptic_glance.studio.guard import COOKIE, MAX_UPLOAD, bound_uploads, is_own
 from haptic_glance.studio.session import Settings
 
@@ -208,10 +207,3 @@ def test_an_upload_that_is_larger_than_it_says_is_dropped():
     upload(gui, "liar", 8, b"x" * 6, b"x" * 600)
     assert gui.reached == ["liar", 6] and gui._current_file_upload_states == {}
     assert MAX_UPLOAD == 300 * 1024**2
-
-
-@pytest.mark.parametrize("port", ["99999", "-5", "x"])
-def test_a_port_out_of_range_is_refused_before_a_server_starts(port, capsys):
-    with pytest.raises(SystemExit):
-        parser().parse_args([f"--port={port}"])
-    assert "give a number of 0..65535" in capsys.readouterr().err

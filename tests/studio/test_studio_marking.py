@@ -96,9 +96,3 @@ def test_a_damaged_file_or_one_of_another_mesh_is_named_and_stays(marking, mesh,
     with pytest.raises(MarksError, match="line 2"):
         marking()
     assert ours.path.read_text().endswith("zoe,now\n")
-
-
-def test_a_name_that_cannot_be_is_refused(marking):
-    for name in ("", " ", "x" * 81, "a\nb"):
-        with pytest.raises(ValueError, match="printable"):
-            marking(name)

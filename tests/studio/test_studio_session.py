@@ -7,36 +7,20 @@ from threading import Event
 
 import numpy as np
 import pytest
-import trimesh
 
 from haptic_glance.base.files import write_mesh
-from haptic_glance.look.points import METHODS, detect
+from haptic_glance.look.points import detect
 from haptic_glance.look.points.find import Looked
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
-from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job, Stopped
 from haptic_glance.studio.panels.levels import HARD, SOFT, Levels
-from haptic_glance.studio.panels.look import views_of
-from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
-from haptic_glance.studio.window import Window
 
 PATIENCE = 300  # seconds, on a machine with other work
 
 
 def quiet(share, text):
     """Reports nothing."""
-
-
-def test_sessions_share_nothing_and_another_mesh_leaves_nothing_of_the_last_one(mesh):
-    session, other = Session(), Session()
-    with pytest.raises(ValueError, match="open or upload one"):
-        session.look()
-    session.put(Specimen(mesh, "one"))
-    session.method, session.kept["Touch"] = "height", "something"
-    assert other.specimen is None and other.method == "glance" and other.kept == {}
-    session.put(Specimen(mesh, "two"))
-    assert session.kept == {} and session.on_table.name == "two"
 
 
 @pytest.mark.slow
@@ -47,19 +31,6 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert all(look is looks[0] for look in looks)
     detection = detect(load(knob_file), "glance", 3)
     assert np.array_equal(looks[0].saliency, detection.saliency) and set(looks[0].vertices) == set(detection.points)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("method", ["glance", "touch"])
-def test_another_count_needs_no_other_look(mesh, monkeypatch, method):
-    specimen = Specimen(mesh, "ball")
-    first = specimen.look(method, 3)
-    monkeypatch.setattr(METHODS[method].__class__, "_values", None)
-    more = specimen.look(method, 5)
-    monkeypatch.undo()
-    detection = detect(mesh, method, 5)
-    assert set(more.vertices) == set(detection.points) and np.array_equal(more.saliency, detection.saliency)
-    assert more.drawn is first.drawn
 
 
 def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
@@ -73,17 +44,6 @@ def test_a_look_that_nobody_waits_for_any_more_is_not_computed(mesh):
         specimen.look("height", 4, stop)
     assert specimen.look("height", 3, stop) is known
     assert specimen._looks.keys() == {("height", 3)}
-
-
-@pytest.mark.slow
-def test_a_mesh_of_long_edges_is_drawn_on_a_finer_copy(mesh):
-    box = trimesh.creation.box((1.0, 2.0, 0.5))
-    look = Specimen(Mesh(box.vertices, box.faces), "box").look()
-    fine, values = look.drawn
-    assert len(look.saliency) == 8 and len(values) == len(fine.vertices) > 1000
-    assert np.ptp(fine.vertices, axis=0) == pytest.approx(np.array([1, 2, 0.5]) / np.sqrt(5.25))
-    round_one = Specimen(mesh, "ball")
-    assert round_one.look().drawn[0] is round_one.mesh
 
 
 @pytest.mark.slow
@@ -206,48 +166,6 @@ def test_a_level_comes_back_in_the_units_of_the_file(tmp_path, mesh, suffix):
     again = load(path)
     assert len(again.faces) == 300 and again.diagonal == pytest.approx(far.diagonal, rel=0.05)
     assert rotate_to_z_up(again).vertices[:, 2].mean() == pytest.approx(far.vertices[:, 2].mean(), abs=3)
-
-
-def test_the_twelve_views_show_the_object(mesh):
-    specimen = Specimen(mesh, "ball")
-    image = views_of(specimen.mesh, specimen.look("height").saliency, quiet)
-    assert image.shape == (4 * 150, 3 * 200, 3) and image.dtype == np.uint8
-    tiles = image.reshape(4, 150, 3, 200, 3).swapaxes(1, 2).reshape(12, -1, 3)
-    assert all((tile != 255).any(axis=1).mean() > 0.2 for tile in tiles)
-
-
-class Shown:
-    """A window with one panel, which note what is asked of them, and a scene of names."""
-
-    title = "Touch"
-
-    def __init__(self):
-        self.jobs, self.session, self.asked, self.panels, self.panel = {}, Session(), [], [self], self
-        self.scene = self.opening = self
-
-    def run(self, title, work):
-        work()
-
-    def clear(self, *names):
-        self.asked.append("clear")
-
-    def named(self, specimen):
-        self.asked.append("name")
-
-    def on_hide(self):
-        self.asked.append("hide")
-
-    def on_mesh(self):
-        self.asked.append(f"mesh {self.session.on_table.name}")
-
-    def on_show(self):
-        self.asked.append("show")
-
-
-def test_another_mesh_takes_the_drawings_of_the_panel_away(mesh):
-    window = Shown()
-    Window.put(window, Specimen(mesh, "ball"))
-    assert window.asked == ["hide", "clear", "name", "mesh ball", "show"]
 
 
 class Log(list):

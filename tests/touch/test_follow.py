@@ -129,12 +129,6 @@ def test_many_planes_give_what_each_gives():
             assert np.array_equal(getattr(alone, part), getattr(sequence, part))
 
 
-def test_many_planes_tell_each_why_it_has_no_contour():
-    planes = np.array([LEVEL, [ORIGIN, [1, 0, 0], [2, 0, 0]], [[0, 0, 3], [1, 0, 3], [0, 1, 3]]])
-    good, line, miss = follow_many(BALL, planes, cells=CELLS)
-    assert good.loops == 1 and "lie on a line" in line and "misses the mesh" in miss
-
-
 def test_rounding_says_nothing_about_the_way_at_the_vertex_where_a_contour_begins():
     ball = trimesh.creation.icosphere(subdivisions=2)
     corners, faces, rng = ball.vertices * [0.5, 0.3, 0.2], ball.faces, np.random.default_rng(1)
@@ -153,17 +147,11 @@ def test_rounding_says_nothing_about_the_way_at_the_vertex_where_a_contour_begin
     [
         ([ORIGIN, [0, 0, 0], [1, 0, 0]], {}, "coincide"),
         ([ORIGIN, [1, 0, 0], [1, 0, 0]], {}, "lie on a line"),
-        ([ORIGIN, [1, 1e-7, 0], [-2, 0, 0]], {}, "lie on a line"),
         ([[0, 0, 0.6], [1, 0, 0.6], [0, 1, 0.6]], {}, "misses the mesh"),
         ([[0, 0], [1, 0], [0, 1]], {}, "a plane must be"),
-        ([ORIGIN, [np.nan, 0, 0], [0, 1, 0]], {}, "a plane must be"),
         (LEVEL, {"frames": 0}, "must be"),
-        (LEVEL, {"frames": 2.5}, "must be"),
-        (LEVEL, {"frames": np.nan}, "must be"),
         (LEVEL, {"frames": None}, "frames must be a whole number from 1, got None"),
-        (LEVEL, {"cells": (0, 8)}, "must be"),
         (LEVEL, {"cells": ("8", "8")}, "cells must be two whole numbers from 1"),
-        (LEVEL, {"pitch": 0.0}, "must be"),
     ],
 )
 def test_bad_planes_and_settings_are_named(points, changes, message):

@@ -120,12 +120,6 @@ def test_backwards_names_the_same_faces_and_starts_at_the_same_point():
     assert np.array_equal(line.backwards().points, line.points[::-1])
 
 
-@pytest.mark.parametrize("normal", [(0, 0, 0), (np.nan, 0, 1), (1, 0)])
-def test_a_plane_that_is_none_is_refused(normal):
-    with pytest.raises(ValueError, match="plane"):
-        section(BALL, ORIGIN, normal)
-
-
 def test_agrees_with_trimesh():
     bumps = 1 + 0.2 * np.sin(9 * RING.vertices[:, [1, 2, 0]])
     mesh = Mesh(RING.vertices * bumps, RING.faces)

@@ -1,7 +1,5 @@
 """Imprints in 0..1, and the model of the skin that feels them: each step does what it says and no more."""
 
-from importlib import import_module
-
 import numpy as np
 import pytest
 
@@ -38,13 +36,6 @@ def test_many_equal_one_by_one_across_batches(shapes):
     assert many.shape == (70, 32, 32)
     for vertex, image in zip(vertices[[0, 33, 69]], many[[0, 33, 69]], strict=True):
         assert np.array_equal(press(mesh, vertex, (32, 32), 0.004), image)
-
-
-def test_blocks_change_no_imprint(monkeypatch):
-    raw = np.random.default_rng(0).normal(size=(9, 4, 4))
-    whole = normalise(raw, 0.01)
-    monkeypatch.setattr(import_module("haptic_glance.touch.press"), "BLOCK", 30)
-    assert np.array_equal(normalise(raw, 0.01), whole)
 
 
 IMAGES = np.random.default_rng(0).random((6, 12, 10)).astype(np.float32)
@@ -140,16 +131,10 @@ def test_results_do_not_depend_on_the_batch():
     assert whole.min() >= 0 and whole.max() <= 1
 
 
-def test_no_imprints_stay_none():
-    assert FULL(np.zeros((0, 4, 5))).shape == (0, 4, 5)
-    assert FULL(np.zeros((2, 0, 4, 5))).shape == (2, 0, 4, 5)
-
-
 @pytest.mark.parametrize(
     ("call", "words"),
     [
         (lambda: Skin(blur=-1), "blur must be 0 or more"),
-        (lambda: Skin(blur=1e9), "blur must be 0 or more and at most 1000"),
         (lambda: Skin(gain=0), "gain must be above 0"),
         (lambda: Skin(saturation=1.2), "saturation must be above 0 and at most 1"),
         (lambda: Skin(hysteresis=np.nan), "hysteresis"),
@@ -160,13 +145,9 @@ def test_no_imprints_stay_none():
         (lambda: Skin(seed=3.0), "seed must be an integer"),
         (lambda: normalise(np.zeros((4, 4)), 0.01), "shape"),
         (lambda: normalise(np.full((3, 2, 2), np.nan), 0.01), "distances must be finite"),
-        (lambda: indent(np.full((3, 2, 2), -np.inf), 0.01), "distances must be finite"),
         (lambda: indent(np.zeros((1, 2, 2)), 0), "depth must be"),
-        (lambda: indent(np.zeros((1, 2, 2)), np.nan), "depth must be"),
         (lambda: press(Mesh(np.eye(3), [[0, 1, 2]]), [0, 1]), "vertices must have shape"),
         (lambda: Skin()(np.zeros((4, 4))), "imprints must"),
-        (lambda: Skin()(np.full((1, 2, 2), 1.5)), "imprints must"),
-        (lambda: Skin()(np.full((1, 2, 2), np.nan)), "imprints must"),
     ],
 )
 def test_wrong_arguments_are_named_with_what_is_right(call, words):

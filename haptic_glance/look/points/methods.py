@@ -1,8 +1,18 @@
-"""The registry of methods. To add one, add an entry.
+"""The registry of methods, and the contract that each of them keeps. To add one, add an entry.
 
 A method has `channels`, the maps that it uses (none: it gets no view maps); `required_weights`, the name of the weights
 without which it cannot run, or None; and `find(mesh, view_maps, options, count=None) -> Detection`. All but those that
 place points (random, farthest) have `saliency(mesh, view_maps, options) -> (n,)` too.
+
+The mesh is normalised and z up. tests/look/test_detector_contract.py runs every entry:
+
+- Points are distinct vertices that lie in a face. With a count there are as many as asked for, where the mesh has them.
+- Saliency has one finite value per vertex, 0 to 1, with 1 at the maximum. No shape at all has no saliency.
+- The same mesh gives the same answer. The order of vertices and faces changes nothing (but the draws of `random`).
+- A method without channels does not change with a turn about the vertical. A published one does not change with unit,
+  place and winding either.
+- Flat, tiny, doubled, torn and empty meshes give finite values. Only a method that looks or draws may refuse them, by a
+  ValueError with the reason.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
