@@ -91,7 +91,10 @@ def __getattr__(name: str) -> object:
         except PackageNotFoundError:  # a tree that is not installed
             return "0+unknown"
     if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from haptic_glance.base.gone import went
+
+        hint = went(name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint and ': '}{hint}")
     member = getattr(import_module(_MODULES[name]), name)
     public = import_module("haptic_glance.public")
     globals()[name] = public.accepts_any_mesh(name, member) if name in public.PATH_ARGUMENTS else member

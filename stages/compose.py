@@ -27,6 +27,7 @@ from omegaconf.errors import OmegaConfBaseException
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import write_text
 from stages.engine.code import stage_names
+from stages.engine.gone import went_of
 from stages.engine.parallel import BACKENDS
 from stages.engine.settings import (
     FILE,
@@ -253,10 +254,15 @@ def _in_quotes(value: str) -> str:
 
 
 def _check_options(overrides: Sequence[str]) -> None:
-    """Raises ParamsError for an option that a group does not have; Hydra passes over an optional group's in silence."""
+    """Raises ParamsError for an option that a group does not have; Hydra passes over an optional group's in silence.
+
+    Also for an option or a setting that went.
+    """
     options = groups()
     for override in overrides:
         name, _, value = override.partition("=")
+        if hint := went_of(override) or went_of(name):
+            raise ParamsError(hint)
         if name in options and value not in (*options[name], "null"):
             if "," in value:
                 raise ParamsError(f"{override}: one option at a time; `python -m stages.sweep -m` takes a list")

@@ -19,6 +19,8 @@ from yaml import YAMLError
 
 from haptic_glance.base.errors import errors_in_one_line
 
+from .gone import went_of
+
 FILE = Path("params.yaml")
 CODE = Path("code.yaml")  # {stage: digest of its code}, by stages.code
 COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
@@ -152,7 +154,9 @@ def check_names(schema: type, values: dict[str, Any]) -> None:
 
 
 def nearest(name: str, options: list[str], where: str = "") -> str:
-    """`did you mean NAME?`, or all options where none resembles the name; where: comes before the nearest one."""
+    """`did you mean NAME?`, what to use for a name that went, or all options; where: comes before the name."""
+    if hint := went_of(f"{where}{name}"):
+        return hint
     matches = difflib.get_close_matches(name, options, n=1, cutoff=0.5)
     return f"did you mean {where}{matches[0]}?" if matches else f"known: {', '.join(dict.fromkeys(options))}"
 
@@ -265,12 +269,14 @@ class Workspace:
 
     @cached_property
     def params(self) -> dict[str, Any]:
-        """The whole params.yaml; ParamsError where there is none or it lacks the common sections."""
+        """The whole params.yaml; ParamsError where there is none, it is of version 1, or lacks the common sections."""
         path = self.root / FILE
         if not path.exists():
             raise ParamsError(f"there is no {path}: change to the repository root, or run `python -m stages.compose`")
         values = load_params(path)
         check_common(values)
+        if any(map(went_of, values["graph"])):
+            raise ParamsError(f"{path} is of version 1: run `python -m stages.compose` with your settings")
         return values
 
     @property
@@ -300,7 +306,8 @@ class Workspace:
         """
         section = section_of(schema)
         if self.dataset and self.dataset not in self.sets:
-            raise ParamsError(f"{self.dataset} is not switched on; {FILE} names {', '.join(self.sets)}")
+            hint = went_of(self.dataset) or f"{FILE} names {', '.join(self.sets)}"
+            raise ParamsError(f"{self.dataset} is not switched on; {hint}")
         values = self.params.get(self.dataset, {}) if self.dataset else self.params
         if section not in values:
             where, remedy = section, "run `python -m stages.compose` anew"

@@ -1,4 +1,4 @@
-"""The registry of methods, and the contract that each of them keeps. To add one, add an entry.
+"""The registry of methods, and the contract that each of them keeps. CONTRIBUTING.md says how to add one.
 
 A method has `channels`, the maps that it uses (none: it gets no view maps); `required_weights`, the name of the weights
 without which it cannot run, or None; and `find(mesh, view_maps, options, count=None) -> Detection`. All but those that
@@ -19,6 +19,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 
+from haptic_glance.base.gone import went
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.mesh.mesh import Mesh
 
@@ -27,6 +28,7 @@ from ..rivals import corners, harris, heat_kernel, leifman, mesh_saliency, salie
 from ..weights import LearnedWeights
 from ..weights.weights import DEEP, GLANCE, GLANCES
 from .detectors import (
+    SURFACE,
     FarthestPoints,
     FusedDetector,
     MergedDetector,
@@ -35,9 +37,6 @@ from .detectors import (
     SurfaceDetector,
     SvmDetector,
     WeightedDetector,
-    centre_distance,
-    facing_viewer,
-    height,
 )
 from .fuse import CLASSICAL, COMBINATIONS, WITHOUT_COLOUR
 from .glance import GlanceDetector, deep_features
@@ -70,9 +69,7 @@ METHODS: dict[str, Detector] = {
     "fine_grained": FusedDetector(["fine_grained"]),
     "farthest": FarthestPoints(),
     "touch": TouchDetector(),
-    "height": SurfaceDetector(height),
-    "centre_distance": SurfaceDetector(centre_distance),
-    "facing_viewer": SurfaceDetector(facing_viewer),
+    **{name: SurfaceDetector(values) for name, values in SURFACE.items()},
 }
 
 # Options of methods, by name: another draw of random points; sums of maps (a single channel has the same points); and
@@ -133,7 +130,9 @@ def method_for(purpose: str, method: str | None = None) -> str:
 
 
 def meant(spelling: str, usable: Sequence[str]) -> str:
-    """ " (did you mean NAME?)" for a name in other words or mistyped; else empty."""
+    """ " (did you mean NAME?)" for a name in other words or mistyped, what to use for one that went; else empty."""
+    if hint := went(spelling):
+        return f": {hint}"
     lower = {name.lower(): name for name in usable}
     close = get_close_matches(spelling, [*MEANT, *lower], 1)
     match = MEANT.get(close[0], lower.get(close[0])) if close else None
