@@ -26,6 +26,5 @@ FIGURES = {
 }
 CHARTS = {
     "touch": recognition_charts.by_classifier,
-    "touches": recognition_charts.by_features,
     "saliency": recognition_charts.by_saliency,
 }
