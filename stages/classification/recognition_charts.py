@@ -1,4 +1,4 @@
-"""Charts of the accuracy of recognition by touch (T4.2) against seconds: of classifiers, and of the search for points."""
+"""Charts of the accuracy of recognition by touch against seconds (T4.2): of classifiers and of detectors."""
 
 from typing import Any
 
