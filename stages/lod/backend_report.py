@@ -32,7 +32,8 @@ def growth(rows: pd.DataFrame, shape: str = "loglinear") -> tuple[float, float, 
     """(power, low, high) of the seconds over the faces `full`; NaN for fewer than three sizes of FITTED faces or more.
 
     rows: of one backend; shape: of POWERS. A least-squares line through the logarithms, with a level of its own for
-    each share of the faces and for kept points. The interval is a bootstrap over the meshes: a subdivided one goes with what it was.
+    each share of the faces and for kept points. The interval is a bootstrap over the meshes: a subdivided one goes
+    with what it was.
     """
     rows = rows[(rows["full"] >= FITTED) & (rows["seconds"] > 0)]
     if rows["full"].nunique() < 3:

@@ -1,19 +1,17 @@
 """Faces of objects: the counts that models predict (T3.1.3), and frames at the chosen levels.
 
-The thesis's networks, two simpler models and a lookup of the object's own curve predict the count; the table and the
-figure show their waste, their failures and their cost. `frames` draws full, uniform and our levels side by side, with
+The thesis's networks, two simpler models and a lookup of the object's own curve predict the count; the table shows
+their waste, their failures and their cost. `frames` draws full, uniform and our levels side by side, with
 the displacement from the full levels, above charts of all frames of the path; it reads data/scene/pictures.npz.
 """
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
-from matplotlib.ticker import FixedLocator, NullLocator
 
 from haptic_glance.base.files import read_arrays
 from stages.charts.datasets import SECTION_3_1
-from stages.charts.drawing import CYCLE, GREY, INK, MARKERS, plain_logarithm, plt
+from stages.charts.drawing import INK, plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results, require_file
 from stages.charts.tables import number, records, with_interval
@@ -43,12 +41,6 @@ METRICS = {  # head of the column, scale, decimal places
     "excess": ("excess error, %", 100, 0),
     "waste": ("wasted faces, %", 100, 0),
 }
-PLACES = {
-    "left_out": "objects\nleft out", "coarser": "coarser\nthan known", "finer": "finer\nthan known",
-    "larger": "larger\nobjects", "flat": "flat\nsides",
-}  # fmt: skip
-FACTORS = [0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 3, 4]  # ticks that a person reads
-LOOKS = dict(zip(MODELS, zip(CYCLE[1::-1] + CYCLE[2:4], MARKERS, strict=False), strict=True))  # colour and marker
 
 
 def counts_table(results: Results) -> Table:
@@ -68,81 +60,9 @@ def counts_table(results: Results) -> Table:
     return Table(rows, text_table, {"costs": "; ".join(texts) or "not measured"})
 
 
-def figure(results: Results) -> Figure:
-    """Draws the waste, the failures, the learning and the cost of each model of the count."""
-    rows = _measured(results, [*PLACES, "equal_rate", "trained_on", "cost"])
-    drawing, panels = plt.subplots(2, 2, figsize=(9.6, 7.2))
-    for axes, draw in zip(panels.flat, (_waste, _failures, _training, _costs), strict=True):
-        draw(axes, rows)
-    for axes in panels[1]:  # factors, from 1 on
-        axes.set(ylabel="off by (90 % of the counts)", ylim=(1, max(axes.get_ylim()[1], 1.1)))
-        axes.grid()
-    drawing.tight_layout(h_pad=2, w_pad=2.5, rect=(0, 0.05, 1, 1))
-    explained = panels[0, 1].get_legend_handles_labels()
-    drawing.legend(*explained, loc="lower center", ncol=4, fontsize=9, columnspacing=1.6)
-    return Figure(drawing)
-
-
 def _measured(results: Results, conditions: list[str]) -> pd.DataFrame:
     """Rows of the models: of the thesis's fourteen combinations where they were run."""
     return results.measured("scene", results.printed(SECTION_3_1, "scene"), condition=conditions, method=list(MODELS))
-
-
-def _of(rows: pd.DataFrame, condition: str, metric: str) -> pd.DataFrame:
-    """Frame MODELS x (value, low, high), NaN where it was not measured."""
-    metric_rows = rows[(rows["condition"] == condition) & (rows["metric"] == metric)].set_index("method")
-    return metric_rows[["value", "low", "high"]].reindex(list(MODELS))
-
-
-def _waste(axes: Axes, rows: pd.DataFrame) -> None:
-    ends = [(100 * _of(rows, name, "within"), 100 * _of(rows, name, "waste")) for name in ("left_out", "equal_rate")]
-    for method, (tint, marker) in LOOKS.items():
-        x, y = ([end[k]["value"][method] for end in ends] for k in (0, 1))
-        axes.plot(x, y, color=tint, lw=1, alpha=0.6)
-        for across, up, (_, waste), fill in zip(x, y, ends, ("white", tint), strict=True):
-            axes.plot([across] * 2, waste.loc[method, ["low", "high"]], color=tint, lw=1, alpha=0.6)
-            axes.plot(across, up, marker, color=tint, mfc=fill, ms=6.5, mew=1.3)
-    axes.set(xlabel="cases within the tolerance, %", ylabel="wasted faces, %", ylim=(0, None))
-    axes.set_title("what keeping to the tolerance costs")
-    axes.grid()
-
-
-def _failures(axes: Axes, rows: pd.DataFrame) -> None:
-    conditions = [condition for condition in PLACES if condition in set(rows["condition"])]
-    bias = pd.concat([_of(rows, condition, "count_bias") for condition in conditions], keys=conditions)
-    for k, (method, (tint, marker)) in enumerate(LOOKS.items()):
-        x, biases = np.arange(len(conditions)) + 0.15 * (k - 1.5), bias.xs(method, level=1)
-        axes.vlines(x, biases["low"], biases["high"], color=tint, lw=1.2, alpha=0.6)
-        axes.plot(x, biases["value"], marker, color=tint, ms=6, label=MODELS[method])
-    axes.axhline(1, color=INK, lw=0.8, ls=":")
-    axes.set_yscale("log")
-    axes.yaxis.set(major_locator=FixedLocator(FACTORS), major_formatter="{x:g}", minor_locator=NullLocator())
-    axes.set_xticks(range(len(conditions)), [PLACES[condition] for condition in conditions], fontsize=8.5)
-    axes.tick_params(axis="x", length=0)
-    axes.set(ylabel="count / needed", title="where it fails")
-    axes.grid(axis="y")
-
-
-def _training(axes: Axes, rows: pd.DataFrame) -> None:
-    trained = rows[(rows["condition"] == "trained_on") & (rows["metric"] == "factor_90")].sort_values("setting")
-    for method, (tint, marker) in LOOKS.items():
-        error = trained[trained["method"] == method]
-        axes.plot(error["setting"], error["value"], color=tint, marker=marker, ms=5.5, lw=1.4)
-        axes.fill_between(error["setting"], error["low"], error["high"], color=tint, alpha=0.1, lw=0)
-    error = _of(rows, "left_out", "factor_90")["value"]["lookup"]
-    axes.axhline(error, color=LOOKS["lookup"][0], lw=1.4, ls="--")
-    axes.set(xlabel="objects trained on (the lookup needs none)", title="few objects to learn from")
-
-
-def _costs(axes: Axes, rows: pd.DataFrame) -> None:
-    cost, error = _of(rows, "cost", "fit")["value"], _of(rows, "left_out", "factor_90")
-    for method, (tint, marker) in LOOKS.items():
-        axes.vlines(cost[method], error["low"][method], error["high"][method], color=tint, lw=1.2, alpha=0.6)
-        axes.plot(cost[method], error["value"][method], marker, color=tint, ms=7)
-    axes.axvline(1, color=GREY, lw=0.6)
-    axes.set_xscale("log")
-    plain_logarithm(axes.xaxis)
-    axes.set(xlabel="cost before the first question / the lookup's", title="accuracy against cost")
 
 
 MARGIN = 8  # pixels round the objects

@@ -9,7 +9,6 @@ TABLES = {
 }
 FIGURES = {
     "scene": counts_report.frames,
-    "face_counts": counts_report.figure,
 }
 CHARTS = {
     "scene": budget_report.chart,
