@@ -79,10 +79,6 @@ def needed(rows: pd.DataFrame, accuracy: float) -> float:
     return float(np.interp(accuracy, last, last.index))
 
 
-METHODS = ("thesis_ssim", "glance", "random")
-PANELS = ((Split.RANDOM, "imprint"), (Split.RANDOM, "imprint_place"), (Split.REGIONS, "imprint"))
-TINTS = {"gain": "#0072B2", "saliency": "#009E73", "random": "#E69F00"}
-TICKS = (1, 2, 3, 5, 8, 12)
 LINES = {"imprint": ("-", "o"), "imprint_product": (":", "^")}
 
 

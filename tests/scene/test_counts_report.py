@@ -6,7 +6,7 @@ import pytest
 from haptic_glance.base.files import write_table, write_text
 from stages.charts.results import NotRun, Results
 from stages.engine.settings import Workspace
-from stages.scene import counts_report as table
+from stages.scene import report as table
 
 
 def rows():
