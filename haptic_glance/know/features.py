@@ -11,7 +11,6 @@ LOW = (-0.12940952255126037, 0.2241438680420134, 0.8365163037378079, 0.482962913
 HIGH = (-0.48296291314453416, 0.8365163037378079, -0.2241438680420134, -0.12940952255126037)
 LEVELS = 3
 SMALLEST = 2**LEVELS  # rows and columns that can be halved three times
-IMAGE = 5  # features of the imprint itself, the last ones
 _STATISTICS = ("norm", "mean", "std", "entropy")
 FEATURES = (
     *(f"{band}{level}_{name}" for level in range(1, LEVELS + 1) for band in "hvd" for name in _STATISTICS),

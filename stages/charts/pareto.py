@@ -82,11 +82,6 @@ def placed(
     return rows.assign(front_share=share, on_front=words)
 
 
-def noise_of(low: pd.Series, high: pd.Series) -> np.ndarray:
-    """(k,) `noise` of costs with a 95 % interval; 0 where it is unknown."""
-    return np.nan_to_num(np.log(high / low) / (2 * NORMAL))
-
-
 def pareto_chart(
     frame: pd.DataFrame,
     quality: str,

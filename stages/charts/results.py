@@ -17,7 +17,6 @@ from stages.engine.settings import Workspace, conf_folder, load_params
 from .commands import command
 
 Found = TypeVar("Found", bound=Sized)
-Value = TypeVar("Value")
 BENCH = "bench"
 OWN_FOLDER = "own"  # in place of a stage: of what only a folder of one's own has, or what it never has
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold

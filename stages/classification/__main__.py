@@ -33,7 +33,7 @@ from stages.imprints.imprints import read_imprints
 
 from . import COLUMNS, Params
 from .multi_touch import MultiTouchTrials, evaluate_variants
-from .touch_readers import alike, feature_cost_rows, gather, similar_share_rows
+from .touch_readers import alike, gather, similar_share_rows
 from .touch_trials import OF_NAMED_SETS, TouchSet, drawn_sets, set_of
 
 METRICS = {  # (metric, split): the name of their mean in reports/metrics
@@ -44,7 +44,7 @@ METRICS = {  # (metric, split): the name of their mean in reports/metrics
     ("recall", Split.RANDOM): "recall_holdout",
 }
 MEANS = {metric for metric, _ in METRICS}
-ONE_SIDE = ("plain_side", "locations", "touches_")  # variants whose regions are one side of all objects
+ONE_SIDE = ("locations", "touches_")  # variants whose regions are one side of all objects
 
 
 def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
@@ -104,8 +104,7 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
             rows += [{**plain, **row} for row in scores]
         able = [key.removesuffix(".confusion") for key in confusions]
         rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
-    costs = [] if settings.drawn else feature_cost_rows(touched)
-    rows += [{**common, **row} for row in [*similar_share_rows(touched, sorted(settings.sets[name])), *costs]]
+    rows += [{**common, **row} for row in similar_share_rows(touched, sorted(settings.sets[name]))]
     write_arrays(folder / f"{item}.npz", objects=objects, **confusions)
     return over_repetitions(rows) if settings.drawn else rows
 
@@ -141,7 +140,7 @@ def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> di
         if row["value"] is None or row.get("scaling") != TRAINING or row["metric"] not in MEANS:
             continue
         metric = metric_name(row)
-        if row["variant"].startswith("plain"):
+        if row["variant"] == "plain":
             values[row["group"], row["method"], row["classifier"], metric].append(row["value"])
         elif (row["method"], row["classifier"]) == closest:
             values["variants", row["group"], row["variant"], metric].append(row["value"])

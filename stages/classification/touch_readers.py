@@ -13,8 +13,7 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.base.files import open_picture
-from haptic_glance.base.timing import Stopwatch
-from haptic_glance.know.features import SIMILARITY_THRESHOLD, features, image_features, similarity, wavelet_features
+from haptic_glance.know.features import SIMILARITY_THRESHOLD, features, similarity
 from stages.imprints.imprints import read_imprints
 
 from .touch_trials import THESIS_COUNT, TouchSet
@@ -169,22 +168,3 @@ def alike(objects: Sequence[str], folder: Path) -> np.ndarray:
         is_similar = similarity(first[sampling].images, second[sampling].images) >= SIMILARITY_THRESHOLD
         shares[row, column] += (is_similar.any(axis=1).mean() + is_similar.any(axis=0).mean()) / 2
     return shares / max(1, len(shared))
-
-
-def feature_cost_rows(touched: TouchSet) -> list[dict]:
-    """Rows of the seconds for the features of all imprints of a sampling; the value is the number of features."""
-    images = touched.images
-    rows = []
-    for variant, make in (
-        ("plain", features),
-        ("wavelet_features", wavelet_features),
-        ("image_features", image_features),
-    ):
-        values, seconds = make(images), []  # the first call may load a library
-        for _ in range(3):
-            with Stopwatch() as watch:
-                values = make(images)
-            seconds.append(watch.seconds)
-        rows.append({"variant": variant, "classifier": None, "imprints": len(images), "metric": "features"})
-        rows[-1] |= {"value": values.shape[1], "seconds": min(seconds), "note": None}
-    return rows

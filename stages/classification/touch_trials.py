@@ -2,16 +2,12 @@
 
 | variant | samples | thesis |
 |---|---|---|
-| pixels | the imprints themselves instead of their features | none |
-| wavelet_features, image_features | one part of the features alone | none |
 | plain | further readings of the scaling, see haptic_glance.know.classifiers | tables 4.1 and 4.2 |
-| plain_side | split `regions` with one side of all objects held out, to compare `locations` with | none |
 | first_15 | the first 15 imprints of each object, as in the thesis | shares of T4.2.4 |
 | locations | with the positions of the touches | table 4.5 |
-| locations_turned | the same, tested on objects rotated about the vertical | none |
 | selected | imprints that correlate with another object's removed, before the split | table 4.3 |
 | selected_train | removed from the training part alone, by its own correlations | none |
-| selected_control, selected_train_control | as many of each object removed, at random | none |
+| selected_control | as many of each object removed, at random | none |
 | touches_N | N touches and their positions, concatenated | table 4.6 |
 | touches_N_unplaced | without the positions | none |
 | touches_N_ordered | the touches of a combination in the order of their height | none |
@@ -32,7 +28,7 @@ import numpy as np
 
 from haptic_glance.base.rng import rng
 from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
-from haptic_glance.know.features import IMAGE, as_many, confusable, similarity
+from haptic_glance.know.features import as_many, confusable, similarity
 from haptic_glance.know.protocol import VALIDITY, random_holdout, region_holdout
 from haptic_glance.know.split import Split
 
@@ -40,7 +36,7 @@ THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
 OTHERS = (BEFOREHAND, MIN_MAX)  # scalings beside that of the training part; `components` for a closer look alone
 NARROW = ("knn", "svm")  # whose answers depend on the scale most
-OF_NAMED_SETS = ("pixels", "wavelet_features", "image_features", "first_15_locations")  # variants of no drawn set
+OF_NAMED_SETS = ("first_15_locations",)  # variants of no drawn set
 MIN_TO_SPLIT = 4  # imprints per object of which a quarter can be held out
 
 
@@ -112,7 +108,7 @@ class Trial:
 
 
 def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = False) -> Iterator[Trial]:
-    """Trials of one touch: other scalings and features, fewer imprints, locations.
+    """Trials of one touch: other scalings, fewer imprints, locations.
 
     closer: with each reading of the scaling. Otherwise some have those but `components`, fewer with all classifiers.
     """
@@ -121,30 +117,15 @@ def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = Fal
     yield replace(plain, scalings=SCALINGS[1:] if closer else OTHERS, validity=VALIDITY if closer else ())
     regions = _region_trial("plain", touched, touched.samples, random_state, "features", side=False)
     yield replace(regions, scalings=OTHERS, narrow=True)
-    yield from _feature_trials(touched, plain.parts)
     located = np.hstack([touched.samples, touched.places])
     first_few = touched.first_of_each()
     yield from _both_splits(
         "first_15", first_few, first_few.samples, random_state, scalings=scalings, narrow=not closer
     )
     yield from _both_splits("locations", touched, located, random_state, "located", scalings if closer else (TRAINING,))
-    yield _region_trial("plain_side", touched, touched.samples, random_state, "features", side=True)
-    parts = random_holdout(touched.truth, random_state)
-    rotated_samples = _rotated_positions(touched, parts, random_state)
-    yield Trial("locations_turned", Split.RANDOM, rotated_samples, touched.truth, parts, "located")
     parts = random_holdout(first_few.truth, random_state)
     few_located = np.hstack([first_few.samples, first_few.places])
     yield Trial("first_15_locations", Split.RANDOM, few_located, first_few.truth, parts, "located")
-
-
-def _feature_trials(touched, parts):
-    """Pixels, and the two parts of the features."""
-    for variant, samples, kind in (
-        ("pixels", touched.images.reshape(len(touched.images), -1), "features"),
-        ("wavelet_features", touched.samples[:, :-IMAGE], "features"),
-        ("image_features", touched.samples[:, -IMAGE:], "reduced"),
-    ):
-        yield Trial(variant, Split.RANDOM, samples, touched.truth, parts, kind)
 
 
 def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
@@ -154,13 +135,9 @@ def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
         train, test = random_holdout(part.truth, random_state)
         distinct = ~confusable(part.similarities, part.truth, train)[train]
         random = np.random.default_rng([random_state, len(part.truth)])
-        for end, whole, training in (
-            ("", mask, distinct),
-            ("_control", as_many(part.truth, mask, random), as_many(part.truth[train], distinct, random)),
-        ):
-            selected = list(_selected(f"{prefix}selected{end}", part, whole, random_state))
-            yield from selected[:1] if end else selected
-            yield _selected_train(f"{prefix}selected_train{end}", part, (train[training], test))
+        yield from _selected(f"{prefix}selected", part, mask, random_state)
+        yield _selected_train(f"{prefix}selected_train", part, (train[distinct], test))
+        yield next(_selected(f"{prefix}selected_control", part, as_many(part.truth, mask, random), random_state))
 
 
 def _selected(variant, part, chosen, random_state):
@@ -193,19 +170,6 @@ def _region_trial(variant, touched, samples, random_state, kind, side):
     parts = region_holdout(touched.truth, touched.places, touched.width, random_state, side)
     note = None if parts else NO_DISTANT_TOUCH
     return Trial(variant, Split.REGIONS, samples, touched.truth, parts, kind, note=note)
-
-
-def _rotated_positions(touched, parts, random_state):
-    """Located samples whose test part is rotated about the vertical, each object by its own angle.
-
-    The array is upright (haptic_glance.touch.sensor_axes), so such a rotation changes positions and not imprints,
-    except for touches within 18 degrees of the poles.
-    """
-    angles = np.random.default_rng(random_state).uniform(0, 2 * np.pi, size=touched.truth.max() + 1)[touched.truth]
-    angles[parts[0]] = 0
-    x, y, z = touched.places.T
-    coordinates = [np.cos(angles) * x - np.sin(angles) * y, np.sin(angles) * x + np.cos(angles) * y, z]
-    return np.column_stack([touched.samples, *coordinates])
 
 
 def drawn_sets(

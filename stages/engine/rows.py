@@ -39,7 +39,6 @@ COMMON = {
 FIRST, LAST = tuple(COMMON)[:5], tuple(COMMON)[5:]  # before and after the columns of a stage
 NEEDED = ("dataset", "value")  # without one of the others, what compares by it is not run, and says so
 SUFFIX = ".csv.gz"
-DIGITS = 12  # of a hash in the records of rows
 
 
 def write_rows(

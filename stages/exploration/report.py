@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
 from haptic_glance.know.split import Split, shared_by
 from stages.charts.drawing import CYCLE, GREY, label, plt
@@ -42,7 +41,7 @@ def build(results: Results) -> Table:
     most = ", ".join(map(str, sorted(set(frame["most"]))))
     words = {"headline": f"{100 * HEADLINE:.0f} %", "most": most, "not_run": results.left_out(STAGE)}
     text_table = _wide(frame, results)
-    # no ranking: fewer touches stand against more right answers, as the chart shows
+    # no ranking: fewer touches stand against more right answers
     return Table(frame, text_table, words, answer=[name for name in map(str, text_table) if name not in HIDDEN])
 
 
@@ -80,42 +79,7 @@ def needed(rows: pd.DataFrame, accuracy: float) -> float:
     return float(np.interp(accuracy, last, last.index))
 
 
-METHODS = ("thesis_ssim", "glance", "random")
-PANELS = ((Split.RANDOM, "imprint"), (Split.RANDOM, "imprint_place"), (Split.REGIONS, "imprint"))
-TINTS = {"gain": "#0072B2", "saliency": "#009E73", "random": "#E69F00"}
-TICKS = (1, 2, 3, 5, 8, 12)
 LINES = {"imprint": ("-", "o"), "imprint_product": (":", "^")}
-
-
-def exploration(results: Results) -> Figure:
-    """Accuracy against the mean number of touches, by split, belief and who chose the points."""
-    rows = results.measured(STAGE, group=GROUP, metric="accuracy")
-    methods = [method for method in METHODS if method in set(rows["method"])] or list(dict.fromkeys(rows["method"]))
-    frame = _points(rows, ["split", "likelihood", "method", "way", "stop", "level"])
-    figure, grid = plt.subplots(
-        len(PANELS), len(methods), figsize=(3.15 * len(methods) + 0.6, 2.6 * len(PANELS) + 0.8), squeeze=False,
-        sharex=True, sharey=True,
-    )  # fmt: skip
-    for row, (split, likelihood) in zip(grid, PANELS, strict=True):
-        panel = frame[(frame["split"] == split) & (frame["likelihood"] == likelihood)]
-        for axes, method in zip(row, methods, strict=True):
-            _draw_touches(axes, panel[panel["method"] == method])
-        row[0].set_ylabel("accuracy, %")
-        row[0].annotate(
-            f"{LIKELIHOODS[likelihood].capitalize()}, {HELD_OUT[split]}",
-            (0, 1.06),
-            xycoords="axes fraction",
-            fontsize=9.5,
-        )
-    for above, below, method in zip(grid[0], grid[-1], methods, strict=True):
-        above.set_title(label(method), fontsize=10, pad=22)
-        below.set_xlabel("mean number of touches")
-    handles, names = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower center", ncol=3, bbox_to_anchor=(0.5, -0.06), fontsize=9)
-    figure.tight_layout()
-    levels = sorted(frame.loc[frame["stop"] == "confidence", "level"].unique())
-    words = {"group": results.group_text(GROUP), "levels": ", ".join(f"{100 * level:.0f} %" for level in levels)}
-    return Figure(figure, words, frame)
 
 
 def _points(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
@@ -125,20 +89,6 @@ def _points(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
         accuracy = within(group["value"], shared_by(group["split"].iloc[0]))
         points.append((*key, group["touches"].mean(), group["belief"].mean(), *accuracy))
     return pd.DataFrame(points, columns=[*by, "touches", "stated", "accuracy", "low", "high"])
-
-
-def _draw_touches(axes: Axes, panel: pd.DataFrame) -> None:
-    for way, words in WAYS.items():
-        points, tint = panel[panel["way"] == way].sort_values("level"), TINTS[way]
-        sure, fixed = points[points["stop"] == "confidence"], points[points["stop"] == "fixed"]
-        axes.fill_between(fixed["touches"], 100 * fixed["low"], 100 * fixed["high"], color=tint, alpha=0.1, lw=0)
-        dots, dashes = {"marker": "o", "ms": 4, "lw": 1.5, "zorder": 3}, {"ls": "--", "lw": 1.0}
-        axes.plot(sure["touches"], 100 * sure["accuracy"], color=tint, label=f"{words}, stops when sure", **dots)
-        axes.plot(fixed["touches"], 100 * fixed["accuracy"], color=tint, label=f"{words}, a fixed number", **dashes)
-    axes.grid()
-    axes.set(xscale="log", ylim=(20, 102))
-    axes.set_xticks(TICKS, map(str, TICKS))
-    axes.minorticks_off()
 
 
 def calibration(results: Results) -> Figure:
@@ -185,4 +135,4 @@ def _honesty(frame: pd.DataFrame) -> list[str]:
 PAGE = "exploration"
 TABLES = {"exploration": build}
 FIGURES = {"exploration_calibration": calibration}
-CHARTS = {"exploration": exploration}
+CHARTS = {}

@@ -5,7 +5,7 @@ from functools import partial
 from stages.charts.datasets import SECTION_3_1, SECTION_3_2
 from stages.charts.items import as_printed
 
-from . import backend_report, error_figures, error_tables, kernel_history, level_pictures
+from . import backend_report, error_figures, error_tables, level_pictures
 
 PAGE = "meshes"
 TABLES = {
@@ -23,9 +23,7 @@ FIGURES = {
     "figure_3_21": partial(as_printed, level_pictures.figure_3_21, SECTION_3_2),
     "figure_3_22": partial(as_printed, level_pictures.figure_3_22, SECTION_3_2),
     "figure_3_23": error_figures.figure_3_23,
-    "kernels": kernel_history.kernels,
 }
 CHARTS = {
     "simplification": error_figures.simplification,
-    "backends": backend_report.backends_chart,
 }

@@ -5,14 +5,12 @@ from dataclasses import dataclass
 from stages.engine.settings import REQUIRED, setting
 
 COLUMNS = {
-    "place": "the object's number in the scene",
     "kind": "what the tolerance is of: pixels or ssim",
     "tolerance": "the tolerated error of a frame",
     "factor": "the same over the scene's own tolerance",
     "matched": "the quantity in which a method equals ours, or asked; empty for a plan of its own",
     "frame": "the number of a frame, or all",
     "condition": "what the models of the face count are tested on",
-    "setting": "the number of objects that they are trained on",
     "cases": "test cases of a model",
     "objects": "objects that the cases are of",
     "low": "the interval's lower end, 95 %",

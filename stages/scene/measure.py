@@ -36,7 +36,7 @@ from .compare import (
 )
 from .counts.evaluate import COMBINED, Map, evaluate_counts
 from .counts.models import Counts, fit_counts, read_curves
-from .rows import frame_rows, object_rows, plan_rows, saved_rows
+from .rows import frame_rows, plan_rows, saved_rows
 
 SHOWN = ("full", "uniform", OURS)  # methods of the pictures for the report
 FRAMED = ("full", "uniform", "uniform_size", "network", OURS, "ours_plain")  # with rows of every frame
@@ -66,7 +66,7 @@ class Case:
 
     @property
     def in_detail(self) -> bool:
-        """Whether its frames and objects have rows, and its plan a table and pictures."""
+        """Whether its frames have rows, and its plan a table and pictures."""
         return self.factor == 1
 
 
@@ -121,14 +121,14 @@ def _setup(case, data, made, shown):
 
 
 def _rows(setup, ours, plans, saliency, case, seed):
-    """All rows of these plans; those of frames and objects only in detail."""
+    """All rows of these plans; those of frames only in detail."""
     framed = _framed(plans) if case.in_detail else []
     pictured = [case.in_detail and planned.matched in MAIN for planned in plans]  # 1 - SSIM takes a fourth of the time
     rows = [
         row for planned, flag in zip(plans, pictured, strict=True) for row in plan_rows(setup, planned, saliency, flag)
     ]
     rows += saved_rows(setup, ours, plans, seed)
-    rows += [row for planned in framed for row in (*frame_rows(setup, planned), *object_rows(setup, planned))]
+    rows += [row for planned in framed for row in frame_rows(setup, planned)]
     return [row | {"factor": case.factor, "group": case.settings.name} for row in rows]
 
 

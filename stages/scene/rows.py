@@ -33,13 +33,11 @@ def plan_rows(
     spread = np.concatenate([check.displacements for check in checks])
     jumps = [jump for _, _, jump in plan.jumps]
     values = {
-        "faces": float(plan.faces.sum(axis=1).mean()), "faces_most": int(plan.faces.sum(axis=1).max()),
+        "faces": float(plan.faces.sum(axis=1).mean()),
         "error": float(plan.errors.mean()), "error_worst": float(plan.errors.max()),
-        "worst_frame": int(plan.errors.argmax()), "held": held(plan),
-        "displacement_mean": _or_zero(np.mean, spread), "displacement_95": _or_zero(np.quantile, spread, 0.95),
-        "displacement_99.9": _or_zero(np.quantile, spread, 0.999), "displacement_max": _or_zero(np.max, spread),
+        "held": held(plan),
+        "displacement_mean": _or_zero(np.mean, spread), "displacement_99.9": _or_zero(np.quantile, spread, 0.999),
         "salient_displacement": salient_displacement(setup, plan, saliency),
-        "switches": len(jumps), "switches_per_object": len(jumps) / len(setup.scene.objects),
         "step_worst": max(jumps, default=0.0),
     }  # fmt: skip
     if planned.planning is not None:
@@ -60,20 +58,6 @@ def frame_rows(setup: SceneSetup, planned: MethodPlan) -> list[dict]:
         for frame in range(len(errors))
         for metric, value in (("faces", int(faces[frame])), ("error", float(errors[frame])))
     ]
-
-
-def object_rows(setup: SceneSetup, planned: MethodPlan) -> list[dict]:
-    """Rows of each object: its faces, averaged over the frames that show it."""
-    rows = []
-    for item, placed in enumerate(setup.scene.objects):
-        visible = setup.frames.in_view[:, item]
-        if visible.any():
-            value = float(planned.plan.faces[visible, item].mean())
-            rows.append(
-                _row(setup, planned, "all", "object_faces", value)
-                | {"item": placed.name, "place": item, "seconds": None}
-            )
-    return rows
 
 
 def saved_rows(setup: SceneSetup, ours: MethodPlan, others: Sequence[MethodPlan], seed: int) -> list[dict]:

@@ -39,12 +39,6 @@ def _splits():
     return SPLITS
 
 
-def _severities():
-    from haptic_glance.disturb.imprint import KNOWN
-
-    return KNOWN
-
-
 def _hybrid_severities():
     from haptic_glance.disturb.picture import KNOWN
 

@@ -4,10 +4,8 @@ from itertools import product
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
 
 from stages.charts.datasets import dataset_text
-from stages.charts.drawing import plt
 from stages.charts.items import Figure, Table
 from stages.charts.matrices import draw_matrices
 from stages.charts.results import NotRun, Results
@@ -23,8 +21,6 @@ METHODS = {
     "hybrid_float16": "hybrid, weights of 16 bits",
     "hybrid_int8": "hybrid, weights of 8 bits",
 }
-TINTS = {"vision": "#0072B2", "touch": "#D55E00"}
-HOLLOW = " Hollow: layers {others} shared instead of {first}, as far from the hybrid as on the same items."
 
 
 def section_5_5_table(results: Results) -> Table:
@@ -46,31 +42,8 @@ def section_5_5_table(results: Results) -> Table:
     text_table = _shown(frame)
     gains = [name for name in map(str, text_table) if name.startswith("gain")]
     text_table = text_table.fillna(dict.fromkeys(gains, "–")).fillna("not run")
-    # no ranking: size stands against accuracy, as the chart shows
+    # no ranking: size stands against accuracy
     return Table(frame, text_table, words, answer=[name for name in map(str, text_table) if name not in gains])
-
-
-def chart(results: Results) -> Figure:
-    """Accuracy by each sense of every file, by its megabytes, a panel for each split."""
-    frame = section_5_5_table(results).frame
-    frame = frame[frame["objects"] == frame["objects"].iloc[0]]  # not those of another data set in one picture
-    first = frame["shared_layers"].iloc[0]
-    frame = frame[(frame["shared_layers"] == first) | (frame["network"] == "hybrid")]
-    splits = frame["split"].unique()
-    figure, [panels] = plt.subplots(1, len(splits), figsize=(4.6 * len(splits), 3.8), squeeze=False, sharey=True)
-    for axes, split in zip(panels, splits, strict=True):
-        _draw(axes, frame[frame["split"] == split], first)
-        axes.set_title(ITEMS[split])
-    panels[-1].legend(title="recognised", fontsize=9, loc="center left", bbox_to_anchor=(1.01, 0.5))
-    figure.tight_layout()
-    other_layers = ", ".join(frame["shared_layers"].unique()[1:])
-    words = {
-        "smallest": METHODS[frame.loc[frame["megabytes"].idxmin(), "network"]],
-        "megabytes": frame["megabytes"].min(),
-        "ratio": frame["size_ratio"].max(),
-        "hollow": HOLLOW.format(others=other_layers, first=first) if other_layers else "",
-    }
-    return Figure(figure, words, frame)
 
 
 def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> dict[str, Any]:
@@ -128,26 +101,6 @@ def _note(rows: pd.DataFrame, theirs: float) -> str:
         note += f" As ONNX: scores differ by {number(onnx['max_difference'])} at most, "
         note += f"{100 * onnx['agreement']:g} % of the answers are the same."
     return note
-
-
-def _draw(axes: Axes, frame: pd.DataFrame, first: str) -> None:
-    """A row for each file, the largest on top; hollow: hybrids of other shared layers, by their gain over the first."""
-    rows = frame.sort_values("megabytes", ascending=False)
-    base = frame[(frame["network"] == "hybrid") & (frame["shared_layers"] == first)].iloc[0]
-    for (sense, tint), down in zip(TINTS.items(), (-0.1, 0.1), strict=True):
-        for y, (_, row) in enumerate(rows.iterrows()):
-            hollow = row["shared_layers"] != first
-            place = 100 * base[sense] + row[f"{sense}_gain"] if hollow else 100 * row[sense]
-            style = {"color": tint, "mfc": "white" if hollow else tint, "ms": 7, "label": f"_by {SENSES[sense]}"}
-            axes.plot(place, y + down, "o", zorder=3, **style)
-            if not hollow:
-                axes.plot(100 * row[[f"{sense}_low", f"{sense}_high"]], [y + down] * 2, color=tint, lw=1.4, alpha=0.5)
-        axes.plot([], [], "o", color=tint, ms=7, label=f"by {SENSES[sense]}")
-    names = rows["network"].map(METHODS).where(rows["shared_layers"] == first, "hybrid, " + rows["shared_layers"])
-    axes.set_yticks(range(len(rows)), names + rows["megabytes"].map("\n{:.1f} MB".format))
-    axes.set(xlim=(0, 102), ylim=(len(rows) - 0.5, -0.5), xlabel="accuracy, %")
-    axes.tick_params(axis="y", length=0)
-    axes.grid(axis="x")
 
 
 def figure_5_6(results: Results) -> Figure:

@@ -20,5 +20,4 @@ FIGURES = {
 }
 CHARTS = {
     "networks": network_figures.networks_chart,
-    "hybrid": hybrid_report.chart,
 }

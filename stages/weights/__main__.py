@@ -17,9 +17,9 @@ from stages.engine.rows import named_means
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes import Params as MeshesParams
+from stages.weights.training import shape_rows
 
 from . import COLUMNS, Params
-from .gain import shape_rows
 from .ground_truth import Files, digest, ground_truth_amounts, ground_truth_files
 from .training import (
     collect_training_data,

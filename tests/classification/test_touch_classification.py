@@ -118,8 +118,7 @@ def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imp
     }
     assert {"touches_2_mixed", "selected"} <= variants["three.random"]
     assert "selected" in variants["two.random"] and "touches_2" not in variants["two.random"]
-    one_touch = {"pixels", "wavelet_features", "image_features", "locations", "locations_turned"}
-    assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", *one_touch, "plain_side"}
+    assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", "locations"}
 
 
 @pytest.mark.slow
@@ -129,11 +128,11 @@ def test_the_stage_writes_rows_by_split_and_metrics_by_their_names_and_drawn_set
     run(workspace)
     rows = read_rows(workspace.measurements / "classification.csv.gz")
     assert set(rows["repetition"].dropna()) == (set() if drawn else {0, 1})
-    assert ("pixels" in set(rows["variant"]), "features" in set(rows["metric"])) == (not drawn, not drawn)
+    assert ("first_15_locations" in set(rows["variant"])) == (not drawn)
     assert set(rows["split"].dropna()) == {"random", "folds", "regions", "random_fewer"}
     assert set(rows["group"]) == {"three"} and set(rows["item"].dropna()) == set(NAMES)
     metrics = read_json(workspace.metrics / "classification.json")
-    names = {f"accuracy_{split}" for split in ("holdout", "fivefold", "apart", "fewer", "side")}
+    names = {f"accuracy_{split}" for split in ("holdout", "fivefold", "apart", "fewer")}
     assert set(metrics) == {"three", "variants"} and set(metrics["three"]["random"]["knn"]) == names
     assert set(metrics["variants"]["three"]["locations"]) == {"accuracy_holdout", "accuracy_side"}
     if drawn:  # they take the place of the named one, each with all its variants, not the first alone

@@ -14,7 +14,7 @@ from stages.engine.settings import Workspace
 from stages.report import Params
 from stages.report.parts import build_item
 from stages.sequences import report as sequences
-from stages.sequences.contour_figures import followed
+from stages.sequences.report import followed
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)

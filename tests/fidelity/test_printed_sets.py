@@ -19,9 +19,8 @@ from stages.fixation.tasks import viewpoint_sphere
 from stages.sensor_size import protocol as arrays
 from stages.sequences.classifiers import MAP_DIMENSIONS, Reduced, knn, svm
 from stages.sequences.networks import IMAGE_BATCH, NORMAL_BATCH
-from stages.weights.gain import AREAS
+from stages.weights.training import AREAS, PIXELS
 from stages.weights.training import FOLDS as SVM_FOLDS
-from stages.weights.training import PIXELS
 
 pytestmark = pytest.mark.slow
 

@@ -19,7 +19,7 @@ from haptic_glance.touch.quasi_tangent import quasi_tangent
 from haptic_glance.touch.surface import sensor_axes, sensor_normals
 from stages.engine.rows import read_rows
 from stages.imprints.imprints import FaceCentres
-from stages.sequences.series import sequence_features
+from stages.sequences.sequence_trials import sequence_features
 
 ROOT = Path(__file__).parents[2]
 CELLS, PITCH = (16, 16), 0.01

@@ -81,12 +81,6 @@ def test_other_shared_layers_stand_by_their_gain_on_the_same_items(two_middles):
     assert gains.to_numpy() == pytest.approx(np.array([[0.0] * 4, [2.0] * 4]), abs=1e-9)
     shown = table.shown.set_index("shared layers").filter(like="gain by sight")
     assert set(shown.loc[FIRST].stack()) == {"–"} and set(shown.loc["18:147"].stack()) == {"+2.0"}
-    chart = build_item(hybrid, "tradeoff", "hybrid", two_middles)
-    first = table.frame[(table.frame["shared_layers"] == FIRST) & (table.frame["network"] == "hybrid")]
-    for axes, (_, row) in zip(chart.drawing.axes, first.iterrows(), strict=True):
-        hollow = {round(line.get_xdata()[0], 6) for line in axes.lines if line.get_markerfacecolor() == "white"}
-        assert hollow == {round(100 * row[sense] + 2, 6) for sense in LEVELS}
-    assert "Hollow: layers 18:147 shared instead of 18:139" in chart.caption
 
 
 OBJECTS = ("horse", "dog", "oldtimer", "urn", "dome_lamp", "lying_man", "long_sofa", "low_table")  # of seven classes

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.recorded.selection_table import CLASSES
+from stages.recorded.report import CLASSES
 from stages.recorded_networks import report as topic
 from stages.report.parts import build_item
 

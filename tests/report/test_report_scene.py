@@ -5,7 +5,7 @@ import pandas as pd
 from stages.report.parts import build_item
 from stages.scene import Params, online
 from stages.scene import report as topic
-from stages.scene.budget_report import COMMON, planning
+from stages.scene.report import COMMON, planning
 
 VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000}
 

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 import pytest
-from stages.report.touch import claims, pictures, tables
+from stages.report.touch import pictures, tables
 
 from stages.charts.datasets import SETS_4_2
 from stages.charts.results import NotRun
@@ -67,7 +67,6 @@ table = partial(build_item, touch, "tables")
 @pytest.mark.slow
 def test_a_run_of_random_sets_alone_has_the_tables_of_sets_and_says_that_the_others_are_not_run(measure):
     results = measure("classification", drawn(SETS_4_2[0]).replace({"method": {"VisAttAll": "glance"}}))
-    assert claims.by_features(results).frame["seconds"].max() == pytest.approx(0.01 + 0.02)  # the mean of the sets
     assert table("table_4_1", results).shown["protocol"].iloc[0] == "as printed, 6 random sets"
     for name in ("table_4_3", "section_4_2_4"):
         with pytest.raises(NotRun):

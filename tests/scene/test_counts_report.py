@@ -1,14 +1,12 @@
-"""The table and the figure of the face counts."""
+"""The table of the face counts."""
 
 import pandas as pd
 import pytest
-from stages.report.scene import counts as table
 
 from haptic_glance.base.files import write_table, write_text
 from stages.charts.results import NotRun, Results
 from stages.engine.settings import Workspace
-from stages.report.parts import build_item
-from stages.scene import report as scene
+from stages.scene import report as table
 
 
 def rows():
@@ -17,7 +15,7 @@ def rows():
     for number, method in enumerate(table.MODELS, start=1):
         for condition in table.CONDITIONS:
             for metric in table.METRICS:
-                cell = {"method": method, "condition": condition, "setting": None, "metric": metric, "cases": 9}
+                cell = {"method": method, "condition": condition, "metric": metric, "cases": 9}
                 entries.append(cell | {"value": 1 + number / 10, "low": 1.05, "high": 1.6, "objects": 7})
         for metric in ("fit", "ask"):
             entries.append({"method": method, "condition": "cost", "metric": metric, "value": number, "seconds": 1})
@@ -42,13 +40,6 @@ def test_metric_that_was_not_measured_is_a_dash(written):
     frame = frame[~((frame["condition"] == "flat") & (frame["metric"] == "excess"))]
     shown = table.counts_table(written(frame)).shown.set_index("asked about")
     assert set(shown.loc["objects of flat sides", "excess error, %"]) == {"–"}
-
-
-@pytest.mark.slow
-def test_figure_is_drawn_without_all_conditions(written):
-    frame = rows()
-    frame = frame[frame["condition"].isin(["left_out", "larger"])]
-    assert build_item(scene, "figures", "face_counts", written(frame)).paths[0].stat().st_size > 10_000
 
 
 def test_without_a_judgement_it_is_not_run(written):

@@ -8,7 +8,7 @@ from haptic_glance.lod.scene import Frames, Level, Placed, budget
 from haptic_glance.lod.scene.chain import ERRORS, finest
 from haptic_glance.lod.scene.level_renders import picture_error
 from haptic_glance.mesh.mesh import Mesh
-from stages.scene import rivals
+from stages.scene import compare as rivals
 from stages.scene.rows import saved
 
 

@@ -15,10 +15,9 @@ from stages.engine.settings import check_section
 from stages.scene import Params, __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
-from stages.scene.compare import MethodPlan, SceneSetup
+from stages.scene.compare import MethodPlan, SceneSetup, full
 from stages.scene.level_files import export
 from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
-from stages.scene.rivals import full
 from stages.scene.rows import summary
 from tests.scene.conftest import bumpy
 

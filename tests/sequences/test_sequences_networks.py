@@ -17,7 +17,7 @@ from stages.sequences.networks import (
     layers,
     train_network,
 )
-from stages.sequences.series import CHANNELS, FEATURES, sequence_features, series
+from stages.sequences.sequence_trials import CHANNELS, FEATURES, sequence_features, series
 
 pytestmark = pytest.mark.slow
 

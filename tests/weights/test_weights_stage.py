@@ -10,8 +10,7 @@ from haptic_glance.look.weights.weights import read_models
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.weights import __main__ as stage
-from stages.weights.gain import gain_rows, shape_rows
-from stages.weights.training import train_object
+from stages.weights.training import gain_rows, shape_rows, train_object
 
 SECTIONS = {
     "weights": {"method": "fixations", "svm": "object"},

@@ -27,38 +27,29 @@ INNER = 3  # folds of the training objects, for the safety factor
 
 @dataclass(frozen=True, eq=False)
 class Fold:
-    """Curves of the training objects and of those left out, with the meshes and the kept points of the latter.
-
-    sizes: numbers of objects to train on, besides all of them.
-    """
+    """Curves of the training objects and of those left out, with the meshes and the kept points of the latter."""
 
     training: list[Curve]
     test_curves: list[Curve]
     meshes: dict[str, Mesh]
     points: dict[str, dict[str, np.ndarray]]
     combinations: list[str]
-    sizes: list[int]
     seed: int
 
 
 def evaluate_fold(fold: Fold) -> pd.DataFrame:
-    """One row per case, method, condition and setting: that of `score_counts`, and the seconds of built meshes."""
+    """One row per case, method and condition: that of `score_counts`, and the seconds of built meshes."""
     cases = between(fold.test_curves, fold.seed)
 
-    @functools.cache
-    def counts(kind: str, objects: frozenset[str]) -> np.ndarray:
-        training = [curve for curve in fold.training if curve.object in objects]
-        return predict_counts(kind, training, cases, fold.combinations, fold.seed)
-
-    frames = [*_left_out(fold, cases, counts), *_few_objects(fold, cases, counts), *_beyond(fold)]
+    frames = [*_left_out(fold, cases), *_beyond(fold)]
     return pd.concat(frames, ignore_index=True)
 
 
-def _left_out(fold, cases, counts):
+def _left_out(fold, cases):
     """As trained, then at an equal rate of cases within the tolerance, and a sample of both as meshes."""
     parts = _inner_parts(fold)
     for kind in ALL:
-        predicted = counts(kind, frozenset(_names(fold.training)))
+        predicted = predict_counts(kind, fold.training, cases, fold.combinations, fold.seed)
         yield labelled(score_counts(cases, predicted), kind, "left_out")
         yield labelled(build_some(fold, cases, predicted), kind, "built")
         full = [case.curve.initial_faces for case in cases]
@@ -86,14 +77,6 @@ def _inner_parts(fold):
         training, held_out = ([c for c in fold.training if (c.object in aside) == inside] for inside in (False, True))
         parts.append((training, between(held_out, fold.seed)))
     return parts
-
-
-def _few_objects(fold, cases, counts):
-    objects = _names(fold.training)
-    for size in fold.sizes:
-        sample = frozenset(rng(fold.seed, f"{size} of {','.join(objects)}").permutation(objects)[:size].tolist())
-        for kind in (*KINDS, "one_mesh"):
-            yield labelled(score_counts(cases, counts(kind, sample)), kind, "trained_on", size)
 
 
 def _beyond(fold):
@@ -136,9 +119,9 @@ def _built(case, count, fold):
     return {"object": name, "ratio": ratio, "error": error, "within": error <= 1, "seconds": watch.seconds}
 
 
-def labelled(frame: pd.DataFrame, method: str, condition: str, setting: int | None = None) -> pd.DataFrame:
-    """The frame with columns method, condition and setting."""
-    return frame.assign(method=method, condition=condition, setting=setting)
+def labelled(frame: pd.DataFrame, method: str, condition: str) -> pd.DataFrame:
+    """The frame with columns method and condition."""
+    return frame.assign(method=method, condition=condition)
 
 
 def _names(curves) -> list[str]:
@@ -147,12 +130,11 @@ def _names(curves) -> list[str]:
 
 COMBINED = ("itti", *COMBINATIONS, "VisAttCurvP", "VisAttSymP", "SymLat", "SymRad", "2Sym")  # T3.1.5, by our names
 FOLDS = 5
-SIZES = (5, 10, 20, 40)  # objects trained on; the last step is all that a fold has
 LARGE = 2 / 3  # quantile of the objects' own face counts: those above are test objects, those below training objects
 FEWEST_OBJECTS = 6
 REPEATS = 20  # predictions of which the fastest is timed
 AGAINST_COARSEST = ("count_bias", "waste")  # for flat sides the right count is unknown, only one that is enough
-KEY = ["method", "condition", "setting"]
+KEY = ["method", "condition"]
 
 Map = Callable[[Callable[[Fold], pd.DataFrame], list[Fold]], Iterable[pd.DataFrame]]
 
@@ -161,12 +143,12 @@ def evaluate_counts(
     curves: Sequence[Curve], meshes: Mapping[str, Mesh], points: Mapping[str, Mapping[str, np.ndarray]], seed: int = 0,
     side_by_side: Map = map,
 ) -> list[dict]:  # fmt: skip
-    """Row dicts (method, condition, setting, metric, value, low, high, cases, objects, seconds, note).
+    """Row dicts (method, condition, metric, value, low, high, cases, objects, seconds, note).
 
     curves: those of combinations of channels are used. meshes: dict object -> Mesh; points: dict object -> dict
     method -> vertex ids kept: for the meshes that are built. method: network, linear, one_mesh, lookup. condition:
     left_out (5 folds of objects), equal_rate (the same times a safety factor from training objects), built and
-    built_equal_rate (a sample of these as meshes), trained_on (`setting` objects), coarser and finer (than all given
+    built_equal_rate (a sample of these as meshes), coarser and finer (than all given
     meshes), larger (objects), flat (sides), cost. Metrics: see stages.scene.counts.evaluate; those of cost are ratios
     to the lookup. With too few objects: one row without a value, with a note. side_by_side: runs the folds.
     """
@@ -175,7 +157,7 @@ def evaluate_counts(
     objects = sorted({case.curve.object for case in between(informative, seed)})
     if len(objects) < FEWEST_OBJECTS:
         note = f"{len(objects)} objects have curves to train on: {FEWEST_OBJECTS} are needed to leave some out"
-        return [_row("network", "left_out", None, "factor_median") | {"note": note}]
+        return [_row("network", "left_out", "factor_median") | {"note": note}]
     combinations = [name for name in COMBINED if any(curve.method == name for curve in informative)]
     folds = list(_folds(informative, objects, meshes, points, combinations, seed))
     frames = [*side_by_side(evaluate_fold, folds), *_single_splits(informative, curves, combinations, seed)]
@@ -186,13 +168,11 @@ def evaluate_counts(
 
 def _folds(curves, objects, meshes, points, combinations, seed) -> Iterator[Fold]:
     splits = list(KFold(FOLDS, shuffle=True, random_state=seed).split(objects))
-    least = min(len(train) for train, _ in splits)
-    sizes = [*(size for size in SIZES if size < least), least]
     for train, test in splits:
         fit_names, test_names = ({objects[k] for k in part} for part in (train, test))
         training, left_out = ([curve for curve in curves if curve.object in names] for names in (fit_names, test_names))
         own_meshes, own_points = ({name: by_name[name] for name in sorted(test_names)} for by_name in (meshes, points))
-        yield Fold(training, left_out, own_meshes, own_points, combinations, sizes, seed)
+        yield Fold(training, left_out, own_meshes, own_points, combinations, seed)
 
 
 def _single_splits(used, curves, combinations, seed):
@@ -209,11 +189,11 @@ def _single_splits(used, curves, combinations, seed):
 
 def _rows(key, cases, seed):
     facts = {"cases": len(cases), "objects": cases["object"].nunique()}
-    method, condition, setting = key
+    method, condition = key
     for metric, (value, low, high) in summarise(cases, seed).items():
         if condition == "flat" and metric not in AGAINST_COARSEST:
             continue
-        yield _row(method, condition, setting, metric, value) | {"low": low, "high": high} | facts
+        yield _row(method, condition, metric, value) | {"low": low, "high": high} | facts
 
 
 def _costs(curves, frame, combinations, seed):
@@ -237,7 +217,7 @@ def _costs(curves, frame, combinations, seed):
         fits[kind], asks[kind] = watch.seconds, functools.partial(predict_with, model, case)
     costs = {"fit": fits, "ask": {kind: _seconds(ask) for kind, ask in asks.items()}}
     return [
-        _row(kind, "cost", None, metric, seconds[kind] / seconds["lookup"]) | {"seconds": seconds[kind]}
+        _row(kind, "cost", metric, seconds[kind] / seconds["lookup"]) | {"seconds": seconds[kind]}
         for metric, seconds in costs.items()
         for kind in ALL
     ]
@@ -253,9 +233,9 @@ def _seconds(ask):
     return min(times)
 
 
-def _row(method, condition, setting, metric, value=None):
+def _row(method, condition, metric, value=None):
     return {
-        "method": method, "condition": condition, "setting": setting, "metric": metric,
+        "method": method, "condition": condition, "metric": metric,
         "value": value, "low": None, "high": None, "cases": None, "objects": None, "seconds": None, "note": "",
     }  # fmt: skip
 
