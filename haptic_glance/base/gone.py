@@ -11,9 +11,9 @@ GONE = {
     **{f"{name}Summed": f"use {name}+sums" for name in SUMMED},
     **{f"random_{draw}": f"use random+{draw}" for draw in range(2, 6)},
     **{f"svm_{kind}": f"use svm+{kind}" for kind in ("nearest", "seen", "object", "viewpoint")},
-    "guided_ssim+object": "use guided_ssim+object",
-    "guided_ssim+seen": "use guided_ssim+seen",
-    "guided_ed+seen": "use guided_ed+seen",
+    "guided_ssim_object": "use guided_ssim+object",
+    "guided_ssim_seen": "use guided_ssim+seen",
+    "guided_ed_seen": "use guided_ed+seen",
     "layout_forces": GRID,
     "read_layout": GRID,
 }
