@@ -189,6 +189,7 @@ EMPTY = Mesh(np.zeros((3, 3)), np.zeros((0, 3), dtype=int))
         (lambda: metro(SPHERE, EMPTY), "without faces"),
         (lambda: SurfaceIndex(Mesh(1e120 * SPHERE.vertices, SPHERE.faces)), "out of range"),
         (lambda: SurfaceIndex(SPHERE).nearest([[np.nan, 0, 0]]), "points"),
+        (lambda: SurfaceIndex(SPHERE).nearest([[1e200, 0, 0]]), "points"),
         (lambda: salient_error(SPHERE, SPHERE, np.eye(len(UPPER))[0], 3), "more samples"),
         (lambda: salient_error(SPHERE, SPHERE, 0 * UPPER, 100), "zero on the whole surface"),
         (lambda: salient_error(SPHERE, SPHERE, np.ones(3), 100), "one value per vertex"),
