@@ -120,7 +120,14 @@ def test_a_belief_that_ends_the_touching_is_as_right_as_it_says_where_it_was_not
 
 @pytest.mark.parametrize("change, words", [
     (lambda x, t: (np.where(x == 0, np.nan, x), t), "sequences must be finite log likelihoods, got nan in sequence 0"),
+    (lambda x, t: (x - np.inf, t), "sequences must be finite log likelihoods, got -inf"),
+    (lambda x, t: (x[:0], t[:0]), r"sequences must .* of each at least one, got shape \(0, 3, 2\)"),
+    (lambda x, t: (x[..., :0], t), r"sequences must .* got shape \(4, 3, 0\)"),
+    (lambda x, t: (x[0], t), r"sequences must .* got shape \(3, 2\)"),
     (lambda x, t: (x, t[:2]), r"truth must hold one class from 0 to 1 for each of the 4 sequences"),
+    (lambda x, t: (x, t + 1), "truth must hold one class from 0 to 1"),
+    (lambda x, t: (x, t - 1), "truth must hold one class from 0 to 1"),
+    (lambda x, t: (x, t * np.nan), "truth must hold one class from 0 to 1"),
 ])  # fmt: skip
 def test_touches_that_calibrate_nothing_are_named(change, words):
     with pytest.raises(ValueError, match=words):

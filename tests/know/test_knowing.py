@@ -74,6 +74,14 @@ def test_an_object_is_explored_as_a_mesh_too_but_in_another_scale_it_is_refused(
             Exploration(library, Mesh(cone.vertices * scale, cone.faces), rng(3, "cone"))
 
 
+def test_the_gain_is_none_where_the_object_is_known(library, shapes):
+    exploration = Exploration(library, Surface(shapes["torus"]), rng(3, "torus"))
+    first = library.gains(exploration.belief, exploration.expected)
+    exploration.finish()
+    known = library.gains(exploration.belief, exploration.expected)
+    assert 0.3 < first.max() < np.log(6) + 1e-9 and abs(known).max() < 0.2
+
+
 def test_the_belief_sums_to_one_and_begins_even(library, shapes):
     exploration = touched(library, shapes["cone"], 6)
     for belief in exploration.beliefs:
@@ -236,6 +244,7 @@ def test_a_touch_away_from_all_objects_says_nothing_and_one_in_another_unit_is_r
         (("a", "b", "c"), np.zeros((2, 9, 41)), np.zeros((2, 9, 3)), r"with 3 classes, .* got \(2, 9, 41\)"),
         (("a", "b"), np.zeros((2, 9, 41)), np.zeros((2, 8, 3)), r"got \(2, 9, 41\) and \(2, 8, 3\)"),
         (("a", "b"), np.zeros((2, 9, 4)), np.zeros((2, 9, 3)), r"\(classes, touches, 41\) .* got \(2, 9, 4\)"),
+        (("a", "b"), np.zeros((2, 0, 41)), np.zeros((2, 0, 3)), r"got \(2, 0\) and"),
         (("a", "b"), np.full((2, 9, 41), np.nan), np.zeros((2, 9, 3)), "samples must be finite, got nan in touch 0"),
         (("a", "b"), np.full((2, 9, 41), 255), np.zeros((2, 9, 3)), "those of a are .* divide bytes by 255"),
     ],
@@ -267,7 +276,9 @@ def test_a_mesh_with_y_up_is_learned_upright_and_explored_only_so(shapes):
     ("image", "position", "words"),
     [
         (np.full(CELLS, 200.0), np.zeros(3), "bytes, or numbers in 0..1"),
+        (np.full(CELLS, -1.0), np.zeros(3), "bytes, or numbers in 0..1"),
         (np.zeros(CELLS), 5, "three finite numbers"),
+        (np.zeros(CELLS), [[0, 0, 0]], "three finite numbers"),
     ],
 )
 def test_what_is_no_imprint_or_no_place_is_refused(blind, image, position, words):

@@ -68,7 +68,7 @@ def test_constant_column_and_equal_samples_are_no_trouble():
 
 @pytest.mark.parametrize(
     ("samples", "dimensions", "word"),
-    [(np.zeros((5, 3)), 4, "as many"), (np.zeros((5, 3)), 0, "1 to 8"),
+    [(np.zeros((5, 3)), 4, "as many"), (np.zeros((1, 3)), 2, "as many"), (np.zeros((5, 3)), 0, "1 to 8"),
      (np.full((5, 3), np.nan), 2, "NaN")],
 )  # fmt: skip
 def test_bad_input_is_named(samples, dimensions, word):

@@ -38,6 +38,14 @@ def test_agrees_with_torch_autograd_and_its_adadelta():
     assert not np.allclose(ours.predict_proba(SAMPLES), expected, atol=1e-2)
 
 
+def test_learns_what_is_easy_and_the_seed_decides_the_result():
+    net, same, other = (FeedForward(epochs=30, seed=seed).fit(SAMPLES, LABELS) for seed in (1, 1, 2))
+    chances = net.predict_proba(SAMPLES)
+    assert (net.predict(SAMPLES) == LABELS).mean() > 0.95 and np.allclose(chances.sum(axis=1), 1, atol=1e-5)
+    assert np.array_equal(chances, same.predict_proba(SAMPLES))
+    assert not np.array_equal(chances, other.predict_proba(SAMPLES))
+
+
 @pytest.mark.parametrize("samples", [SAMPLES[:3], SAMPLES[0], np.full_like(SAMPLES, np.nan)])
 def test_bad_samples_are_refused(samples):
     with pytest.raises(ValueError, match="samples must be finite"):

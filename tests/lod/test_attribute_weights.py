@@ -144,6 +144,13 @@ def test_normals_of_an_edged_solid_come_out_closer():
     assert off(simplify(mesh, 800, attributes={"normals": 0.1})) < off(simplify(mesh, 800)) / 2
 
 
+def test_without_weights_nothing_changes():
+    mesh = sheet(24, disc, 0.1)
+    plain, zero = simplify(mesh, 300), simplify(mesh, 300, attributes={"colors": 0, "normals": 0.0})
+    for name in ("vertices", "faces", "colors"):
+        assert getattr(plain, name).tobytes() == getattr(zero, name).tobytes()
+
+
 def test_what_is_kept_keeps_its_colours():
     mesh = sheet(32, height=0.1)
     colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3))

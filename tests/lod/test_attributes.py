@@ -26,6 +26,16 @@ def bare(mesh):
     return Mesh(mesh.vertices, mesh.faces)
 
 
+@pytest.mark.parametrize("make", [painted_sheet, tube])
+def test_onto_itself_nothing_changes(make):
+    mesh = make()
+    assert carry(bare(mesh), mesh) is mesh
+    carried = carry(mesh, bare(mesh))
+    assert np.abs(carried.texture.uv - mesh.texture.uv).max() < 1e-6
+    assert (carried.texture.image == mesh.texture.image).all()
+    assert mesh.colors is None or (carried.colors == mesh.colors).all()
+
+
 def test_colours_are_interpolated_where_a_vertex_has_moved():
     mesh = painted_sheet()
     shifted = bare(mesh).vertices[mesh.faces].mean(axis=1)

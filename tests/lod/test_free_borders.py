@@ -44,6 +44,11 @@ def test_loops_and_pieces_stay_and_no_fault_is_new(faces):
     assert after.boundary_loops == 2 and len(np.unique(simple.faces)) == len(simple.vertices)
 
 
+def test_of_a_closed_mesh_not_one_bit_changes(ball):
+    frozen, free = (simplify(ball, 200, free_borders=flag) for flag in (False, True))
+    assert (frozen.vertices == free.vertices).all() and (frozen.faces == free.faces).all()
+
+
 def test_frozen_faces_at_the_border_stay_bit_for_bit():
     mesh = sheet(39, height=0.1)
     simple = simplify(mesh, 300, keep=[0, 820], rings=2, free_borders=True)
@@ -91,6 +96,7 @@ def test_the_count_that_a_refusal_offers_is_feasible(seed):
     ("changes", "words"),
     [
         ({"backend": "pymeshlab"}, "leave one out"),
+        ({"attributes": {"normals": 0.1}}, "leave one out"),
         ({"free_borders": np.ones(3, dtype=bool)}, "one per vertex"),
     ],
 )

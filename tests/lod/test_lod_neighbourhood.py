@@ -90,6 +90,7 @@ def test_odd_meshes_give_defined_rings(way):
     [
         (([1], "round"), "fixed, adaptive, area"),
         (([1], "area"), "saliency"),
+        (([1], "area", np.full(len(EVEN.vertices), np.nan)), "saliency"),
         (([10**6], "adaptive"), "outside"),
     ],
 )

@@ -118,11 +118,13 @@ def test_quadric_weights_grow_with_saliency_from_one_within_what_every_backend_t
     [
         ({"faces": 0}, "1 or more"),
         ({"keep": [10**6]}, "outside"),
+        ({"keep": [-1]}, "outside"),
         ({"keep": [0.5]}, "vertex ids"),
         ({"keep": [1], "rings": -1}, "rings"),
         ({"keep": [1, 2], "rings": [3]}, "one per kept vertex"),
         ({"keep": [1, 2], "rings": [3, -2]}, "-1"),
         ({"keep": [1, 2], "rings": [3.0, 1.0]}, "whole numbers"),
+        ({"weights": [0.5]}, "one per vertex"),
         ({"weights": np.full(162, 1.5)}, "0..1"),
         ({"weights": np.r_[np.nan, np.zeros(161)]}, "NaN"),
         ({"backend": "nobody"}, "pymeshlab"),

@@ -231,7 +231,8 @@ def test_targets_mean_face_counts_and_files(target, count):
     ("name", "message"),
     [
         ("glanc", "unknown method 'glanc'"), ("glance-fixed", "endings are -adaptive, -area, -soft"),
-        ("glance-soft-area", "ends in 'soft-area'"), 
+        ("glance-soft-area", "ends in 'soft-area'"), ("qem-soft", "unknown method 'qem'"),
+        ("-area", "unknown method ''"),
     ],
 )  # fmt: skip
 def test_bad_names_of_methods_are_named(name, message):

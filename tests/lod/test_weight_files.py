@@ -95,6 +95,8 @@ def test_the_files_say_which_axis_points_up(ball, tmp_path, up):
     [
         ("w.obj", np.ones(162), "written as .glb"),
         ("w.ply", np.ones(3), "w.ply: weights must be one per vertex"),
+        ("w.ply", np.full(162, 1.5), r"w.ply: weights must lie in 0\.\.1"),
+        ("w.ply", np.full(162, np.nan), r"w.ply: weights must lie in 0\.\.1"),
     ],
 )
 def test_wrong_files_and_weights_are_named(ball, tmp_path, name, weights, words):

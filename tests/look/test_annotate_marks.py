@@ -81,6 +81,8 @@ def test_rows_that_changed_since_they_were_seen_are_not_replaced(tmp_path):
         ("zoe,2026-01-02T03:04:05Z,7,0.5,0.2", "5 values instead of 6"),
         ("zoe,2026-01-02T03:04:05Z,7.5,0.5,0.2,0.1", "7.5"),
         ("zoe,2026-01-02T03:04:05Z,-7,0.5,0.2,0.1", "not a point of a mesh"),
+        ("zoe,2026-01-02T03:04:05Z,7,0.5,nan,0.1", "not a point of a mesh"),
+        ("zoe,yesterday,7,0.5,0.2,0.1", "not a time"),
         ("zoe,2026-01-02T03:04:05,7,0.5,0.2,0.1", "offset"),
         (",2026-01-02T03:04:05Z,7,0.5,0.2,0.1", "name"),
         ('"zoe,2026-01-02T03:04:05Z,7,0.5,0.2,0.1', "end of data"),
@@ -110,6 +112,7 @@ def test_a_missing_file_is_an_error_and_a_file_without_marks_is_empty(tmp_path):
     [
         *[(name, mark(1), "name must have 1 to") for name in ("  ", "a\nb", "x" * 81, None)],
         ("ann", mark(1, "soon"), "not a time"),
+        ("ann", mark(-1), "not a point of a mesh"),
     ],
 )
 def test_unusable_names_and_marks_are_refused_before_anything_is_written(tmp_path, name, bad, message):

@@ -116,7 +116,9 @@ def test_vertex_order_winding_size_place_and_turns_do_not_matter(shapes):
     ("question", "says"),
     [
         (lambda mesh: fewest_views(Mesh(np.zeros((3, 3)), [[0, 1, 2]])), "no visible surface"),
+        (lambda mesh: point_visibility(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), [FRONT]), "no visible surface"),
         (lambda mesh: fewest_views(mesh, 0), "share must be above 0"),
+        (lambda mesh: fewest_views(mesh, 1.5), "share must be above 0"),
         (lambda mesh: greedy_views(mesh, 0), "count must be"),
     ],
 )

@@ -265,7 +265,9 @@ def test_outliers_and_pixels_without_a_reading_change_nothing():
     [
         (lambda: surface_of(Cloud(BALL[:1])), "a point cloud of 1 points, 1 of them usable: a surface needs 50"),
         (lambda: surface_of(Cloud(np.tile(BALL[:1], (100, 1)))), "of 100 points, 1 of them usable"),
+        (lambda: surface_of(Cloud(np.full((100, 3), np.nan))), "of 100 points, 0 of them usable"),
         (lambda: surface_of(Cloud(BALL * [1, 1, 0])), "lie on one plane"),
+        (lambda: surface_of(Cloud(BALL * [1, 0, 0])), "lie on one line"),
         (lambda: cloud_of_depth(np.zeros((48, 64)), 100.0, 100.0, 32.0, 24.0), "no reading"),
         (lambda: cloud_of_depth(np.ones((48, 64)), -1.0, 100.0, 32.0, 24.0), "fx=-1.0"),
         (lambda: cloud_of_depth(np.ones((48, 64)), 100.0, np.nan, 32.0, 24.0), "fy=nan"),
@@ -284,6 +286,7 @@ def test_wrong_arguments_are_named_with_what_is_right(call, words):
     [
         ("a.xyz", b"x y z\n", "no line of the point cloud holds three numbers"),
         ("a.pcd", pcd(Encoding.BINARY)[:-4000], "truncated: its header states 1200 points, 950 follow"),
+        ("a.pcd", b"VERSION .7\nPOINTS 99999999\nDATA ascii\n1 2 3\n", "truncated: its header states 99999999 points"),
         ("a.las", b"LASF" + b"\0" * 300, "unreadable as LAS|truncated"),
         ("a.depth", b"{}", "KeyError: 'image'; a .depth file is like {\"image\""),
         ("a.depth", json.dumps(DEPTH).encode(), "the depth image a.png is not there"),

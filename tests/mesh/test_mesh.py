@@ -49,10 +49,15 @@ def test_vertex_in_no_face_has_a_zero_normal():
         (lambda: Mesh(np.zeros((3, 3)), np.full((1, 3), 0.5)), "whole numbers"),
         (lambda: Mesh(np.full((3, 3), np.nan), np.zeros((1, 3), int)), "NaN"),
         (lambda: Mesh(np.zeros((3, 3)), np.full((1, 3), 3)), "outside 0..2"),
+        (lambda: Mesh(np.zeros((3, 3)), np.full((1, 3), -1)), "outside 0..2"),
         (lambda: sample_surface(Mesh(CORNERS, [[0, 0, 1]]), np.array([0.5]), np.full((2, 1), 0.5)), "without area"),
         (lambda: sample_surface(Mesh(CORNERS, np.zeros((0, 3))), np.array([0.5]), np.full((2, 1), 0.5)), "area"),
         (lambda: Mesh(np.eye(3), [[0, 1, 2]], np.full((3, 3), 300)), r"colors must lie in 0\.\.255"),
+        (lambda: Mesh(np.eye(3), [[0, 1, 2]], np.full((3, 3), -1)), r"colors must lie in 0\.\.255"),
         (lambda: paint(colour=300), "must be whole numbers"),
+        (lambda: Texture(np.zeros((1, 3, 2)), [0], ([[[300, 0, 0, 0]]],)), "must be whole numbers"),
+        (lambda: paint(colour=0.5), "must be whole numbers"),
+        (lambda: paint(image=0.5), "must be whole numbers"),
     ],
 )
 def test_wrong_arguments_are_named_with_what_is_right(call, words):

@@ -147,11 +147,17 @@ def test_rounding_says_nothing_about_the_way_at_the_vertex_where_a_contour_begin
     [
         ([ORIGIN, [0, 0, 0], [1, 0, 0]], {}, "coincide"),
         ([ORIGIN, [1, 0, 0], [1, 0, 0]], {}, "lie on a line"),
+        ([ORIGIN, [1, 1e-7, 0], [-2, 0, 0]], {}, "lie on a line"),
         ([[0, 0, 0.6], [1, 0, 0.6], [0, 1, 0.6]], {}, "misses the mesh"),
         ([[0, 0], [1, 0], [0, 1]], {}, "a plane must be"),
+        ([ORIGIN, [np.nan, 0, 0], [0, 1, 0]], {}, "a plane must be"),
         (LEVEL, {"frames": 0}, "must be"),
+        (LEVEL, {"frames": 2.5}, "must be"),
+        (LEVEL, {"frames": np.nan}, "must be"),
         (LEVEL, {"frames": None}, "frames must be a whole number from 1, got None"),
+        (LEVEL, {"cells": (0, 8)}, "must be"),
         (LEVEL, {"cells": ("8", "8")}, "cells must be two whole numbers from 1"),
+        (LEVEL, {"pitch": 0.0}, "must be"),
     ],
 )
 def test_bad_planes_and_settings_are_named(points, changes, message):

@@ -77,10 +77,17 @@ def test_a_press_is_its_gaps_made_forces_bit_for_bit(pressed):
     [
         ([0, 0, np.nan], np.eye(3), {"load": 1.0}, "centres must be finite"),
         ([0, 0, 0], 1.00001 * np.eye(3), {"depth": 0.001}, "axes must be three perpendicular unit vectors"),
+        ([0, 0, 0], np.eye(3) + 1e-5, {"depth": 0.001}, "axes must be three perpendicular unit vectors"),
+        ([0, 0, 0], np.diag([1, 1, -1]), {"depth": 0.001}, "axes must be three perpendicular unit vectors"),
         ([0, 0, 0], np.eye(3), {"depth": [0.001, 0.011]}, "touch 1 needs more than the layer's thickness"),
+        ([0, 0, 0], np.eye(3), {"load": [0.1, 1e6]}, "touch 1 needs more than the layer's thickness"),
         ([0, 0, 0], np.eye(3), {"load": [0.1, 0.0]}, "load must be above 0 N, got 0"),
+        ([0, 0, 0], np.eye(3), {"load": [0.1, np.inf]}, "load must be finite, got inf"),
         ([0, 0, 0], np.eye(3), {"depth": [0.1, 0.1, 0.1]}, r"depth must be a number or have shape \(2,\)"),
+        ([0, 0, 0], np.eye(3), {"depth": np.nan}, "depth must be finite"),
+        ([0, 0, 0], np.eye(3), {"depth": -0.001}, "depth must be 0 m or more"),
         ([0, 0, 0], np.eye(3), {}, "give either load"),
+        ([0.5, 0, 0], np.eye(3), {"load": 1.0}, "touch 1 touches nothing, so no load can be reached: move the array"),
         ([0, 0, 0], np.eye(3), {"load": 1.0, "unit": 0.0}, "unit must be a positive number of metres"),
     ],
 )
@@ -210,20 +217,46 @@ def pressed(**values):
         (lambda: Layer(0.0, 1e5), "layer: thickness must be above 0 metres"),
         (lambda: Layer(0.01, -1.0), "layer: modulus must be above 0 pascals"),
         (lambda: Layer(0.01, np.nan), "modulus must be .*, got nan"),
+        (lambda: Layer(0.01, np.inf), "modulus must be .* finite, got inf"),
         (lambda: Layer(0.01, 1e5, poisson=0.5), "poisson must be above -1 and below 0.5"),
         (lambda: Layer(0.01, 1e5, friction=0), "friction must be above 0"),
         (lambda: pressed(load=0), "load must be above 0 N, got 0: give newtons"),
+        (lambda: pressed(load=np.nan), "load must be finite, got nan"),
+        (lambda: pressed(load=[1.0, 2.0, 3.0]), r"load must be a number or have shape \(2,\)"),
         (lambda: pressed(depth=np.inf), "depth must be finite"),
+        (lambda: pressed(depth=-0.001), "depth must be 0 m or more, got -0.001: it counts from the first contact"),
         (lambda: pressed(load=1e6), "touch 0 needs more than the layer's thickness of 0.01 m: press less, or"),
         (lambda: pressed(depth=[0.001, 0.02]), "touch 1 needs more than the layer's thickness"),
         (lambda: pressed(), "give either load, in newtons, or depth"),
+        (lambda: pressed(load=1.0, depth=0.1), "give either load"),
         (lambda: forces(np.full((1, 2, 2), np.nan), LAYER, 1e-5, load=1.0), "gaps must be numbers"),
+        (lambda: forces(np.full((1, 2, 2), -np.inf), LAYER, 1e-5, depth=0.001), "gaps must be numbers of metres"),
+        (lambda: forces(np.array(0.1), LAYER, 1e-5, depth=0.001), r"gaps must have shape \(k, \.\.\.\)"),
         (lambda: forces(RANDOM, LAYER, 0.0, load=1.0), "areas must be above 0 m2"),
+        (lambda: forces(RANDOM, LAYER, np.nan, depth=0.001), "areas must be above 0 m2, got nan"),
         (lambda: shear(RANDOM, [0.1, 0.2], LAYER, 1e-5), r"slips must be finite and of shape \(k, 2\)"),
         (lambda: shear(RANDOM * np.nan, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
+        (lambda: shear(-RANDOM, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
+        (lambda: shear(RANDOM, np.ones((40, 2)), LAYER, np.nan), "areas must be above 0 m2, got nan"),
+        (lambda: forces(RANDOM, LAYER, np.ones(3), load=1.0), r"areas must be a number, or one per taxel: .* \(3,\)"),
         (lambda: sensor_axes([[0, 0, np.nan]]), "normals must be finite and not zero, got .* at place 0"),
+        (lambda: sensor_axes([[0, 0, 1], [0, 0, 0]]), "normals must be finite and not zero, got .* at place 1"),
     ],
 )
 def test_numbers_that_no_touch_has_are_named(work, words):
     with pytest.raises(ValueError, match=words):
         work()
+
+
+def test_shear_of_any_slip_is_finite_and_its_wrong_arguments_are_named():
+    layer, normal = Layer(friction=0.6), np.ones(3)
+    tiny, huge = (shear(normal, np.tile([[length, 0.0]], (3, 1)), layer, 1e-6) for length in (1e-200, 1e200))
+    assert (tiny[:, 0] > 0).all() and huge.tolist() == [[0.6, 0.0]] * 3
+    slips = np.zeros((3, 2))
+    for error, words, arguments in [
+        (ValueError, "normal must hold the forces of one or more taxels", (1.0, [0.0, 0.0], layer, 1e-6)),
+        (ValueError, r"areas must be a number, or one per taxel: \(3,\)", (normal, slips, layer, [1, 1])),
+        (TypeError, r"layer must be a Layer such as Layer\(friction=0.6\), got None", (normal, slips, None, 1e-6)),
+    ]:
+        with pytest.raises(error, match=words):
+            shear(*arguments)

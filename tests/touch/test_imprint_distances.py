@@ -39,6 +39,12 @@ def test_cells_off_the_object_report_max_distance(shapes):
     assert (lengths[off] == 0.16).all() and (lengths[~off] < 0.16).all()
 
 
+def test_max_distance_bounds_the_distance_both_ways(shapes):
+    mesh, vertex = shapes.solid(lambda x, y: 20 * (x * x - y * y))
+    lengths = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02)
+    assert lengths.min() == -0.02 and lengths.max() == 0.02
+
+
 def test_turning_and_scaling_mesh_and_array_together_changes_nothing(shapes):
     mesh, vertex = shapes.solid(SURFACES["saddle"])
     axes = sensor_axes(sensor_normals(mesh, [vertex]))
@@ -87,7 +93,11 @@ def test_back_of_a_lone_sheet_counts_as_surface_below(shapes):
     "change, words",
     [
         ({"cells": (0, 16)}, "cells must be"),
+        ({"cells": (16,)}, "cells must be"),
+        ({"cells": (2.5, 4)}, "cells must be"),
+        ({"cells": (np.nan, 4)}, "cells must be"),
         ({"pitch": 0.0}, "pitch must be"),
+        ({"pitch": np.nan}, "pitch must be"),
         ({"max_distance": -1.0}, "max_distance must be"),
         ({"vertices": [7]}, "vertex 7 is not in the mesh"),
         ({"vertices": [-1]}, "vertex -1 is not in the mesh"),
@@ -96,6 +106,7 @@ def test_back_of_a_lone_sheet_counts_as_surface_below(shapes):
         ({"vertices": [0, 4]}, "vertex 4 has no normal"),
         ({"vertices": [5]}, "vertex 5 has no normal"),
         ({"axes": np.zeros((1, 3, 3))}, "perpendicular"),
+        ({"axes": np.eye(3)}, "shape"),
         ({"axes": np.diag([-1.0, 1, 1])[None]}, "right x up"),
         ({"contact": "soft"}, "tangent, rigid, got 'soft'"),
     ],

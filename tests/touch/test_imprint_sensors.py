@@ -257,3 +257,9 @@ def test_the_two_sides_of_a_sheet_keep_their_own_normals():
     sheet = Mesh(np.concatenate([vertices, vertices]), np.concatenate([faces, faces[:, ::-1] + len(vertices)]))
     out, inwards = np.split(sensor_normals(sheet, np.arange(2 * len(vertices))), 2)
     assert out == pytest.approx(vertices, abs=0.05) and inwards == pytest.approx(-out)
+
+
+@pytest.mark.parametrize("length", [1e-200, 1e-310, 1e200, 1e307])
+def test_normals_of_any_length_have_axes(length):
+    normals = np.array([[0.6, 0.0, 0.8], [1.0, 2.0, -2.0]])
+    assert sensor_axes(length * normals) == pytest.approx(sensor_axes(normals), abs=1e-12)

@@ -135,6 +135,7 @@ def test_results_do_not_depend_on_the_batch():
     ("call", "words"),
     [
         (lambda: Skin(blur=-1), "blur must be 0 or more"),
+        (lambda: Skin(blur=1e9), "blur must be 0 or more and at most 1000"),
         (lambda: Skin(gain=0), "gain must be above 0"),
         (lambda: Skin(saturation=1.2), "saturation must be above 0 and at most 1"),
         (lambda: Skin(hysteresis=np.nan), "hysteresis"),
@@ -145,9 +146,13 @@ def test_results_do_not_depend_on_the_batch():
         (lambda: Skin(seed=3.0), "seed must be an integer"),
         (lambda: normalise(np.zeros((4, 4)), 0.01), "shape"),
         (lambda: normalise(np.full((3, 2, 2), np.nan), 0.01), "distances must be finite"),
+        (lambda: indent(np.full((3, 2, 2), -np.inf), 0.01), "distances must be finite"),
         (lambda: indent(np.zeros((1, 2, 2)), 0), "depth must be"),
+        (lambda: indent(np.zeros((1, 2, 2)), np.nan), "depth must be"),
         (lambda: press(Mesh(np.eye(3), [[0, 1, 2]]), [0, 1]), "vertices must have shape"),
         (lambda: Skin()(np.zeros((4, 4))), "imprints must"),
+        (lambda: Skin()(np.full((1, 2, 2), 1.5)), "imprints must"),
+        (lambda: Skin()(np.full((1, 2, 2), np.nan)), "imprints must"),
     ],
 )
 def test_wrong_arguments_are_named_with_what_is_right(call, words):
