@@ -285,7 +285,7 @@ def _chosen(viewpoints):
 def _learned(method, weights):
     """The published weights, those of the method replaced by the caller's."""
     required, learned = method_named(method).required_weights, LearnedWeights()
-    if required.startswith("svm"):
+    if required is not None and required.startswith("svm"):
         raise ValueError(f"method {method!r} needs an SVM that the stage `weights` trains: run the pipeline for it")
     if weights is None:
         if required not in {None, *learned.weights}:
