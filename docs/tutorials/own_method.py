@@ -37,9 +37,8 @@ def thin_parts(mesh: Mesh) -> np.ndarray:
 # Give it a name
 # --------------
 #
-# In a checkout the function is a file in ``haptic_glance/look/rivals``, and its name stands in ``PUBLISHED`` of
-# ``haptic_glance/look/points/methods.py``; CONTRIBUTING.md lists the other places. Here we add it to the registry of
-# this process. Every function that takes a method knows it from now on.
+# In a clone, the function and its name stand in ``haptic_glance/look/points/detectors.py``; CONTRIBUTING.md has the
+# recipe. Here we add it to the registry of this process. Every function that takes a method knows it from now on.
 
 METHODS["thin_parts"] = SurfaceDetector(thin_parts)
 mesh = normalise(rotate_to_z_up(simplify(load(sample()), 4000)))

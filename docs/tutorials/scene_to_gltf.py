@@ -2,8 +2,8 @@
 Levels of detail for a scene, in a glTF viewer
 ==============================================
 
-A scene shows an object near and far. This tutorial plans how many faces it needs in each frame, and writes the levels
-that the plan uses to one GLB with the extension ``MSFT_lod``, which viewers and engines read.
+A scene shows an object near and far. This tutorial plans how many faces it needs in each frame. It writes the levels
+of the plan to one GLB with the extension ``MSFT_lod``, which viewers and engines read.
 
 Needs a clone and ``pip install '.[pipeline]'``; runs without a network.
 """

@@ -45,7 +45,7 @@ ODD = {
     ),
 }
 CHANNELS = tuple(dict.fromkeys(name for method in METHODS.values() for name in method.channels))
-# One of each kind of detector: others differ in channels alone, published ones have tests/look/test_rival_manners.py.
+# One of each kind of detector: others differ in channels alone, published ones have tests/look/test_detector_contract.py.
 KINDS = ("glance", "itti", "VisAttCurvP", "equal", "random", "farthest", "touch", "height", "mesh_saliency", "harris")
 RUNNING = [name for name in KINDS if METHODS[name].required_weights in {None, *LearnedWeights().weights}]
 
