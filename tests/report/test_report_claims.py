@@ -333,8 +333,8 @@ def test_copies_of_a_shape_count_once(values):
 @pytest.mark.slow
 def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
     rows = {"dataset": "test", "item": list("abc"), "value": [0.1234567891, 0.2, -0.01]}
-    small.write(root, "test", pd.DataFrame(rows))
-    reports = small.results(root).reports
+    small.write_measurements(root, "test", pd.DataFrame(rows))
+    reports = small.read_results(root).reports
     table, pairs = judged([*load(), claim(second=0)], Measurements(reports))
     write_claims(table, pairs, root / "reports")
     claims = pd.read_csv(root / "reports/claims.csv")

@@ -22,6 +22,7 @@ from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
 from stages.report.__main__ import write_report
+from stages.report.claims import load
 from stages.report.parts import PARTS
 
 pytestmark = pytest.mark.slow
@@ -56,13 +57,13 @@ def run(tmp_path_factory, small):
 
     A method has an odd name, and rows on human gaze are of a set that is switched off.
     """
-    root, opened = small.root(tmp_path_factory.mktemp("run")), []
+    root, opened = small.make_root(tmp_path_factory.mktemp("run")), []
     small.write_attention(root)
     for name in (OLD, OLD_PAGE, OTHERS):
         write_text(root / "reports" / name, "old")
-    small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
+    small.write_measurements(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
     WATCHED.append(opened)
-    write_report(small.results(root))
+    write_report(small.read_results(root))
     WATCHED.pop()
     paths = [root / "reports/index.html", *sorted((root / "reports/site").glob("*.html"))]
     return SimpleNamespace(root=root, opened=opened, pages={path: path.read_text() for path in paths})
@@ -71,10 +72,10 @@ def run(tmp_path_factory, small):
 @pytest.fixture(scope="module")
 def of_folder(tmp_path_factory, small):
     """The results of a run on a folder of one's own, with its report, as other processes write it."""
-    root = small.root(tmp_path_factory.mktemp("own"))
-    small.write(root, "lod", small.lod(), "elsewhere")
+    root = small.make_root(tmp_path_factory.mktemp("own"))
+    small.write_measurements(root, "lod", small.lod(), "elsewhere")
     write_table(root / "data/test/meshes/manifest.csv", pd.DataFrame({"object": ["ball", "cube"], "up": ["y", "-x"]}))
-    results = small.own(root, "my meshes")
+    results = small.own_results(root, "my meshes")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(statistics, "RESAMPLES", RESAMPLES)
         patch.setattr(items, "save", save)
@@ -186,7 +187,7 @@ def test_no_published_table_shows_raw_names():
 
 
 def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
-    write_report(small.results(bare))
+    write_report(small.read_results(bare))
     printed = capsys.readouterr().out
     start = "report: not run, no measurements of classification"
     lines = [line for line in printed.splitlines() if line.startswith(start)]
@@ -200,7 +201,7 @@ def test_items_that_lack_their_data_alone_stay(bare, small, capsys):
     stays, goes = ("figures/figure_3_10.png", "tables/dataset.csv"), ("figures/no_name.png", "tables/table_4_1.csv")
     for name in (*stays, *goes):
         write_text(reports / name, "drawn")
-    write_report(small.results(bare))
+    write_report(small.read_results(bare))
     assert [(reports / name).exists() for name in (*stays, *goes)] == [True, True, False, False]
     (line,) = (line for line in capsys.readouterr().out.splitlines() if "figure_3_10" in line)
     assert "tables/dataset (meshes)" in line and "figures/figure_3_10 (conspicuity)" in line and "no_name" not in line
@@ -225,7 +226,7 @@ def test_equal_runs_give_equal_bytes_with_any_number_of_workers(of_folder, small
     before = [path.read_bytes() for path in files]
     params = of_folder.workspace.root / "params.yaml"
     params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
-    write_report(small.results(of_folder.workspace.root))
+    write_report(small.read_results(of_folder.workspace.root))
     assert [path.read_bytes() for path in files] == before
 
 

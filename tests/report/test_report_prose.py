@@ -148,7 +148,7 @@ def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_m
     monkeypatch.setattr("stages.report.site.PARTS", {"one": topic})
     monkeypatch.setattr("stages.charts.results.Results.own_meshes", of_folder)
     item = Table(pd.DataFrame(), title="T", kind="tables", page="a_topic", paths=[Path("tables/t.csv")])
-    text = page_main("a_topic", small.results(bare), Built([item]), pd.DataFrame({"key": []}), tmp_path)
+    text = page_main("a_topic", small.read_results(bare), Built([item]), pd.DataFrame({"key": []}), tmp_path)
     assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not of_folder)
 
 

@@ -11,11 +11,14 @@ from haptic_glance.base.files import write_table
 from stages.charts import items
 from stages.charts.drawing import SETTINGS, plt
 from stages.charts.results import Results
+from stages.engine.measurements import Measurements
 from stages.engine.settings import Workspace
 from stages.lod import report as meshes
 from stages.report import Params, parts
+from stages.report.claims import load
 from stages.report.parts import KINDS as DICTS
 from stages.report.parts import PARTS, build_part
+from stages.report.verdict import judge
 
 ROOT = Path(__file__).parents[2]
 REPORTS = ROOT / "reports"
@@ -25,7 +28,7 @@ FROM_DATA = {  # items that need what stages leave in data/
     "scene", "pipeline", "touch_one_mesh", "imprints", "figure_4_15",
 }  # fmt: skip
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
-REMEDY = "where this change is wanted, `make repro` writes it anew"
+REMEDY = "where this change is wanted, `dvc repro` writes it anew"
 
 
 @pytest.fixture(scope="module", autouse=True)

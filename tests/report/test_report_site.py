@@ -86,7 +86,7 @@ def test_a_picture_of_many_colours_is_shrunk(tmp_path):
 @pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
 def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole, small, bare):
     table = Table(pd.DataFrame({"x": [cell]}), name="gaps", kind="tables", page="none", paths=[Path("tables/t.csv")])
-    page = front_main(small.results(bare), Built([table]), {}, pd.DataFrame(), None, {}, Path("reports"))
+    page = front_main(small.read_results(bare), Built([table]), {}, pd.DataFrame(), None, {}, Path("reports"))
     assert ("Everything that this report knows was measured" in page) == whole
     assert ("<code>tables/gaps</code>: in part" in page) != whole
 

@@ -2,12 +2,12 @@
 
 import pandas as pd
 import pytest
-from stages.report.scene import counts as table
 
 from haptic_glance.base.files import write_table, write_text
 from stages.charts.results import NotRun, Results
 from stages.engine.settings import Workspace
 from stages.report.parts import build_item
+from stages.scene import counts_report as table
 from stages.scene import report as scene
 
 

@@ -12,7 +12,7 @@ from stages.lod import level_pictures as pictures
 from stages.lod import report as meshes
 from stages.lod.error_tables import data_sets, face_counts, paired_cells
 from stages.report.parts import build_item
-from tests.report.frames import has_ink
+from tests.frames import has_ink
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
@@ -106,8 +106,8 @@ def test_table_3_2_compares_all_methods_on_the_same_objects(run):
 
 @pytest.mark.slow
 def test_tables_of_ones_own_meshes_leave_out_the_thesis_and_what_is_of_other_data_sets(plain, root, small):
-    small.write(root, "lod", measured())
-    of_folder = small.own(root)
+    small.write_measurements(root, "lod", measured())
+    of_folder = small.own_results(root)
     with pytest.raises(NotRun, match=r"T3\.1\.5"):
         table("table_3_1_5_combinations", of_folder)
     for name, words in WORDS.items():
@@ -131,18 +131,6 @@ def test_combinations_tell_how_many_objects_reach_each_face_count(run):
 def test_a_set_without_any_of_the_methods_is_said_to_lack_them(plain):
     with pytest.raises(NotRun, match="no mesh was simplified by nobody or nothing"):
         data_sets(plain, ("nobody", "nothing"))
-
-
-ERROR = {"metric": "metro_mean"}
-
-
-def with_people():
-    """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
-    rows = measured("gaze", 2)
-    people = rows[rows["metric"] == "salient_error"].assign(metric="gaze_error")
-    ours = people["method"] == "glance"
-    people.loc[ours, "value"] *= np.linspace(0.1, 0.2, ours.sum())
-    return pd.concat([rows, people])
 
 
 @pytest.fixture(scope="module")
@@ -171,3 +159,12 @@ def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
     assert has_ink(made)
     if name == "figure_3_7":  # many and few points where they differ, at a target that all methods reached
         assert made.caption.startswith("b (test) at 3,000 faces")
+
+
+def test_lod_seconds_are_those_of_the_simplification(measure, small):
+    frame = small.lod()
+    frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
+    results = measure("lod", frame)
+    assert (paired_cells(results, ["metro_mean"], ["qem", "glance"])["seconds"] == 0.1).all()
+    with pytest.raises(NotRun, match="no column speed"):
+        results.rows("lod", speed=1)

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.text import Text
 
 from stages.charts.drawing import place_names, plt
-from stages.charts.pareto import OFF, ON, PERHAPS, pareto_chart, pareto_front, placed, ticks
+from stages.charts.pareto import OFF, ON, PERHAPS, attention_seconds, pareto_chart, pareto_front, placed, ticks
 from stages.charts.results import NotRun
 
 
@@ -157,3 +157,9 @@ def test_name_without_room_is_left_out():
     figure, axes, names, points = crowded()
     assert place_names(axes, [("word " * 60, (1, 0.5))], points, []) == []
     plt.close(figure)
+
+
+def test_cost_counts_views_channels_and_points(seen):
+    cost = attention_seconds(seen, "gaze")
+    assert cost["itti"] == pytest.approx(2 + 3 + 0.5)
+    assert cost["facing_viewer"] == pytest.approx(0.5)

@@ -1,14 +1,11 @@
-"""Pictures of meshes: light, colours, hidden points; and what makes pictures of one object differ."""
+"""Pictures of meshes: light, colours and hidden points."""
 
 import numpy as np
-import pytest
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh.mesh import Mesh
 from stages.charts.drawing import VIEWPOINT, colours, picture, visible, vivid
-from stages.lod import level_pictures as pictures
 from stages.lod.error_figures import METHODS
-from stages.lod.level_pictures import against_the_mean, density, faces_an_area
 
 
 def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_left_out(small):
@@ -50,43 +47,3 @@ def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
 def test_a_method_of_touch_has_one_colour_whichever_methods_stand_beside_it():
     groups = (["random", "itti", "VisAttAll"], ["random", "itti", "VisAttAll", "glance"], ["VisAttAll"])
     assert len({colours(group)["VisAttAll"] for group in groups}) == 1
-
-
-def test_colours_of_the_error_are_those_of_the_distance(small):
-    inner = small.ball()
-    inner = type(inner)(0.9 * inner.vertices, inner.faces)
-    distances = pictures.errors(small.ball(24), inner)
-    assert distances.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
-
-
-@pytest.fixture
-def mesh(small):
-    return small.ball(16)
-
-
-def ends(mesh):
-    """The vertices at the two poles."""
-    return int(mesh.vertices[:, 2].argmax()), int(mesh.vertices[:, 2].argmin())
-
-
-def test_points_lie_dense_where_they_are_and_their_number_does_not_matter(mesh):
-    top, bottom = ends(mesh)
-    densities = density(mesh, np.array([top]))
-    assert densities.argmax() == top and densities[bottom] == 0 and densities.mean() == pytest.approx(1)
-    assert density(mesh, np.array([top, top])) == pytest.approx(densities)
-    assert not density(mesh, np.array([], dtype=int)).any()
-
-
-def test_a_method_has_more_where_the_others_have_fewer(mesh):
-    top, bottom = ends(mesh)
-    points = {"up": np.array([top]), "down": np.array([bottom]), "none": np.array([], dtype=int)}
-    shares = against_the_mean(mesh, points)
-    assert set(shares) == {"up", "down"}
-    assert shares["up"][top] > 0.9 and shares["up"][bottom] < 0.1 and shares["down"] == pytest.approx(1 - shares["up"])
-    assert shares["up"][np.abs(mesh.vertices[:, 2]) < 0.01] == pytest.approx(0.5)
-
-
-def test_faces_lie_dense_where_they_are_small():
-    vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [-1, 0, 0], [0, -1, 0], [-1, -1, 0.0]])
-    densities = faces_an_area(Mesh(vertices, np.array([[0, 1, 2], [0, 3, 4], [3, 5, 4]])))
-    assert densities[1] < 0.5 < densities[5]

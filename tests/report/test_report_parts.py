@@ -4,7 +4,10 @@ import re
 
 import pytest
 
+from stages.engine.measurements import Measurements
+from stages.report.claims import load
 from stages.report.parts import KINDS, PARTS, Built, build_part
+from stages.report.verdict import judge
 
 UNMEASURED = {"table_3_1_5_combinations", "fidelity", "recognition"}  # of the thesis, or of one's own meshes
 REMEDY = "no measurements of|`dvc repro |`make bench`|run the stage"
@@ -26,9 +29,9 @@ def test_every_claim_is_open_without_measurements(empty):
 
 @pytest.mark.slow
 def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone(root, small):
-    small.write(root, "classification", small.classification().assign(group="mine"))
-    small.write(root, "salient_points", small.judged(), "test")
-    results = small.own(root)
+    small.write_measurements(root, "classification", small.classification().assign(group="mine"))
+    small.write_measurements(root, "salient_points", small.judged(), "test")
+    results = small.own_results(root)
     missing = sum((build_part(part, results, ["tables"]) for part in PARTS.values()), Built()).not_run
     assert missing["tables/table_4_1"] == "group six is not among those that classification measured"
     assert not {f"tables/{name}" for name in ("table_4_4", "table_4_9", "attention_gaze", "recognition")} & set(missing)
