@@ -1,10 +1,14 @@
 """Every topic of the report where nothing was measured: it names what is missing, and makes nothing up."""
 
 import re
+import sys
+from pathlib import Path
 
 import pytest
 
+from haptic_glance.base.files import write_text
 from stages.engine.measurements import Measurements
+from stages.report.__main__ import main
 from stages.report.claims import load
 from stages.report.parts import KINDS, PARTS, Built, build_part
 from stages.report.verdict import judge
@@ -33,5 +37,22 @@ def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone
     small.write_measurements(root, "salient_points", small.judged(), "test")
     results = small.own_results(root)
     missing = sum((build_part(part, results, ["tables"]) for part in PARTS.values()), Built()).not_run
-    assert missing["tables/table_4_1"] == "group six is not among those that classification measured"
+    assert missing["tables/table_4_1"] == "group six is not among those that classification measured on test"
     assert not {f"tables/{name}" for name in ("table_4_4", "table_4_9", "attention_gaze", "recognition")} & set(missing)
+
+
+def test_a_named_stage_is_drawn_alone_and_its_files_are_printed(root, monkeypatch, capsys):
+    (root / "dvc.yaml").touch()
+    write_text(root / "reports/claims.md", "old")
+    monkeypatch.setattr("sys.argv", ["report", "lod", "--root", str(root)])
+    monkeypatch.setattr("sys.excepthook", sys.excepthook)
+    main()
+    printed = capsys.readouterr().out.splitlines()
+    files = [line for line in printed if Path(line).exists()]
+    assert {str(root / f"reports/tables/lod_detectors{end}") for end in (".csv", ".md")} <= set(files)
+    assert any(line.startswith("tables/backends: no ") for line in printed)
+    assert {*(root / "reports/tables").iterdir()} == {Path(line) for line in files if "/tables/" in line}
+    assert (root / "reports/claims.md").read_text() == "old" and not (root / "reports/index.html").exists()
+    monkeypatch.setattr("sys.argv", ["report", "lodd", "--root", str(root)])
+    with pytest.raises(ValueError, match="no stage lodd has a part in the report: .*lod"):
+        main()

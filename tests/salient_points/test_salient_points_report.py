@@ -72,7 +72,7 @@ def test_marks_of_another_set_are_no_model_s_and_marks_need_ground_truth(marked,
 def test_object_without_ground_truth_is_passed_over(root, small):
     seen = small.read_results(root)
     (root / "data/test/weights/ground_truth/ball.npz").unlink()
-    assert seen.with_ground_truth(["ball"], 2) == ["cube"]
+    assert attention_figures.objects_with_truth(seen, ["ball"], 2) == ["cube"]
     (root / "data/test/weights/ground_truth/cube.npz").unlink()
     with pytest.raises(NotRun, match="ground truth"):
         figure_of("figure_3_12", seen)
