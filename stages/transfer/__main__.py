@@ -20,7 +20,7 @@ from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.meshes.collect import read_classes
 
-from . import COLUMNS, Params, hybrid, hybrid_data, touches, trial
+from . import COLUMNS, Params, hybrid, hybrid_data, imprint_images, network_training
 from .imprint_images import count_touchable_vertices
 from .plan import Plan, check, plan, seen, summary, trial_row
 
@@ -33,7 +33,7 @@ def train(
     """Rows of one training, or of one hybrid network."""
     if name.startswith("hybrid."):
         return hybrid.process(name, folder, made, members, of_hybrids(settings), seed)
-    return trial.process(name, folder, made, members, settings, seed)
+    return network_training.process(name, folder, made, members, settings, seed)
 
 
 def of_hybrids(settings: Params) -> Params:
@@ -47,7 +47,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     objects = [name for names in members["random"].values() for name in names]
     # What says only which trainings there are is left out: one training more repeats no other.
     common = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits={}, passes=[])
-    press = functools.partial(touches.process, data=data, settings=common, seed=stage.seed)
+    press = functools.partial(imprint_images.process, data=data, settings=common, seed=stage.seed)
     stage.each(press, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
     hybrids = hybrid.trials(settings, members)
     if hybrids:

@@ -2,9 +2,11 @@
 
 import re
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
+from omegaconf import OmegaConf
 
 from haptic_glance.base.files import write_text
 from stages.engine.measurements import Measurements
@@ -41,7 +43,9 @@ def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone
     assert not {f"tables/{name}" for name in ("table_4_4", "table_4_9", "attention_gaze", "recognition")} & set(missing)
 
 
-def test_a_named_stage_is_drawn_alone_and_its_files_are_printed(root, monkeypatch, capsys):
+def test_a_named_stage_is_drawn_alone_and_its_files_are_printed(root, small, monkeypatch, capsys):
+    values = OmegaConf.load(root / "params.yaml") | {"report": asdict(small.settings())}
+    write_text(root / "params.yaml", OmegaConf.to_yaml(values))
     (root / "dvc.yaml").touch()
     write_text(root / "reports/claims.md", "old")
     monkeypatch.setattr("sys.argv", ["report", "lod", "--root", str(root)])

@@ -217,7 +217,7 @@ def test_salient_points_come_first_and_blind_ones_fill_up():
 
 
 def test_only_hybrid_networks_see_images_of_their_own_size(small, monkeypatch):
-    for module in (stage.hybrid, stage.trial):
+    for module in (stage.hybrid, stage.network_training):
         monkeypatch.setattr(module, "process", lambda name, folder, made, members, settings, seed: [settings.size])
     settings = small.settings(size=64, hybrid_size=96)
     sizes = [stage.train(name, None, None, {}, settings, 0) for name in ("hybrid.18-139.random.0", "imprints.x")]

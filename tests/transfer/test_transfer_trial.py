@@ -15,7 +15,7 @@ from haptic_glance.deep.network import Network, build
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.transfer import __main__ as stage
-from stages.transfer import plan, trial
+from stages.transfer import network_training, plan
 from stages.transfer.imprint_images import read_touches
 from stages.transfer.onnx_export import network_parts, weight_changes
 from stages.transfer.plan import Trial, summary, trial_row
@@ -54,18 +54,18 @@ def row_of(small):
 @pytest.fixture
 def trained(monkeypatch):
     """[(how many touches a training learned from, its passes)] of the trainings to come."""
-    calls, train_model = [], trial.train_model
+    calls, train_model = [], network_training.train_model
 
     def listed(task, labels, ids, rate, epochs, **other):
         calls.append((len(ids), epochs))
         return train_model(task, labels, ids, rate, epochs, **other)
 
-    monkeypatch.setattr(trial, "train_model", listed)
+    monkeypatch.setattr(network_training, "train_model", listed)
     return calls
 
 
 def train(folder, settings, training=FROZEN):
-    return trial.process(training.name, folder, folder, MEMBERS, settings, seed=0)
+    return network_training.process(training.name, folder, folder, MEMBERS, settings, seed=0)
 
 
 def plain(rows):
@@ -99,9 +99,9 @@ def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_r
     assert not any("layer" in row or "trial" in row for row in rows)
     assert {row["split"] for row in rows} == {"random"} and {row["pretrained"] for row in rows} == {None}
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(trial, "train_model", killed)
+        patch.setattr(network_training, "train_model", killed)
         train(folder, settings)
-    monkeypatch.setattr(trial, "search_rate", killed)
+    monkeypatch.setattr(network_training, "search_rate", killed)
     assert plain(train(folder, settings)) == values and [sha256(file) for file in files] == first
 
 
@@ -156,8 +156,8 @@ def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge
 
 @pytest.mark.parametrize(("passes", "rates"), [("printed_rate", [0.01, 0.1]), ("printed", [0.02])])
 def test_a_rate_without_rivals_is_not_searched(folder, small, monkeypatch, passes, rates):
-    monkeypatch.setattr(trial, "search_rate", None)
-    monkeypatch.setattr(trial, "printed_rate", lambda *_: 0.02)
+    monkeypatch.setattr(network_training, "search_rate", None)
+    monkeypatch.setattr(network_training, "printed_rate", lambda *_: 0.02)
     rows = train(folder, small.settings(frozen_rates=rates), FROZEN._replace(passes=passes))
     values = {row["metric"]: row["value"] for row in rows}
     assert values["learning_rate"] == 0.02 and "validation_accuracy" not in values and values["epochs"] > 0
@@ -166,14 +166,14 @@ def test_a_rate_without_rivals_is_not_searched(folder, small, monkeypatch, passe
 def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
     touches, test = read_touches(folder, CLASSES, "imprints32"), np.array([0, 1, 8, 9, 16, 17])
     scores = torch.tensor([[0.9, 0.1], [0.2, 0.8], [0.9, 0.1], [0.8, 0.2], [0.9, 0.1], [0.7, 0.3]])
-    rows = trial.object_rows(scores, touches, test, CLASSES)
+    rows = network_training.object_rows(scores, touches, test, CLASSES)
     assert [(row["item"], row["value"]) for row in rows] == [("low", 0.5), ("steep", 1.0), ("narrow", 0.0)]
 
 
 def test_a_control_with_the_statistics_it_begins_with_has_other_features(folder, small):
     touches = read_touches(folder, CLASSES, "imprints32")
     features = [
-        trial.prepare(variant, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
+        network_training.prepare(variant, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
         for variant in (FROZEN, FROZEN._replace(weights="random_initial"))
     ]
     assert features[0].std(dim=0).max() > 1e-3 > 1e-6 > features[1].std(dim=0).max() > 0
