@@ -49,15 +49,3 @@ def test_stages_have_settings_with_a_meaning_and_the_order_of_dvc():
     assert [*pipeline.STAGES] == ORDER and sorted(ORDER) == stage_names()
     for name in ORDER:
         assert all(field.metadata["meaning"] for field in fields(schema_of(name))), name
-
-
-@pytest.mark.slow
-def test_every_setting_is_read():
-    texts = {path: path.read_text() for path in (ROOT / "stages").rglob("*.py")}
-    for section in stage_names():
-        file = ROOT / "stages" / section / "__init__.py"
-        fields = re.findall(r"^    (\w+): [^\n]*$", texts[file][texts[file].index("class Params") :], re.M)
-        assert fields == list(schema_of(section).__dataclass_fields__)
-        others = "\n".join(text for path, text in texts.items() if path != file)
-        for name in fields:
-            assert re.search(rf"\.{name}\b|\"{name}\"", others), f"{section}.{name} is never read"

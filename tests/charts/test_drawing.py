@@ -42,8 +42,3 @@ def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
     assert vivid(np.r_[np.zeros(999), 0.5])[-1] == 1
     tints = colours(METHODS)  # of the chart of simplification
     assert len(set(tints.values())) == len(tints) == 8
-
-
-def test_a_method_of_touch_has_one_colour_whichever_methods_stand_beside_it():
-    groups = (["random", "itti", "VisAttAll"], ["random", "itti", "VisAttAll", "glance"], ["VisAttAll"])
-    assert len({colours(group)["VisAttAll"] for group in groups}) == 1

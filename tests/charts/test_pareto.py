@@ -32,12 +32,6 @@ def test_no_choice_on_the_front_is_beaten_and_every_other_is():
         assert front[k] != beaten
 
 
-@pytest.mark.parametrize("arguments", [([1, 2], [1.0]), ([[1]], [[1.0]]), ([1], [1.0], "best")])
-def test_bad_input_is_refused(arguments):
-    with pytest.raises(ValueError, match="must be|is"):
-        pareto_front(*arguments)
-
-
 def choices(accuracy, spread, seconds=(1.0, 2.0)):
     """Two choices with intervals of a half-width."""
     mean = np.array(accuracy)
@@ -88,13 +82,6 @@ def test_the_cost_axis_has_seconds_of_a_named_clock_and_a_long_front_is_told_by_
 def frame():
     rows = {"name": ["slow", "fast", "poor"], "seconds": [4.0, 2.0, 8.0], "mean": [0.9, 0.5, 0.4]}
     return pd.DataFrame(rows | {"low": [0.8, 0.4, np.nan], "high": [1.0, 0.6, np.nan]})
-
-
-@pytest.mark.parametrize(("near", "words"), [(0.85, ". In its interval, at 50 % of its cost: fast"), (0.5, "")])
-def test_the_title_names_the_best_choice_and_the_cheapest_within_its_interval(near, words):
-    rows = frame().assign(mean=[0.9, near, 0.4], seconds=[4.0, 2.0, 1.0])
-    figure = pareto_chart(rows, "mean", title="Title", reference="fast", quality_label="accuracy")
-    assert figure.drawing.axes[0].get_title(loc="left").replace("\n", " ") == f"Title. Best: slow (0.900){words}"
 
 
 def chart(folder, reference="fast"):
@@ -150,12 +137,6 @@ def test_names_cover_neither_each_other_nor_a_point_nor_the_edge():
     for box in boxes:
         assert not any(box.contains(*spot) for spot in axes.transData.transform(points))
         assert axes.get_window_extent().count_contains(box.corners()) == 4
-    plt.close(figure)
-
-
-def test_name_without_room_is_left_out():
-    figure, axes, names, points = crowded()
-    assert place_names(axes, [("word " * 60, (1, 0.5))], points, []) == []
     plt.close(figure)
 
 

@@ -10,8 +10,7 @@ import pytest
 
 from stages.charts.datasets import SETS_4_2
 from stages.charts.results import NotRun
-from stages.charts.tables import CLASSIFIERS
-from stages.classification import recognition_charts, touch_pictures
+from stages.classification import recognition_charts
 from stages.classification import report as touch
 from stages.classification.recognition_tables import (
     COMMON,
@@ -82,29 +81,6 @@ def test_a_run_of_random_sets_alone_has_the_tables_of_sets_and_says_that_the_oth
     for name in ("table_4_3", "section_4_2_4"):
         with pytest.raises(NotRun):
             table(name, results)
-
-
-def test_selection_that_was_not_run_says_why(measure):
-    frame = rows()[lambda row: row["variant"] != "selected"]
-    note = {"group": "six", "method": "VisAttAll", "variant": "selected", "note": "an object keeps too few"}
-    with pytest.raises(NotRun, match="an object keeps too few"):
-        table("table_4_3", measure("classification", pd.concat([frame, pd.DataFrame([note])]), PRINTED))
-
-
-@pytest.mark.slow
-def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(root, small, monkeypatch):
-    ours = rows("glance", "test")
-    added = ours[ours["classifier"] == "knn"].assign(classifier="centroid")
-    small.write_measurements(root, "classification", pd.concat([ours, added]))
-    results, bars = small.read_results(root), []
-    monkeypatch.setattr(touch_pictures, "draw_bars", lambda axes, frame, classifiers, **_: bars.append(classifiers))
-    monkeypatch.setattr(touch_pictures.plt.Axes, "legend", lambda *_, **__: None)
-    for name in ("table_4_1", "table_4_6"):
-        frame = table(name, results).frame
-        cells = frame[(frame["classifier"] == "centroid") & (frame["sampling"] == "glance")]
-        assert cells["accuracy"].notna().any() and cells["thesis"].isna().all()
-    build_item(touch, "figures", "table_4_1", results)
-    assert bars == [[*CLASSIFIERS, "centroid"]]
 
 
 def test_a_folder_of_ones_own_has_recognition_of_its_groups_with_intervals_and_no_other_run_has(root, small):

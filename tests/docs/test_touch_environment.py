@@ -53,9 +53,3 @@ def test_a_sensor_that_is_lifted_feels_nothing_and_far_away_the_episode_ends(env
     felt, reward, over, _, _ = environment.step([0, 0, 1])
     assert not felt.any() and reward == -1 and not over
     assert any(environment.step([0, 0, 1])[2] for _ in range(30))
-
-
-def test_without_gymnasium_a_line_says_so(monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "gymnasium", None)
-    module()
-    assert "gymnasium is not installed" in capsys.readouterr().out

@@ -127,13 +127,6 @@ def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(made
     assert far["mean"] == pytest.approx(12, abs=0.2) and far["over_lee"] == pytest.approx(-10, abs=0.2)  # per cent
 
 
-def test_networks_that_are_not_available_are_named_once(written):
-    missing = {"dataset": "household", "method": "googlenet-frozen", "metric": "accuracy", "note": "no weights"}
-    alone = {"dataset": "household", "method": "vgg16-frozen", "task": "level_3", "metric": "accuracy", "note": "alone"}
-    made = table(written(pd.concat([rows("household", 4), pd.DataFrame([missing, alone])])))
-    assert [note for note in made.notes if "Not run" in note] == ["Not run here: GoogLeNet, frozen: no weights."]
-
-
 @pytest.mark.slow
 def test_no_interval_of_a_correlation_leaves_its_range(written):
     wild = np.array([1.0, 1.0, 1.0, -0.5])
@@ -180,13 +173,6 @@ def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looke
     shutil.rmtree(root / "data/test/weights/ground_truth")
     made = figure("figure_3_34", small.read_results(root))
     assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "glance" in made.alt
-
-
-def test_a_network_is_drawn_as_it_was_taught_most():
-    methods = "a_b-random", "a_b-frozen", "a_b-last_block", "c-random", "d-frozen"
-    arrays = dict.fromkeys(f"{method}.maps" for method in methods)
-    assert attention_pictures._networks(arrays, "maps") == ["a_b-last_block", "d-frozen"]
-    assert attention_pictures._taught(["d-frozen"]) and not attention_pictures._taught(["a_b-last_block", "d-frozen"])
 
 
 def test_a_map_is_drawn_where_it_is_high():

@@ -92,17 +92,6 @@ def test_infeasible_targets_are_no_refusals_and_a_backend_that_keeps_nothing_tak
     assert frame.loc[("fast", True), "cells"] == 8 and ("poor", True) not in frame.index
 
 
-@pytest.mark.slow
-def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(bench):
-    rows = benched()
-    rows["backend"] = rows["backend"].replace("poor", "meshoptimizer")
-    missed = (rows["mesh"] == "m1") & (rows["backend"] == "meshoptimizer")
-    rows.loc[missed, ["seconds", "metro_mean"]] *= 100
-    rows.loc[missed, "outcome"] = "missed"
-    notes = [note for note in table(bench(rows)).notes if "meshoptimizer's" in note]
-    assert len(notes) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in notes)
-
-
 @pytest.mark.parametrize("power", [0.8, 1.4])
 def test_growth_finds_the_power_though_large_meshes_have_one_share(power):
     rows = benched(power).assign(with_points=False)
@@ -112,11 +101,6 @@ def test_growth_finds_the_power_though_large_meshes_have_one_share(power):
     assert line(50_000) == pytest.approx(0.1e-6 * (50_000 * np.log(50_000)) ** power)
     plain = growth(rows[rows["backend"] == "fast"], "linear")
     assert plain.power == pytest.approx(power * (1 + 1 / np.log(100_000)), rel=0.02)  # n log n, seen as a power of n
-
-
-def test_growth_needs_large_meshes():
-    rows = benched().assign(with_points=False)
-    assert growth(rows[rows["full"] <= 20_000]) is None
 
 
 def test_rows_without_the_reference_or_outcomes_are_not_run(bench):

@@ -128,11 +128,6 @@ def test_combinations_tell_how_many_objects_reach_each_face_count(run):
     assert words["reached"] == ": 4 at 25%, 4 at 3,000 faces, 3 at 1,500 faces"
 
 
-def test_a_set_without_any_of_the_methods_is_said_to_lack_them(plain):
-    with pytest.raises(NotRun, match="no mesh was simplified by nobody or nothing"):
-        data_sets(plain, ("nobody", "nothing"))
-
-
 @pytest.fixture(scope="module")
 def simplified(measure, small):
     """A run with simplified meshes of two objects: of b corners finds far more points, and missed a target."""

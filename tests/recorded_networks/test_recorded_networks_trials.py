@@ -74,14 +74,6 @@ def test_what_cannot_be_split_or_trained_is_named():
         trials({"a": recording()}, small(networks={"alexnet": ["thawed"]}))
 
 
-def test_grey_is_red_and_colours_stay():
-    color = data.as_images(recording(color=True).touches.images, 16)
-    grey = data.as_images(recording().touches.images, 16)
-    assert color.shape == grey.shape == (48, 3, 16, 16)
-    assert (grey[:, 1:] == 0).all() and (color.mean(dim=(0, 2, 3)) > 0.1).all()
-    assert torch.allclose(color[0, 2], data.as_images(recording(color=True).touches.images[..., 2], 16)[0, 0])
-
-
 def train(mode, split="random", network="mobilenet_v2", kept=(), **changes):
     """{(item, metric): value} of one training."""
     training = Trial(network, "random", mode, (Run("tiny", split, 0),))

@@ -10,6 +10,7 @@ from omegaconf import OmegaConf
 
 from haptic_glance.base.files import write_text
 from stages.engine.measurements import Measurements
+from stages.engine.settings import load_params
 from stages.report.__main__ import main
 from stages.report.claims import load
 from stages.report.parts import KINDS, PARTS, Built, build_part
@@ -44,8 +45,8 @@ def test_a_folder_of_ones_own_has_the_reasons_of_the_stages_that_ran_on_it_alone
 
 
 def test_a_named_stage_is_drawn_alone_and_its_files_are_printed(root, small, monkeypatch, capsys):
-    values = OmegaConf.load(root / "params.yaml") | {"report": asdict(small.settings())}
-    write_text(root / "params.yaml", OmegaConf.to_yaml(values))
+    values = load_params(root / "params.yaml") | {"report": asdict(small.settings())}
+    write_text(root / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
     (root / "dvc.yaml").touch()
     write_text(root / "reports/claims.md", "old")
     monkeypatch.setattr("sys.argv", ["report", "lod", "--root", str(root)])
@@ -56,7 +57,7 @@ def test_a_named_stage_is_drawn_alone_and_its_files_are_printed(root, small, mon
     assert {str(root / f"reports/tables/lod_detectors{end}") for end in (".csv", ".md")} <= set(files)
     assert any(line.startswith("tables/backends: no ") for line in printed)
     assert {*(root / "reports/tables").iterdir()} == {Path(line) for line in files if "/tables/" in line}
-    assert (root / "reports/claims.md").read_text() == "old" and not (root / "reports/index.html").exists()
+    assert (root / "reports/claims.md").read_text() == "old\n" and not (root / "reports/index.html").exists()
     monkeypatch.setattr("sys.argv", ["report", "lodd", "--root", str(root)])
     with pytest.raises(ValueError, match="no stage lodd has a part in the report: .*lod"):
         main()

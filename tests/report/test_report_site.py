@@ -1,17 +1,13 @@
 """Parts of the pages: tables and charts with their numbers, findings and questions; some of them in a browser."""
 
-import base64
-import io
 import re
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import pytest
-from PIL import Image
 
 from stages.charts.cells import CLAIMS as OF_CLAIMS
-from stages.charts.html import frame_html, item_html, prose, small_picture
+from stages.charts.html import frame_html, item_html, prose
 from stages.charts.items import Table
 from stages.charts.tables import Ranking
 from stages.report.claims import load
@@ -63,26 +59,6 @@ def test_a_click_on_a_head_sorts_by_number_both_ways_and_gaps_stay_below(tab, tm
     tab.get_by_role("button", name="name").click()
     assert column(tab, 1) == list("abcdef")
     assert tab.locator("th[aria-sort]").count() == 1
-
-
-@pytest.mark.slow
-def test_a_filter_shows_the_rows_that_hold_all_words(tab, tmp_path):
-    frame = pd.DataFrame(
-        {"name": [f"row {k}" for k in range(10)], "kind": ["odd" if k % 2 else "even" for k in range(10)]}
-    )
-    show(tab, tmp_path, frame_html(frame, "Rows"))
-    tab.get_by_label("Filter").fill("ODD row 3")
-    assert column(tab, 1) == ["row 3"]
-    assert "1 of 10 rows" in tab.locator(".filter").inner_text()
-    tab.get_by_label("Filter").fill("")
-    assert len(column(tab, 1)) == 10
-
-
-def test_a_picture_of_many_colours_is_shrunk(tmp_path):
-    noise = np.random.default_rng(0).integers(0, 255, (400, 1200, 3), dtype=np.uint8)
-    Image.fromarray(noise).save(tmp_path / "noise.png")
-    shown = Image.open(io.BytesIO(base64.b64decode(small_picture(tmp_path / "noise.png"))))
-    assert shown.size == (900, 300)
 
 
 @pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])

@@ -180,14 +180,6 @@ def test_slider_leads_from_the_original_to_fewer_faces(shown):
     assert not shown.faults
 
 
-@pytest.mark.slow
-def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
-    for viewer in opened(browser, small.read_results(levels.data.parent, viewer_faces=300), tmp_path, WIDE):
-        assert viewer.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
-        viewer.slide(1)
-        assert viewer.caption().startswith("simplified: 120 faces (23 %)")
-
-
 def test_a_larger_error_is_darker_for_every_eye():
     shades = viewer_data([], np.zeros((SHADES, 3)), [])["colours"]
     errors = np.frombuffer(base64.b64decode(shades), np.uint8).reshape(-1, 3)[SHADES:]

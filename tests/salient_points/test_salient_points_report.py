@@ -1,6 +1,5 @@
 """Tables and figures of salient points, on rows with a known truth."""
 
-import re
 import shutil
 from functools import partial
 
@@ -41,25 +40,6 @@ def test_methods_that_have_seen_the_object_are_no_rivals(seen):
     assert rivals(seen.rows("salient_points", "gaze"), "nss")[0] == "facing_viewer"
     with pytest.raises(NotRun, match="sift"):
         difference(seen.rows("salient_points", "gaze"), "nss", "glance", "sift")
-
-
-def test_sentences_follow_from_the_numbers(marked, small):
-    notes = " ".join(table_of("attention_gaze", marked(small.judged({"glance": 0.25}))).notes)
-    assert "In NSS ours is higher than 3 of the 7 others" in notes
-    assert "not than facing viewer" in notes
-    for pair, word in (
-        ("guided by ED − thesis, nine equal weights", "higher"),
-        ("guided by SSIM − thesis, nine equal weights", "lower"),
-        ("thesis, equal weights − Itti's attention", "not told apart"),
-    ):  # fmt: skip
-        assert re.search(rf"{pair}: NSS [-+.\d]+ \[[-., \d]+\] \({word}\)", notes)
-
-
-def test_table_of_gaze_stands_without_our_method_or_the_ceiling(marked, small):
-    rows = small.judged()
-    table = table_of("attention_gaze", marked(rows[~rows["method"].isin(["glance", "human"])]))
-    assert table.frame["method"].iloc[0] == "svm_object"
-    assert (table.shown["ours − it, NSS"] == "–").all()
 
 
 def test_marks_of_another_set_are_no_model_s_and_marks_need_ground_truth(marked, small):

@@ -76,8 +76,3 @@ def test_an_odd_mesh_has_a_defined_answer(name, method):
 def test_what_no_pixel_sees_is_refused(mesh):
     with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):
         maps_under_conditions(normalise(mesh), ("intensity",), Conditions(), SIZE)
-
-
-def test_a_mesh_without_faces_is_refused():
-    with pytest.raises(ValueError, match="no faces"):
-        normalise(Mesh([[0, 0, 0]], np.zeros((0, 3), dtype=int)))

@@ -15,7 +15,7 @@ from haptic_glance.deep.network import Network, build
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.transfer import __main__ as stage
-from stages.transfer import network_training, plan
+from stages.transfer import network_training
 from stages.transfer.imprint_images import read_touches
 from stages.transfer.onnx_export import network_parts, weight_changes
 from stages.transfer.plan import Trial, summary, trial_row
@@ -72,13 +72,6 @@ def plain(rows):
     return {row["metric"]: row["value"] for row in rows if "perturbation" not in row and "layer" not in row}
 
 
-def test_touches_know_their_class_and_object(folder):
-    touches = read_touches(folder, CLASSES, "imprints32")
-    assert touches.labels.tolist() == [0] * 16 + [1] * 16
-    assert touches.ranks.tolist() == ([0] * 8 + [1] * 8) * 2
-    assert np.bincount(touches.objects).tolist() == [8, 8, 8, 8]
-
-
 def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_rate(
     folder, small, row_of, trained, monkeypatch
 ):
@@ -112,23 +105,6 @@ def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder
     changes = pd.DataFrame([row for row in rows if "layer" in row]).groupby("part")["value"].mean()
     assert changes["Conv1"] > 0 and changes["block_16"] > 0 and changes["block_2"] == changes["block_15"] == 0
     assert plain(rows)["weight_change"] == pytest.approx(np.mean([row["value"] for row in rows if "layer" in row]))
-
-
-def test_what_a_network_saw_and_computed_in_stands_in_its_rows(row_of, monkeypatch):
-    row = {"trial": FROZEN.name, "metric": "accuracy", "value": 1.0}
-    stored = row_of(row, size=48, touches=9)
-    assert (stored["size"], stored["touches"], stored["precision"]) == (48, 9, "float32")
-    monkeypatch.setattr(plan, "choose_device", lambda name: torch.device("cuda"))
-    assert row_of(row)["precision"] == "float16"
-
-
-def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, small, monkeypatch):
-    def full(*_):
-        raise RuntimeError("[enforce fail] DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
-
-    monkeypatch.setattr("haptic_glance.deep.modes.torch.stack", full)
-    with pytest.raises(ValueError, match="too little memory: .*fewer cached copies .the stage's `batch`, `size`"):
-        train(folder, small.settings())
 
 
 def test_a_training_to_convergence_has_its_curve_its_best_pass_and_the_accuracy_on_each_object(folder, small):
@@ -269,8 +245,3 @@ def test_one_class_alone_is_a_row_that_says_so(run, capsys):
     assert len(table) == 1 and np.isnan(table["value"][0])
     assert "two classes or more are needed, got round" in table["note"][0]
     assert "two classes or more are needed" in capsys.readouterr().err
-
-
-def test_a_detector_that_found_no_points_is_named(run):
-    with pytest.raises(ValueError, match="transfer.detector=harris: not among salient_points.methods: thesis_ssim"):
-        run(detector="harris")
