@@ -49,12 +49,7 @@ def classification(thesis=0.8, rivals=0.5):
     rng = np.random.default_rng(0)
     rows = []
     for objects in ("six", "four"):
-        for method, accuracy in (
-            ("thesis_ssim", thesis),
-            ("glance", thesis),
-            ("itti", rivals),
-            ("random", rivals),
-        ):
+        for method, accuracy in (("thesis_ssim", thesis), ("glance", thesis), ("itti", rivals), ("random", rivals)):
             for classifier, seconds in (("knn", 0.01), ("deep_learning", 1.0)):
                 for repetition in range(6):
                     value = accuracy + 0.01 * rng.normal()

@@ -75,10 +75,7 @@ def test_a_name_that_a_setting_does_not_know_is_refused(setting):
             check_names(schema_of(section), {key: value})
 
 
-@pytest.mark.parametrize(
-    "command",
-    ["claim x", "code", "compose", "gate", "sweep classifier=knn", "engine.settings"],
-)
+@pytest.mark.parametrize("command", ["claim x", "code", "compose", "gate", "sweep classifier=knn", "engine.settings"])
 def test_outside_a_clone_every_command_says_so_and_writes_nothing(tmp_path, monkeypatch, command):
     name, *arguments = command.split()
     module = import_module(f"stages.{name}")

@@ -171,17 +171,7 @@ def test_the_best_of_several_rivals_contradicts_only_where_one_would_beyond_thei
     columns = {"item": [f"o{k}" for k in range(6)] * 4, "method": np.repeat(["ours", "a", "b", "c"], 6)}
     rows = values(**columns, value=[0.0] * 6 + differences + [-1.0] * 12)
     sides = {"first": {"method": "ours"}, "second": {"method": "a"}}
-    picked = sides | {
-        "second": {
-            "method": Pick(
-                (
-                    "a",
-                    "b",
-                    "c",
-                )
-            )
-        }
-    }
+    picked = sides | {"second": {"method": Pick(("a", "b", "c"))}}
     one, best = (judge([claim(**fields)], rows).iloc[0] for fields in (sides, picked))
     assert (one["verdict"], best["verdict"]) == ("contradicted", "open") and one["p"] == best["p"] > 0.05 / 3
 
