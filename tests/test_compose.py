@@ -263,7 +263,6 @@ def test_a_value_that_a_setting_cannot_have_is_named(params, setting, value, hin
         ("parallel:", "paralel:", "did you mean parallel"),
         ("sets:", "data:", "lacks the section graph or sets: run `python -m stages.compose`"),
         ("    renderer: ", "    rendrer: ", "unknown setting views.rendrer: did you mean views.renderer"),
-        ("    renderer: raster\n", "", "views.renderer"),
         (
             "    background: black\n",
             "    background: blak\n",
@@ -278,6 +277,14 @@ def test_a_fault_in_params_yaml_is_named(tmp_path, old, new, reason):
     (tmp_path / "params.yaml").write_text(text.replace(old, new))
     with pytest.raises(ParamsError, match=reason):
         Workspace(tmp_path, "household").settings(Params)
+
+
+def test_a_setting_that_is_absent_has_its_default_and_one_without_default_is_named(params):
+    values = {"imprints": dict(params["household"]["imprints"]), "views": dict(params["household"]["views"])}
+    del values["views"]["renderer"], values["imprints"]["cells"]
+    assert check_section(schema_of("views"), values["views"]).renderer == "raster"
+    with pytest.raises(ParamsError, match=r"^imprints\.cells: "):
+        check_section(schema_of("imprints"), values["imprints"])
 
 
 def test_a_set_that_is_not_switched_on_and_a_missing_params_yaml_are_named(tmp_path):
