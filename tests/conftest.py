@@ -2,6 +2,7 @@
 
 import gc
 import shutil
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -172,17 +173,17 @@ def few_pixels_and_resamples(request):
 @pytest.fixture(scope="session")
 def small():
     """The module tests.small_report; tests of the library do without its imports."""
-    from tests import small_report
-
-    return small_report
+    return import_module("tests.small_report")
 
 
 @pytest.fixture(scope="session")
-def measure(tmp_path_factory, small):
+def measure(tmp_path_factory):
     """A function that writes the rows of a stage, on one set or on those of their column, and returns the results.
 
     stage: or `bench/NAME`, of a benchmark. results: of the root to write below; else a new one with nothing measured.
     """
+
+    small = import_module("tests.small_report")  # some folders have a fixture `small` of their own
 
     def written(stage, frame, dataset=None, results=None):
         root = results.workspace.root if results else small.make_bare(tmp_path_factory.mktemp("measured"))

@@ -283,6 +283,8 @@ def test_a_setting_that_is_absent_has_its_default_and_one_without_default_is_nam
     values = {"imprints": dict(params["household"]["imprints"]), "views": dict(params["household"]["views"])}
     del values["views"]["renderer"], values["imprints"]["cells"]
     assert check_section(schema_of("views"), values["views"]).renderer == "raster"
+    few = params["household"]["stability"] | {"severities": {"tilt": [45.0]}}
+    assert check_section(schema_of("stability"), few).severities == {"tilt": [45.0]}  # none of the default
     with pytest.raises(ParamsError, match=r"^imprints\.cells: "):
         check_section(schema_of("imprints"), values["imprints"])
 
