@@ -2,13 +2,14 @@
 
 import gc
 import shutil
+from importlib import import_module
 
 import numpy as np
 import pytest
 import trimesh
 from omegaconf import OmegaConf
 
-from haptic_glance.base.files import write_text
+from haptic_glance.base.files import write_table, write_text
 from haptic_glance.look import camera
 from haptic_glance.look.channels import ViewMaps
 from haptic_glance.look.channels.channels import CHANNELS as NINE
@@ -141,6 +142,98 @@ def browser(driver, browser_program):
     opened = driver.chromium.launch(executable_path=browser_program, args=SOFTWARE_GL)
     yield opened
     opened.close()
+
+
+@pytest.fixture
+def tab(browser):
+    """A page of the browser that fails the test where a script does."""
+    opened, faults = browser.new_page(viewport={"width": 1280, "height": 800}), []
+    opened.on("pageerror", lambda error: faults.append(str(error)))
+    yield opened
+    opened.close()
+    assert not faults
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pixels_and_resamples(request):
+    """Most of the time of a report goes to the pixels of its pictures and to the resamples of its intervals."""
+    if not request.path.stem.endswith("_report") and request.path.parent.name not in ("report", "charts"):
+        yield
+        return
+    from stages.charts import items
+    from stages.charts.drawing import save
+    from stages.engine import statistics
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(items, "save", lambda figure, path, dpi: save(figure, path, dpi // 3))
+        patch.setattr(statistics, "RESAMPLES", 400)
+        yield
+
+
+@pytest.fixture(scope="session")
+def small():
+    """The module tests.small_report; tests of the library do without its imports."""
+    return import_module("tests.small_report")
+
+
+@pytest.fixture(scope="session")
+def measure(tmp_path_factory):
+    """A function that writes the rows of a stage, on one set or on those of their column, and returns the results.
+
+    stage: or `bench/NAME`, of a benchmark. results: of the root to write below; else a new one with nothing measured.
+    """
+
+    small = import_module("tests.small_report")  # some folders have a fixture `small` of their own
+
+    def written(stage, frame, dataset=None, results=None):
+        root = results.workspace.root if results else small.make_bare(tmp_path_factory.mktemp("measured"))
+        if stage.startswith("bench/"):
+            write_table(root / f"reports/{stage}.csv", frame)
+        else:
+            small.write_measurements(root, stage, frame, dataset)
+        return small.read_results(root)
+
+    return written
+
+
+@pytest.fixture(scope="session")
+def measured(measure):
+    """As `measure`, but returns the Measurements that claims are judged by."""
+    from stages.engine.measurements import Measurements
+
+    return lambda *arguments: Measurements(measure(*arguments).reports)
+
+
+@pytest.fixture(scope="session")
+def empty(tmp_path_factory, small):
+    """The results of a root with nothing measured, which no test changes."""
+    return small.read_results(small.make_bare(tmp_path_factory.mktemp("empty")))
+
+
+@pytest.fixture(scope="session")
+def seen(tmp_path_factory, small):
+    """The results of the small run with everything about attention; tests that change its files copy them."""
+    root = small.make_root(tmp_path_factory.mktemp("seen"))
+    small.write_attention(root)
+    return small.read_results(root)
+
+
+@pytest.fixture
+def bare(tmp_path, small):
+    """A root with nothing measured."""
+    return small.make_bare(tmp_path)
+
+
+@pytest.fixture
+def root(tmp_path, small):
+    """The root of a small run."""
+    return small.make_root(tmp_path)
+
+
+@pytest.fixture
+def results(root, small):
+    """The results of the small run."""
+    return small.read_results(root)
 
 
 @pytest.fixture

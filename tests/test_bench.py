@@ -2,8 +2,6 @@
 
 import json
 import re
-import sys
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -156,13 +154,6 @@ def test_an_object_of_ones_own_with_a_published_name_is_compared_with_no_row_of_
     assert [*bench.with_own_names(objects, frame_of(rows))] == ["first", "second (yours)", "third"]
 
 
-def test_a_function_of_the_other_kind_is_told_of_train(file, toys):
-    with pytest.raises(ValueError, match="not iterable; a function that learns needs --train"):
-        bench.run([f"{file}:counts"])
-    with pytest.raises(ValueError, match="'vertices'; a function of a mesh needs no --train"):
-        bench.run([f"{file}:height", "--train"])
-
-
 def test_a_function_that_is_no_saliency_is_named(file, toys):
     with pytest.raises(ValueError, match="failed on every object.*saliency must have shape"):
         bench.run([f"{file}:positions"])
@@ -193,11 +184,6 @@ def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):
             bench.run(options)
 
 
-def test_rows_that_are_not_there_are_named_with_the_remedy(tmp_path):
-    with pytest.raises(ValueError, match="rows.csv.gz: run it in a clone of the project, or name the rows by --rows"):
-        bench.run(["--rows", str(tmp_path / "rows.csv.gz")])
-
-
 def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys):
     tables, meshes = tmp_path / "dataset_x", tmp_path / "Models_3D"
     tables.mkdir()
@@ -222,20 +208,6 @@ def test_objects_whose_gaze_is_of_no_use_are_named_and_left_out(tmp_path, capsys
         pytest.raises(ValueError, match="holds no mesh with gaze of --set gaze$"),
     ):
         bench.gazed("gaze", tmp_path)
-
-
-def test_a_default_archive_that_is_not_there_is_named_with_its_source_and_the_option(tmp_path):
-    with pytest.raises(ValueError, match="gone.zip is not there: conf/data/gaze_clouds.yaml says .*, --gaze names it"):
-        bench.gazed("gaze_clouds", tmp_path / "gone.zip")
-
-
-def test_a_warning_is_one_line_of_progress(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
-    monkeypatch.setattr(bench, "run", lambda argv: warnings.warn("a cloud has odd normals", stacklevel=1))
-    with warnings.catch_warnings():
-        warnings.simplefilter("always")
-        bench.main()
-    assert capsys.readouterr().err == "bench: a cloud has odd normals\n"
 
 
 @pytest.mark.slow

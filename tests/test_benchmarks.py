@@ -1,10 +1,5 @@
 """The benchmarks: help for each, and what the one of the backends counts as a result."""
 
-import importlib
-import runpy
-import sys
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -14,25 +9,7 @@ from benchmarks import _history, simplification
 from haptic_glance.lod import SimplifyError
 from haptic_glance.mesh.mesh import Mesh
 
-BENCHMARKS = sorted(path.stem for path in Path(simplification.__file__).parent.glob("[a-z]*.py"))
 BALL = Mesh(*(getattr(trimesh.creation.icosphere(2), name) for name in ("vertices", "faces")))
-
-
-def run_as_program(monkeypatch, name, *arguments):
-    monkeypatch.setattr(sys, "argv", ["python", *arguments])
-    monkeypatch.delitem(sys.modules, f"benchmarks.{name}", raising=False)
-    runpy.run_module(f"benchmarks.{name}", run_name="__main__", alter_sys=True)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", BENCHMARKS)
-def test_help_of_a_benchmark_is_its_docstring(name, monkeypatch, capsys):
-    doc = importlib.import_module(f"benchmarks.{name}").__doc__.splitlines()
-    with pytest.raises(SystemExit) as end:
-        run_as_program(monkeypatch, name, "--help")
-    text = capsys.readouterr().out
-    assert end.value.code == 0 and text.startswith(f"usage: python -m benchmarks.{name} ")
-    assert doc[0] in text and doc[-1] in text
 
 
 def of_backends(monkeypatch, faces, **answers):

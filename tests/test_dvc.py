@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-import yaml
 
 from stages.report.headlines import HEADLINES, write_headlines
 
@@ -44,12 +43,6 @@ def test_a_fresh_clone_knows_what_has_changed_and_what_would_run(tmp_path):
         process = subprocess.run(command, cwd=tmp_path / "clone", capture_output=True, text=True)
         assert process.returncode == 0, process.stderr
     assert process.stdout.index("python -m stages.code") < process.stdout.index("python -m stages.report")
-
-
-def test_plots_are_those_of_the_run_like_its_metrics():
-    plots = yaml.safe_load((ROOT / "dvc.yaml").read_text())["plots"]
-    files = [file for plot in plots for chart in plot.values() for axis in "xy" for file in chart[axis]]
-    assert len(files) == 8 and all(file.startswith("${out}/tradeoff/") for file in files)
 
 
 def test_a_chart_that_is_not_there_is_left_out(tmp_path):

@@ -189,20 +189,6 @@ def test_every_extra_is_one_of_the_package_and_every_package_that_we_list_is_pin
     assert listed <= set(map(normalised, pins))
 
 
-def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
-    tree = ast.parse(Path(haptic_glance.__file__).read_text())
-    (block,) = (node for node in tree.body if isinstance(node, ast.If))
-    imports = [node for node in block.body if isinstance(node, ast.ImportFrom) and not node.level]
-    seen = {alias.name: node.module for node in imports for alias in node.names}
-    (public,) = (node for node in block.body if isinstance(node, ast.ImportFrom) and node.level)
-    seen |= {alias.name: "haptic_glance.public" for alias in public.names}
-    assert seen == haptic_glance._MODULES | {"simplify": "haptic_glance.public"}
-    assert sorted(seen) == sorted(haptic_glance.__all__) == sorted({*dir(haptic_glance)} - {"__version__"})
-    assert all(getattr(haptic_glance, name) is not None for name in seen)
-    with pytest.raises(AttributeError, match="no attribute 'salience'"):
-        haptic_glance.__getattr__("salience")
-
-
 def test_the_list_of_commands_imports_no_stage():
     process = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
     assert process.returncode == 0

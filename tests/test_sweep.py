@@ -40,16 +40,6 @@ def test_rows_are_appended_and_a_repeated_job_replaces_its_own(leave, tmp_path, 
     assert len(stored) == 8 and capsys.readouterr().out.count("classifier=knn: 4 rows appended") == 2
 
 
-def test_a_job_that_fails_is_named_at_the_end_and_the_others_are_shown(leave, tmp_path, capsys):
-    leave("0", job_rows("classifier=knn", "knn", 0.5))
-    sweep.conclude(tmp_path)
-    for number in (1, 2):
-        write_text(tmp_path / str(number) / sweep.FAILURE, f"seed=-{number}")
-    with pytest.raises(SystemExit, match="2 of 3 jobs failed: seed=-1; seed=-2$"):
-        sweep.conclude(tmp_path)
-    assert capsys.readouterr().out.count("classifier=knn") == 2
-
-
 @pytest.mark.slow
 def test_a_sweep_goes_on_behind_a_job_that_fails_and_keeps_the_rows_of_each(root, monkeypatch):
     def recognise(values, _):
@@ -147,17 +137,6 @@ def test_jobs_know_the_sets_that_params_yaml_adds_and_not_those_that_it_lacks(ro
 
 
 @pytest.mark.slow
-def test_a_set_without_a_section_begins_with_its_other_settings(root):
-    values = OmegaConf.to_container(OmegaConf.load("params.yaml"))
-    del values["household_four"]["classification"]
-    values["household_four"]["salient_points"]["radius"] = 0.07
-    (root / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
-    sweep.prepare(["-m", "data=household_four"])
-    sections = sweep.based(compose.composed(["data=household_four"]), "household_four")
-    assert sections["salient_points"]["radius"] == 0.07 and sections["classification"]["repetitions"] == 20
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("override", "hint"),
     [
@@ -171,18 +150,6 @@ def test_a_set_without_a_section_begins_with_its_other_settings(root):
 def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):
     with pytest.raises(ParamsError, match=hint):
         sweep.prepare(["-m", override])
-
-
-@pytest.mark.slow
-def test_a_path_with_a_blank_and_an_accent_reaches_the_jobs(root, monkeypatch):
-    words = ["sweep", "-m", "data=household_four", "hydra.sweep.dir=/my scans/Möbel (alt)", "classifier=knn,svm"]
-    arguments = []
-    monkeypatch.setattr(sweep.sys, "argv", words)
-    monkeypatch.setattr(sweep, "check_clone", lambda: None)
-    monkeypatch.setattr(sweep, "job", lambda: arguments.extend(sweep.sys.argv))
-    monkeypatch.setattr(sweep, "errors_in_one_line", lambda name: None)
-    sweep.main()
-    assert arguments == [*words[:3], 'hydra.sweep.dir="/my scans/Möbel (alt)"', words[4]]
 
 
 @pytest.mark.slow

@@ -11,7 +11,6 @@ GONE = {
     # sets
     "touch_events": "use pressure_images or biotac_grasps",
     "schunk": "use pressure_images or biotac_grasps",
-    "schunk": "use pressure_images or biotac_grasps",
     "furniture_denoised": "use household_denoised",
     "princeton_denoised": "use household_denoised",
     "furniture_hands": "use princeton_hands",

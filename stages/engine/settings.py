@@ -90,6 +90,9 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     defaults: Any = OmegaConf.to_container(typed, throw_on_missing=False)
     _check_keys(section, values, list(defaults))
     _check_texts(schema, values)
+    for key, value in values.items():
+        if isinstance(value, dict) and OmegaConf.get_type(typed, key) is dict:
+            typed[key] = {}  # the names that a person gives are all: those of the default do not come back
     try:
         merged = OmegaConf.merge(typed, values)
         _check_bounds(schema, OmegaConf.to_container(merged))  # type: ignore[arg-type]  # a dict; `nan` may be a name

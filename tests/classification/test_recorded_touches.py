@@ -73,12 +73,6 @@ def test_classes_are_sorted_and_touches_stand_by_their_number_with_rows_along_th
     assert np.abs(255 * touches["ball"][0] - ramp).max() < 6
 
 
-def test_pictures_with_a_suffix_in_capitals_are_read_in_their_order(tmp_path):
-    files = {name.replace("2.jpg", "2.JPG"): content for name, content in images().items()}
-    touches = read_pressure_images(write(tmp_path / "archive", files))
-    assert touches["tube"].mean(axis=(1, 2)) == pytest.approx(np.array([10, 20, 100]) / 255, abs=0.005)
-
-
 @pytest.mark.parametrize(
     ("files", "reason"),
     [

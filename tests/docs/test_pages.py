@@ -10,9 +10,8 @@ import pytest
 pytest.importorskip("sphinx")
 yaml = pytest.importorskip("yaml")
 
-from _extensions.commands import DEFAULT, command_for, commands  # noqa: E402
+from _extensions.commands import DEFAULT, commands  # noqa: E402
 from _extensions.measured import REPORTS, measured  # noqa: E402
-from _extensions.tables import minutes  # noqa: E402
 
 import haptic_glance  # noqa: E402
 from haptic_glance.__main__ import MESH_COMMANDS  # noqa: E402
@@ -114,21 +113,6 @@ def test_every_claim_has_a_command_and_a_command_has_minutes():
     keys = [claim["key"] for command in listed for claim in command.claims]
     assert len(keys) == len(set(keys)) and {*CLAIMS.loc[CLAIMS["low"] != "", "key"]} <= set(keys)
     assert listed[0].text == DEFAULT and all(command.minutes > 0 for command in listed)
-
-
-@pytest.mark.slow
-def test_the_minutes_of_a_command_are_of_all_its_sets_and_name_what_was_not_timed():
-    by_name = {command.name: command for command in commands()}
-    attention, touch = by_name["experiment=attention"], by_name["experiment=touch_sets"]
-    assert {"gaze", "gaze_clouds"} == {dataset for dataset, _ in attention.work}
-    assert minutes(by_name[DEFAULT]).isdigit() and minutes(touch).endswith("+")
-    assert touch.meaning.startswith("T4.2 as printed") and not by_name[DEFAULT].meaning
-
-
-def test_a_command_is_that_which_switches_the_stage_on():
-    assert command_for("household", "lod") == DEFAULT
-    assert "experiment=attention " in command_for("gaze", "salient_points")
-    assert "experiment=transfer " in command_for("furniture", "transfer")
 
 
 @pytest.mark.parametrize(

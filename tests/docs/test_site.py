@@ -55,12 +55,6 @@ def test_formulas_figures_and_verdicts_are_in_the_pages(site):
     assert "Create a new string object" not in (site / "api/know.html").read_text(encoding="utf-8")
 
 
-def test_methods_have_their_names_in_words_sections_of_settings_are_listed_and_the_theme_has_a_mode(site):
-    stability = (site / "concepts/stability.html").read_text(encoding="utf-8")
-    assert "3D-Harris" in stability and 'data-default-mode="auto"' in stability
-    assert 'href="#settings-lod"' in (site / "settings.html").read_text(encoding="utf-8")
-
-
 def test_every_link_within_the_site_leads_to_a_page(site):
     broken = []
     for path in site.rglob("*.html"):

@@ -7,7 +7,7 @@ import yaml
 
 from stages.code import digests_text
 from stages.engine import code
-from stages.engine.code import code_text, file_digest, files_behind, stage_digest, stage_files, stage_names
+from stages.engine.code import code_text, file_digest, files_behind, stage_files, stage_names
 from stages.engine.settings import CODE
 
 WORDS = '''
@@ -55,20 +55,6 @@ def test_a_changed_file_changes_the_digest_of_its_stages_alone(monkeypatch):
     digest = {path: file_digest(path) for path in {*stage_files("views"), *stage_files("imprints")}}
     monkeypatch.setattr(code, "file_digest", lambda path: "other" if path == touched else digest[path])
     assert code._digest_of("views") == views and code._digest_of("imprints") != imprints
-
-
-def test_digests_of_an_earlier_process_are_taken_until_a_file_changes(monkeypatch):
-    digest = stage_digest("views")
-    code._digests.cache_clear()
-    with monkeypatch.context() as patched:
-        patched.setattr(code, "_digest_of", None)
-        assert stage_digest("views") == digest
-    code._digests.cache_clear()
-    monkeypatch.setattr(code, "_hash", lambda *parts: "other state")
-    monkeypatch.setattr(code, "_digest_of", lambda stage: "anew")
-    monkeypatch.setattr(code, "write_json", lambda path, value: None)
-    assert stage_digest("views") == "anew"
-    code._digests.cache_clear()
 
 
 @pytest.mark.skipif(sys.version_info[:2] != (3, 11), reason="another Python writes some trees as another text")

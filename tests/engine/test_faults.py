@@ -60,20 +60,6 @@ def test_a_reader_that_goes_ends_a_command_in_silence(output, status):
     assert process.returncode == status
 
 
-def test_a_broken_pipe_that_is_not_the_output_has_its_line(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
-    errors_in_one_line("demo")
-    sys.excepthook(BrokenPipeError, BrokenPipeError(errno.EPIPE, "Broken pipe"), None)
-    assert capsys.readouterr().err == "demo: [Errno 32] Broken pipe\n"
-
-
-def test_an_object_that_cannot_be_kept_names_the_full_disk(tmp_path, monkeypatch):
-    monkeypatch.setattr(Path, "write_bytes", full)
-    with pytest.raises(OSError, match="No space left on device: .*ke/key.zip"):
-        Objects(tmp_path).keep("key", b"")
-    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
-
-
 def test_what_was_not_used_for_longest_goes_first_when_the_cache_is_full(tmp_path):
     objects, content = Objects(tmp_path / "cache"), archive([{"value": 1}], tmp_path / "none")
     for number, key in enumerate("abc"):

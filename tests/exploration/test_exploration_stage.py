@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from stages.engine.rows import read_rows
-from stages.exploration import Params
 from stages.exploration import __main__ as stage
 from stages.imprints.imprints import Imprints, write_imprints
 
@@ -54,12 +53,3 @@ def test_a_run_writes_every_experiment_and_tells_objects_apart_that_have_nothing
 def test_what_cannot_be_explored_is_a_note(run, objects, changes, note):
     rows = run(objects, **changes)
     assert rows["value"].isna().all() and note in rows["note"].iloc[0]
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [({"sets": ["seven"]}, "no set seven"), ({"confidences": [1.2]}, "confidences"), ({"most": 0}, "1 or more")],
-)
-def test_settings_that_make_no_exploration_are_refused(changes, message):
-    with pytest.raises(ValueError, match=message):
-        stage.check(Params(**SETTINGS | changes), {"pair": []})

@@ -30,12 +30,6 @@ def test_one_place_is_one_cluster_and_the_first_has_the_highest_potential_of_the
     assert subtractive_clusters(points)[0] == potential.argmax() == 1
 
 
-@pytest.mark.parametrize(("points", "radius"), [(np.zeros((0, 3)), 0.5), ([[np.nan, 0]], 0.5), ([[0.0, 0]], 0)])
-def test_bad_points_are_refused(points, radius):
-    with pytest.raises(ValueError):
-        subtractive_clusters(points, radius)
-
-
 def bump(mesh, *places):
     return sum(np.exp(-((mesh.vertices - place) ** 2).sum(axis=1) / 0.01) for place in np.array(places, dtype=float))
 

@@ -8,7 +8,7 @@ from haptic_glance.base.files import write_arrays
 from haptic_glance.deep.architectures import fully_connected
 from haptic_glance.deep.network import build, recalibrate
 from stages.fixation import Params, backbone, finetune
-from stages.fixation.backbone import Method, method_named, network_inputs
+from stages.fixation.backbone import Method, network_inputs
 from stages.fixation.finetune import divided, labels_of
 
 pytestmark = pytest.mark.slow
@@ -87,18 +87,3 @@ def test_fully_connected_layers_are_those_of_the_state_or_random():
     assert isinstance(linear, torch.nn.Linear) and not linear.bias.any()
     assert linear.weight.detach().numpy().std() == pytest.approx(np.sqrt(2 / 25088), rel=0.01)
     assert layers(torch.rand(2, 25088)).shape == (2, 4096)
-
-
-@pytest.mark.parametrize(("source", "word"), [("package", "source=download"), ("download", "")])
-def test_fully_connected_layers_that_nobody_carries_are_named_with_the_remedy(monkeypatch, capsys, source, word):
-    monkeypatch.setattr(backbone, "build", lambda *_: None)
-    methods = ["vgg16-last_block", "resnet50-last_block", "vgg16-frozen"]
-    usable, missing = backbone.available(Params(**vars(SETTINGS) | {"methods": methods, "source": source}))
-    message = capsys.readouterr().err
-    assert len(usable) == 3 and not missing and message.count("\n") == bool(word) and word in message
-    assert "vgg16-last_block" in message or not word
-
-
-def test_a_network_whose_last_block_is_not_known_is_named():
-    with pytest.raises(ValueError, match="alexnet-last_block: the last block is known of vgg16"):
-        method_named("alexnet-last_block")

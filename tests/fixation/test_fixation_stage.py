@@ -4,14 +4,12 @@ import shutil
 
 import numpy as np
 import pytest
-import torch
 
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.base.files import read_arrays, sha256, write_arrays, write_mesh, write_text
 from stages.engine.rows import read_rows
 from stages.fixation import Params, backbone
 from stages.fixation import __main__ as stage
-from stages.fixation.backbone import last_maps, method_named
 from stages.fixation.tasks import SEMANTICS
 
 pytestmark = pytest.mark.slow
@@ -127,33 +125,7 @@ def test_a_network_that_diverges_ends_the_run_and_looks_nowhere_in_no_row(run, m
         run(methods=["mobilenet_v2-finetuned"], rate=1e30)
 
 
-def test_one_object_alone_is_refused_with_the_remedy(run):
-    with pytest.raises(ValueError, match="give two objects or more"):
-        run(names=["ball"])
-
-
-@pytest.mark.parametrize("name", ["mobilenet_v2", "mobilenet_v2-thawed", "-frozen"])
-def test_an_unknown_method_is_named(name):
-    with pytest.raises(ValueError, match="NETWORK-MODE"):
-        method_named(name)
-
-
 @pytest.mark.parametrize("changed", [{"size": 8}, {"folds": 1}, {"methods": []}, {"device": "abacus"}])
 def test_settings_that_no_run_can_have_are_refused(changed):
     with pytest.raises(ValueError):
         backbone.check(Params(**SETTINGS | changed))
-
-
-def test_too_little_memory_names_the_remedy():
-    class Hungry:
-        convolutions = torch.nn.Conv2d(3, 1, 1)
-
-        def parameters(self):
-            return self.convolutions.parameters()
-
-    def too_much(images):
-        raise torch.OutOfMemoryError("CUDA out of memory")
-
-    Hungry.convolutions.forward = too_much
-    with pytest.raises(ValueError, match="too little memory: take a smaller batch"):
-        last_maps(Hungry(), np.zeros((1, 4, 4), dtype=np.uint8))

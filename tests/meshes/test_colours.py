@@ -169,14 +169,6 @@ def test_a_mesh_without_colours_is_refused_or_painted(item, name):
     assert len(np.unique(mesh.colors, axis=0)) == 1 and (mesh.colors[0] == PALETTE).all(axis=1).any()
 
 
-def test_the_colours_of_an_offs_faces_are_said_not_to_be_read(item):
-    content = trimesh.Trimesh(CORNERS, FACES, process=False).export(file_type="off").encode()
-    with pytest.raises(
-        MeshError, match=r"of an OFF's faces are not read \(save it as PLY\): set meshes.colours=palette"
-    ):
-        prepare_mesh(item({"it.off": content}), colours="own")
-
-
 def test_the_palette_goes_by_the_name_and_tells_objects_apart():
     colours = {name: tuple(coloured(Mesh(CORNERS, FACES), name, "palette").colors[0]) for name in HOUSEHOLD}
     assert colours["hammer"] == BRICK  # the same on every machine

@@ -114,14 +114,6 @@ def test_the_package_is_streamed_and_never_unpacked_to_disk(package):
     assert len(list(package.parent.iterdir())) == 2  # the package and the extract
 
 
-def test_without_apt_the_file_and_its_place_are_named(tmp_path, monkeypatch):
-    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(FetchError, match=rf"no apt-get.*{furniture.PACKAGE} \(SHA-256 {furniture.HASH}.*put it at"):
-        fetch_debian(furniture.PACKAGE, furniture.HASH)
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_failed_download_names_what_apt_said_and_leaves_nothing(tmp_path, monkeypatch):
     (tmp_path / "bin").mkdir()
     apt = tmp_path / "bin/apt-get"
@@ -132,33 +124,6 @@ def test_a_failed_download_names_what_apt_said_and_leaves_nothing(tmp_path, monk
     with pytest.raises(FetchError, match="cannot fetch some=1.0: E: Unable to locate package. Get some_1.0_all.deb"):
         fetch_debian("some_1.0_all.deb", "00")
     assert not list((tmp_path / "cache").iterdir())
-
-
-KNOWS_ITS_OWN_LISTS = """#!/bin/sh
-case "$*" in
-*update*) echo package > lists/list;;
-*lists*) cat lists/list > some_1.0_all.deb;;
-*) echo 'E: Unable to locate package' >&2; exit 100
-esac
-"""
-
-
-def test_an_image_without_lists_of_packages_gets_its_own(tmp_path, monkeypatch):
-    (tmp_path / "bin").mkdir()
-    apt = tmp_path / "bin/apt-get"
-    apt.write_text(KNOWS_ITS_OWN_LISTS)
-    apt.chmod(0o755)
-    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setenv("PATH", f"{apt.parent}:/usr/bin:/bin")
-    path = fetch_debian("some_1.0_all.deb", hashlib.sha256(b"package\n").hexdigest())
-    assert path.read_text() == "package\n" and list(path.parent.iterdir()) == [path]
-
-
-@pytest.mark.parametrize(("content", "reason"), [(b"nothing", "not a Debian package"), (b"!<arch>\n", "damaged")])
-def test_a_file_that_is_no_package_is_named(tmp_path, content, reason):
-    (tmp_path / "x.deb").write_bytes(content)
-    with pytest.raises(FetchError, match=reason):
-        list(debian_files(tmp_path / "x.deb"))
 
 
 @pytest.mark.slow

@@ -99,12 +99,6 @@ def test_a_file_that_is_no_model_is_refused_with_its_reason(tmp_path):
         third.content()
 
 
-def test_an_object_that_is_not_there_is_named_with_the_known_ones(archives):
-    assert [item.name for item in items("princeton", archives / "princeton.zip", ["Ant_81"])] == ["Ant_81"]
-    with pytest.raises(MeshError, match="Ant_99.*Airplane_61, Ant_81"):
-        items("princeton", archives / "princeton.zip", ["Ant_99"])
-
-
 @pytest.mark.parametrize(
     ("source", "place"),
     [

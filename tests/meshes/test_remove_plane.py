@@ -153,12 +153,6 @@ def test_the_same_scan_gives_the_same_mesh_whatever_was_asked_before():
     np.testing.assert_array_equal(remove_plane(mesh).vertices, first.vertices)
 
 
-@pytest.mark.parametrize("distance", [0, -1, 0.5, np.nan])
-def test_a_distance_that_is_no_share_is_named(distance):
-    with pytest.raises(ValueError, match="distance must be a share of the diagonal"):
-        remove_plane(scan("box")[0], distance)
-
-
 def test_a_mesh_without_surface_is_named_and_a_single_face_comes_back():
     for faces in (np.zeros((0, 3), dtype=int), np.array([[0, 0, 1]])):
         with pytest.raises(ValueError, match="no surface"):

@@ -43,12 +43,3 @@ def test_biotac_grasps(make_workspace, recordings, tmp_path, monkeypatch):
     assert set(rows["metric"]) == {"accuracy", "drift", "drift_drawn"} and set(rows["components"].dropna()) == {12, 72}
     metrics = read_json(workspace.metrics / "recorded.json")
     assert set(metrics) == {"slip_test_objects", "slip_objects", "recognition_random", "recognition_blocks"}
-
-
-@pytest.mark.parametrize(
-    ("kind", "fault"),
-    [("photographs", "recorded.kind='photographs' is not one of"), ("pressure_images", "gone does not exist")],
-)
-def test_a_strange_kind_and_an_absent_archive_are_named(kind, fault, make_workspace):
-    with pytest.raises(ValueError, match=fault):
-        run(make_workspace(settings(kind, "gone")))

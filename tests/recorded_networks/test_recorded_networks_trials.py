@@ -14,7 +14,7 @@ from stages.recorded.biotac_grasps import Model
 from stages.recorded.biotac_grasps import process as grasp_rows
 from stages.recorded.pressure_images import class_sets, describe
 from stages.recorded.pressure_images import process as image_rows
-from stages.recorded_networks import Params, data, trial
+from stages.recorded_networks import Params, data, recorded_training
 from stages.recorded_networks import __main__ as stage
 from stages.recorded_networks.data import SOURCES, Recording, neighbour_rows, object_split, parts
 from stages.recorded_networks.recorded_training import Run, Trial, passes, process, trials
@@ -74,14 +74,6 @@ def test_what_cannot_be_split_or_trained_is_named():
         trials({"a": recording()}, small(networks={"alexnet": ["thawed"]}))
 
 
-def test_grey_is_red_and_colours_stay():
-    color = data.as_images(recording(color=True).touches.images, 16)
-    grey = data.as_images(recording().touches.images, 16)
-    assert color.shape == grey.shape == (48, 3, 16, 16)
-    assert (grey[:, 1:] == 0).all() and (color.mean(dim=(0, 2, 3)) > 0.1).all()
-    assert torch.allclose(color[0, 2], data.as_images(recording(color=True).touches.images[..., 2], 16)[0, 0])
-
-
 def train(mode, split="random", network="mobilenet_v2", kept=(), **changes):
     """{(item, metric): value} of one training."""
     training = Trial(network, "random", mode, (Run("tiny", split, 0),))
@@ -121,17 +113,23 @@ def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone()
 
 
 def test_what_has_other_images_has_features_of_its_own(monkeypatch):
-    computed, frozen_features = [], trial.frozen_features
-    monkeypatch.setattr(trial, "frozen_features", lambda *args: computed.append(1) or frozen_features(*args))
+    computed, frozen_features = [], recorded_training.frozen_features
+    monkeypatch.setattr(
+        recorded_training, "frozen_features", lambda *args: computed.append(1) or frozen_features(*args)
+    )
     turned = replace(recording().touches, images=recording().touches.images[:, ::-1, ::-1])
     recordings = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
     training = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in recordings))
-    tiny, same, other = trial.frozen_features_by_run(training, recordings, small(), seed=0).values()
+    tiny, same, other = recorded_training.frozen_features_by_run(training, recordings, small(), seed=0).values()
     assert len(computed) == 2 and tiny[0] is same[0] and not torch.equal(other[0], tiny[0])
-    alone = trial.frozen_features_by_run(replace(training, runs=training.runs[2:]), recordings, small(), seed=0)
+    alone = recorded_training.frozen_features_by_run(
+        replace(training, runs=training.runs[2:]), recordings, small(), seed=0
+    )
     assert torch.equal(other[0], alone[training.runs[2]][0])
     second = training.runs[2]._replace(repetition=1)
-    drawn = trial.frozen_features_by_run(replace(training, runs=(second,)), recordings, small(), seed=0)[second][0]
+    drawn = recorded_training.frozen_features_by_run(replace(training, runs=(second,)), recordings, small(), seed=0)[
+        second
+    ][0]
     assert not torch.equal(other[0], drawn)
 
 
@@ -139,13 +137,13 @@ def test_what_has_other_images_has_features_of_its_own(monkeypatch):
 def test_features_do_not_depend_on_the_images_that_test(weights, share):
     runs = Run("tiny", "random", 0), Run("tiny", "blocks", 0)
     training, plain = Trial("mobilenet_v2", weights, "frozen", runs), recording(splits=("random", "blocks"))
-    before = trial.frozen_features_by_run(training, {"tiny": plain}, small(), seed=0)
+    before = recorded_training.frozen_features_by_run(training, {"tiny": plain}, small(), seed=0)
     assert (before[runs[0]][0] is before[runs[1]][0]) == share
-    test = parts(plain, "random", trial.split_number(0, 0))[2]
+    test = parts(plain, "random", recorded_training.split_number(0, 0))[2]
     images = plain.touches.images.copy()
     images[test] = 255 - images[test]
     other = replace(plain, touches=replace(plain.touches, images=images))
-    after = trial.frozen_features_by_run(training, {"tiny": other}, small(), seed=0)
+    after = recorded_training.frozen_features_by_run(training, {"tiny": other}, small(), seed=0)
     rest = np.setdiff1d(np.arange(48), test)
     assert torch.equal(before[runs[0]][0][0, rest], after[runs[0]][0][0, rest])
     assert not torch.equal(before[runs[0]][0][0, test], after[runs[0]][0][0, test])
@@ -167,9 +165,9 @@ def measure(workspace):
 def test_a_finished_training_is_kept_and_other_settings_train_anew(workspace, monkeypatch):
     first = measure(workspace())
     assert set(first["split"]) == {"random", "blocks"} and set(first["pretrained"]) == {"none"}
-    monkeypatch.setattr(trial, "_train", lambda *_: pytest.fail("trained again"))
+    monkeypatch.setattr(recorded_training, "_train", lambda *_: pytest.fail("trained again"))
     pd.testing.assert_frame_equal(measure(workspace()), first)
-    monkeypatch.setattr(trial, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
+    monkeypatch.setattr(recorded_training, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
     assert set(measure(workspace(momentum=0.5))["value"]) == {0.25}
     more = measure(workspace(repetitions={"frozen": 2, "finetuned": 1}))
     assert set(more.loc[more["repetition"] == 1, "value"]) == {0.25}
@@ -177,7 +175,7 @@ def test_a_finished_training_is_kept_and_other_settings_train_anew(workspace, mo
 
 
 def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, monkeypatch, capsys):
-    monkeypatch.setattr(trial, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
+    monkeypatch.setattr(recorded_training, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
     networks = {"googlenet": ["frozen", "finetuned"]}  # no package registry has its weights
     rows = measure(workspace(networks=networks, weights=["imagenet", "random"]))
     absent = rows[rows["note"] == "not run: weights not at hand"]

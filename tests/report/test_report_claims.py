@@ -171,17 +171,7 @@ def test_the_best_of_several_rivals_contradicts_only_where_one_would_beyond_thei
     columns = {"item": [f"o{k}" for k in range(6)] * 4, "method": np.repeat(["ours", "a", "b", "c"], 6)}
     rows = values(**columns, value=[0.0] * 6 + differences + [-1.0] * 12)
     sides = {"first": {"method": "ours"}, "second": {"method": "a"}}
-    picked = sides | {
-        "second": {
-            "method": Pick(
-                (
-                    "a",
-                    "b",
-                    "c",
-                )
-            )
-        }
-    }
+    picked = sides | {"second": {"method": Pick(("a", "b", "c"))}}
     one, best = (judge([claim(**fields)], rows).iloc[0] for fields in (sides, picked))
     assert (one["verdict"], best["verdict"]) == ("contradicted", "open") and one["p"] == best["p"] > 0.05 / 3
 
@@ -333,8 +323,8 @@ def test_copies_of_a_shape_count_once(values):
 @pytest.mark.slow
 def test_every_verdict_can_be_recomputed_from_the_differences(root, small):
     rows = {"dataset": "test", "item": list("abc"), "value": [0.1234567891, 0.2, -0.01]}
-    small.write(root, "test", pd.DataFrame(rows))
-    reports = small.results(root).reports
+    small.write_measurements(root, "test", pd.DataFrame(rows))
+    reports = small.read_results(root).reports
     table, pairs = judged([*load(), claim(second=0)], Measurements(reports))
     write_claims(table, pairs, root / "reports")
     claims = pd.read_csv(root / "reports/claims.csv")

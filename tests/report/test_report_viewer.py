@@ -1,13 +1,14 @@
 """The turnable meshes of the page: what is packed, and what a browser shows of it."""
 
 import base64
+import shutil
 import zlib
 from string import Template
 
 import numpy as np
 import pytest
 
-from haptic_glance.base.files import write_mesh
+from haptic_glance.base.files import read_arrays, write_arrays, write_mesh
 from haptic_glance.base.packing import SHADES, STEPS, Store, ordered, viewer_data
 from haptic_glance.gallery.viewer import as_script
 from haptic_glance.mesh.mesh import Mesh
@@ -70,7 +71,7 @@ def test_ordering_keeps_the_surface_and_leaves_unused_vertices_out(small):
 
 def test_objects_that_do_not_fit_are_named(results, small):
     size = len(pack_viewer(results)["objects"][0]["store"]) / 1000
-    tight = small.results(results.data.parent, viewer_kilobytes=int(1.5 * size))
+    tight = small.read_results(results.data.parent, viewer_kilobytes=int(1.5 * size))
     packed = pack_viewer(tight)
     assert [entry["name"] for entry in packed["objects"]] == ["ball"]
     assert packed["left_out"] == ["cube"]
@@ -122,6 +123,14 @@ def test_levels_that_look_the_same_are_shown_once(small):
     assert apart([]) == []
 
 
+def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, tmp_path, small):
+    assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["glance", "itti"]
+    root = shutil.copytree(seen.workspace.root, tmp_path / "root")
+    for path in (root / "data/test/salient_points").glob("*.npz"):
+        write_arrays(path, **{key: values for key, values in read_arrays(path).items() if key.startswith("height")})
+    assert list(pack_viewer(small.read_results(root))["objects"][0]["saliency"]) == ["height"]
+
+
 class Page:
     """The viewer alone, in a browser."""
 
@@ -169,14 +178,6 @@ def test_slider_leads_from_the_original_to_fewer_faces(shown):
     assert shown.caption().startswith("the original itself")
     assert shown.page.evaluate("document.documentElement.scrollWidth") == shown.page.viewport_size["width"]
     assert not shown.faults
-
-
-@pytest.mark.slow
-def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
-    for viewer in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, WIDE):
-        assert viewer.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
-        viewer.slide(1)
-        assert viewer.caption().startswith("simplified: 120 faces (23 %)")
 
 
 def test_a_larger_error_is_darker_for_every_eye():

@@ -83,13 +83,6 @@ def test_equal_seeds_give_equal_networks_in_any_order_of_calls():
     assert first.tolist() == again.tolist() != other.tolist()
 
 
-def test_models_say_what_is_wrong():
-    with pytest.raises(ValueError, match="no measured curve"):
-        fit_counts(curves(4), ["qem"], "network", 0)
-    with pytest.raises(ValueError, match="two points"):
-        power_law([Curve("a", "itti", 3, 100, [50], [0.1])])
-
-
 def test_objects_that_share_a_power_give_it():
     assert power_law(curves()) == pytest.approx(0.5, rel=1e-3)
 

@@ -194,8 +194,3 @@ def test_copies_of_an_object_are_one_object_to_the_interval():
     often = saved(np.repeat(ours, 9), np.repeat(others, 9), np.repeat(names, 9))
     assert once == pytest.approx(often) and once[1] < once[0] < once[2]
     assert saved(ours, ours, names) == (0, 0, 0)
-
-
-def test_one_object_alone_has_no_interval():
-    share, low, high = saved(np.array([10, 20, 30]), np.array([40, 20, 60]), ["cup"] * 3)
-    assert share == 0.5 and np.isnan([low, high]).all()

@@ -15,9 +15,8 @@ from stages.engine.settings import check_section
 from stages.scene import Params, __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
-from stages.scene.compare import MethodPlan, SceneSetup, full
 from stages.scene.level_files import export
-from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
+from stages.scene.measure import Case, measure, measure_network, report_missing, scene_of
 from stages.scene.rows import summary
 from tests.scene.conftest import bumpy
 
@@ -97,22 +96,6 @@ def test_a_scene_goes_on_without_what_is_not_there_and_says_so(settings, capsys,
     assert words in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("change", "present", "reason"),
-    [
-        ({"tolerance": -2.0}, ["one"], "tolerance"),
-        ({"frames": 0}, ["one"], "camera path"),
-        ({"camera": []}, ["one"], "camera path"),
-        ({"screen": [48]}, ["one"], "rows and columns"),
-        ({"kind": "metres"}, ["one"], "kind"),
-        ({}, [], "scene small has no object"),
-    ],
-)
-def test_bad_settings_are_named(settings, change, present, reason):
-    with pytest.raises(ValueError, match=reason):
-        scene_of(dataclasses.replace(settings, **change), present)
-
-
 def value(rows, method, metric, matched="", factor=1.0):
     values = [row["value"] for row in rows if (row["method"], row["metric"], row.get("matched"), row.get("factor")) ==
              (method, metric, matched, factor) and row["frame"] == "all" and not row["item"]]  # fmt: skip
@@ -133,14 +116,6 @@ def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
     network = [row for row in rows if row["method"] == "network"]  # there is no curve to learn from
     assert [(row["kind"], row["tolerance"]) for row in network] == [("pixels", 1.0), ("pixels", 2.0)]
     assert all("curve.csv" in row["note"] for row in network)
-
-
-def test_no_picture_is_of_a_frame_of_few_pixels(settings, meshes, frames_of):
-    scene = scene_of(settings, ["one", "two"])[0]
-    frames = frames_of(scene)
-    setup = SceneSetup(scene, meshes, frames, {})
-    shown = pictures(setup, [MethodPlan("full", "", full(frames), 0.0)])["frames"]
-    assert 0 not in shown and frames.scale.mean(axis=1).argmax() in shown  # the camera comes near
 
 
 def test_rivals_have_no_smaller_error_than_ours_or_say_so(run):

@@ -12,7 +12,7 @@ from haptic_glance.base.files import write_arrays, write_mesh, write_table
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.sensor_size import __main__ as stage
-from stages.sensor_size.__main__ import chosen_classes, summary
+from stages.sensor_size.__main__ import summary
 from stages.sensor_size.protocol import (
     CLASSIFIERS,
     EXTENTS,
@@ -118,24 +118,6 @@ def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
         smallest_sufficient(accuracy, -0.1)
     with pytest.raises(ValueError, match="at least one"):
         smallest_sufficient({}, 0.1)
-
-
-def test_bad_input_is_named(plain):
-    classes = {"a": ["a1", "a2"], "b": ["b1"], "c": ["c1", "c2", "c3"]}
-    assert list(chosen_classes(classes, [])) == ["a", "c"] and list(chosen_classes(classes, ["c"])) == ["c"]
-    for work, words in (
-        (lambda: evaluate({"low": plain["low"]}, ["knn"]), "two classes"),
-        (lambda: evaluate(plain | {"low": plain["low"][:1]}, ["knn"]), "class low has 1 object"),
-        (lambda: evaluate(plain | {"low": [plain["low"][0], plain["low"][1][:0]]}, ["knn"]), "has an object without"),
-        (
-            lambda: evaluate({name: [x[:1] for x in samples] for name, samples in plain.items()}, ["knn"]),
-            "touch more often",
-        ),
-        (lambda: classifier("bayes"), "unknown classifier bayes"),
-        (lambda: chosen_classes(classes, ["d"]), "no d in meshes.classes"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            work()
 
 
 def test_the_metrics_name_the_smallest_array():

@@ -145,11 +145,6 @@ def test_constant_series_have_no_spread_and_no_skewness(level):
             assert value == pytest.approx(0, abs=1e-9 * max(abs(level), 1))
 
 
-@pytest.mark.parametrize("frames", [2, 4, 7, 13])
-def test_short_series_have_finite_features(frames):
-    assert np.isfinite(sequence_features(walk(frames))).all()
-
-
 def test_series_join_directions_and_normals_frame_by_frame():
     random = np.random.default_rng(1)
     images, normals = random.integers(0, 256, (2, 5, 16, 16), dtype=np.uint8), random.normal(size=(2, 5, 3))
@@ -158,12 +153,3 @@ def test_series_join_directions_and_normals_frame_by_frame():
     np.testing.assert_array_equal(joined[:, :, 16:], normals)
     for frame in range(5):
         np.testing.assert_allclose(joined[:, frame, :16], directional_std(images[:, frame]), rtol=1e-5)
-
-
-def test_bad_series_are_named():
-    with pytest.raises(ValueError, match="normals"):
-        series(np.zeros((2, 5, 16, 16)), np.zeros((2, 4, 3)))
-    with pytest.raises(ValueError, match="2 frames"):
-        sequence_features(np.zeros((2, 1, 19)))
-    with pytest.raises(ValueError, match="NaN"):
-        sequence_features(np.full((2, 25, 19), np.nan))

@@ -125,20 +125,6 @@ def test_each_fold_of_objects_is_trained_for_as_often_as_asked(contours, tmp_pat
     assert np.array_equal(*tested)
 
 
-def test_what_is_left_out_is_said(contours):
-    settings = changed(smaller=["20x8"], smaller_networks=["5x8"])
-    (contours / "egg.npz").unlink()
-    write_sequences(contours / "ball.npz", {"guided": sequences(220), "random": sequences(220, count=3)})
-    notes = " ".join(plan(CLASSES | {"far": ["away"]}, contours, settings).notes)
-    for words in ("no sequences of egg", "no sequences of away", "random left out", "of ball", "are not held out",
-                  "size 20x8 left out", "networks left out at 5x8"):  # fmt: skip
-        assert words in notes
-    alone = plan({"flat": ["plate"]}, contours, settings)
-    assert alone.trials == [] and "two classes" in alone.notes[-1]
-    with pytest.raises(ValueError, match="FRAMESxCELLS"):
-        plan(CLASSES, contours, changed(smaller=["5 by 8"]))
-
-
 @pytest.mark.parametrize("split", ["random", "objects"])
 def test_trials_tell_clear_classes_apart_and_the_same_way_again(contours, tmp_path, split):
     def train(kind):

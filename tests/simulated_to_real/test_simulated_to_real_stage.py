@@ -54,13 +54,6 @@ def test_simulation_of_the_same_objects_helps_and_alignment_is_said(workspace):
     assert {kind: images.shape for kind, images in pressed.items()} == {"resting": (24, 28, 50)}
 
 
-def test_a_class_that_nobody_recorded_is_named(workspace):
-    table = pd.DataFrame({"class": ["ball", "shoe"], "object": ["sphere", "cube"]})
-    write_table(workspace.data / "meshes/classes.csv", table)
-    with pytest.raises(ValueError, match="meshes.classes: shoe is not a class of the pressure images"):
-        run(workspace)
-
-
 def test_the_objects_of_a_class_share_its_imprints():
     assert shares({"ball": ["a", "b", "c"], "box": ["d"]}, 48) == {"a": 16, "b": 16, "c": 16, "d": 48}
     assert sum(shares({"ball": ["a", "b", "c"]}, 10).values()) == 10

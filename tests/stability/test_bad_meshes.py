@@ -45,7 +45,8 @@ ODD = {
     ),
 }
 CHANNELS = tuple(dict.fromkeys(name for method in METHODS.values() for name in method.channels))
-# One of each kind of detector: others differ in channels alone, published ones have tests/look/test_detector_contract.py.
+# One of each kind of detector. Others differ in channels alone.
+# Those as published have tests/look/test_detector_contract.py.
 KINDS = ("glance", "itti", "VisAttCurvP", "equal", "random", "farthest", "touch", "height", "mesh_saliency", "harris")
 RUNNING = [name for name in KINDS if METHODS[name].required_weights in {None, *LearnedWeights().weights}]
 
@@ -76,8 +77,3 @@ def test_an_odd_mesh_has_a_defined_answer(name, method):
 def test_what_no_pixel_sees_is_refused(mesh):
     with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):
         maps_under_conditions(normalise(mesh), ("intensity",), Conditions(), SIZE)
-
-
-def test_a_mesh_without_faces_is_refused():
-    with pytest.raises(ValueError, match="no faces"):
-        normalise(Mesh([[0, 0, 0]], np.zeros((0, 3), dtype=int)))

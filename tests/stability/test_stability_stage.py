@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from stages.stability.__main__ import check, chosen, process
+from stages.stability.__main__ import chosen, process
 from stages.stability.breaking import summarise
 
 
@@ -64,20 +64,6 @@ def test_rows_are_the_same_twice(disturbed, settings, tmp_path):
     rows = process("pear", tmp_path, disturbed.root / "data/test", harris, 0)
     before = [row for row in disturbed.rows if row["method"] == "harris"]
     assert [row["value"] for row in rows] == [row["value"] for row in before]
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"perturbations": []}, "at least one each"),
-        ({"perturbations": ["tilt"]}, "none for tilt"),
-        ({"methods": []}, "at least one each"),
-        ({"count": 0}, "count"),
-    ],
-)
-def test_mistaken_settings_are_named(settings, change, message):
-    with pytest.raises(ValueError, match=message):
-        check(dataclasses.replace(settings, **change))
 
 
 def test_objects_are_the_wanted_ones_or_else_the_first(settings):

@@ -11,7 +11,6 @@ from haptic_glance.touch import Skin, press_many
 from stages.engine.rows import read_rows
 from stages.engine.statistics import lead_left
 from stages.imprints.imprints import Imprints, write_imprints
-from stages.touch_stability import Params
 from stages.touch_stability import __main__ as stage
 from stages.touch_stability.denoisers import DENOISERS
 from stages.touch_stability.disturbed_trials import CLEAN, first_of_each, recognition_rows
@@ -104,11 +103,6 @@ def test_a_severity_that_cannot_be_had_is_a_note_and_the_others_are_measured(run
 def test_what_was_not_touched_is_a_note(run, objects, method, note):
     rows = run(objects=objects, method=method)
     assert rows["value"].isna().all() and note in rows["note"].iloc[0]
-
-
-def test_a_set_that_is_not_there_is_named():
-    with pytest.raises(ValueError, match="no set seven"):
-        stage.check(Params(**SETTINGS | {"set": "seven"}), {"pair": []})
 
 
 def test_few_keeps_as_many_of_each_object():

@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-import torch
 from scipy.special import softmax
 
-from stages.transfer import fusion
 from stages.transfer.fusion import FUSIONS, best_temperature, calibration_error, certainty, fuse, probabilities
 
 pytestmark = pytest.mark.slow
@@ -82,24 +80,3 @@ def test_items_without_a_prediction_have_no_part_in_the_calibration(scored):
     absent = np.full_like(logits[:3], np.nan)
     mixed = calibration_error(probabilities(np.concatenate([absent, logits])), np.concatenate([labels[:3], labels]))
     assert mixed == calibration_error(probabilities(logits), labels)
-
-
-def test_scores_of_nothing_stay_nothing_and_are_wrong():
-    chance = probabilities(torch.tensor([[torch.nan] * 3, [0.0, 0, 5]]))
-    assert np.isnan(chance[0]).all()
-    assert fusion.accuracy(chance, [0, 2]) == 0.5
-
-
-@pytest.mark.parametrize(
-    ("function", "inputs", "reason"),
-    [
-        (fuse, (chances(0), chances(0), "vote"), "unknown fusion 'vote'"),
-        (fuse, (chances(0), chances(0, 3), "mean"), "one shape"),
-        (probabilities, (np.zeros((2, 3)), 0), "above 0"),
-        (best_temperature, (np.full((2, 3), np.nan), [0, 1]), "finite scores"),
-        (best_temperature, (np.zeros((0, 3)), []), "finite scores"),
-    ],
-)
-def test_bad_input_is_named(function, inputs, reason):
-    with pytest.raises(ValueError, match=reason):
-        function(*inputs)

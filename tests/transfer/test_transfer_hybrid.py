@@ -24,7 +24,6 @@ from haptic_glance.deep.hybrid import (
 )
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
-from stages.transfer.hybrid_data import in_batches
 from stages.transfer.onnx_export import export_onnx, onnx_scores
 
 pytestmark = pytest.mark.slow
@@ -119,10 +118,6 @@ def test_prediction_takes_doubles_and_refuses_a_temperature_that_is_none(hybrid,
             network.predict(joined)
 
 
-def test_the_network_stays_in_evaluation_mode(hybrid):
-    assert not any(module.training for module in copy.deepcopy(hybrid).train().modules())
-
-
 def test_constant_images_are_absent_and_one_pixel_is_enough_to_be_present():
     for level in (0.0, 0.3, 1.0):
         flat = torch.full((1, 3, 7, 5), level)
@@ -179,36 +174,11 @@ def test_images_that_are_not_six_channels_in_0_to_1_are_refused(hybrid, bad):
         hybrid.predict(bad)
 
 
-@pytest.mark.parametrize("bad", [(2, 3, 8, 8), (6, 8, 8), (0, 6, 8, 8), (1, 12, 8, 8)])
-@pytest.mark.parametrize("method", ["forward", "separate_scores", "features"])
-def test_images_of_another_shape_are_refused_before_the_layers_see_them(hybrid, method, bad):
-    more = (0,) if method == "features" else ()
-    with pytest.raises(ValueError, match=r"images must have shape \(b, 6, h, w\) and not be empty, got \("):
-        getattr(hybrid, method)(torch.rand(bad), *more)
-
-
-@pytest.mark.parametrize("name", ["pictures", "imprints"])
-@pytest.mark.parametrize("bad", [(1, 1, 8, 8), (3, 8, 8), (1, 6, 8, 8)])
-def test_join_refuses_images_without_three_channels(name, bad):
-    images = {"pictures": torch.rand(bad), "imprints": torch.rand(bad)}
-    images[{"pictures": "imprints", "imprints": "pictures"}[name]] = None
-    with pytest.raises(ValueError, match=rf"{name} must have shape \(b, 3, h, w\)"):
-        join_senses(**images)
-
-
 def test_join_refuses_nothing_at_all_and_unequal_sizes():
     with pytest.raises(ValueError, match="one of the two senses"):
         join_senses(None, None)
     with pytest.raises(ValueError, match="equal shapes"):
         join_senses(torch.rand(1, 3, 8, 8), torch.rand(2, 3, 8, 8))
-
-
-def test_too_little_memory_names_the_remedy(images):
-    def too_much(part):
-        raise RuntimeError("DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
-
-    with pytest.raises(ValueError, match="too little memory: take a smaller batch"):
-        in_batches(too_much, images, "cpu")
 
 
 def test_a_saved_network_comes_back_bit_for_bit(hybrid, mixed, tmp_path):

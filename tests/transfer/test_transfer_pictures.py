@@ -95,15 +95,6 @@ def test_more_severe_is_further_from_the_picture(pictures, name, severities):
     assert harsh.dtype == np.float32 and harsh.min() >= 0 and harsh.max() <= 1
 
 
-def test_no_blur_changes_no_picture_and_there_may_be_none(pictures):
-    assert np.array_equal(damage_pictures(pictures, "blur", 0.0, random()), pictures.astype(np.float32) / 255)
-    assert damage_pictures(pictures[:0], "blur", 0.1, random()).shape == pictures[:0].shape
-
-
-def test_no_light_at_all_is_an_absent_picture(pictures):
-    assert not present(picture_images(damage_pictures(pictures, "darkness", 1.0, random()), 40)).any()
-
-
 def test_a_missing_sense_is_none_and_imprints_are_damaged_as_elsewhere():
     imprints = np.full((2, 16, 16), 128, dtype=np.uint8)
     assert damage(imprints, "imprint_missing", 1.0, random()) is None

@@ -8,7 +8,6 @@ import torch
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.statistics import stratified_split
-from stages.transfer import __main__ as stage
 from stages.transfer import plan as planning
 from stages.transfer.imprint_images import choose_vertices
 from stages.transfer.plan import Trial, by_objects, by_touches, check, plan, printed_rate
@@ -109,22 +108,6 @@ def test_a_class_with_one_object_is_trained_but_not_left_out(small):
     assert "fewer than two classes have a second object" in planned.notes[-1][1]
 
 
-def test_what_is_left_out_is_named(small, weights):
-    planned = plan(CLASSES | {"cup": []}, ENOUGH | {"cow": 7, "urn": 3}, small.settings())
-    notes = [note for _, note in planned.notes]
-    assert planned.members["random"] == {"animal": ["dog", "horse"], "chair": ["stool", "bench"]}
-    assert "class animal: cow left out, 7 vertices can be touched, not 8" in notes
-    assert {"class vase left out: no object of it is left", "class cup left out: no object of it is left"} <= set(notes)
-    planned = plan({"animal": CLASSES["animal"]}, ENOUGH, small.settings())
-    assert planned.trials == []
-    assert planned.notes == [({}, "two classes or more are needed, got animal: add some to meshes.classes")]
-    networks = {"googlenet": ["frozen"], "mobilenet_v2": ["frozen"]}
-    planned = plan(CLASSES, ENOUGH, small.settings(weights=["imagenet"], networks=networks))
-    assert ({"method": "googlenet"}, "googlenet left out, no weights: no registry has it") in planned.notes
-    assert planned.pretrained == {"mobilenet_v2": "complete"}
-    assert {trial.network for trial in planned.trials} == {"mobilenet_v2"}
-
-
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
@@ -214,11 +197,3 @@ def test_salient_points_come_first_and_blind_ones_fill_up():
     stretched = Mesh(flat_grid(40, 40).vertices ** [2, 1, 1], flat_grid(40, 40).faces)
     places = stretched.vertices[choose_vertices(stretched, np.array([], dtype=int), 100, rng())]
     assert (places[:, 0] < 39**2 / 2).mean() == pytest.approx(0.5, abs=0.1)  # half of the area, 70 % of the vertices
-
-
-def test_only_hybrid_networks_see_images_of_their_own_size(small, monkeypatch):
-    for module in (stage.hybrid, stage.trial):
-        monkeypatch.setattr(module, "process", lambda name, folder, made, members, settings, seed: [settings.size])
-    settings = small.settings(size=64, hybrid_size=96)
-    sizes = [stage.train(name, None, None, {}, settings, 0) for name in ("hybrid.18-139.random.0", "imprints.x")]
-    assert sizes == [[96], [64]]

@@ -1,6 +1,5 @@
 """Recorded touches as images for networks: the readers on small files in the published layouts, and electrodes."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -60,29 +59,6 @@ def test_sixteen_bits_of_grey_keep_their_range(tmp_path):
     assert np.array_equal(read_picture(tmp_path / "deep.png", 8), np.repeat(grey[..., None] // 256, 3, axis=2))
 
 
-def test_vt60_names_a_picture_that_is_none_and_an_empty_folder(vt60):
-    folder = vt60 / "touch/01_class1/01"
-    bad = sorted(folder.iterdir())[0]
-    bad.write_text("no picture")
-    with pytest.raises(ValueError, match=re.escape(bad.name)):
-        read_vt60(vt60)
-    for file in list(folder.iterdir()):
-        file.unlink()
-    with pytest.raises(ValueError, match="01_class1/01 holds no picture"):
-        read_vt60(vt60)
-
-
-def test_vt60_names_the_folder_that_is_missing(vt60):
-    for missing, reason in (
-        ("touch/04_class4/03", "touch/04_class4/03"),
-        ("touch/04_class4", "04_"),
-        ("touch", "touch"),
-    ):
-        (vt60 / missing).rename(vt60 / f"elsewhere{len(missing)}")
-        with pytest.raises(ValueError, match=f"{reason}.*VT-60: touch/NN_CLASS"):
-            read_vt60(vt60)
-
-
 def test_vitac_reads_the_twelve_cloths_by_number(tmp_path):
     for number in (11, 22, 100):
         for recording in (121, 122):
@@ -103,17 +79,6 @@ def test_vitac_reads_the_hundred_cloths_and_only_what_was_pressed(tmp_path):
     touched = read_vitac(tmp_path, size=8)
     assert touched.classes == ["11", "22", "100"] and touched.groups.tolist()[0] == "11/press_01/frame"
     assert len(touched.images) == 3
-
-
-def test_vitac_says_what_is_wanted(tmp_path):
-    with pytest.raises(ValueError, match="nowhere is not a folder: give the unpacked ViTac"):
-        read_vitac(tmp_path / "nowhere")
-    picture(tmp_path / "11t" / "1_1.jpg")
-    with pytest.raises(ValueError, match="holds 1 folders of cloths by touch; expected is ViTac"):
-        read_vitac(tmp_path)
-    (tmp_path / "22t").mkdir()
-    with pytest.raises(ValueError, match="22t holds no picture"):
-        read_vitac(tmp_path)
 
 
 @pytest.fixture
@@ -147,25 +112,6 @@ def test_the_strongest_instant_may_be_a_release():
     series = np.full((2, 2, 5), 128, np.uint8)
     series[..., 1], series[..., 3] = 140, 100
     assert (strongest_instant(series) == 100).all()
-
-
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [("1,2\n3,4", "2 lines of 2 numbers"), ("1;2", "not a table"), ("nan," * 18 + "1", "1 lines of 19")],
-)
-def test_bigs_names_a_table_that_does_not_fit(bigs, text, reason):
-    (bigs / "box/success/grasp_1/left.csv").write_text(text)
-    with pytest.raises(ValueError, match=f"box/success/grasp_1/left.csv.*{reason}"):
-        read_bigs(bigs)
-
-
-def test_bigs_names_what_is_missing(bigs):
-    (bigs / "box/success/grasp_1/left.csv").unlink()
-    with pytest.raises(ValueError, match="grasp_1 holds 2 tables, 3 are needed"):
-        read_bigs(bigs)
-    (bigs / "ball").rename(bigs / "tube")
-    with pytest.raises(ValueError, match="ball/success is not a folder"):
-        read_bigs(bigs)
 
 
 def test_reshape_is_matlabs():

@@ -15,7 +15,7 @@ from haptic_glance.deep.network import Network, build
 from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.transfer import __main__ as stage
-from stages.transfer import plan, trial
+from stages.transfer import network_training
 from stages.transfer.imprint_images import read_touches
 from stages.transfer.onnx_export import network_parts, weight_changes
 from stages.transfer.plan import Trial, summary, trial_row
@@ -54,29 +54,22 @@ def row_of(small):
 @pytest.fixture
 def trained(monkeypatch):
     """[(how many touches a training learned from, its passes)] of the trainings to come."""
-    calls, train_model = [], trial.train_model
+    calls, train_model = [], network_training.train_model
 
     def listed(task, labels, ids, rate, epochs, **other):
         calls.append((len(ids), epochs))
         return train_model(task, labels, ids, rate, epochs, **other)
 
-    monkeypatch.setattr(trial, "train_model", listed)
+    monkeypatch.setattr(network_training, "train_model", listed)
     return calls
 
 
 def train(folder, settings, training=FROZEN):
-    return trial.process(training.name, folder, folder, MEMBERS, settings, seed=0)
+    return network_training.process(training.name, folder, folder, MEMBERS, settings, seed=0)
 
 
 def plain(rows):
     return {row["metric"]: row["value"] for row in rows if "perturbation" not in row and "layer" not in row}
-
-
-def test_touches_know_their_class_and_object(folder):
-    touches = read_touches(folder, CLASSES, "imprints32")
-    assert touches.labels.tolist() == [0] * 16 + [1] * 16
-    assert touches.ranks.tolist() == ([0] * 8 + [1] * 8) * 2
-    assert np.bincount(touches.objects).tolist() == [8, 8, 8, 8]
 
 
 def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_rate(
@@ -99,9 +92,9 @@ def test_a_trial_gives_tidy_rows_and_after_a_kill_the_same_without_seeking_the_r
     assert not any("layer" in row or "trial" in row for row in rows)
     assert {row["split"] for row in rows} == {"random"} and {row["pretrained"] for row in rows} == {None}
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(trial, "train_model", killed)
+        patch.setattr(network_training, "train_model", killed)
         train(folder, settings)
-    monkeypatch.setattr(trial, "search_rate", killed)
+    monkeypatch.setattr(network_training, "search_rate", killed)
     assert plain(train(folder, settings)) == values and [sha256(file) for file in files] == first
 
 
@@ -112,23 +105,6 @@ def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder
     changes = pd.DataFrame([row for row in rows if "layer" in row]).groupby("part")["value"].mean()
     assert changes["Conv1"] > 0 and changes["block_16"] > 0 and changes["block_2"] == changes["block_15"] == 0
     assert plain(rows)["weight_change"] == pytest.approx(np.mean([row["value"] for row in rows if "layer" in row]))
-
-
-def test_what_a_network_saw_and_computed_in_stands_in_its_rows(row_of, monkeypatch):
-    row = {"trial": FROZEN.name, "metric": "accuracy", "value": 1.0}
-    stored = row_of(row, size=48, touches=9)
-    assert (stored["size"], stored["touches"], stored["precision"]) == (48, 9, "float32")
-    monkeypatch.setattr(plan, "choose_device", lambda name: torch.device("cuda"))
-    assert row_of(row)["precision"] == "float16"
-
-
-def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, small, monkeypatch):
-    def full(*_):
-        raise RuntimeError("[enforce fail] DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
-
-    monkeypatch.setattr("haptic_glance.deep.modes.torch.stack", full)
-    with pytest.raises(ValueError, match="too little memory: .*fewer cached copies .the stage's `batch`, `size`"):
-        train(folder, small.settings())
 
 
 def test_a_training_to_convergence_has_its_curve_its_best_pass_and_the_accuracy_on_each_object(folder, small):
@@ -156,8 +132,8 @@ def test_a_training_to_convergence_leaves_touches_for_validation_and_may_diverge
 
 @pytest.mark.parametrize(("passes", "rates"), [("printed_rate", [0.01, 0.1]), ("printed", [0.02])])
 def test_a_rate_without_rivals_is_not_searched(folder, small, monkeypatch, passes, rates):
-    monkeypatch.setattr(trial, "search_rate", None)
-    monkeypatch.setattr(trial, "printed_rate", lambda *_: 0.02)
+    monkeypatch.setattr(network_training, "search_rate", None)
+    monkeypatch.setattr(network_training, "printed_rate", lambda *_: 0.02)
     rows = train(folder, small.settings(frozen_rates=rates), FROZEN._replace(passes=passes))
     values = {row["metric"]: row["value"] for row in rows}
     assert values["learning_rate"] == 0.02 and "validation_accuracy" not in values and values["epochs"] > 0
@@ -166,14 +142,14 @@ def test_a_rate_without_rivals_is_not_searched(folder, small, monkeypatch, passe
 def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
     touches, test = read_touches(folder, CLASSES, "imprints32"), np.array([0, 1, 8, 9, 16, 17])
     scores = torch.tensor([[0.9, 0.1], [0.2, 0.8], [0.9, 0.1], [0.8, 0.2], [0.9, 0.1], [0.7, 0.3]])
-    rows = trial.object_rows(scores, touches, test, CLASSES)
+    rows = network_training.object_rows(scores, touches, test, CLASSES)
     assert [(row["item"], row["value"]) for row in rows] == [("low", 0.5), ("steep", 1.0), ("narrow", 0.0)]
 
 
 def test_a_control_with_the_statistics_it_begins_with_has_other_features(folder, small):
     touches = read_touches(folder, CLASSES, "imprints32")
     features = [
-        trial.prepare(variant, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
+        network_training.prepare(variant, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
         for variant in (FROZEN, FROZEN._replace(weights="random_initial"))
     ]
     assert features[0].std(dim=0).max() > 1e-3 > 1e-6 > features[1].std(dim=0).max() > 0
@@ -269,8 +245,3 @@ def test_one_class_alone_is_a_row_that_says_so(run, capsys):
     assert len(table) == 1 and np.isnan(table["value"][0])
     assert "two classes or more are needed, got round" in table["note"][0]
     assert "two classes or more are needed" in capsys.readouterr().err
-
-
-def test_a_detector_that_found_no_points_is_named(run):
-    with pytest.raises(ValueError, match="transfer.detector=harris: not among salient_points.methods: thesis_ssim"):
-        run(detector="harris")

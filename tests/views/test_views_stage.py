@@ -8,7 +8,6 @@ import pytest
 from haptic_glance.base.files import read_json, write_mesh
 from haptic_glance.look.views import FOUR, Material, render
 from haptic_glance.look.views.view import LAMBERT
-from haptic_glance.mesh.mesh import Mesh
 from stages.engine.rows import read_rows
 from stages.engine.settings import ParamsError
 from stages.views import __main__ as stage
@@ -56,14 +55,6 @@ def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers_an
     stage.run(workspace)
     assert len(rendered) == 4
     assert set(read_rows(workspace.measurements / "views.csv.gz").item) == {"bowl", "cube", "torus"}
-
-
-def test_mesh_that_leaves_the_frame_is_named(workspace, shapes):
-    cube = shapes["cube"]
-    write_mesh(workspace.data / "meshes" / "huge.npz", Mesh(cube.vertices * 9, cube.faces))
-    with pytest.raises(ValueError, match="huge: .*normalise"):
-        stage.run(workspace)
-    assert not (workspace.data / "views").exists()
 
 
 def test_the_material_of_the_settings_is_drawn_and_one_out_of_range_is_named(workspace, shapes, make_workspace):

@@ -36,15 +36,3 @@ def test_view_without_background_comes_back(tmp_path):
     view = View(rng.integers(0, 256, (7, 9, 3), dtype=np.uint8), depth, face, TWELVE[5])
     write_view(tmp_path / "view.npz", view)
     assert_equal(read_view(tmp_path / "view.npz"), view)
-
-
-def test_patterned_background_is_refused(shapes, tmp_path):
-    view = render(shapes["cube"], TWELVE[0], (90, 120), "raster")
-    view.rgb[0, 0] = 1
-    with pytest.raises(ValueError, match="background"):
-        write_view(tmp_path / "view.npz", view)
-
-
-def test_arrays_of_different_shapes_are_no_view():
-    with pytest.raises(ValueError, match="rgb"):
-        View(np.zeros((4, 5, 3), np.uint8), np.zeros((4, 5), np.float32), np.zeros((5, 4), np.int32), TWELVE[0])

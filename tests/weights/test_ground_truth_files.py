@@ -57,11 +57,6 @@ def test_tables_of_other_programs_are_read():
             assert np.array_equal(values, expected)
 
 
-def test_words_with_numbers_before_the_rows_are_no_row():
-    for words in (b"# 0 0 0 0 0 1 1 0\n", b"// 1 2 3 4\n", b"people 32, objects 19, view 2\n"):
-        assert read_gaze(words + b"0 0 0 0 0 1 1 0\n")[2].tolist() == [1]
-
-
 def test_rows_that_a_program_has_rounded_are_of_the_nearest_vertex(tmp_path):
     (tmp_path / "Models_3D").mkdir()
     (tmp_path / "dataset_x").mkdir()
@@ -72,14 +67,6 @@ def test_rows_that_a_program_has_rounded_are_of_the_nearest_vertex(tmp_path):
     (tmp_path / "dataset_x/ball.txt").write_bytes(table(MESH.vertices * 25.4, np.arange(162)))
     with pytest.raises(ValueError, match=r"^dataset_x/ball.txt: 162 of 162 .* The rows are 25.4 times as large"):
         ground_truth_amounts("ball", "gaze", MESH, files)
-
-
-def test_two_files_of_one_object_and_absent_ones_are_named():
-    files = {f"dataset_{person}/ball.txt": bytes for person in "ab"}
-    with pytest.raises(FetchError, match=r"^dataset_a/ball.txt and dataset_b/ball.txt are both of ball: keep one"):
-        match_files(files, r"dataset_[^/]+/([^/]+)\.txt")
-    with pytest.raises(FetchError, match=r"none of the 2 files is called \*/Models_3D/NAME.obj"):
-        match_files(files, r"[^/]+/Models_3D/([^/]+)\.obj")
 
 
 def test_readmes_and_licences_are_no_objects():
@@ -181,13 +168,6 @@ def test_a_vertex_has_the_mean_of_the_views_that_see_it_by_its_area(folder):
     for view in DENSITIES:
         (folder / f"CentricityAndVisibilityMaps/car-vasa_{view}_visibility.txt").write_text("1\n0\n1\n")
     assert looked(folder)[1] == 0 and looked(folder)[0] > 0  # no view sees the second
-
-
-def test_a_map_of_a_spreadsheet_is_read(folder):
-    expected, path = looked(folder).tolist(), folder / "FixationMaps/car-vasa_300norm.txt"
-    for content in (b"\xef\xbb\xbf0\n1.5\n8.25\n", b"0\r\n1,5\r\n8,25\r\n", "0\n1,5\n8,25".encode("utf-16")):
-        path.write_bytes(content)
-        assert looked(folder).tolist() == expected
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """The truth of an object by its collection, our own marks checked against the mesh, and the truth in views of it."""
 
 import io
-import re
 import zipfile
 from pathlib import Path
 from types import SimpleNamespace
@@ -56,21 +55,6 @@ def test_marks_off_the_mesh_are_named_with_file_rows_and_distances(tmp_path):
     marks(tmp_path / "ball.csv", [("a", 3), ("a", 70)])
     with pytest.raises(ValueError, match=r"ball\.csv, row 2: vertex 70 is not in 0\.\.49"):
         amounts_of("ball", "household", Mesh(MESH.vertices[:50], [(0, 1, 2)]), tmp_path)
-
-
-def test_marks_that_count_from_one_and_unreadable_ones_are_named(tmp_path, capsys):
-    lines = [f"a,2026-11-20T10:00:00.000Z,{i + 1},{','.join(f'{x:.6f}' for x in MESH.vertices[i])}" for i in (3, 161)]
-    (tmp_path / "ball.csv").write_text("\n".join(["annotator,time,vertex,x,y,z", *lines]))
-    with pytest.raises(ValueError, match=r"ball\.csv: its vertices are counted from 1; count them from 0"):
-        amounts_of("ball", "household", MESH, tmp_path)
-    text = (tmp_path / "ball.csv").read_text()
-    for name, content, reason in (
-        ("wide", text.encode("utf-16"), "line 1: not UTF-8 text; save the file as UTF-8"),
-        ("marks", text.replace(",", ";").encode(), "line 1: the header is not .* with commas between the columns"),
-    ):
-        (tmp_path / f"{name}.csv").write_bytes(content)
-        assert list(files_of(["cube"], "household", tmp_path)) == []
-        assert re.search(rf"marks are not used: .*{name}\.csv, {reason}\n", capsys.readouterr().err)
 
 
 def test_marks_belong_to_the_mesh_that_they_fit_whatever_it_is_called(tmp_path):

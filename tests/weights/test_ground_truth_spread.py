@@ -98,22 +98,3 @@ def test_bad_meshes_have_finite_densities():
     inward = Mesh(needle.vertices, needle.faces[:, ::-1])
     np.testing.assert_allclose(spread_on_surface(inward, at(inward, 2), 0.2), density, rtol=1e-3)
     assert (spread_on_surface(lone, np.zeros(4), 0.5) == 0).all()
-
-
-@pytest.mark.parametrize(
-    ("amounts", "sigma", "reason"),
-    [
-        (np.ones(3), 0.1, r"shape \(4,\), one per vertex"),
-        (np.array([1, 1, 1, -1.0]), 0.1, "not negative"),
-        (np.array([1, 1, 1, np.nan]), 0.1, "finite"),
-        (np.array([0, 0, 0, 1.0]), 0.1, "in no face.*9"),
-        (np.ones(4), 0.0, "sigma"),
-        (np.ones(4), np.nan, "sigma"),
-    ],
-)
-def test_bad_input_is_named(amounts, sigma, reason):
-    mesh = Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (9, 9, 9)], [(0, 1, 2)])
-    with pytest.raises(ValueError, match=reason):
-        spread_on_surface(mesh, amounts, sigma)
-    with pytest.raises(ValueError, match="in no face"):
-        spread_on_surface(Mesh([(0, 0, 0), (1, 0, 0), (1, 0, 0)], [(0, 1, 2)]), np.ones(3), 0.1)

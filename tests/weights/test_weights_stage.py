@@ -182,11 +182,6 @@ def test_the_gain_of_a_channel_that_tells_the_classes_is_one_bit_and_of_noise_no
     assert [row["value"] for row in rows] == pytest.approx([1, 0, 0], abs=0.01)  # classes balanced: 0.81 bits otherwise
 
 
-def test_a_mesh_with_one_face_has_no_distances_to_compare():
-    rows = shape_rows("mug", Mesh(0.1 + np.array([[0, 0, 0], [2.2, 0, 0], [0, 0.3, 0]]), np.array([[0, 1, 2]])))
-    assert [row["metric"] for row in rows] == ["convexity"] and rows[0]["value"] == pytest.approx(1)
-
-
 def test_extremes_and_deviation_of_distances_of_shapes_by_hand(ball):
     def values(mesh):
         return {row["metric"]: row["value"] for row in shape_rows("mug", mesh)}

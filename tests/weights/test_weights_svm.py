@@ -13,7 +13,6 @@ from haptic_glance.look.weights.svm import (
     balanced_rows,
     fit_svm,
     information_gains,
-    pixel_features,
     pixel_samples,
     select_far_points,
 )
@@ -169,12 +168,6 @@ def test_samples_are_balanced_a_third_and_their_own():
     assert features.shape == (0, 6) and labels.shape == (0,) and labels.dtype == bool
 
 
-def test_every_map_becomes_a_column_of_200_by_200():
-    features = pixel_features({"a": np.full(SHAPE, 0.25), "b": np.ones(SHAPE)})
-    assert features.shape == (40000, 2)
-    np.testing.assert_allclose(features, np.broadcast_to([0.25, 1], features.shape))
-
-
 def test_far_points_are_the_corners_and_then_the_middle():
     points = np.array([[0, 0], [1, 0], [0, 10], [5, 5], [10, 0], [10, 10], [0, 0]])
     assert select_far_points(points, 5).tolist() == [0, 5, 2, 4, 3]
@@ -196,20 +189,3 @@ def test_bad_rows_are_named(features, labels, message):
     for train in (fit_svm, cross_validated):
         with pytest.raises(ValueError, match=message):
             train(features, labels, seed=0)
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda model: model.predict(np.zeros((5, 9))), "needs 3 features"),
-        (lambda _: pixel_samples(maps_of(0), spots(0)[:5], 0, "x"), "must agree"),
-        (lambda _: pixel_samples(maps_of(0), spots(0), 0, "x", share=0), "share"),
-        (lambda _: select_far_points([[np.nan, 0]]), "points must be finite"),
-        (lambda _: grouped_validated(draw(), band(draw()), np.zeros(3), seed=0), "groups must have one group"),
-        (lambda _: grouped_validated(draw(), band(draw()), np.arange(400) > 399, seed=0), "only 1 groups hold both"),
-        (lambda _: cross_validated(draw(2), np.array([True, False]), seed=0), "too few"),
-    ],
-)
-def test_bad_questions_are_named(model, call, message):
-    with pytest.raises(ValueError, match=message):
-        call(model)

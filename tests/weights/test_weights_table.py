@@ -105,16 +105,3 @@ def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_i
     assert not {"guided_ed", *GLANCES} & set(cup) and {"guided_ed+seen", "equal"} <= set(cup)
     assert {*GLANCES} <= set(only_cup("duck", "fixations"))
     assert {*GLANCES} <= set(only_cup("cup", "gaze"))  # published weights have not seen it
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: weights("ssim"), "'ssim'.*thesis_ssim"),
-        (lambda: weight_table(TRAINING_DATA, "guided_ssim"), "choose gaze, fixations"),
-        (lambda: weight_table({}, "fixations"), "'fixations' is not available.*gaze.*no object has ground truth"),
-    ],
-)
-def test_a_choice_that_is_not_there_is_an_error_that_lists_those_that_are(call, message):
-    with pytest.raises(ValueError, match=message):
-        call()

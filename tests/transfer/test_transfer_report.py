@@ -9,7 +9,7 @@ from stages.recorded_networks import report as recorded_topic
 from stages.report.parts import build_item
 from stages.transfer import network_rows as _transfer
 from stages.transfer import report as transfer
-from tests.report.frames import has_ink
+from tests.frames import has_ink
 
 FINE, COARSE = "imprints128", "imprints16"
 LEVELS = {  # (data, weights, mode) -> accuracy

@@ -1,4 +1,4 @@
-"""The report on one touch and several: the claims, and tables of what the published rows do not have."""
+"""Tables and figures of one touch and several that the published rows do not have."""
 
 import re
 from functools import partial
@@ -7,14 +7,20 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 import pytest
-from stages.report.touch import pictures, tables
 
 from stages.charts.datasets import SETS_4_2
 from stages.charts.results import NotRun
-from stages.charts.tables import CLASSIFIERS
 from stages.classification import report as touch
-from stages.classification.recognition_tables import COMMON, PRINTED, accuracies, shared_objects
-from stages.report.parts import build_item
+from stages.classification.recognition_tables import (
+    COMMON,
+    METHODS,
+    PRINTED,
+    SSIM,
+    accuracies,
+    recognition,
+    shared_objects,
+)
+from stages.report.parts import build_item, build_part
 
 GLANCE = {
     "plain": 0.6, "first_15": 0.5, "locations": 0.8, "first_15_locations": 0.7, "locations_turned": 0.4,
@@ -73,46 +79,17 @@ def test_a_run_of_random_sets_alone_has_the_tables_of_sets_and_says_that_the_oth
             table(name, results)
 
 
-def test_selection_that_was_not_run_says_why(measure):
-    frame = rows()[lambda row: row["variant"] != "selected"]
-    note = {"group": "six", "method": "VisAttAll", "variant": "selected", "note": "an object keeps too few"}
-    with pytest.raises(NotRun, match="an object keeps too few"):
-        table("table_4_3", measure("classification", pd.concat([frame, pd.DataFrame([note])]), PRINTED))
-
-
-VERDICTS = {
-    "selection_helps": "supported", "locations_help": "supported", "more_touches": "supported",
-    "certain_at_five": "supported", "network_dips_disjoint": "depends on the reading", "dissimilar_random": "supported",
-    "dissimilar_itti": "supported", "selection_helps_train": "contradicted", "locations_help_turned": "contradicted",
-    "network_dips": "contradicted", "equal_over_itti": "depends on the reading",
-}  # fmt: skip
-
-
-@pytest.mark.slow
-def test_a_classifier_that_the_thesis_does_not_have_stands_in_tables_and_figure(root, small, monkeypatch):
-    ours = rows("glance", "test")
-    added = ours[ours["classifier"] == "knn"].assign(classifier="centroid")
-    small.write(root, "classification", pd.concat([ours, added]))
-    results, bars = small.results(root), []
-    monkeypatch.setattr(pictures, "draw_bars", lambda axes, frame, classifiers, **_: bars.append(classifiers))
-    monkeypatch.setattr(pictures.plt.Axes, "legend", lambda *_, **__: None)
-    for name in ("table_4_1", "table_4_6"):
-        frame = table(name, results).frame
-        cells = frame[(frame["classifier"] == "centroid") & (frame["sampling"] == "glance")]
-        assert cells["accuracy"].notna().any() and cells["thesis"].isna().all()
-    build_item(touch, "figures", "table_4_1", results)
-    assert bars == [[*CLASSIFIERS, "centroid"]]
-
-
 def test_a_folder_of_ones_own_has_recognition_of_its_groups_with_intervals_and_no_other_run_has(root, small):
     frame = small.classification().query("group == 'six'").assign(group="mine")
     regions = frame[frame["method"] == "glance"].assign(split="regions", value=frame["value"] - 0.3)
     noted = pd.DataFrame([{"dataset": "test", "group": "four", "metric": "accuracy", "note": "set four left out"}])
-    small.write(root, "classification", pd.concat([frame, regions, frame.assign(variant="touches_2"), noted]))
+    small.write_measurements(
+        root, "classification", pd.concat([frame, regions, frame.assign(variant="touches_2"), noted])
+    )
     small.write_set(root, "mine", 3)
     with pytest.raises(NotRun, match="groups of the thesis"):
-        tables.recognition(small.results(root))
-    built = table("recognition", small.own(root))
+        recognition(small.read_results(root))
+    built = table("recognition", small.own_results(root))
     cells = built.frame.set_index(["group", "split", "sampling", "classifier"]).loc["mine"]
     assert len(cells) == 10 and (cells["repetitions"] == 6).all()
     assert cells.loc[("random", "glance", "knn"), "accuracy"] == pytest.approx(0.8, abs=0.02)
@@ -141,3 +118,45 @@ def test_a_split_that_no_random_set_was_measured_by_has_no_accuracy():
     rows = pd.concat([rows, rows.assign(set=None, split="folds", value=[0.7, 0.9])])
     assert accuracies(rows)["accuracy"] == 0.5 and accuracies(rows)["accuracy_folds"] == pytest.approx(0.8)
     assert np.isnan(accuracies(rows, "regions")["accuracy"])
+
+
+def test_table_holds_every_cell_of_the_thesis(results):
+    built = table("table_4_1", results)
+    assert built.sets == ["test"]
+    frame = built.frame
+    methods = METHODS | {"enhanced_visual_attention": SSIM}  # in our protocol
+    thesis = results.thesis("table_4_1_six_virtual_objects").set_index("sampling").rename(index=methods)
+    theirs = frame[frame["sampling"].isin(thesis.index)]
+    means = theirs[theirs["classifier"].str.startswith("mean")]
+    theirs = theirs.drop(means.index)
+    assert len(theirs) == thesis.size and means["accuracy"].isna().all()  # two of five classifiers were run
+    assert means["thesis"].iloc[1] == pytest.approx(thesis.iloc[0].drop("svm").mean())
+    assert frame.loc[~frame["sampling"].isin(thesis.index), "sampling"].unique().tolist() == ["glance"]  # ours, below
+    for row in theirs.itertuples():
+        assert row.thesis == thesis.loc[row.sampling, row.classifier]
+
+
+def test_table_maps_the_methods_and_says_what_was_not_run(root, results, small):
+    built = table("table_4_1", results)
+    cell = built.frame.set_index(["sampling", "classifier"])
+    assert cell.loc[("thesis_ssim", "knn"), "accuracy"] == pytest.approx(0.8, abs=0.02)
+    assert cell.loc[("itti", "knn"), "accuracy"] == pytest.approx(0.5, abs=0.02)
+    assert np.isnan(cell.loc[("glance", "knn"), "thesis"])
+    assert np.isnan(cell.loc[("heat_kernel", "knn"), "accuracy"])
+    shown = built.shown.set_index("sampling")
+    ours, printed = (cells for _, cells in shown.loc["heat kernel signature"].iterrows())
+    assert (ours.drop("protocol") == "not run").all()
+    assert printed["protocol"] == "the thesis" and printed["kNN, %"] == "59"
+    assert built.title.startswith("Table 4.1: recognising six objects by")
+    small.write_set(root, "six", 4)
+    assert table("table_4_1", results).title.startswith("Table 4.1: recognising 4 objects (group six) by")
+
+
+def test_left_out_sampling_is_a_note_of_its_table(root, small):
+    frame = small.left_out(small.classification(), "too few touches", group="six", method="itti")
+    small.write_measurements(root, "classification", small.left_out(frame, "no cup", group="four"))
+    built = build_part(touch, small.read_results(root), ["tables"])
+    made = next(item for item in built.items if item.name == "table_4_1")
+    assert "Not run: too few touches." in made.notes
+    assert np.isnan(made.frame.set_index(["sampling", "classifier"]).loc[("itti", "knn"), "accuracy"])
+    assert built.not_run["tables/table_4_2"] == "no cup"

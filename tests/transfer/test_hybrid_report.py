@@ -1,11 +1,10 @@
-"""The claims of the hybrid network, on rows whose truth is known."""
+"""The hybrid network: other shared layers, on rows whose truth is known."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from stages.report.parts import build_item
-from stages.stability import report as stability
 from stages.transfer import report as hybrid
 from stages.transfer.hybrid_report import JOINED
 
@@ -46,22 +45,6 @@ def rows(repetitions=3, both=0.05, small=-0.003):
     return pd.DataFrame(entries).assign(note=None, seconds=10.0, dataset="furniture", seed=0)
 
 
-@pytest.fixture(scope="module")
-def run(measure):
-    """Results of a run that has stitched hybrid networks."""
-    return measure("transfer", rows(), "furniture")
-
-
-def test_a_network_breaks_where_half_of_its_lead_is_lost(run):
-    row = build_item(stability, "tables", "transfer_stability", run).frame.set_index("perturbation").loc["noise"]
-    assert row["breaking_point"] == pytest.approx(0.1775)  # 0.39 at 0.1, 0.29 at 0.2; half way from 0.5 to 0.125
-    assert row["low"] < row["breaking_point"] < row["high"] or np.isnan(row["high"])
-
-
-KEYS = ("sight_over_touch", "both_over_better", "touch_in_the_dark", "eight_bits_sight", "eight_bits_touch")
-EVERY = [f"{key}_{split}" for key in KEYS for split in ("random", "objects")] + ["apart_over_sum_random"]
-
-
 @pytest.fixture
 def two_middles(measure):
     """Results of the hybrid network and of one with other shared layers, which is better by two points."""
@@ -81,6 +64,3 @@ def test_other_shared_layers_stand_by_their_gain_on_the_same_items(two_middles):
     assert gains.to_numpy() == pytest.approx(np.array([[0.0] * 4, [2.0] * 4]), abs=1e-9)
     shown = table.shown.set_index("shared layers").filter(like="gain by sight")
     assert set(shown.loc[FIRST].stack()) == {"–"} and set(shown.loc["18:147"].stack()) == {"+2.0"}
-
-
-OBJECTS = ("horse", "dog", "oldtimer", "urn", "dome_lamp", "lying_man", "long_sofa", "low_table")  # of seven classes

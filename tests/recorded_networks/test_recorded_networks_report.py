@@ -10,7 +10,7 @@ from haptic_glance.know.split import shared_by
 from stages.engine.statistics import interval
 from stages.recorded_networks import report as topic
 from stages.report.parts import build_item
-from tests.report.frames import only
+from tests.frames import only
 
 SETTINGS = {
     "pressure_random": ("pressure", "random"), "pressure_runs": ("pressure", "blocks"),
@@ -146,13 +146,3 @@ def test_guessing_is_what_is_right_more_often_and_of_each_kept_object(table, mea
     frame = touches(settings=PRESSURE)
     frame.loc[frame["metric"] == "chance", "value"] = 0.3
     assert line(real_networks(measured(frame)))["guess"] == pytest.approx(0.3)
-
-
-WORDS = {
-    "frozen_over_guessing_fingers": "supported",
-    "frozen_by_guessing": "contradicted",
-    "seen_over_random_frozen": "supported",
-    "seen_over_random_tuned": "supported",
-    "tuned_over_frozen": "supported",
-    "resnet_best": "supported",
-}

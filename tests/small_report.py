@@ -1,26 +1,20 @@
 """A small run to report on: measurements with a known truth, beside the thesis's tables."""
 
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
-import pytest
 
 from haptic_glance.base.files import write_arrays, write_mesh, write_table, write_text
 from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.weights.svm import fit_svm
 from haptic_glance.look.weights.weights import write_models
 from haptic_glance.mesh.mesh import Mesh
-from stages.charts import items
-from stages.charts.drawing import save
 from stages.charts.results import Results
-from stages.engine import statistics
-from stages.engine.measurements import Measurements
 from stages.engine.settings import Workspace
 from stages.report import Params
 
-THESIS = Path(__file__).parents[2] / "data/reference/thesis"
+THESIS = Path(__file__).parents[1] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run
 OBJECTS = ["ball", "cube"]
 METHODS = ["glance", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
@@ -55,12 +49,7 @@ def classification(thesis=0.8, rivals=0.5):
     rng = np.random.default_rng(0)
     rows = []
     for objects in ("six", "four"):
-        for method, accuracy in (
-            ("thesis_ssim", thesis),
-            ("glance", thesis),
-            ("itti", rivals),
-            ("random", rivals),
-        ):
+        for method, accuracy in (("thesis_ssim", thesis), ("glance", thesis), ("itti", rivals), ("random", rivals)):
             for classifier, seconds in (("knn", 0.01), ("deep_learning", 1.0)):
                 for repetition in range(6):
                     value = accuracy + 0.01 * rng.normal()
@@ -201,10 +190,10 @@ def write_attention(root):
     write_table(root / "data/test/weights/weights.csv", table)
     write_table(root / "data/test/weights/convexity.csv", pd.DataFrame({"object": OBJECTS, "convexity": [0.9, 0.8]}))
     for name in OBJECTS:
-        _write_sight(root, name)
+        _write_maps(root, name)
 
 
-def _write_sight(root, name):
+def _write_maps(root, name):
     """Maps, ground truth, SVMs and the points of several methods, for a ball."""
     mesh, shape, random = ball(), (60, 80), np.random.default_rng(3)
     mask = np.hypot(*(np.mgrid[:60, :80] - np.array([29.5, 39.5])[:, None, None])) < 28
@@ -253,81 +242,3 @@ def make_root(root):
     write_set(root, "four", 4)
     write_measurements(root, "lod", lod())
     return root
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_pixels_and_resamples():
-    """Most of the time of a report goes to the pixels of its pictures and to the resamples of its intervals."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(items, "save", lambda figure, path, dpi: save(figure, path, dpi // 3))
-        patch.setattr(statistics, "RESAMPLES", 400)
-        yield
-
-
-@pytest.fixture(scope="session")
-def small():
-    """What tests make their own small runs of."""
-    return SimpleNamespace(
-        settings=settings, results=read_results, own=own_results, ball=ball,
-        classification=classification, write=write_measurements,
-        write_set=write_set, root=make_root,
-        left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
-    )  # fmt: skip
-
-
-@pytest.fixture(scope="session")
-def measure(tmp_path_factory):
-    """A function that writes the rows of a stage, on one set or on those of their column, and returns the results.
-
-    stage: or `bench/NAME`, of a benchmark. results: of the root to write below; else a new one with nothing measured.
-    """
-
-    def written(stage, frame, dataset=None, results=None):
-        root = results.workspace.root if results else make_bare(tmp_path_factory.mktemp("measured"))
-        if stage.startswith("bench/"):
-            write_table(root / f"reports/{stage}.csv", frame)
-        else:
-            write_measurements(root, stage, frame, dataset)
-        return read_results(root)
-
-    return written
-
-
-@pytest.fixture(scope="session")
-def measured(measure):
-    """As `measure`, but returns the Measurements that claims are judged by."""
-    return lambda *arguments: Measurements(measure(*arguments).reports)
-
-
-@pytest.fixture(scope="session")
-def empty(tmp_path_factory):
-    """The results of a root with nothing measured, which no test changes."""
-    return read_results(make_bare(tmp_path_factory.mktemp("empty")))
-
-
-@pytest.fixture
-def bare(tmp_path):
-    """A root with nothing measured."""
-    return make_bare(tmp_path)
-
-
-@pytest.fixture
-def root(tmp_path):
-    """The root of a small run."""
-    return make_root(tmp_path)
-
-
-@pytest.fixture
-def results(root):
-    """The results of the small run."""
-    return read_results(root)
-
-
-@pytest.fixture
-def tab(browser):
-    """A page of the browser that fails the test where a script does."""
-    opened, faults = browser.new_page(viewport={"width": 1280, "height": 800}), []
-    opened.on("pageerror", lambda error: faults.append(str(error)))
-    yield opened
-    opened.close()
-    assert not faults

@@ -8,17 +8,16 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
-from stages.report.fixation import maps
-from stages.report.fixation import rows as _fixation
 
 from haptic_glance.base.files import write_arrays
 from stages.charts.items import Figure
 from stages.charts.results import NotRun
 from stages.engine.statistics import interval
+from stages.fixation import agreement_report, agreement_rows, attention_pictures
 from stages.fixation import report as topic
 from stages.fixation.agreement import ALL_VIEWS
 from stages.report.parts import build_item
-from tests.report.frames import has_ink, only
+from tests.frames import has_ink, only
 
 NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "vgg16-last_block",
             "resnet50-last_block", "mobilenet_v2-random", "vgg16-random", "resnet50-random"]  # fmt: skip
@@ -101,11 +100,11 @@ def written(measure):
 
 def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze):
     frame = gaze.rows("fixation", "gaze")
-    scores = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
+    scores = agreement_rows.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
     assert scores["a"] == pytest.approx(0.4 - 0.2, abs=0.01)  # 0.9, of all views in one, is not among them
-    assert _fixation.scores(frame, "nss")["vgg16-frozen", "ewigc"]["a"] == pytest.approx(0.4, abs=0.02)
+    assert agreement_rows.scores(frame, "nss")["vgg16-frozen", "ewigc"]["a"] == pytest.approx(0.4, abs=0.02)
     numbers = frame[frame["view"] != ALL_VIEWS].assign(view=lambda row: row["view"].astype(float))  # without the word
-    pd.testing.assert_frame_equal(_fixation.scores(numbers, "pcc"), _fixation.scores(frame, "pcc"))
+    pd.testing.assert_frame_equal(agreement_rows.scores(numbers, "pcc"), agreement_rows.scores(frame, "pcc"))
 
 
 @pytest.mark.slow
@@ -128,31 +127,6 @@ def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(made
     assert far["mean"] == pytest.approx(12, abs=0.2) and far["over_lee"] == pytest.approx(-10, abs=0.2)  # per cent
 
 
-def test_networks_that_are_not_available_are_named_once(written):
-    missing = {"dataset": "household", "method": "googlenet-frozen", "metric": "accuracy", "note": "no weights"}
-    alone = {"dataset": "household", "method": "vgg16-frozen", "task": "level_3", "metric": "accuracy", "note": "alone"}
-    made = table(written(pd.concat([rows("household", 4), pd.DataFrame([missing, alone])])))
-    assert [note for note in made.notes if "Not run" in note] == ["Not run here: GoogLeNet, frozen: no weights."]
-
-
-VERDICTS = {
-    "ewigc_over_lee_vgg16": ("supported", 0.25),  # by its frozen filters
-    "ewigc_nearer_than_lee": ("supported", 20),
-    "ewigc_nearer_than_noise": ("contradicted", -10),
-    "ewigc_over_random_weights_resnet50": ("supported", 0.3),
-    "ewigc_over_centre_vgg16": ("supported", 0.2),
-    "level_3_least": ("supported", 0.25),
-    "ewigc_over_lee_vgg16_nss": ("supported", 0.5),
-    "fused_over_narrowed": ("supported", 0.1),
-    "fused_nearer_than_narrowed": ("supported", 10),
-    "glance_over_ewigc": ("supported", 0.2),
-    "excluded_least_masked": ("supported", 0.225),
-    "ewigc_over_rest_resnet50_masked": ("supported", 0.25),
-    "ewigc_nearer_than_literature_least": ("not testable", 10),  # noise is nearer by this measure
-    "noise_correlates_masked": ("supported", 0.2),
-}
-
-
 @pytest.mark.slow
 def test_no_interval_of_a_correlation_leaves_its_range(written):
     wild = np.array([1.0, 1.0, 1.0, -0.5])
@@ -160,7 +134,7 @@ def test_no_interval_of_a_correlation_leaves_its_range(written):
     frame = rows(count=4)
     alike = frame["metric"] == "pcc_tasks"
     frame.loc[alike, "value"] = frame.loc[alike, "item"].map(dict(zip("abcd", wild, strict=True)))
-    drawn = topic.agreement.figure_3_31(written(frame)).drawing
+    drawn = agreement_report.figure_3_31(written(frame)).drawing
     assert drawn.axes[0].get_title().endswith(", 1.00]")
     plt.close(drawn)
 
@@ -168,11 +142,11 @@ def test_no_interval_of_a_correlation_leaves_its_range(written):
 @pytest.fixture(scope="module")
 def looked(tmp_path_factory, small):
     """Results of a run in which two networks have looked at two balls: attention is highest at their top."""
-    root, mesh = small.root(tmp_path_factory.mktemp("looked")), small.ball()
+    root, mesh = small.make_root(tmp_path_factory.mktemp("looked")), small.ball()
     small.write_attention(root)
     classes = [{"item": "ball", "task": task, "metric": "class", "label": "1"} for task in TASKS if "ewigc" not in task]
-    small.write(root, "fixation", pd.concat([rows("test", 4), pd.DataFrame(classes)]), "test")
-    visible = mesh.vertices @ np.array([view.axes[2] for view in _fixation.VIEWPOINTS]).T > -0.05
+    small.write_measurements(root, "fixation", pd.concat([rows("test", 4), pd.DataFrame(classes)]), "test")
+    visible = mesh.vertices @ np.array([view.axes[2] for view in agreement_rows.VIEWPOINTS]).T > -0.05
     arrays, height = {"visible": visible.T, "seen": visible.any(axis=1)}, mesh.vertices[:, 2] + 0.5
     for method in ("mobilenet_v2-frozen", "mobilenet_v2-random"):
         arrays[f"{method}.maps"] = np.random.default_rng(0).random((3, len(TASKS) - 2, 7, 7)).astype(np.float16)
@@ -180,7 +154,7 @@ def looked(tmp_path_factory, small):
             arrays |= {f"{method}.{task}": height.astype(np.float16), f"{method}.{task}.views": np.stack([height] * 3)}
     for name in ("ball", "cube"):
         write_arrays(root / f"data/test/fixation/{name}.npz", **arrays)
-    return small.results(root)
+    return small.read_results(root)
 
 
 @pytest.mark.slow
@@ -190,31 +164,26 @@ def test_maps_are_drawn_on_the_object(looked, name):
     assert has_ink(made)
     assert "MobileNetV2" in made.alt
     assert "random weights" not in made.alt  # the thesis's figures show no controls
-    assert made.caption.count(maps.FROZEN) == 1
+    assert made.caption.count(attention_pictures.FROZEN) == 1
 
 
 @pytest.mark.slow
 def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked, tmp_path, small):
     root = shutil.copytree(looked.workspace.root, tmp_path / "root")
     shutil.rmtree(root / "data/test/weights/ground_truth")
-    made = figure("figure_3_34", small.results(root))
+    made = figure("figure_3_34", small.read_results(root))
     assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "glance" in made.alt
-
-
-def test_a_network_is_drawn_as_it_was_taught_most():
-    methods = "a_b-random", "a_b-frozen", "a_b-last_block", "c-random", "d-frozen"
-    arrays = dict.fromkeys(f"{method}.maps" for method in methods)
-    assert maps._networks(arrays, "maps") == ["a_b-last_block", "d-frozen"]
-    assert maps._taught(["d-frozen"]) and not maps._taught(["a_b-last_block", "d-frozen"])
 
 
 def test_a_map_is_drawn_where_it_is_high():
     cam = np.zeros((7, 7), dtype=np.float16)
     cam[1, 5] = 3
-    picture = maps.large(cam[None], "mobilenet_v2-frozen")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
+    picture = attention_pictures.large(cam[None], "mobilenet_v2-frozen")[
+        0
+    ]  # whose cells lie on pixels 0, 32, 64, ... of 224
     place = (60, 300)
     assert np.unravel_index(picture.argmax(), picture.shape) == pytest.approx(place, abs=3) and picture.max() > 0.98
-    assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2-frozen").any()
+    assert not attention_pictures.large(np.zeros((1, 7, 7)), "mobilenet_v2-frozen").any()
 
 
 def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small, monkeypatch):
@@ -224,8 +193,8 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
         return Figure(drawing, {"names": dataset, "columns": "marks", "taught": "", "marks": ""})
 
     name = "figure_3_34_gaze"
-    monkeypatch.setitem(topic.FIGURES, name, partial(maps.on_gaze, figure_3_34))
-    results = small.results(bare)
+    monkeypatch.setitem(topic.FIGURES, name, partial(attention_pictures.on_gaze, figure_3_34))
+    results = small.read_results(bare)
     (bare / "data/gaze/fixation").mkdir(parents=True)
     drawn = figure(name, results)
     content = drawn.paths[0].read_bytes()

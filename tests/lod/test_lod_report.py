@@ -10,9 +10,9 @@ from haptic_glance.base.files import write_arrays, write_mesh
 from stages.charts.results import NotRun
 from stages.lod import level_pictures as pictures
 from stages.lod import report as meshes
-from stages.lod.error_tables import data_sets, face_counts, paired_cells
+from stages.lod.error_tables import face_counts, paired_cells, rows_by_set
 from stages.report.parts import build_item
-from tests.report.frames import has_ink
+from tests.frames import has_ink
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
@@ -67,7 +67,8 @@ def without(rows, value=np.nan, **where):
     return rows.assign(value=rows["value"].mask(chosen, value))
 
 
-def test_only_cells_where_nothing_shrank_when_asked_for_the_whole(plain):
+def test_only_cells_where_nothing_shrank_when_asked_for_the_whole():
+    plain = measured()
     cells = paired_cells(plain, ["metro_mean"], ["itti", "corners"])
     whole = paired_cells(plain, ["metro_mean"], ["itti", "corners"], whole=True)
     assert set(cells["target"]) == set(TARGETS)
@@ -76,13 +77,10 @@ def test_only_cells_where_nothing_shrank_when_asked_for_the_whole(plain):
 
 
 def test_sets_that_are_not_switched_on_stand_behind_those_that_are(run):
-    results = run(measured("gaze"))
-    assert data_sets(results) == ["gaze"]
-    with pytest.raises(NotRun, match="princeton"):
-        paired_cells(results, ["metro_mean"], ["itti"], "princeton")
-    results = run(measured(), measured("princeton", 1), measured("gaze"))
-    assert data_sets(results) == ["test", "gaze", "princeton"]
-    rows = paired_cells(results, ["metro_mean"], ["qem", "itti"], "princeton")
+    assert list(rows_by_set(run(measured("gaze")))) == ["gaze"]
+    sets = rows_by_set(run(measured(), measured("princeton", 1), measured("gaze")))
+    assert list(sets) == ["test", "gaze", "princeton"]
+    rows = paired_cells(sets["princeton"], ["metro_mean"], ["qem", "itti"])
     assert rows["seconds"].isna().all() and len(rows) == 2 * len(OBJECTS) * len(TARGETS)
 
 
@@ -106,8 +104,8 @@ def test_table_3_2_compares_all_methods_on_the_same_objects(run):
 
 @pytest.mark.slow
 def test_tables_of_ones_own_meshes_leave_out_the_thesis_and_what_is_of_other_data_sets(plain, root, small):
-    small.write(root, "lod", measured())
-    of_folder = small.own(root)
+    small.write_measurements(root, "lod", measured())
+    of_folder = small.own_results(root)
     with pytest.raises(NotRun, match=r"T3\.1\.5"):
         table("table_3_1_5_combinations", of_folder)
     for name, words in WORDS.items():
@@ -126,23 +124,6 @@ def test_combinations_tell_how_many_objects_reach_each_face_count(run):
     rows = without(measured("household_3_1"), item="d", target="1500", method="itti")
     words = table("table_3_1_5_combinations", run(rows)).words
     assert words["reached"] == ": 4 at 25%, 4 at 3,000 faces, 3 at 1,500 faces"
-
-
-def test_a_set_without_any_of_the_methods_is_said_to_lack_them(plain):
-    with pytest.raises(NotRun, match="no mesh was simplified by nobody or nothing"):
-        data_sets(plain, ("nobody", "nothing"))
-
-
-ERROR = {"metric": "metro_mean"}
-
-
-def with_people():
-    """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
-    rows = measured("gaze", 2)
-    people = rows[rows["metric"] == "salient_error"].assign(metric="gaze_error")
-    ours = people["method"] == "glance"
-    people.loc[ours, "value"] *= np.linspace(0.1, 0.2, ours.sum())
-    return pd.concat([rows, people])
 
 
 @pytest.fixture(scope="module")
@@ -171,3 +152,12 @@ def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
     assert has_ink(made)
     if name == "figure_3_7":  # many and few points where they differ, at a target that all methods reached
         assert made.caption.startswith("b (test) at 3,000 faces")
+
+
+def test_lod_seconds_are_those_of_the_simplification(measure, small):
+    frame = small.lod()
+    frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
+    results = measure("lod", frame)
+    assert (paired_cells(results.rows("lod"), ["metro_mean"], ["qem", "glance"])["seconds"] == 0.1).all()
+    with pytest.raises(NotRun, match="no column speed"):
+        results.rows("lod", speed=1)

@@ -92,17 +92,6 @@ def test_infeasible_targets_are_no_refusals_and_a_backend_that_keeps_nothing_tak
     assert frame.loc[("fast", True), "cells"] == 8 and ("poor", True) not in frame.index
 
 
-@pytest.mark.slow
-def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(bench):
-    rows = benched()
-    rows["backend"] = rows["backend"].replace("poor", "meshoptimizer")
-    missed = (rows["mesh"] == "m1") & (rows["backend"] == "meshoptimizer")
-    rows.loc[missed, ["seconds", "metro_mean"]] *= 100
-    rows.loc[missed, "outcome"] = "missed"
-    notes = [note for note in table(bench(rows)).notes if "meshoptimizer's" in note]
-    assert len(notes) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in notes)
-
-
 @pytest.mark.parametrize("power", [0.8, 1.4])
 def test_growth_finds_the_power_though_large_meshes_have_one_share(power):
     rows = benched(power).assign(with_points=False)

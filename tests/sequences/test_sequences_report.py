@@ -1,4 +1,4 @@
-"""Table 4.9 of less than all rows, and the claims of whole contours."""
+"""Table 4.9 of less than all rows."""
 
 from functools import partial
 from itertools import product
@@ -9,8 +9,6 @@ import pytest
 
 from stages.report.parts import build_item
 from stages.sequences import report as sequences
-
-PRINTED_SET, MORE = "princeton_eight", ("princeton_touched", "furniture_splits")
 
 CLASSES = ("car", "chair", "vase")
 MEANS = {"cnn": 0.9, "cnn_images": 0.8, "cnn_normals": 0.4, "knn": 0.6, "svm": 0.7, "knn_no_som": 0.65,
@@ -56,21 +54,3 @@ def test_larger_run_stands_below_where_there_is_one(measure):
     assert "Not run: class far: no sequences of away." in table.notes
     table = table_4_9(measure("sequences", rows(dataset="princeton_eight"), results=results))
     assert list(dict.fromkeys(table.frame["objects"])) == ["furniture", "princeton_eight"]
-
-
-def everywhere(measure, frame):
-    """The results with these rows as printed and on the other data sets."""
-    return measure("sequences", pd.concat(frame.assign(dataset=name) for name in (PRINTED_SET, MORE, "furniture")))
-
-
-def confusions(blind, guided):
-    """Rows of two classifiers and an untrained network: of 100 sequences of a class some are taken for its like."""
-    other = {"bird": "airplane", "airplane": "bird", "bust": "vase", "vase": "bust"}
-    common = {"dataset": PRINTED_SET, "split": "random", "metric": "confusion", "frames": 25, "cells": 32}
-    return pd.DataFrame(
-        common | {"method": method, "classifier": name, "group": kind, "predicted": predicted, "value": value}
-        for method, share in (("random", blind), ("thesis_ssim", guided))
-        for name, more in (("knn", 0), ("svm", 2), ("cnn", 5))
-        for kind, twin in other.items()
-        for predicted, value in ((kind, 100 - share - more - 1), (twin, share + more), ("chair", 1))
-    )
