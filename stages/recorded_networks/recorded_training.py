@@ -11,9 +11,8 @@ import torch
 
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.device import explain_out_of_memory
+from haptic_glance.deep.device import explain_out_of_memory, repeatable
 from haptic_glance.deep.network import UNNORMALISED, count_parameters
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     CONVERGED,
     PRINTED,

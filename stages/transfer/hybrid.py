@@ -15,13 +15,12 @@ import torch
 from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, repeatable
 from haptic_glance.deep.hybrid import PRECISIONS, SENSES, HybridNet, load, save, state_arrays
 from haptic_glance.deep.images import augmentation, normalise
 from haptic_glance.deep.modes import finetuned_except, frozen_modules
 from haptic_glance.deep.network import Network, build, count_parameters
 from haptic_glance.deep.rendered_views import as_images
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import CONVERGED, Learning, accuracy, predict_probabilities, train_model
 from haptic_glance.deep.weights import available_weights
 from stages.engine.statistics import interval_metrics, stratified_split
