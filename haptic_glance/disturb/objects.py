@@ -1,7 +1,11 @@
 """The registry of perturbations: changes of an object, or of how it is rendered, that should not change the result.
 
-To add one, add a function to `mesh` or `view`, and an entry.
+To add one, add a function to `mesh` or here, and an entry. The disturbances of a rendered view are here.
 """
+
+import numpy as np
+
+from haptic_glance.mesh.mesh import Mesh
 
 from .mesh import (
     clay,
@@ -19,8 +23,30 @@ from .mesh import (
     vertex_order,
     winding,
 )
-from .perturbed import Conditions, Perturbation, Perturbed
-from .view import background, background_left_in, image_size, light
+from .perturbed import Conditions, Perturbation, Perturbed, in_range, under_conditions
+
+SEVERITY = "the background's brightness"
+
+
+def background(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Another background, which is kept out of the maps (haptic_glance.look.channels.cropped_view)."""
+    return under_conditions(mesh, Conditions(background=in_range(severity, 0, 1, SEVERITY)))
+
+
+def background_left_in(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Another background, left in the image from which the maps are computed, as in the thesis."""
+    return under_conditions(mesh, Conditions(background=in_range(severity, 0, 1, SEVERITY), filled=False))
+
+
+def light(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """The head light moves `severity` degrees off the camera, up and to the left in the image."""
+    return under_conditions(mesh, Conditions(light=in_range(severity, 0, 180, "degrees off the camera")))
+
+
+def image_size(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Images with the share `severity` of the rows and columns; the maps shrink by the same factor."""
+    return under_conditions(mesh, Conditions(rows=in_range(severity, 0.05, 1, "the share of rows")))
+
 
 PERTURBATIONS = {
     "noise": Perturbation("sigma, share of the diagonal", 0.0, noise),

@@ -34,9 +34,9 @@ def agreement_rows(
     and the saliency in each; whole (n,): the saliency over all views, used for nss and auc. pcc in a view weights each
     visible vertex by its area. pcc_masked is the thesis's number: over all vertices, with both maps scaled to 0..1 and
     the hidden vertices set to zero, so that visibility alone gives some correlation. distances: adds the distance
-    between fixation centres in each view (T figure 3.36): the least in units, the same as a share of the diagonal
-    (distance_share), the mean over the pairs (distance_mean), and that of the maxima to the letter (distance_maximum);
-    and how concentrated the saliency is: half_share of what the view sees.
+    between fixation centres in each view (T figure 3.36): the least in units, the mean over the pairs (distance_mean),
+    and that of the maxima to the letter (distance_maximum); and how concentrated the saliency is: half_share of what
+    the view sees.
     """
     rows = []
     for view, (mask, values) in enumerate(zip(visible, by_view, strict=True)):
@@ -49,7 +49,7 @@ def agreement_rows(
         }
         if distances:
             least, mean = centre_distance(mesh.vertices, fixations["density"], values, mask)
-            measures |= {"distance": least, "distance_mean": mean, "distance_share": least / mesh.diagonal}
+            measures |= {"distance": least, "distance_mean": mean}
             measures["distance_maximum"] = centre_distance(mesh.vertices, fixations["density"], values, mask, top=1)[0]
             measures["half_share"] = half_share(values[mask], fixations["areas"][mask])
         cells = {metric: value if np.isfinite(value) else None for metric, value in measures.items()}

@@ -77,14 +77,8 @@ def measure_attention(
         rows += [row | cells for cells in task_correlations(values[:, : len(cams)], visible, list(cams))]
         row["view"] = ALL_VIEWS
         rows += [row | {"task": task, "metric": "entropy", "value": bit} for task, bit in bits.items()]
-        rows += [row | {"task": task, "metric": "alive", "value": alive(cam)} for task, cam in cams.items()]
     write_arrays(folder / f"{name}.npz", **arrays)
     return rows + baseline_rows(ground_truth, data, place, settings.size, seed)
-
-
-def alive(cams: np.ndarray) -> float:
-    """The share of Grad-CAM maps (v, i, j) that are not constant: a constant one looks nowhere."""
-    return float((np.ptp(cams, axis=(1, 2)) > 0).mean())
 
 
 def object_cams(folder: Path, method: Method, name: str, tasks: Sequence[str]) -> tuple[dict[str, np.ndarray], float]:

@@ -19,11 +19,10 @@ from haptic_glance.base.fetch import FetchError
 from haptic_glance.base.files import read_arrays, read_mesh, sha256, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, mixed_precision
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, mixed_precision, repeatable
 from haptic_glance.deep.images import Transform, normalise
 from haptic_glance.deep.modes import Task
 from haptic_glance.deep.network import Network, build, published_layers, recalibrate
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.look.views import render
 from haptic_glance.look.weights.convexity import convexity
 

@@ -17,11 +17,10 @@ from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.deep.cam import grad_cam
-from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, mixed_precision
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, mixed_precision, repeatable
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.modes import Task
 from haptic_glance.deep.network import Network, build, recalibrate
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import Learning, search_rate, train_model
 
 from . import Params

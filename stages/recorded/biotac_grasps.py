@@ -12,7 +12,6 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from threadpoolctl import threadpool_limits
 
-from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know import CLASSIFIERS
 from haptic_glance.know.classifiers import COMPONENTS
@@ -24,7 +23,6 @@ from stages.engine.run import Rows, StageRun
 from .splits import SPLITS, split_number
 
 GROUPS = 8  # of about five objects, left out in turn
-DRAWN = 200  # draws of training objects: how far a mean moves by the objects alone
 MAJORITY = "majority"
 
 
@@ -48,7 +46,7 @@ class Model:
 
 
 def measure(run: StageRun, grasps: Grasps, repetitions: int) -> None:
-    """Adds rows of the accuracy of each classifier on the grasps of each object, and of the drift between recordings.
+    """Adds rows of the accuracy of each classifier on the grasps of each object.
 
     scaled: by the mean and deviation of the training part, or each part by its own: the fingertips drift between
     recordings, and a hand may average its readings over its own last grasps without knowing how they ended.
@@ -59,7 +57,6 @@ def measure(run: StageRun, grasps: Grasps, repetitions: int) -> None:
         for name in (*CLASSIFIERS, MAJORITY)
     }
     run.each(functools.partial(process, grasps=grasps, repetitions=repetitions, seed=run.seed), models)
-    run.rows += drift_rows(grasps, run.seed)
 
 
 def process(model: Model, folder: Path, grasps: Grasps, repetitions: int, seed: int) -> Rows:
@@ -74,22 +71,6 @@ def process(model: Model, folder: Path, grasps: Grasps, repetitions: int, seed: 
             *(common | row for row in recognition_rows(model, grasps, repetitions, seed)),
             *(common | {"scaled": "own"} | row for row in publisher_split_rows(model, scaled)),
         ]
-
-
-def drift_rows(grasps: Grasps, seed: int) -> Iterator[dict]:
-    """Rows: how far the mean reading of the test part is from that of training, in deviations of the objects' means.
-
-    drift_drawn: the same of as many training objects, drawn at random, from the others: the largest of 200 draws.
-    """
-    for palm in PALMS:
-        mask, random = grasps.palms == palm, rng(seed, f"drift {palm}")
-        train, test = grasps.electrodes[mask & ~grasps.test], grasps.electrodes[mask & grasps.test]
-        names, count = grasps.objects[mask & ~grasps.test], len(np.unique(grasps.objects[mask & grasps.test]))
-        draws = [np.isin(names, random.choice(np.unique(names), count, replace=False)) for _ in range(DRAWN)]
-        common = {"task": "slip", "split": Split.TEST_OBJECTS, "palm": palm, "count": len(test)}
-        yield common | {"metric": "drift", "value": _distance(train, names, test)}
-        largest = max(_distance(train[~out], names[~out], train[out]) for out in draws)
-        yield common | {"metric": "drift_drawn", "value": largest}
 
 
 def publisher_split_rows(model: Model, grasps: Grasps) -> Iterator[dict]:
@@ -140,11 +121,6 @@ def _slip_rows(model: Model, grasps: Grasps, train: np.ndarray, test: np.ndarray
         mask = grasps.objects[test] == name
         row = {"item": str(name), "value": float((answers[mask] == grasps.slipped[test][mask]).mean())}
         yield {"task": "slip", **about, **row, "count": int(mask.sum()), "seconds": seconds}
-
-
-def _distance(train: np.ndarray, names: np.ndarray, test: np.ndarray) -> float:
-    means = np.stack([train[names == name].mean(axis=0) for name in np.unique(names)])
-    return float(np.abs((test.mean(axis=0) - train.mean(axis=0)) / means.std(axis=0)).mean())
 
 
 def _scaled_apart(grasps: Grasps) -> np.ndarray:

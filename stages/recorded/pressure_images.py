@@ -64,7 +64,6 @@ def measure(run: StageRun, images: dict[str, np.ndarray], repetitions: int) -> N
         sets = class_sets(touches, repetitions, run.seed)
     work = functools.partial(process, touches=touches, seed=run.seed)
     run.each(work, sets, made_of={name: repr(class_set) for name, class_set in sets.items()})
-    run.rows += neighbour_rows(images)
 
 
 def describe(images: dict[str, np.ndarray]) -> Touches:
@@ -97,17 +96,6 @@ def process(class_set: ClassSet, folder: Path, touches: Touches, seed: int) -> R
     """Rows of one set: without selection, selected before the split, and in the training part alone."""
     with threadpool_limits(1):
         return list(_set_rows(class_set, touches.of(np.isin(touches.labels, class_set.classes)), seed))
-
-
-def neighbour_rows(images: dict[str, np.ndarray]) -> Iterator[dict]:
-    """Rows: per class the mean correlation of touches with neighbouring numbers, and of any two of its touches."""
-    for name, touches in images.items():
-        matrix = np.corrcoef(touches.reshape(len(touches), -1))
-        pairs = {
-            "neighbour_correlation": np.diag(matrix, 1),
-            "pair_correlation": matrix[np.triu_indices(len(matrix), 1)],
-        }
-        yield from ({"group": name, "metric": metric, "value": float(np.mean(v))} for metric, v in pairs.items())
 
 
 def summary(rows: Rows) -> dict[str, float]:

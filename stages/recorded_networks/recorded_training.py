@@ -1,7 +1,6 @@
 """Trainings of one network on recorded touches."""
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -11,9 +10,8 @@ import torch
 
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.device import explain_out_of_memory
+from haptic_glance.deep.device import explain_out_of_memory, repeatable
 from haptic_glance.deep.network import UNNORMALISED, count_parameters
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     CONVERGED,
     PRINTED,
@@ -181,16 +179,7 @@ def _train(trial: Trial, run: Run, recording: Recording, features: torch.Tensor,
         mask = groups_of(recording)[test] == name
         value = accuracy(on_test[torch.as_tensor(mask)], labels[test][mask])
         rows.append({"item": name, "metric": "accuracy", "value": value})
-    return rows + class_rows(on_test, labels[test], recording.touches.classes)
-
-
-def class_rows(answers: torch.Tensor, labels: np.ndarray, classes: Sequence[str]) -> list[dict]:
-    """Rows of the accuracy on the test touches of each class; an object of its own in most recordings."""
-    return [
-        {"group": name, "metric": "class_accuracy", "value": accuracy(answers[torch.as_tensor(mask)], labels[mask])}
-        for name, mask in ((name, labels == number) for number, name in enumerate(classes))
-        if mask.any()
-    ]
+    return rows
 
 
 def passes(mode: str, touches: int, settings: Params) -> int:

@@ -104,11 +104,6 @@ class Claim:
     place: str = ""
 
     @property
-    def is_ours(self) -> bool:
-        """Whether the claim is the project's own, and not the thesis's."""
-        return self.section == "ours"
-
-    @property
     def other(self) -> Side:
         """The second side; ValueError where that is a number, or none."""
         if not isinstance(self.second, Mapping):

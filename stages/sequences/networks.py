@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import torch
 
-from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.device import repeatable
 
 KEPT_HIDDEN = 0.8  # tables 4.7 and 4.8, first fully connected layer
 KEPT_CONVOLVED = 0.5  # table 4.8, second convolution

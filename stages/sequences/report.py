@@ -15,9 +15,8 @@ from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from haptic_glance.touch import SectionCurve, contour
 from stages.charts.datasets import dataset_text
-from stages.charts.drawing import CYCLE, INK, PALE, VIEWPOINT, label, name_panels, picture, plt, squared
+from stages.charts.drawing import CYCLE, INK, PALE, VIEWPOINT, draw_matrices, label, name_panels, picture, plt, squared
 from stages.charts.items import Figure, Table, as_printed
-from stages.charts.matrices import draw_matrices
 from stages.charts.pareto import pareto_chart
 from stages.charts.results import NotRun, Results, require_rows
 from stages.charts.tables import Ranking, blocks, everywhere, grid, percent, records, within

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 from torch.nn import functional
 
-from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.device import repeatable
 from haptic_glance.touch import Skin
 
 from .denoisers import Denoiser

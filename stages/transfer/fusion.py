@@ -10,7 +10,6 @@ from scipy.optimize import minimize_scalar
 from scipy.special import log_softmax, softmax
 
 LOG_HOTTEST = np.log(100)  # temperatures are searched between 1 and 100
-BINS = 10  # of the calibration error
 
 
 def probabilities(scores: np.ndarray, temperature: float = 1.0) -> np.ndarray:
@@ -36,19 +35,6 @@ def best_temperature(scores: np.ndarray, labels: np.ndarray) -> float:
 
     optimum: Any = minimize_scalar(negative_log_likelihood, bounds=(0, LOG_HOTTEST), method="bounded")
     return float(np.exp(optimum.x))
-
-
-def calibration_error(distribution: np.ndarray, labels: np.ndarray) -> float:
-    """The expected calibration error: the mean gap between confidence and accuracy in ten bins, weighted by their size.
-
-    distribution (n, k), labels (n,); rows of NaN are left out. Guo et al. 2017, eq. 3.
-    """
-    answered = np.isfinite(distribution).all(axis=1)
-    distribution, labels = distribution[answered], np.asarray(labels)[answered]
-    confidence, right = distribution.max(axis=1), distribution.argmax(axis=1) == labels
-    bins = np.minimum((confidence * BINS).astype(int), BINS - 1)
-    gaps = np.bincount(bins, weights=right, minlength=BINS) - np.bincount(bins, weights=confidence, minlength=BINS)
-    return float(np.abs(gaps).sum() / len(confidence))
 
 
 def certainty(distribution: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Trials of the hybrid network (T5.5): two trainings, the stitching, and tests with one sense, both, and damaged ones.
 
-The hybrid network is compared with its two parent networks: accuracy, size, calibration, and as ONNX.
+The hybrid network is compared with its two parent networks: accuracy, size, and as ONNX.
 """
 
 import itertools
@@ -15,13 +15,12 @@ import torch
 from haptic_glance.base.files import read_arrays, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, repeatable
 from haptic_glance.deep.hybrid import PRECISIONS, SENSES, HybridNet, load, save, state_arrays
 from haptic_glance.deep.images import augmentation, normalise
 from haptic_glance.deep.modes import finetuned_except, frozen_modules
 from haptic_glance.deep.network import Network, build, count_parameters
 from haptic_glance.deep.rendered_views import as_images
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import CONVERGED, Learning, accuracy, predict_probabilities, train_model
 from haptic_glance.deep.weights import available_weights
 from stages.engine.statistics import interval_metrics, stratified_split
@@ -235,7 +234,7 @@ def comparison_rows(
     folder: Path,
     classes: Sequence[str],
 ) -> Iterator[dict]:
-    """Rows of the two networks, the hybrid and its versions of lower precision: accuracy, size, calibration."""
+    """Rows of the two networks, the hybrid and its versions of lower precision: accuracy and size."""
     paths = folder / "hybrid" / "networks"
     tested = {}
     for kind, (sense, network) in enumerate(zip(senses, networks, strict=True)):
@@ -244,7 +243,6 @@ def comparison_rows(
         write_arrays(paths / f"{name}.{kind}.npz", **state_arrays(network))
         yield row(SENSES[kind], "accuracy", fusion.accuracy(separate, sense.labels[sense.test]), kind, seconds[kind])
         yield row("hybrid", "max_difference", float(np.nanmax(np.abs(separate - tested[kind]))), kind)
-        yield from calibration_rows(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
     files = [paths / f"{name}.{kind}.npz" for kind in range(2)]
     separate_size = sum(path.stat().st_size for path in files)
     for kind, path in enumerate(files):
@@ -252,7 +250,6 @@ def comparison_rows(
         yield row(SENSES[kind], "parameters", count_parameters(networks[kind]), kind)
         path.unlink()
     yield row("hybrid", "parameters", count_parameters(hybrid))
-    yield row("hybrid", "parameter_ratio", sum(map(count_parameters, networks)) / count_parameters(hybrid))
     for number in reversed(PRECISIONS):  # float32 last, whose file is kept
         save(paths / f"{name}.npz", hybrid, classes, number)
         size = (paths / f"{name}.npz").stat().st_size
@@ -269,13 +266,6 @@ def comparison_rows(
         **{f"{kind}_true": sense.labels[sense.test] for kind, sense in zip(SENSES, senses, strict=True)},
         **{f"{kind}_test": sense.test for kind, sense in zip(SENSES, senses, strict=True)},
     )
-
-
-def calibration_rows(scores: np.ndarray, labels: np.ndarray, kind: int, temperature: float) -> Iterator[dict]:
-    """Rows of a head's temperature and of its calibration error without it and with it."""
-    yield row("hybrid", "temperature", temperature, kind)
-    for metric, value in (("calibration_error_raw", 1.0), ("calibration_error", temperature)):
-        yield row("hybrid", metric, fusion.calibration_error(fusion.probabilities(scores, value), labels), kind)
 
 
 def onnx_rows(hybrid: HybridNet, senses: Sequence[SenseData], settings: Params, path: Path) -> Iterator[dict]:

@@ -6,8 +6,8 @@ from typing import Any
 import pandas as pd
 
 from stages.charts.datasets import dataset_text
+from stages.charts.drawing import draw_matrices
 from stages.charts.items import Figure, Table
-from stages.charts.matrices import draw_matrices
 from stages.charts.results import NotRun, Results
 from stages.charts.tables import Ranking, grid, grouped, number, percent, with_interval, within
 from stages.transfer.network_rows import PASSES, SPLITS, accuracy, everywhere, mean, seen

@@ -9,11 +9,10 @@ import torch
 from haptic_glance.base.files import read_json, write_arrays, write_json
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.device import choose_device, explain_out_of_memory
+from haptic_glance.deep.device import choose_device, explain_out_of_memory, repeatable
 from haptic_glance.deep.images import normalise, to_images
 from haptic_glance.deep.modes import Task, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     CONVERGED,
     Diverged,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import torch
 
+from haptic_glance.deep.device import repeatable
 from haptic_glance.deep.modes import MODES, Task
 from haptic_glance.deep.network import Network
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     Diverged,
     Learning,

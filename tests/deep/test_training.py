@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import torch
 
+from haptic_glance.deep.device import repeatable
 from haptic_glance.deep.images import normalise, to_images
 from haptic_glance.deep.modes import MODES, finetuned_except, frozen_modules, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
-from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
 
 pytestmark = pytest.mark.slow

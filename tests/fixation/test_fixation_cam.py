@@ -12,7 +12,7 @@ from haptic_glance.deep.network import Network, build
 from haptic_glance.deep.resize import resize_cams
 from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.look.channels import facing
-from stages.fixation.attention import MODELS, alive, linear_scores, project_maps, to_surface
+from stages.fixation.attention import MODELS, linear_scores, project_maps, to_surface
 from stages.fixation.backbone import folded_network, last_maps, method_named, state_path, write_state
 from stages.fixation.finetune import fit_head, scores
 from stages.fixation.fusion import entropy, fuse, highest_level
@@ -120,7 +120,6 @@ def test_narrowing_keeps_the_highest_of_four_levels():
     assert (kept[levels == 1.0] == 1.0).all() and not kept[levels < 1.0].any()
     cams = np.zeros((4, 7, 7))
     cams[0, 3, 3], cams[1] = 1, 0.5
-    assert alive(cams) == 0.25  # constant maps are not alive
 
 
 def test_a_map_keeps_its_place_when_it_is_enlarged():

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from haptic_glance.look.agreement import gaze_peaks, interest_point_errors
-from haptic_glance.look.agreement.geodesic import Geodesics
+from haptic_glance.look.agreement.interest_points import Geodesics
 from haptic_glance.mesh.mesh import Mesh
 from tests.shapes import flat_grid, mesh_of
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from stages.recorded import pressure_images
-from stages.recorded.pressure_images import class_sets, describe, neighbour_rows, process
+from stages.recorded.pressure_images import class_sets, describe, process
 from stages.recorded.splits import block_split, split_number
 
 
@@ -76,13 +76,6 @@ def test_a_selection_that_leaves_too_little_to_train_on_says_so(recognised, reco
     selected = rows[rows["method"] == "selected_training"]
     assert set(selected["note"]) == {"0 touches to train on, 12 of two classes are needed"}
     assert set(selected["split"]) == {"random", "blocks"} and selected["value"].isna().all()
-
-
-def test_repeated_poses_show_as_correlation_of_neighbours():
-    random = np.random.default_rng(0)
-    slow = np.repeat(random.random((6, 16, 16)), 4, axis=0)
-    rows = pd.DataFrame(neighbour_rows({"a": slow})).set_index("metric")["value"]
-    assert rows["neighbour_correlation"] > rows["pair_correlation"] + 0.3
 
 
 def test_a_block_holds_out_neighbours_of_each_class_and_each_repetition_has_a_split_of_its_own():

@@ -8,8 +8,7 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.srgb import encoded
-from haptic_glance.studio.glb import glb
-from haptic_glance.studio.scene import escaped
+from haptic_glance.studio.scene import escaped, glb
 
 
 @pytest.mark.parametrize("flat", [False, True])

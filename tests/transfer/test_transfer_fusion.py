@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import softmax
 
-from stages.transfer.fusion import FUSIONS, best_temperature, calibration_error, certainty, fuse, probabilities
+from stages.transfer.fusion import FUSIONS, best_temperature, certainty, fuse, probabilities
 
 pytestmark = pytest.mark.slow
 
@@ -68,15 +68,8 @@ def test_a_temperature_never_makes_a_network_surer():
     assert best_temperature(right, np.arange(4)) == pytest.approx(1, abs=1e-3)
 
 
-def test_a_temperature_calibrates_and_changes_no_first_class(scored):
-    logits, labels = scored
+def test_a_temperature_changes_no_first_class(scored):
+    logits, _ = scored
     raw, cool = probabilities(logits * 5), probabilities(logits * 5, 5.0)
-    assert calibration_error(cool, labels) < 0.03 < 0.15 < calibration_error(raw, labels)
+    assert raw.max() > cool.max()
     assert np.array_equal(raw.argmax(axis=1), cool.argmax(axis=1))
-
-
-def test_items_without_a_prediction_have_no_part_in_the_calibration(scored):
-    logits, labels = scored
-    absent = np.full_like(logits[:3], np.nan)
-    mixed = calibration_error(probabilities(np.concatenate([absent, logits])), np.concatenate([labels[:3], labels]))
-    assert mixed == calibration_error(probabilities(logits), labels)

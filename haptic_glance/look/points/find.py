@@ -18,12 +18,14 @@ from haptic_glance.mesh.repair import orient
 
 from ..camera import Viewpoint
 from ..channels import ViewMaps, conspicuity
-from ..channels.channels import mask_at_size
+from ..channels.channels import check_channels, mask_at_size
 from ..channels.surface import SMOOTHING
 from ..views import TWELVE, render
+from ..views import best_viewpoints as best_set
 from ..weights import LearnedWeights
 from ..weights import weights as published
 from ..weights.weights import GLANCE
+from .fuse import fuse
 from .glance import SampledDetector
 from .methods import MAIN, METHODS, is_method, meant, method_for, method_named, split_runnable
 from .options import RADIUS, Detection, HasSaliency, Options, tied
@@ -326,3 +328,23 @@ def check_name(method: str, first: Sequence[str] = (), points_alone: bool = Fals
         reason = "its weights are learned in the pipeline" if learned else "it has no saliency"
     advice = "" if hint and not is_method(method) else f"; choose one of {', '.join([*first, *MAIN])}"
     raise ValueError(f"--method {method}: {reason}{advice}")
+
+
+SCORED_SIZE = (300, 400)  # rows, columns of the 62 views: a third of the thesis's, enough for a sum over all pixels
+
+
+def best_viewpoints(mesh: Mesh, method: str = "thesis_ssim", seed: int = 0) -> list[Viewpoint]:
+    """Four to eight Viewpoints: of 18 sets of four perpendicular views the most salient one, and added views.
+
+    mesh: normalised. A view's level of saliency is the sum over its saliency map (T eq. 3.10), fused with the published
+    weights named by method (T eq. 3.9). Raises ValueError for an unknown method, one that weighs no channels, or a mesh
+    without area.
+    """
+    factors = published(method)
+    check_channels(factors)
+
+    def level(viewpoint: Viewpoint) -> float:
+        view = render(mesh, viewpoint, SCORED_SIZE)
+        return float(fuse(conspicuity(mesh, view, list(factors)), factors).sum())
+
+    return best_set(mesh, level, seed)
