@@ -1,5 +1,6 @@
 """Parallel work: one thread an item, seconds of the processor, and workers that end with their parent."""
 
+import functools
 import os
 import signal
 import subprocess
@@ -98,7 +99,9 @@ def test_a_signal_that_ends_a_stage_ends_its_busy_workers(number, tmp_path):
     (tmp_path / "workers").mkdir()
     environment = os.environ | {"PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}"}
     command = [sys.executable, "-m", "busy", str(tmp_path / "workers")]
-    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as process:
+    # A job in the background of a shell ignores Ctrl-C, and so would its child.
+    heard = functools.partial(signal.signal, number, signal.SIG_DFL) if number != signal.SIGKILL else None
+    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True, preexec_fn=heard) as process:
         try:
             wait_for(lambda: len(list((tmp_path / "workers").iterdir())) == 2)
             process.send_signal(number)

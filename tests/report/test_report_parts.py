@@ -20,7 +20,7 @@ UNMEASURED = {"table_3_1_5_combinations", "fidelity", "recognition"}  # of the t
 REMEDY = "no measurements of|`dvc repro |`make bench`|run the stage"
 
 
-@pytest.mark.parametrize("topic", PARTS.values(), ids=lambda topic: topic.__name__.rpartition(".")[2])
+@pytest.mark.parametrize("topic", PARTS.values(), ids=PARTS)
 def test_a_topic_without_measurements_names_what_is_missing_of_each_item(topic, empty):
     for kind, items in KINDS.items():
         missing = build_part(topic, empty, [kind]).not_run
