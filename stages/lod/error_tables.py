@@ -39,9 +39,9 @@ def rows_by_set(results: Results, methods: Iterable[str] = ()) -> dict[str, pd.D
     """
     wanted = {*methods}
     rows = {name: results.rows("lod", name) for name in results.datasets("lod") if name not in (ON_GREY, ON_WHITE)}
+    require_rows(rows, "no measurements of lod", "lod")
     rows = {name: part for name, part in rows.items() if not wanted or wanted & {*part["method"].replace(UNSEEN)}}
-    message = f"no mesh was simplified by {either([*wanted])}" if wanted else "no measurements of lod"
-    return require_rows(rows, message, "lod", runnable=not wanted)
+    return require_rows(rows, f"no mesh was simplified by {either([*wanted])}", "lod", runnable=False)
 
 
 def paired_cells(
