@@ -75,7 +75,7 @@ fail."""
 
 
 def write_site(
-    results: Results, built: Built, not_run: Mapping[str, str], claims: tuple[pd.DataFrame, pd.DataFrame],
+    results: Results, built: Built, not_run: dict[str, str], claims: tuple[pd.DataFrame, pd.DataFrame],
     meshes: dict[str, Any] | None, out: Path,
 ) -> list[str]:  # fmt: skip
     """Writes OUT/index.html and OUT/site/*.html, and removes older pages; returns the names of the pages of the site.
@@ -156,7 +156,7 @@ def charts_first(items: Sequence[Table | Figure]) -> list[Table | Figure]:
 
 
 def front_main(
-    results: Results, built: Built, not_run: Mapping[str, str], claims: pd.DataFrame, meshes: dict[str, Any] | None,
+    results: Results, built: Built, not_run: dict[str, str], claims: pd.DataFrame, meshes: dict[str, Any] | None,
     leads: Mapping[str, str], out: Path,
 ) -> str:  # fmt: skip
     """The text of the front page below its head."""
