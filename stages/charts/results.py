@@ -211,7 +211,7 @@ class Results:
     def by_method(
         self, stage: str, read: Callable[[Path], Mapping[str, Any]], name: str, dataset: str | None = None
     ) -> ByMethod:
-        """What a reader makes of the file of an object that a stage left: results by method."""
+        """Reads the results by method from the file that a stage wrote for one object."""
         return ByMethod(stage, read(self.file(stage, f"{name}.npz", dataset)))
 
     def table(self, stage: str, name: str, dataset: str | None = None) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""What makes pictures of one object differ: errors, and how dense points and faces are."""
+"""Differences between pictures of one object: errors, and the density of points and faces."""
 
 import numpy as np
 import pytest
