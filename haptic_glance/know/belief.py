@@ -1,161 +1,305 @@
-"""Belief over objects from touches: a kernel density as the likelihood, calibration, and predicted outcomes.
+"""The belief over known objects and their poses: a look and touches change it, and it says where to touch next."""
 
-A calibrated belief of 95 % is correct 95 times in a hundred.
-"""
-
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
-from scipy.special import log_softmax
+from scipy.special import logsumexp
+
+from haptic_glance.base.rng import rng
+from haptic_glance.look.camera import Viewpoint
+
+from .hypotheses import Hypotheses
+from .library import AWAY, START, Library
+from .particles import first_particles, refined
+from .planner import CANDIDATES, TRUTHS, draw, expected_entropy
+from .pressure_array import Approach, check_touch
+from .unknown import NONE
+
+SURE = 0.95  # probability at which an object is known
+MISLED = 0.01  # probability that a picture tells nothing of the object
+LINES, PRESSED_LINES = 128, 32  # along which a next touch is considered, where a table or presses predict it
+NEGLIGIBLE = -40.0  # log weight, relative to the greatest, below which a hypothesis is not predicted any more
+RADIUS = 0.5  # diameters, of the largest object
+MARGIN = 0.15  # diameters, of errors in where the hand is
+Reachable = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
-class Calibration:
-    """The weight of touches: the sum of their log likelihoods is multiplied by weight * touches^-redundancy.
+class Touch:
+    """One touch: along which line, its travel and relief in diameters and shares of the depth, and its contact."""
 
-    weight is the inverse temperature of one touch (Guo and others, On calibration of modern neural networks, 2017).
-    redundancy is what touches of one object have in common: 0 if they are independent, so that evidence adds up as in
-    naive Bayes; 1 if a second touch adds no information.
-    """
-
+    approach: Approach
+    travel: float
+    relief: np.ndarray
+    contact: np.ndarray
     weight: float
-    redundancy: float
-
-    def log_belief(self, log_likelihoods: np.ndarray, touches: ArrayLike) -> np.ndarray:
-        """Log belief (..., classes) after `touches` touches with the summed log_likelihoods (..., classes)."""
-        factor = self.weight * np.asarray(touches, dtype=np.float64) ** -self.redundancy
-        return log_softmax(np.asarray(factor)[..., None] * log_likelihoods, axis=-1)
 
 
-def calibrate(sequences: ArrayLike, truth: ArrayLike, redundancy: bool = True) -> Calibration:
-    """The Calibration that maximises the likelihood of the true objects of sequences of touches.
+@dataclass(frozen=True)
+class Pose:
+    """How an object stands: rotation (3, 3), shift (3,) in the unit of the meshes, and size as a share of the mesh's."""
 
-    sequences (e, touches, classes): log likelihoods of touches, in the order of touching; truth (e,). All lengths of a
-    sequence have equal weight. The touches must not be among those that the likelihood was fitted to. redundancy=False
-    keeps the redundancy at 0 and fits the weight to single touches: the plain product.
-    Raises ValueError for sequences that are empty or not finite, and for a truth that is no class of theirs.
+    rotation: np.ndarray
+    shift: np.ndarray
+    size: float
+
+    @property
+    def turn(self) -> float:
+        """Degrees about the up axis, of an object that stands."""
+        return float(np.degrees(np.arctan2(self.rotation[1, 0], self.rotation[0, 0])) % 360)
+
+
+@dataclass(frozen=True)
+class Belief:
+    """Probabilities of objects and poses, from `Library.belief` or `Library.look`.
+
+    Attributes
+    ----------
+    library : Library
+        The known objects.
+    hypotheses : Hypotheses
+        Objects in poses.
+    log_weights : (h,) array of float
+        Their log probabilities, to a constant of the touches.
+    felt : (h,) array of float
+        What the touches alone contribute to these.
+    touches : tuple of Touch
+        The touches so far.
     """
-    sequences, truth = _checked(np.asarray(sequences, dtype=np.float64), np.asarray(truth))
-    log_likelihoods = np.cumsum(sequences if redundancy else sequences[:, :1], axis=1)
-    touches = np.arange(1, log_likelihoods.shape[1] + 1)
 
-    def loss(values):
-        log_belief = Calibration(np.exp(values[0]), values[1]).log_belief(log_likelihoods, touches)
-        return -log_belief[np.arange(len(truth)), :, truth].mean()
+    library: Library
+    hypotheses: Hypotheses
+    log_weights: np.ndarray
+    felt: np.ndarray
+    touches: tuple[Touch, ...] = field(default=())
 
-    bounds = [(-4.0, 3.0), (0.0, 1.0 if redundancy else 0.0)]
-    optimum = scipy.optimize.minimize(loss, [0.0, 0.5 if redundancy else 0.0], bounds=bounds, method="L-BFGS-B").x
-    return Calibration(float(np.exp(optimum[0])), float(optimum[1]))
+    def look(self, picture: ArrayLike, camera: Viewpoint | None = None, hidden: ArrayLike | None = None) -> "Belief":
+        """The belief after a look.
+
+        Parameters
+        ----------
+        picture : (h, w) or (h, w, 3) array of uint8
+            A picture against a dark background. Its rows span `library.span`, its middle shows the origin.
+        camera : Viewpoint, optional
+            From where the camera looks; None if that is unknown.
+        hidden : (h, w) array of bool, optional
+            True where something else is seen than the object and its background.
+
+        Returns
+        -------
+        Belief
+            The belief after the look.
+
+        Raises
+        ------
+        ValueError
+            For a picture of another kind, one that shows nothing, one that is all hidden, and a camera that looks from
+            below the table.
+        """
+        evidence = self.library.of_picture(picture, camera, hidden)
+        evidence = evidence - logsumexp(evidence) + np.log(len(evidence))  # so that the mean likelihood is 1
+        evidence = np.logaddexp(np.log(1 - MISLED) + evidence, np.log(MISLED))
+        of_pose = evidence.reshape(len(self.library.names), -1)[self.hypotheses.objects, self.hypotheses.poses]
+        return replace(self, log_weights=self.log_weights + of_pose)
+
+    def after(self, approach: Approach, travel: float, imprint: ArrayLike) -> "Belief":
+        """The belief after a touch.
+
+        Parameters
+        ----------
+        approach : Approach
+            The line along which the hand came, of `next_touch` or `Library.approach`.
+        travel : float
+            How far it moved until first contact, in the unit of the meshes; inf where it met nothing.
+        imprint : (rows, cols) array_like
+            How far the surface lies below each cell at first contact, in the unit of the meshes; not read where nothing
+            was met.
+
+        Returns
+        -------
+        Belief
+            The belief after the touch.
+
+        Raises
+        ------
+        ValueError
+            For numbers that no touch of this array gives; a travel after which the array is still far from any object
+            is in another unit.
+        """
+        library = self.library
+        touch = self._touch(approach, travel, imprint)
+        touches = (*self.touches, touch)
+        if self.hypotheses.is_grid and approach.line >= 0:
+            evidence = _evidence(library, self.hypotheses, touch)
+        else:
+            likely = np.flatnonzero(self.log_weights > self.log_weights.max() + NEGLIGIBLE)
+            evidence = np.full(len(self.hypotheses), NEGLIGIBLE)
+            evidence[likely] = _evidence(library, self.hypotheses[likely], touch)
+        after = replace(self, log_weights=self.log_weights + evidence, felt=self.felt + evidence, touches=touches)
+        if not library.tolerant:
+            return after
+        hypotheses, log_weights = refined(library, after.hypotheses, after.log_weights, touches, _evidence)
+        return replace(after, hypotheses=hypotheses, log_weights=log_weights, felt=np.zeros(len(hypotheses)))
+
+    def _touch(self, approach, travel, imprint):
+        library, diameter = self.library, self.library.diameter
+        if approach.array != library.sensor:
+            raise ValueError("the touch is of another array than the one that the objects were learned with")
+        if not travel < np.inf and not np.isnan(travel):
+            imprint = np.full(library.sensor.cells, library.sensor.depth)
+        travel, imprint = check_touch(travel, imprint, library.sensor)
+        place = approach.contact(travel if np.isfinite(travel) else START * diameter)
+        reach = (RADIUS * (1 + library.size) + library.position * np.sqrt(3) + MARGIN) * diameter
+        half = library.sensor.pitch * max(library.sensor.cells)
+        if np.isfinite(travel) and np.linalg.norm(place) > reach + half:
+            raise ValueError(
+                f"after a travel of {travel:g} the array is {np.linalg.norm(place):.3g} from the origin, where no known "
+                f"object reaches ({reach:.3g}): give the travel in the unit of the meshes, and the line in their frame"
+            )
+        contact, before = place / diameter, np.array([one.contact for one in self.touches]).reshape(-1, 3)
+        weight = float(library.likelihood.weight(np.linalg.norm(before - contact, axis=1)))
+        travelled = travel / diameter if np.isfinite(travel) else AWAY
+        return Touch(approach, travelled, imprint.ravel() / library.sensor.depth, contact, weight)
+
+    @cached_property
+    def _of_objects(self):
+        """(objects,) log probabilities, if the object is one of the library's."""
+        log_weights = self.log_weights - self.log_weights.max()
+        sums = np.bincount(self.hypotheses.objects, np.exp(log_weights), len(self.library.names))
+        return np.log(np.maximum(sums, 1e-300)) - np.log(sums.sum())
+
+    @cached_property
+    def among_known(self) -> np.ndarray:
+        """(objects,) probabilities if the object is one of the library's, in the order of its names."""
+        return np.exp(self._of_objects)
+
+    @cached_property
+    def none(self) -> float:
+        """The probability that the object is none of the library's: 0 unless it was learned with `unknown`."""
+        if self.library.verifier is None:
+            return 0.0
+        weight = sum(touch.weight for touch in self.touches)
+        return 1 - self.library.verifier.probability(self.felt.max() / max(weight, 1e-9), weight)
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """(objects,) probabilities, in the order of the library's names."""
+        return self.among_known * (1 - self.none)
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """{name: probability}, the likeliest first; with "none of these" if the library was learned with `unknown`."""
+        by_name = dict(zip(self.library.names, self.values.tolist(), strict=True))
+        if self.library.verifier is not None:
+            by_name[NONE] = self.none
+        return dict(sorted(by_name.items(), key=lambda item: -item[1]))
+
+    @property
+    def name(self) -> str:
+        """The likeliest name."""
+        return next(iter(self.probabilities))
+
+    @property
+    def known(self) -> str:
+        """The likeliest name if its probability is at least SURE; else empty."""
+        name, probability = next(iter(self.probabilities.items()))
+        return name if probability >= SURE else ""
+
+    @cached_property
+    def pose(self) -> Pose:
+        """The likeliest pose of the likeliest known object."""
+        best = int(self.among_known.argmax())
+        ids = np.flatnonzero(self.hypotheses.objects == best)
+        one = self.hypotheses[ids[[self.log_weights[ids].argmax()]]]
+        return Pose(one.rotations[0], one.shifts[0] * self.library.diameter, float(one.sizes[0]))
+
+    def next_touch(self, reachable: Reachable | None = None) -> Approach:
+        """The line along which a touch is expected to tell most about the name.
+
+        Parameters
+        ----------
+        reachable : callable, optional
+            Takes the origins (k, 3) and directions (k, 3) of lines, in the unit of the meshes, and tells (k,) which of
+            them the hand can follow. All by default.
+
+        Returns
+        -------
+        Approach
+            The line.
+
+        Raises
+        ------
+        ValueError
+            Where no line is reachable that was not touched.
+        """
+        lines = self._lines(reachable)
+        count = PRESSED_LINES if self.library.tolerant else LINES
+        if len(lines) > count:
+            lines = np.sort(rng(len(self.touches), "lines").permutation(lines)[:count])
+        return self.library.line(int(lines[self.expected_entropy(lines).argmin()]))
+
+    def _lines(self, reachable):
+        """The lines that can be followed and were not."""
+        grid, diameter = self.library.grid, self.library.diameter
+        free = np.ones(grid.lines, dtype=bool)
+        free[[touch.approach.line for touch in self.touches if touch.approach.line >= 0]] = False
+        if reachable is not None:
+            answer = np.asarray(reachable(grid.line_origins * diameter, -grid.line_axes[:, 2]))
+            if answer.shape != (grid.lines,):
+                raise ValueError(f"reachable must tell of each of {grid.lines} lines, got shape {answer.shape}")
+            free &= answer.astype(bool)
+        if not free.any():
+            raise ValueError("no line that can be reached is left: let `reachable` allow more")
+        return np.flatnonzero(free)
+
+    def expected_entropy(self, lines: np.ndarray) -> np.ndarray:
+        """(k,) nats that are expected to remain of the name's entropy after a touch along each of the library's lines.
+
+        The belief is that among the known objects.
+        """
+        library, random = self.library, rng(len(self.touches), "planner")
+        weights = np.exp(self.log_weights - self.log_weights.max())
+        ids, shares = draw(weights, CANDIDATES, random)
+        truths, truth_shares = draw(shares, TRUTHS, random)
+        some = self.hypotheses[ids]
+        travels, reliefs = library.predict_lines(some, lines)
+        travels, reliefs = travels.T, _coarse(reliefs, library.array.cells).transpose(1, 0, 2)
+        products = reliefs[:, truths] @ reliefs.transpose(0, 2, 1)
+        squares = np.einsum("lhc,lhc->lh", reliefs, reliefs)
+        apart = (squares[:, truths, None] + squares[:, None] - 2 * products) / reliefs.shape[2]
+        evidence = library.likelihood.of_touch(travels[:, truths, None] - travels[:, None], np.maximum(apart, 0))
+        if self.touches:
+            grid = library.grid
+            reached = np.minimum(travels[:, truths], START)[..., None] * grid.line_axes[lines][:, None, 2]
+            contacts = grid.line_origins[lines][:, None] - reached
+            before = np.array([touch.contact for touch in self.touches])
+            distances = np.linalg.norm(contacts[:, :, None] - before, axis=3)
+            evidence *= library.likelihood.weight(distances)[..., None]
+        return expected_entropy(some.objects, shares, truths, truth_shares, evidence)
 
 
-STEPS = [
-    Calibration(weight, redundancy)
-    for weight in np.geomspace(0.02, 2.5, 15).tolist()
-    for redundancy in (0, 0.2, 0.4, 0.6, 0.8, 1)
-]
+def _coarse(reliefs, cells):
+    """Reliefs (..., cells) as means over blocks of 2 x 2 cells, where rows and columns are even."""
+    rows, columns = cells
+    if rows % 2 or columns % 2:
+        return reliefs
+    shape = *reliefs.shape[:-1], rows // 2, 2, columns // 2, 2
+    return reliefs.reshape(shape).mean(axis=(-3, -1)).reshape(*reliefs.shape[:-1], -1)
 
 
-def calibrate_to_stop(sequences: ArrayLike, truth: ArrayLike, sure: float, start: Calibration) -> Calibration:
-    """The Calibration whose belief may end the touching: the object first believed at `sure` is right that often.
-
-    A belief that is right on average at each number of touches errs more often at the touch at which it first passes
-    `sure`: errors pass it, too. Returns `start` unless chance alone would hardly let it err that often. Otherwise
-    returns the one of STEPS that holds and stops soonest; where none holds, the one that stops least.
-
-    sequences, truth: as in `calibrate`. sure: probability from 0 to 1.
-    """
-    sequences, truth = _checked(np.asarray(sequences, dtype=np.float64), np.asarray(truth))
-    log_likelihoods, touches = np.cumsum(sequences, axis=1), np.arange(1, sequences.shape[1] + 1)
-
-    def stops(calibration):
-        """(how many sequences stop, how many more of them are right than `sure` asks for, mean number of touches)."""
-        belief = np.exp(calibration.log_belief(log_likelihoods, touches))
-        passed = belief.max(axis=2) >= sure
-        first, stopped = passed.argmax(axis=1), passed.any(axis=1)
-        right = belief[np.arange(len(truth)), first].argmax(axis=1) == truth
-        mean = np.where(stopped, touches[first], len(touches)).mean()
-        return stopped.sum(), right[stopped].sum() - sure * stopped.sum(), mean
-
-    count, margin, _ = stops(start)
-    if margin >= -2 * np.sqrt(count * sure * (1 - sure)):  # two standard errors
-        return start
-    outcomes = [(step, *stops(step)) for step in STEPS]
-    sound = [outcome for outcome in outcomes if outcome[1] and outcome[2] >= 0]
-    return min(sound, key=lambda outcome: outcome[3])[0] if sound else min(outcomes, key=lambda outcome: outcome[1])[0]
+def _evidence(library: Library, hypotheses: Hypotheses, touch: Touch) -> np.ndarray:
+    """(h,) weighted log likelihoods of a touch under hypotheses."""
+    travels, reliefs = library.predict(hypotheses, touch.approach)
+    apart = reliefs - touch.relief.astype(np.float32)
+    squares = np.einsum("hc,hc->h", apart, apart) / apart.shape[1]
+    return touch.weight * library.likelihood.of_touch(travels - touch.travel, squares)
 
 
-def _checked(sequences, truth):
-    """The two as they are; ValueError where no touch, or no number, would calibrate a belief."""
-    if sequences.ndim != 3 or 0 in sequences.shape:
-        shape = "(sequences, touches, classes), of each at least one"
-        raise ValueError(f"sequences must have shape {shape}, got shape {sequences.shape}")
-    if len(wrong := np.argwhere(~np.isfinite(sequences))):
-        value, where = sequences[tuple(wrong[0])], wrong[0][0]
-        raise ValueError(f"sequences must be finite log likelihoods, got {value} in sequence {where}")
-    if truth.shape != sequences.shape[:1] or not np.isin(truth, np.arange(sequences.shape[2])).all():
-        remedy = f"one class from 0 to {sequences.shape[2] - 1} for each of the {len(sequences)} sequences"
-        raise ValueError(f"truth must hold {remedy}")
-    return sequences, truth.astype(np.int64)
-
-
-FEATURE_WIDTH = 0.6  # of twelve standardised components; 0.3 to 1 give the same single-touch likelihood within 6 %
-PLACE_WIDTH = 0.05  # units: a third of the array, within which neighbouring touches are similar
-FLOOR = 1e-30  # of a density that rounds to 0
-ORDERS = 5  # random orders of each object's touches, at least, for a calibration
-STOPS, LAST = 400, 30  # orders of all objects together, and touches of each, where touching ends by a calibration
-BLOCK = 256  # touches compared at once, in the processor's cache
-
-
-def feature_kernel(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(k, n): the similarity of components (k, d) and (n, d), exp(-distance / width).
-
-    Exponential rather than normal, so that a touch unlike all training touches does not decide alone. By the likelihood
-    of single held-out touches it is better than a normal kernel, naive Bayes and linear discriminants.
-    """
-    return np.exp(-distances(first, second) / FEATURE_WIDTH)
-
-
-def place_kernel(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(k, n): the proximity of places (k, 3) and (n, 3), exp(-distance / width)."""
-    return np.exp(-distances(first, second) / PLACE_WIDTH)
-
-
-def log_likelihood(kernel: np.ndarray, truth: np.ndarray, counts: np.ndarray | None = None) -> np.ndarray:
-    """(..., k, classes) log density of touches under each object, up to a constant.
-
-    kernel (..., k, n): of the touches with the training touches, products of `feature_kernel` and, if places are used,
-    `place_kernel`; 0 for a training touch that must not count. truth (n,): the objects of the training touches. counts
-    (k, classes): the number of training touches of each object that count; all by default.
-    """
-    one_hot = np.eye(int(truth.max()) + 1)[truth]
-    counts = np.maximum(one_hot.sum(axis=0) if counts is None else counts, 1)
-    return np.log(np.maximum(kernel @ one_hot / counts, FLOOR))
-
-
-def distances(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(k, n) Euclidean distances of points (k, d) and (n, d)."""
-    squares = (first**2).sum(axis=1)[:, None] + (second**2).sum(axis=1)[None] - 2 * first @ second.T
-    return np.sqrt(np.maximum(squares, 0))
-
-
-MAX_NEIGHBOURS = 8  # known touches of an object near a place, as predictions for the place
-NEIGHBOUR_WIDTH = 0.08  # units, half an array: within which a known touch predicts others
-
-
-def nearest_outcomes(distances: np.ndarray, owners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(outcomes (k, classes, o): ids of the touches of each object nearest to a place, their probabilities).
-
-    distances (k, n): of k places to the known touches, in units; owners (n,): the objects of these, from 0.
-    """
-    of_object = [np.flatnonzero(owners == label) for label in range(int(owners.max()) + 1)]
-    count = min(MAX_NEIGHBOURS, *map(len, of_object))
-    outcomes = np.stack(
-        [ids[np.argsort(distances[:, ids], axis=1, kind="stable")[:, :count]] for ids in of_object], axis=1
-    )
-    nearest = np.take_along_axis(distances[:, None], outcomes.reshape(len(distances), 1, -1), axis=2).reshape(
-        outcomes.shape
-    )
-    weights = np.exp(-(nearest - nearest[..., :1]) / NEIGHBOUR_WIDTH)
-    return outcomes, weights / weights.sum(axis=-1, keepdims=True)
+def first_belief(library: Library) -> Belief:
+    """The Belief of a library before anything was seen or felt."""
+    hypotheses = first_particles(library) if library.tolerant else library.hypotheses
+    alike = np.full(len(hypotheses), -np.log(len(hypotheses)))
+    return Belief(library, hypotheses, alike, np.zeros(len(hypotheses)))

@@ -14,7 +14,7 @@ from haptic_glance.touch.skin import as_shares
 
 from .classifiers import CLASSIFIERS, COMPONENTS, TRAINING, check_name, scaled
 from .features import features
-from .split import Split
+from .split import HOLDOUT, Split
 
 VALIDITY = ("train_accuracy", "commonest_share")  # metrics that find a dead classifier
 
@@ -71,7 +71,6 @@ class Prepared:
         return Answers(predicted, self.seconds + watch.seconds, right)
 
 
-HOLDOUT = 0.25  # of each object's touches; T4.2.4
 FOLDS = 5  # T4.2.4
 MIN_IMPRINTS = 10  # per object: with two objects a fold then still trains on the 12 samples that PCA needs
 

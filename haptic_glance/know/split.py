@@ -2,6 +2,8 @@
 
 from enum import StrEnum
 
+import numpy as np
+
 
 class Split(StrEnum):
     """The column `split` of the measurements: what was kept out of training."""
@@ -48,3 +50,36 @@ def shared_by(split: str, of_class: int | None = None) -> float:
     if of_class is not None and split == Split.OBJECTS:
         return 1 / (of_class - 1)
     return _SHARED.get(Split(split), 0.0)
+
+
+HOLDOUT = 0.25  # of each object's touches; T4.2.4
+# Each split by its word in reports/metrics and in the seeds of the random numbers, on which the results depend.
+SPLITS: dict[str, str] = {Split.RANDOM: "anywhere", Split.REGIONS: "apart"}
+
+
+def split_touches(
+    truth: np.ndarray, places: np.ndarray, split: str, min_distance: float, random: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """(train, test) indices of touches (k,) with objects truth (k,) and places (k, 3), in rising order.
+
+    A quarter of each object's touches is held out: `random`, so that test arrays overlap training arrays; or `regions`,
+    one region of each object, where only touches farther than `min_distance` units from all of the region remain for
+    training. Raises ValueError for an object without touches to train on.
+    """
+    if split not in SPLITS:
+        raise ValueError(f"unknown split {split}: choose one of {', '.join(SPLITS)}")
+    train, test = [], []
+    for label in np.unique(truth):
+        members = np.flatnonzero(truth == label)
+        count = round(HOLDOUT * len(members))
+        if split == Split.RANDOM:
+            held_out, kept = np.split(random.permutation(members), [count])
+        else:
+            distances = np.linalg.norm(places[members][:, None] - places[members][None], axis=2)
+            region, rest = np.split(np.argsort(distances[random.integers(len(members))], kind="stable"), [count])
+            held_out, kept = members[region], members[rest[(distances[rest][:, region] > min_distance).all(axis=1)]]
+        if len(held_out) == 0 or len(kept) == 0:
+            raise ValueError(f"object {label} has too few touches ({len(members)}) to hold some out: {split}")
+        test.append(np.sort(held_out))
+        train.append(np.sort(kept))
+    return np.concatenate(train), np.concatenate(test)

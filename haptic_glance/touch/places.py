@@ -10,12 +10,12 @@ from haptic_glance.look.points import find_points
 from haptic_glance.mesh import clean, normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import to_z_up
 from haptic_glance.mesh.files import load_unnamed
-from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh, unit
 from haptic_glance.mesh.repair import RADIUS, centre_and_radius, significant_digits
 from haptic_glance.mesh.up import upright_by
 
 from .section import MAX_OFFSET, snap_to_surface
-from .surface import Surface, sensor_normals, touchable
+from .surface import CANCELLED, Surface, mean_vertex_normals, sensor_normals, touchable
 
 DEFAULT_COUNT = 6  # of the salient or random places, where a person names none
 
@@ -31,6 +31,29 @@ class Places:
     positions: np.ndarray
     normals: np.ndarray
     note: str = ""
+
+
+NEAR = 0.01  # units, one cell of the default array: within it a point belongs to its vertex
+
+
+def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:
+    """Places of points (k, 3) that lie in faces (k,).
+
+    A point within NEAR of a corner of its face is moved to this vertex, with the normal that `press` has there. A
+    single face of a fine scan is no guide to how an array lies on it. On a large face the normal is the face's own.
+    """
+    mesh, rows = surface.mesh, np.arange(len(points))
+    corners = mesh.faces[faces]
+    distances = np.linalg.norm(mesh.vertices[corners] - points[:, None], axis=2)
+    nearest = distances.argmin(axis=1)
+    vertices = corners[rows, nearest]
+    averages = mean_vertex_normals(mesh)[vertices]
+    at_vertex = (distances[rows, nearest] <= NEAR) & (np.linalg.norm(averages, axis=1) > CANCELLED)
+    return Places(
+        np.where(at_vertex, vertices, -1),
+        np.where(at_vertex[:, None], mesh.vertices[vertices], points),
+        np.where(at_vertex[:, None], unit(averages), mesh.face_normals[faces]),
+    )
 
 
 @dataclass(frozen=True)
