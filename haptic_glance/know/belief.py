@@ -40,7 +40,7 @@ class Touch:
 
 @dataclass(frozen=True)
 class Pose:
-    """How an object stands: rotation (3, 3), shift (3,) in the unit of the meshes, and size as a share of the mesh's."""
+    """How an object stands: rotation (3, 3), shift (3,) in the unit of the meshes, size as a share of the mesh's."""
 
     rotation: np.ndarray
     shift: np.ndarray
@@ -156,8 +156,8 @@ class Belief:
         half = library.sensor.pitch * max(library.sensor.cells)
         if np.isfinite(travel) and np.linalg.norm(place) > reach + half:
             raise ValueError(
-                f"after a travel of {travel:g} the array is {np.linalg.norm(place):.3g} from the origin, where no known "
-                f"object reaches ({reach:.3g}): give the travel in the unit of the meshes, and the line in their frame"
+                f"after a travel of {travel:g} the array is {np.linalg.norm(place):.3g} from the origin, farther than "
+                f"any known object reaches ({reach:.3g}): give the travel in the unit of the meshes"
             )
         contact, before = place / diameter, np.array([one.contact for one in self.touches]).reshape(-1, 3)
         weight = float(library.likelihood.weight(np.linalg.norm(before - contact, axis=1)))

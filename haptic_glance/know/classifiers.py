@@ -34,14 +34,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .components import COMPONENTS
-
 if TYPE_CHECKING:
     from sklearn.base import ClassifierMixin
     from sklearn.pipeline import Pipeline
 
 KINDS = ("features", "located", "reduced", "joined")  # of samples
 TRAINING, BEFOREHAND, TWICE, MIN_MAX = SCALINGS = ("training", "beforehand", "components", "min_max")
+COMPONENTS = 12  # T4.2.3.4
 TOUCH = 5  # columns of one of several joined touches: two of the map, three of the position
 
 

@@ -1,4 +1,4 @@
-"""A library of known meshes: what a look shows and what a touch feels if it is one of them, in each pose it may have."""
+"""A library of known meshes: what a look shows and a touch feels if it is one of them, in each pose it may have."""
 
 import hashlib
 from collections.abc import Mapping

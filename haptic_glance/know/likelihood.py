@@ -1,7 +1,7 @@
 """How likely a picture or a touch is, where an object in a pose predicts another.
 
-The noise of the world is unknown, so that differences have the likelihood of Student's distribution: a few large ones do
-not decide alone. The constants were fitted to the classes of Princeton's segmentation benchmark with odd numbers.
+The noise of the world is unknown, so that differences have the likelihood of Student's distribution: a few large ones
+do not decide alone. The constants were fitted to the classes of Princeton's segmentation benchmark with odd numbers.
 """
 
 from dataclasses import dataclass, replace

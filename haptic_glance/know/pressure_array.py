@@ -74,8 +74,8 @@ def feel_lines(
     """What arrays feel that move from origins (k, 3) against their normals: (travels (k,), imprints (k, rows, cols)).
 
     axes (k, 3, 3): rows right, up and normal of each array, the normal against the movement. sizes (k,): of the object
-    as shares of the mesh, whose frame the origins are in. A travel is MISSED where nothing is met. An imprint is how far
-    the surface lies below the plane at first contact, at most `depth`.
+    as shares of the mesh, whose frame the origins are in. A travel is MISSED where nothing is met. An imprint is how
+    far the surface lies below the plane at first contact, at most `depth`.
     """
     scale = np.ones(len(origins)) if sizes is None else sizes
     window = array.depth / scale.min(initial=1.0)
