@@ -50,7 +50,6 @@ SHARED = ("profile", "out", "seed", "parallel", "sets", "report")  # what is sai
 TREE = ("benchmarks", "conf", "data", "docs", "haptic_glance", "samples", "stages", "tests")  # of this project
 RUNS = "runs"  # below it are the results of every configuration but the published one
 READ_TOO = {  # sections that a stage also reads
-    "exploration": ["classification"],
     "touch_stability": ["classification"],
     "simulated_to_real": ["recorded"],
     "recorded_networks": ["recorded"],

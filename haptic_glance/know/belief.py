@@ -1,6 +1,6 @@
 """The belief over known objects and their poses: a look and touches change it, and it says where to touch next."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -75,6 +75,16 @@ class Belief:
     log_weights: np.ndarray
     felt: np.ndarray
     touches: tuple[Touch, ...] = field(default=())
+
+    def among(self, names: Iterable[str]) -> "Belief":
+        """The belief if the object is one of some names of the library; ValueError for another name, and for none."""
+        names = set(names)
+        if unknown := sorted(names - set(self.library.names)):
+            raise ValueError(f"unknown object {unknown[0]!r}: choose from {', '.join(self.library.names)}")
+        kept = np.array([name in names for name in self.library.names])
+        if not kept.any():
+            raise ValueError("give at least one name")
+        return replace(self, log_weights=np.where(kept[self.hypotheses.objects], self.log_weights, -np.inf))
 
     def look(self, picture: ArrayLike, camera: Viewpoint | None = None, hidden: ArrayLike | None = None) -> "Belief":
         """The belief after a look.

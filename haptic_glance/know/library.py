@@ -162,16 +162,22 @@ def _standing(name, mesh):
 
 
 def _warn_of_equal(meshes):
-    """Warns of each mesh that was given under an earlier name, too."""
-    names = list(meshes)
+    for late, early in equal_meshes(meshes).items():
+        warn_caller(f"{early} and {late} are the same mesh: they cannot be told apart, so leave one out")
+
+
+def equal_meshes(meshes: Mapping[str, Mesh]) -> dict[str, str]:
+    """{name of a mesh: an earlier name under which it was given, too}, of centred meshes."""
+    names, equal = list(meshes), {}
     middles = [mesh.vertices[mesh.faces].mean(axis=1) for mesh in meshes.values()]
     reach = max(np.abs(points).max() for points in middles) * SAME
     centres = np.array([points.mean(axis=0) for points in middles])
     for late, name in enumerate(names):
-        for early in np.flatnonzero(np.abs(centres[:late] - centres[late]).max(axis=1, initial=0) < reach):
-            if _are_equal(middles[early], middles[late], reach):
-                warn_caller(f"{names[early]} and {name} are the same mesh: they cannot be told apart, so leave one out")
-                break
+        near = np.flatnonzero(np.abs(centres[:late] - centres[late]).max(axis=1, initial=0) < reach)
+        early = next((number for number in near if _are_equal(middles[number], middles[late], reach)), -1)
+        if early >= 0:
+            equal[name] = names[early]
+    return equal
 
 
 def _are_equal(first, second, reach):

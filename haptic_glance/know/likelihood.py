@@ -19,19 +19,21 @@ class Likelihood:
     beside its gradients. travel: of a touch's difference in travel, whose scale is `travel_scale`. relief: of the mean
     square difference of imprints as shares of the depth, whose scale is `relief_scale`. repeated: the share of a
     touch's evidence that another one at the same place has told; `repeated_within` how far that reaches, and
-    `repeated_anywhere` what any two touches share.
+    `repeated_anywhere` what any two touches share. astray: the most that a touch takes from the log likelihood, since
+    the hand may have met something else.
     """
 
-    sight: float = 26.0
+    sight: float = 34.0
     sight_least: float = 0.01
     grey: float = 0.7
-    travel: float = 1.2
+    travel: float = 1.4
     travel_scale: float = 0.02
-    relief: float = 5.0
+    relief: float = 5.5
     relief_scale: float = 0.085
-    repeated: float = 0.6
+    repeated: float = 0.7
     repeated_within: float = 0.3
-    repeated_anywhere: float = 0.1
+    repeated_anywhere: float = 0.2
+    astray: float = 18.0
 
     def with_noise(self, array: PressureArray) -> "Likelihood":
         """The Likelihood for an array with noise, whose lengths are in diameters."""
@@ -48,9 +50,9 @@ class Likelihood:
 
     def of_touch(self, travel: np.ndarray, relief: np.ndarray) -> np.ndarray:
         """Log likelihoods, to a constant, by differences of travel and mean square differences of imprints."""
-        return -self.travel * np.log1p((travel / self.travel_scale) ** 2) - self.relief * np.log1p(
-            relief / self.relief_scale**2
-        )
+        known = self.travel * np.log1p((travel / self.travel_scale) ** 2)
+        known = known + self.relief * np.log1p(relief / self.relief_scale**2)
+        return np.logaddexp(-known, -self.astray)
 
     def weight(self, distances: np.ndarray) -> np.ndarray:
         """(...) weight of a touch, by its distances (..., touches) to those before."""

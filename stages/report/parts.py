@@ -11,9 +11,9 @@ from stages.charts.html import item_html
 from stages.charts.items import Figure, Table, add_words
 from stages.charts.results import NoData, NotRun, Results
 from stages.classification import report as classification
-from stages.exploration import report as exploration
 from stages.fixation import report as fixation
 from stages.lod import report as lod
+from stages.look_and_touch import report as look_and_touch
 from stages.meshes import report as meshes
 from stages.recorded import report as recorded
 from stages.recorded_networks import report as recorded_networks
@@ -39,7 +39,7 @@ PARTS: dict[str, ModuleType] = {
     "lod": lod,
     "scene": scene,
     "classification": classification,
-    "exploration": exploration,
+    "look_and_touch": look_and_touch,
     "sensor_size": sensor_size,
     "sequences": sequences,
     "transfer": transfer,

@@ -1,0 +1,2 @@
+PAGE = "look_and_touch"
+TABLES, FIGURES, CHARTS = {}, {}, {}
