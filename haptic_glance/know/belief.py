@@ -220,11 +220,12 @@ class Belief:
 
     @cached_property
     def pose(self) -> Pose:
-        """The likeliest pose of the likeliest known object."""
-        best = int(self.among_known.argmax())
-        ids = np.flatnonzero(self.hypotheses.objects == best)
-        one = self.hypotheses[ids[[self.log_weights[ids].argmax()]]]
-        return Pose(one.rotations[0], one.shifts[0] * self.library.diameter, float(one.sizes[0]))
+        """The likeliest pose of the likeliest known object; its mean place and size, where these are unknown."""
+        ids = np.flatnonzero(self.hypotheses.objects == int(self.among_known.argmax()))
+        weights = np.exp(self.log_weights[ids] - self.log_weights[ids].max())
+        some, shares = self.hypotheses[ids], weights / weights.sum()
+        shift = shares @ some.shifts * self.library.diameter
+        return Pose(some.rotations[weights.argmax()], shift, float(shares @ some.sizes))
 
     def next_touch(self, reachable: Reachable | None = None) -> Approach:
         """The line along which a touch is expected to tell most about the name.

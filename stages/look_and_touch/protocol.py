@@ -16,12 +16,12 @@ from haptic_glance.know import Belief, Library, stand
 from haptic_glance.know.pressure_array import MISSED, feel_lines
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import render
-from haptic_glance.look.views.view import View
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface
 
 CAMERA = Viewpoint(0.0, 35.0)
 SIDE = 96  # pixels of a picture
+WIDER = 4  # times the picture: what is rendered, since an object beside its place may leave the picture
 BOARD = 128  # grey value of the board that hides a part of the object
 AMPLIFIED = 0.12  # share of full light that a dark picture is amplified to
 SENSOR_NOISE = 0.02  # of full scale, of a dark picture
@@ -79,19 +79,21 @@ class Case:
         self._error = error
 
     @cached_property
-    def view(self) -> View:
-        """The undisturbed view of the camera."""
-        unit = replace(self.there, vertices=self.there.vertices / self.library.diameter)
-        return render(unit, CAMERA, size=(SIDE, SIDE))
+    def view(self) -> tuple[np.ndarray, np.ndarray]:
+        """(grey values, whether the object is seen) of the undisturbed picture, which may cut the object off."""
+        small = replace(self.there, vertices=self.there.vertices / (WIDER * self.library.diameter))
+        view, border = render(small, CAMERA, size=(WIDER * SIDE, WIDER * SIDE)), (WIDER - 1) * SIDE // 2
+        middle = slice(border, border + SIDE), slice(border, border + SIDE)
+        return view.rgb[middle].mean(axis=2), view.face[middle] >= 0
 
     def picture(self, hidden: float, light: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
         """(picture, mask of what is hidden) with a share of the object behind a board, in a share of full light."""
         random = rng(self.seed, f"{self.name} {self.pose} picture")
-        grey = self.view.rgb.mean(axis=2)
+        grey, is_object = self.view
         if light < 1:
             dark = light * grey / 255 + SENSOR_NOISE * random.normal(size=grey.shape)
             grey = 255 * np.clip(dark / AMPLIFIED, 0, 1)
-        mask = board(self.view.face >= 0, hidden, random)
+        mask = board(is_object, hidden, random)
         return np.where(mask, BOARD, grey).astype(np.uint8), mask
 
     def look(self, sight: str, siblings: Sequence[str] = ()) -> Belief:

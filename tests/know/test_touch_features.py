@@ -3,11 +3,8 @@
 import numpy as np
 import pytest
 import pywt
-from sklearn.pipeline import make_pipeline
 
 from haptic_glance.know import FEATURES, features
-from haptic_glance.know.classifiers import reduction
-from haptic_glance.know.components import Components
 from haptic_glance.know.features import _halves
 
 IMAGES = np.random.default_rng(0).random((5, 16, 16))
@@ -18,15 +15,6 @@ def test_halves_are_those_of_pywt_to_the_last_bit(size):
     images = np.random.default_rng(2).random((5, size, 9))
     for ours, expected in zip(_halves(images), pywt.dwt(images, "db2", "symmetric", axis=1), strict=True):
         assert np.array_equal(ours, expected)
-
-
-def test_components_are_those_of_scikit_learn_to_the_last_bit():
-    random = np.random.default_rng(3)
-    known, new = random.random((300, 41)) * np.geomspace(1e-9, 9, 41), random.random((7, 41))
-    known[:, 5] = 0.1  # has no scale but rounding
-    expected, ours = make_pipeline(*reduction()).fit(known), Components(known)
-    for samples in (known, new, new[:1]):
-        assert np.array_equal(ours.transform(samples), expected.transform(samples))
 
 
 def test_an_imprint_does_not_feel_its_neighbours_in_the_batch_and_none_has_no_features():
