@@ -37,7 +37,7 @@ from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.files import FORMATS, load, with_known_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import warm_up
-from stages.look_and_touch.protocol import Case, FirstTouch, touch_on
+from stages.look_and_touch.protocol import Case, touch_on
 
 TOUCHES, PLACES, DRAWS = 6, 60, 4000
 ROWS = {
@@ -70,7 +70,7 @@ def meshes_of(place: Path) -> dict[str, tuple[str, Mesh]]:
 
 def measure(library: Library, meshes: dict[str, tuple[str, Mesh]], poses: int) -> tuple[Right, Right, float]:
     """(probability of the right object, greatest probability, seconds of a planned touch)."""
-    names, first, seconds = list(meshes), FirstTouch(), []
+    names, seconds = list(meshes), []
     cells = [(condition, policy) for condition, policies in ROWS.items() for policy in policies]
     shape = len(names), poses, TOUCHES + 1
     right, stated = ({cell: np.zeros(shape) for cell in cells} for _ in range(2))
@@ -83,7 +83,7 @@ def measure(library: Library, meshes: dict[str, tuple[str, Mesh]], poses: int) -
             for condition, policies in ROWS.items():
                 belief = case.look(condition, siblings)
                 for policy in policies:
-                    course = touch_on(case, belief, policy, TOUCHES, first)
+                    course = touch_on(case, belief, policy, TOUCHES)
                     answers = course.probabilities.argmax(axis=1)
                     right[condition, policy][number, pose] = answers == number
                     stated[condition, policy][number, pose] = course.probabilities.max(axis=1)
@@ -157,7 +157,7 @@ def lines_of(result: dict[str, Any]) -> Iterator[str]:
         for policy, values in by_policy.items():
             after = "  ".join(f"{value:5.1f}" for value in values)
             touches, when = result["touches_to_sure"][condition][policy], result["right_when_sure"][condition][policy]
-            yield f"{condition:9} {policy:8} {after}  % right after 0 to {TOUCHES} touches; sure after {touches}, right {when} %"
+            yield f"{condition:9} {policy:8} {after}  % right after 0 to {TOUCHES}; sure after {touches}, right {when}"
     for name, (mean, low, high) in result["differences"].items():
         yield f"{name}: {mean:+g} [{low:g}, {high:g}]"
     yield f"{result['objects']} objects, {result['classes']} classes, {result['poses']} poses: {result['seconds']}"

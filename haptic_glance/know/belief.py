@@ -23,7 +23,8 @@ MISLED = 0.01  # probability that a picture tells nothing of the object
 LINES, PRESSED_LINES = 128, 32  # along which a next touch is considered, where a table or presses predict it
 NEGLIGIBLE = -40.0  # log weight, relative to the greatest, below which a hypothesis is not predicted any more
 RADIUS = 0.5  # diameters, of the largest object
-MARGIN = 0.15  # diameters, of errors in where the hand is
+FARTHEST = 2.0  # diameters from the origin, where a hand that met an object can be
+NEAREST = 0.02  # share of the way to the largest object, after which a hand cannot have met it
 Reachable = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -162,12 +163,11 @@ class Belief:
             imprint = np.full(library.sensor.cells, library.sensor.depth)
         travel, imprint = check_touch(travel, imprint, library.sensor)
         place = approach.contact(travel if np.isfinite(travel) else START * diameter)
-        reach = (RADIUS * (1 + library.size) + library.position * np.sqrt(3) + MARGIN) * diameter
-        half = library.sensor.pitch * max(library.sensor.cells)
-        if np.isfinite(travel) and np.linalg.norm(place) > reach + half:
+        start, away = np.linalg.norm(approach.origin) / diameter - RADIUS, np.linalg.norm(place) / diameter
+        if np.isfinite(travel) and (away > FARTHEST or travel / diameter < NEAREST * start):
             raise ValueError(
-                f"after a travel of {travel:g} the array is {np.linalg.norm(place):.3g} from the origin, farther than "
-                f"any known object reaches ({reach:.3g}): give the travel in the unit of the meshes"
+                f"a travel of {travel:g} ends {away:.3g} diameters of the largest object from the origin, where no "
+                "object can be: give the travel in the unit of the meshes"
             )
         contact, before = place / diameter, np.array([one.contact for one in self.touches]).reshape(-1, 3)
         weight = float(library.likelihood.weight(np.linalg.norm(before - contact, axis=1)))
@@ -246,11 +246,19 @@ class Belief:
         ValueError
             Where no line is reachable that was not touched.
         """
+        return self.library.line(self._planned if reachable is None else self._plan(reachable))
+
+    @cached_property
+    def _planned(self):
+        """The number of the line of the next touch if all are reachable."""
+        return self._plan(None)
+
+    def _plan(self, reachable):
         lines = self._lines(reachable)
         count = PRESSED_LINES if self.library.tolerant else LINES
         if len(lines) > count:
             lines = np.sort(rng(len(self.touches), "lines").permutation(lines)[:count])
-        return self.library.line(int(lines[self.expected_entropy(lines).argmin()]))
+        return int(lines[self.expected_entropy(lines).argmin()])
 
     def _lines(self, reachable):
         """The lines that can be followed and were not."""
@@ -277,7 +285,7 @@ class Belief:
         truths, truth_shares = draw(shares, TRUTHS, random)
         some = self.hypotheses[ids]
         travels, reliefs = library.predict_lines(some, lines)
-        travels, reliefs = travels.T, _coarse(reliefs, library.array.cells).transpose(1, 0, 2)
+        travels, reliefs = travels.T, reliefs.transpose(1, 0, 2)
         products = reliefs[:, truths] @ reliefs.transpose(0, 2, 1)
         squares = np.einsum("lhc,lhc->lh", reliefs, reliefs)
         apart = (squares[:, truths, None] + squares[:, None] - 2 * products) / reliefs.shape[2]
@@ -290,15 +298,6 @@ class Belief:
             distances = np.linalg.norm(contacts[:, :, None] - before, axis=3)
             evidence *= library.likelihood.weight(distances)[..., None]
         return expected_entropy(some.objects, shares, truths, truth_shares, evidence)
-
-
-def _coarse(reliefs, cells):
-    """Reliefs (..., cells) as means over blocks of 2 x 2 cells, where rows and columns are even."""
-    rows, columns = cells
-    if rows % 2 or columns % 2:
-        return reliefs
-    shape = *reliefs.shape[:-1], rows // 2, 2, columns // 2, 2
-    return reliefs.reshape(shape).mean(axis=(-3, -1)).reshape(*reliefs.shape[:-1], -1)
 
 
 def _evidence(library: Library, hypotheses: Hypotheses, touch: Touch) -> np.ndarray:

@@ -3,12 +3,11 @@
 import hashlib
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 from scipy.special import logsumexp
 
@@ -38,7 +37,8 @@ DEFAULT = PressureArray((8, 8), 0.02, 0.05, 0.005, 0.0025)  # in diameters of th
 BYTES = 255  # in which relief is stored, as a share of the array's depth
 ELEVATIONS = (10.0, 35.0, 60.0)  # degrees, from which a camera may look of which nothing is known
 SPAN = 2 * DISTANCE * np.tan(np.radians(VIEW_ANGLE) / 2)  # diameters that the rows of a picture span
-SAME = 1e-5  # diameters: two formats of one mesh round its vertices by less
+PROBED = 64  # lines, of a first comparison of two shapes
+SAME, MOST = 0.003, 0.95  # diameters within which two shapes are the same, at this share of the lines
 
 
 def learn(
@@ -82,7 +82,7 @@ def learn(
     Warns
     -----
     UserWarning
-        For a mesh that does not say which axis points up, and for two equal meshes, which nothing can tell apart.
+        For a mesh that does not say which axis points up, and for two equal shapes, which nothing can tell apart.
 
     Examples
     --------
@@ -111,8 +111,10 @@ def learn(
     if not size < 1:
         raise ValueError(f"size is a share below 1 by which objects may be larger or smaller, got {size}")
     standing = {name: _standing(name, mesh) for name, mesh in meshes.items()}
-    _warn_of_equal(standing)
-    return Library(standing, pose, sensor, position, size, unknown)
+    library = Library(standing, pose, sensor, position, size, unknown)
+    for late, early in library.alike.items():
+        warn_caller(f"{early} and {late} are the same shape: they cannot be told apart, so leave one out")
+    return library
 
 
 def check_names(meshes: object) -> None:
@@ -161,32 +163,6 @@ def _standing(name, mesh):
     return replace(upright, vertices=upright.vertices - centre)
 
 
-def _warn_of_equal(meshes):
-    for late, early in equal_meshes(meshes).items():
-        warn_caller(f"{early} and {late} are the same mesh: they cannot be told apart, so leave one out")
-
-
-def equal_meshes(meshes: Mapping[str, Mesh]) -> dict[str, str]:
-    """{name of a mesh: an earlier name under which it was given, too}, of centred meshes."""
-    names, equal = list(meshes), {}
-    middles = [mesh.vertices[mesh.faces].mean(axis=1) for mesh in meshes.values()]
-    reach = max(np.abs(points).max() for points in middles) * SAME
-    centres = np.array([points.mean(axis=0) for points in middles])
-    for late, name in enumerate(names):
-        near = np.flatnonzero(np.abs(centres[:late] - centres[late]).max(axis=1, initial=0) < reach)
-        early = next((number for number in near if _are_equal(middles[number], middles[late], reach)), -1)
-        if early >= 0:
-            equal[name] = names[early]
-    return equal
-
-
-def _are_equal(first, second, reach):
-    """Whether two meshes have the same faces to rounding, by the middles (f, 3) of these in any order."""
-    if len(first) != len(second):
-        return False
-    return bool(np.isfinite(KDTree(first).query(second, distance_upper_bound=reach)[0]).all())
-
-
 class _Mesh:
     """A mesh in diameters, equal where its content is: the key of what is computed of it."""
 
@@ -233,6 +209,21 @@ def _viewpoint(axes):
     return replace(plain, roll=float(np.degrees(roll)))
 
 
+def coarse(reliefs: np.ndarray, cells: tuple[int, int]) -> np.ndarray:
+    """Reliefs (..., cells) as means over blocks of 2 x 2 cells, rounded down if they are bytes.
+
+    As they are where rows or columns are odd.
+    """
+    rows, columns = cells
+    if rows % 2 or columns % 2:
+        return reliefs
+    parts = reliefs.reshape(*reliefs.shape[:-1], rows // 2, 2, columns // 2, 2)
+    kind = np.uint16 if reliefs.dtype == np.uint8 else reliefs.dtype
+    sums = sum(parts[..., i, :, j].astype(kind) for i in range(2) for j in range(2))
+    means = sums // 4 if kind == np.uint16 else sums / 4
+    return means.astype(reliefs.dtype).reshape(*reliefs.shape[:-1], -1)
+
+
 class Library:
     """Known objects, made by `learn`.
 
@@ -263,6 +254,7 @@ class Library:
         self.items = [_Mesh(replace(mesh, vertices=mesh.vertices / self.diameter)) for mesh in meshes.values()]
         self.hypotheses: Hypotheses = grid_hypotheses(len(self.names), self.grid.rotations)
         self._travels, self._reliefs = self._table()
+        self._coarse = coarse(self._reliefs, self.array.cells)
         self.freedom = np.array({"fixed": (0, 0, 0), "turned": (0, 0, 1), "any": (1, 1, 1)}[pose])
         self.verifier: Verifier | None = None
         self.verifier = fit_verifier(self) if unknown else None
@@ -275,6 +267,18 @@ class Library:
         reliefs = np.stack([relief for _, relief in felt]).reshape(*shape, -1)
         return (np.ascontiguousarray(np.moveaxis(values, 2, 0)) for values in (travels, reliefs))
 
+    @cached_property
+    def alike(self) -> dict[str, str]:
+        """{name of an object: an earlier one of the same shape, which nothing can tell from it}."""
+        felt = np.moveaxis(self._travels, 1, 0).reshape(len(self.names), -1)
+        found = {}
+        for late, name in enumerate(self.names):
+            near = np.flatnonzero(np.median(np.abs(felt[:late, :PROBED] - felt[late, :PROBED]), axis=1) < SAME)
+            same = near[(np.abs(felt[near] - felt[late]) < SAME).mean(axis=1) >= MOST]
+            if len(same):
+                found[name] = self.names[same[0]]
+        return found
+
     def mesh(self, name: str) -> Mesh:
         """The mesh of a name, centred, with z up, in the unit in which it was given."""
         if name not in self.names:
@@ -284,6 +288,11 @@ class Library:
 
     def belief(self) -> "Belief":
         """The Belief before a look and a touch: all objects are alike."""
+        return self._first
+
+    @cached_property
+    def _first(self):
+        """The Belief before a look and a touch, which plans its first touch once."""
         from .belief import first_belief
 
         return first_belief(self)
@@ -332,13 +341,17 @@ class Library:
         return travels[:, 0], reliefs[:, 0]
 
     def predict_lines(self, hypotheses: Hypotheses, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(travels (h, k), reliefs (h, k, cells) f4) along k of the library's lines, as `predict`."""
+        """(travels (h, k), reliefs (h, k, some cells) f4) along k of the library's lines, as `predict`, for planning.
+
+        Neighbouring cells are averaged: the planner needs no more.
+        """
         if not self.tolerant:
             base, element = np.divmod(lines, len(self.grid.group))
             further, turn = np.divmod(hypotheses.poses, len(self.grid.poses))
             at = base[None], hypotheses.objects[:, None], further[:, None], self.grid.seen[turn][:, element]
-            return self._travels[at], self._reliefs[at].astype(np.float32) / BYTES
-        return self.press(hypotheses, self.grid.line_origins[lines], self.grid.line_axes[lines])
+            return self._travels[at], self._coarse[at].astype(np.float32) / BYTES
+        travels, reliefs = self.press(hypotheses, self.grid.line_origins[lines], self.grid.line_axes[lines])
+        return travels, coarse(reliefs, self.array.cells)
 
     @property
     def tolerant(self) -> bool:

@@ -52,7 +52,7 @@ class Likelihood:
         """Log likelihoods, to a constant, by differences of travel and mean square differences of imprints."""
         known = self.travel * np.log1p((travel / self.travel_scale) ** 2)
         known = known + self.relief * np.log1p(relief / self.relief_scale**2)
-        return np.logaddexp(-known, -self.astray)
+        return -np.minimum(known, self.astray)
 
     def weight(self, distances: np.ndarray) -> np.ndarray:
         """(...) weight of a touch, by its distances (..., touches) to those before."""

@@ -28,12 +28,13 @@ class Params:
     touches: int = setting(6, "touches of each pose", least=1)
     picture_seconds: float = setting(0.1, "what a picture costs a robot", least=0)
     touch_seconds: float = setting(5.0, "what a touch costs a robot", least=0)
+    disturbed: bool = setting(True, "whether looks and touches are also disturbed")
     severities: dict[str, list[float]] = setting(
         {
             "hidden": [0.7, 0.8, 0.9, 0.95],  # share of the object's pixels
             "darkness": [0.5, 0.8, 0.9, 0.95, 0.98],  # share of the light that is absent
-            "noise": [3.0, 6.0, 12.0, 24.0],  # times the sensor's
-            "position": [0.03, 0.06, 0.12, 0.24],  # diameters
+            "noise": [3.0, 6.0, 12.0],  # times the sensor's
+            "position": [0.02, 0.04, 0.08, 0.16],  # diameters
             "size": [1.05, 1.1, 1.2, 1.4],  # times the known mesh's
             "coarse_mesh": [2000.0, 500.0, 200.0, 100.0, 50.0],  # faces of the known meshes
         },

@@ -2,8 +2,8 @@
 
 Reads data/SET/meshes and data/SET/salient_points. Each object stands at drawn azimuths. One picture is taken, half
 hidden or not, and the hand touches along lines: planned, spread, at random, or at places of attention. The belief over
-objects and azimuths follows from the picture and from the travel and the imprint of each touch. Objects whose meshes
-are equal count once. The class of an object is that of classes.csv, or what precedes the number in its name.
+objects and azimuths follows from the picture and from the travel and the imprint of each touch. Objects of
+one shape count once. The class of an object is that of classes.csv, or what precedes the number in its name.
 
 Writes data/SET/look_and_touch/names.json (the objects and their classes) and
 reports/measurements/SET/look_and_touch.csv.gz. Metrics of an object: `right` after each number of touches;
@@ -13,20 +13,20 @@ objects: `reliable`, the share of right answers in each fifth of the stated prob
 
 import functools
 import re
+import warnings
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from haptic_glance.base.files import read_mesh, read_table, write_json
-from haptic_glance.know.library import equal_meshes
+from haptic_glance.base.files import read_table, write_json
 from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 from stages.engine.statistics import interval_tree
 
 from . import COLUMNS, Params
-from .measure import CLEAN, process
+from .measure import CLEAN, library_of, process
 
 FIFTHS = 5
 HEADLINES = {"blind": 1, "look": 1, "look_told": 1, "siblings": 1}  # sight: touches, in the metrics
@@ -35,7 +35,7 @@ HEADLINES = {"blind": 1, "look": 1, "look_told": 1, "siblings": 1}  # sight: tou
 def classes_of(folder: Path, names: list[str]) -> dict[str, str]:
     """{object: class}: of classes.csv in a folder of meshes, else what precedes `_NUMBER` in its name."""
     if (folder / "classes.csv").exists():
-        table = read_table(folder / "classes.csv", dtype=str)
+        table = read_table(folder / "classes.csv")
         known = dict(zip(table["object"], table["class"], strict=True))
         return {name: known.get(name, name) for name in names}
     return {name: re.sub(r"_\d+$", "", name) for name in names}
@@ -73,9 +73,9 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings, folder = workspace.settings(Params), workspace.data / "meshes"
     with StageRun(workspace, "look_and_touch", COLUMNS, inputs=("meshes", "salient_points")) as stage:
-        meshes = {name: read_mesh(folder / f"{name}.npz") for name in stage.objects}
-        equal = equal_meshes(meshes) if len(meshes) > 1 else {}
-        names = [name for name in meshes if name not in equal]
+        with warnings.catch_warnings(action="ignore"):  # objects that are alike are left out here, and said at the end
+            alike = library_of(folder, tuple(stage.objects)).alike
+        names = [name for name in stage.objects if name not in alike]
         if len(names) < 2:
             raise ValueError(f"look_and_touch: {workspace.dataset} has {len(names)} objects: two are needed")
         classes = classes_of(folder, names)
@@ -86,7 +86,7 @@ def run(workspace: Workspace) -> None:
         stage.rows += reliability(rows)
         write_json(stage.folder / "names.json", classes)
         stage.metrics(summary(rows, stage.seed))
-    left_out = f"; equal to others: {', '.join(sorted(equal))}" if equal else ""
+    left_out = f"; the same shapes as others: {', '.join(sorted(alike))}" if alike else ""
     print(f"look_and_touch: {workspace.dataset}, {len(names)} objects, {len(rows)} rows{left_out}")
 
 

@@ -19,7 +19,7 @@ from haptic_glance.touch import warm_up
 from stages.salient_points.measure import read_points
 
 from . import Params
-from .protocol import ATTENTION, Case, Disturbance, FirstTouch, touch_on
+from .protocol import ATTENTION, Case, Disturbance, touch_on
 
 CLEAN = "none"
 PLACES = 60  # of attention, of each object
@@ -30,7 +30,7 @@ SEEN = {  # sight: the policies that are tried after it
     "dark": ("planned",),
     "siblings": ("planned", "spread", "glance"),
 }
-DISTURBED, DISTURBED_TOUCHES = ("blind", "look"), 3
+DISTURBED, DISTURBED_TOUCHES = ("blind", "look"), 1
 UNSEEN_TOUCHES = 3
 
 
@@ -89,8 +89,8 @@ def process(
     kin = [other for other in names if classes[other] == classes[name]]
     common = {"item": name, "group": classes[name]}
     rows = undisturbed(case, places, kin, settings)
-    rows += disturbed(case, settings)
-    for faces in settings.severities.get("coarse_mesh", ()):
+    rows += disturbed(case, settings) if settings.disturbed else []
+    for faces in settings.severities.get("coarse_mesh", ()) if settings.disturbed else ():
         rough = library_of(meshes, tuple(names), int(faces))
         other = partial(Case, rough, name, mesh, seed=seed, places=places)
         rows += _disturbed(other, settings, "coarse_mesh", faces, Disturbance())
@@ -111,23 +111,23 @@ def undisturbed(
     case: Callable[..., Case], places: dict[str, np.ndarray], kin: Sequence[str], settings: Params
 ) -> list[dict[str, Any]]:
     """Rows `right` after each number of touches, `touches_to_sure`, `sure` and `sure_right`, for each sight and way."""
-    rows, first = [], FirstTouch()
+    rows = []
     for sight, policies in SEEN.items():
         if sight == "siblings" and len(kin) < 2:
             continue
         for policy in policies:
             if policy in ATTENTION and policy not in places:
                 continue
-            rows += _followed(case, sight, policy, kin, settings, first)
+            rows += _followed(case, sight, policy, kin, settings)
     return rows
 
 
-def _followed(case, sight, policy, kin, settings, first):
+def _followed(case, sight, policy, kin, settings):
     """The rows of one sight and one way to choose touches, over all poses."""
     right, stated, seconds = [], [], []
     for pose in range(settings.poses):
         one = case(pose)
-        course = touch_on(one, one.look(sight, kin), policy, settings.touches, first)
+        course = touch_on(one, one.look(sight, kin), policy, settings.touches)
         right.append(course.probabilities.argmax(axis=1) == one.library.names.index(one.name))
         stated.append(course.probabilities.max(axis=1))
         seconds.append(course.seconds)
@@ -162,12 +162,12 @@ def disturbed(case: Callable[..., Case], settings: Params) -> list[dict[str, Any
 
 
 def _disturbed(case, settings, name, severity, disturbance):
-    rows, first = [], FirstTouch()
+    rows = []
     for sight in DISTURBED:
         right = []
         for pose in range(settings.poses):
             one = case(pose, disturbance)
-            course = touch_on(one, one.look(sight), "planned", DISTURBED_TOUCHES, first)
+            course = touch_on(one, one.look(sight), "planned", DISTURBED_TOUCHES)
             right.append(course.probabilities.argmax(axis=1) == one.library.names.index(one.name))
         common = {"method": "planned", "sight": sight, "perturbation": name, "severity": float(severity)}
         rows += [
@@ -181,13 +181,13 @@ def unseen(
     case: Callable[..., Case], kin: Sequence[str], classes: dict[str, str], settings: Params
 ) -> list[dict[str, Any]]:
     """Rows `class_right`: whether the class of an object is found that is not among the known ones itself."""
-    rows, first = [], FirstTouch()
+    rows = []
     for sight in DISTURBED:
         right = []
         for pose in range(settings.poses):
             one = case(pose)
             library, others = one.library, [other for other in one.library.names if other != one.name]
-            course = touch_on(one, one.look(sight).among(others), "planned", UNSEEN_TOUCHES, first)
+            course = touch_on(one, one.look(sight).among(others), "planned", UNSEEN_TOUCHES)
             kinds = np.array([classes[other] for other in library.names])
             sums = np.stack([course.probabilities[:, kinds == kind].sum(axis=1) for kind in np.unique(kinds)], axis=1)
             right.append(np.unique(kinds)[sums.argmax(axis=1)] == classes[one.name])

@@ -52,7 +52,9 @@ class Disturbance:
     hidden: float = 0.6  # of the object's pixels, behind a board
     light: float = 1.0  # share of full light
     noise: float = 1.0  # of travel and relief, times the sensor's
-    position: float = 0.01  # standard deviation of the object's place along each level axis; half of it upwards
+    position: float = (
+        0.01  # standard deviation of the place along each level axis, half of it upwards; at most twice it
+    )
     size: float = 1.0  # of the object, as a share of the known mesh's
 
 
@@ -71,7 +73,7 @@ class Case:
     def __post_init__(self) -> None:
         random, unit = rng(self.seed, f"{self.name} {self.pose}"), self.library.diameter
         self.azimuth = 360 * random.random()
-        error = self.disturbance.position * random.normal(size=3) * [1, 1, 0.5] * unit
+        error = self.disturbance.position * np.clip(random.normal(size=3), -2, 2) * [1, 1, 0.5] * unit
         larger = replace(self.mesh, vertices=self.mesh.vertices * self.disturbance.size)
         self.there = stand(larger, self.azimuth, error)
         self.surface = Surface(self.there)
@@ -126,7 +128,9 @@ class Case:
         return replace(approach, array=noisy).feel(self.surface, random)
 
     def next_line(self, policy: str, belief: Belief) -> int:
-        """The number of the line along which the hand comes next, of all POLICIES but `planned`."""
+        """The number of the line along which the hand comes next."""
+        if policy == "planned":
+            return belief.next_touch().line
         done = [touch.approach.line for touch in belief.touches]
         if policy == "random" or (policy == "spread" and not done):
             return int(self.order[len(done)])
@@ -160,21 +164,6 @@ def board(is_object: np.ndarray, share: float, random: np.random.Generator) -> n
     return along > np.quantile(along[rows, columns], 1 - share)
 
 
-class FirstTouch:
-    """The planned first touch of a blind belief, which is the same for all objects of a library."""
-
-    def __init__(self) -> None:
-        self._line = -1
-
-    def next_line(self, belief: Belief) -> int:
-        """The number of the line along which the belief plans its next touch."""
-        if belief.touches or np.ptp(belief.log_weights) > 0:
-            return belief.next_touch().line
-        if self._line < 0:
-            self._line = belief.next_touch().line
-        return self._line
-
-
 @dataclass(frozen=True)
 class Course:
     """What is believed in the course of some touches: (touches + 1, objects) probabilities; seconds of each touch."""
@@ -183,12 +172,12 @@ class Course:
     seconds: float
 
 
-def touch_on(case: Case, belief: Belief, policy: str, touches: int, first: FirstTouch) -> Course:
+def touch_on(case: Case, belief: Belief, policy: str, touches: int) -> Course:
     """The Course of some touches of a case, from a belief."""
     beliefs = [belief]
     with Stopwatch() as watch:
         for _ in range(touches):
-            line = first.next_line(belief) if policy == "planned" else case.next_line(policy, belief)
+            line = case.next_line(policy, belief)
             belief = belief.after(belief.library.line(line), *case.feel(line))
             beliefs.append(belief)
     return Course(np.array([one.among_known for one in beliefs]), watch.seconds / max(touches, 1))
