@@ -171,23 +171,6 @@ def training() -> tuple[Call, Call]:
     return lambda: FeedForward(epochs=1).fit(samples, labels), lambda: _quiet(peer.fit, samples, labels)
 
 
-def choice_of_touch() -> tuple[Call, Call]:
-    """Ten touches of sixty explorations by expected information; the peer takes the same entropies and no more."""
-    from scipy.stats import entropy
-
-    from haptic_glance.know import Calibration, explore
-
-    random = np.random.default_rng(0)
-    observed, predicted = random.normal(size=(6, 30, 6)), random.normal(size=(6, 30, 6, 8, 6))
-    share = np.full(predicted.shape[:-1], 1 / predicted.shape[3])
-    arguments = (observed, predicted, share, Calibration(1.0, 0.5), 10)
-    belief = np.exp(predicted)
-    return (
-        lambda: explore("gain", *arguments, np.random.default_rng(0)),
-        lambda: [entropy(belief, axis=-1) for _ in range(10)],
-    )
-
-
 def network() -> tuple[Call, Call]:
     """MobileNetV2, eight images of 96 x 96; the peer runs the same network exported to ONNX."""
     import onnxruntime
@@ -213,7 +196,6 @@ CASES: dict[str, tuple[str, Callable[[], tuple[Call, Call]]]] = {  # what -> (pe
     "press_many": ("trimesh's rays on embree", imprints),
     "touch map": ("scikit-learn's k-means", touch_map),
     "feed-forward training": ("scikit-learn's MLP", training),
-    "choice of a touch": ("scipy's entropy", choice_of_touch),
     "MobileNetV2": ("onnxruntime", network),
 }
 

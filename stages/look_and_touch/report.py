@@ -8,7 +8,7 @@ from stages.charts.datasets import dataset_text
 from stages.charts.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results, require_rows
-from stages.charts.tables import everywhere, interval_columns, interval_text, number, percent, records, within
+from stages.charts.tables import everywhere, interval_columns, interval_text, percent, records, within
 from stages.engine.statistics import breaking_point, interval
 
 from .measure import CLEAN, DISTURBED, PERTURBATIONS
@@ -217,7 +217,7 @@ def breaking_figure(results: Results) -> Figure:
             places = np.arange(len(part))
             axes.vlines(places, 100 * part["accuracy_low"], 100 * part["accuracy_high"], color=tint, alpha=0.35)
             axes.plot(places, 100 * part["accuracy"], marker=mark, ms=4, lw=1.4, color=tint, label=words[sight])
-            ticks = ["as it is", *(number(severity, 3) for severity in part["severity"].iloc[1:])]
+            ticks = ["as it is", *(f"{severity:,g}" for severity in part["severity"].iloc[1:])]
             axes.set_xticks(places, ticks, fontsize=8)
         axes.axhline(100 / _objects(results, dataset), color=GREY, ls=":", lw=1)
         axes.set_title(label(name), fontsize=10)

@@ -269,15 +269,6 @@ def over_classifiers(results: Measurements, claim: Claim) -> pd.Series:
     return first - table[table.mean().idxmax()]
 
 
-def touches_saved(results: Measurements, claim: Claim) -> pd.Series:
-    """Touches that the second side takes minus those of the first."""
-    first, second = (
-        results.measured(claim.stage, claim.sets[0], **claim.where, **part).set_index("repetition")["touches"]
-        for part in (claim.first, claim.other)
-    )
-    return second - first
-
-
 STATISTICS: dict[str, Callable[[Measurements, Claim], pd.Series]] = {
     "difference": difference,
     "least_weight": partial(extreme_weight, sign=-1),
@@ -299,5 +290,4 @@ STATISTICS: dict[str, Callable[[Measurements, Claim], pd.Series]] = {
     "alike_confused": alike_confused,
     "later_convolutions_change_less": later_change_less,
     "over_classifiers": over_classifiers,
-    "touches_saved": touches_saved,
 }
