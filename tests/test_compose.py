@@ -239,7 +239,7 @@ def params():
         ("meshes.objects", ["cup", 1e5], "meshes.objects: 100000.0 is how YAML reads a name: write such a name in q"),
         ("views.size", [900, 0], "views.size: 0 must be 1 or more"),
         ("salient_points.radius", 0, "salient_points.radius: 0 must be above 0"),
-        ("exploration.confidences", [0.5, 1.5], "exploration.confidences: 1.5 must be between 0 and 1"),
+        ("look_and_touch.poses", 0, "look_and_touch.poses: 0 must be 1 or more"),
         ("fixation.folds", 1, "fixation.folds: 1 must be 2 or more"),
         ("views.material", {"specular": 2}, "views: specular=2.0 of a material must be between 0 and 1"),
     ],

@@ -43,7 +43,7 @@ CORE = without(EXTRAS)  # what a core install is: none of the modules that the e
 SIX = """
 import numpy as np
 from haptic_glance import Camera, Placed, Scene, budget, find_points, follow, load, normalise, press, saliency, simplify
-from haptic_glance.know import learn, primitives
+from haptic_glance.know import learn, primitives, stand, touch_until_known
 
 mesh = load(sys.argv[1])
 assert saliency(mesh).shape == (len(mesh.vertices),)
@@ -57,7 +57,8 @@ cameras = tuple(Camera((-far, 0.0, 0.5), (0.0, 0.0, 0.5), 40.0, (60, 80)) for fa
 scene = Scene((Placed("one", (0.0, 0.0, 0.0), 0.0, 1.0),), cameras, tolerance=1.0, kind="pixels")
 assert budget({"one": mesh}, scene).faces.max() <= len(mesh.faces)
 known = learn(primitives() | {"mine": normalise(mesh)})
-assert known.belief().after(press(mesh, points[0]), mesh.vertices[points[0]]).probabilities
+*_, last = touch_until_known(known.belief(), stand(normalise(mesh), turn=30))
+assert last.belief.known == "mine"
 """
 
 

@@ -205,7 +205,7 @@ def test_an_axis_that_nobody_said_is_warned_of_where_it_first_matters(body):
     small = haptic_glance.normalise(body)
     for looking in (
         haptic_glance.as_mesh, haptic_glance.Surface, lambda m: know.learn(know.primitives() | {"a": m}),
-        lambda m: know.Exploration(know.learn(know.primitives()), m, np.random.default_rng(0)),
+        know.stand, know.learn(know.primitives()).line(0).feel,
     ):  # fmt: skip
         with pytest.warns(UserWarning, match="(the mesh|a) does not say which axis points up"):
             looking(small)

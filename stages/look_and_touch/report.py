@@ -1,8 +1,13 @@
 """What a look and planned touches tell of known objects, what that costs a robot, and where it breaks."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
+from haptic_glance.base.files import read_json, read_mesh
+from haptic_glance.look.camera import project
+from haptic_glance.look.views import render
 from stages.charts.breaking import broken
 from stages.charts.datasets import dataset_text
 from stages.charts.drawing import CYCLE, GREY, MARKERS, label, plt
@@ -11,8 +16,8 @@ from stages.charts.results import Results, require_rows
 from stages.charts.tables import everywhere, interval_columns, interval_text, percent, records, within
 from stages.engine.statistics import breaking_point, interval
 
-from .measure import CLEAN, DISTURBED, PERTURBATIONS
-from .protocol import POLICIES, SIGHTS
+from .measure import CLEAN, DISTURBED, PERTURBATIONS, library_of
+from .protocol import CAMERA, POLICIES, SIGHTS, Case, Disturbance
 
 STAGE = "look_and_touch"
 SHOWN = (0, 1, 2, 3)  # touches, in the table
@@ -231,7 +236,66 @@ def breaking_figure(results: Results) -> Figure:
     return Figure(drawing, {"set": dataset_text(dataset)})
 
 
+def story(results: Results) -> Figure:
+    """One object that a look leaves open and one planned touch decides: picture, belief, touch, belief."""
+    dataset = results.datasets(STAGE)[0]
+    folder = results.folder("meshes", dataset)
+    library = library_of(folder, tuple(read_json(results.folder(STAGE, dataset) / "names.json")))
+    for name in _undecided(results, dataset):
+        case = Case(library, name, read_mesh(folder / f"{name}.npz"), 0, seed=results.workspace.seed)
+        before = case.look("look")
+        approach = before.next_touch()
+        travel, imprint = case.feel(approach.line)
+        after = before.after(approach, travel, imprint)
+        if np.isfinite(travel) and after.known == name:
+            break
+    picture, _ = case.picture(Disturbance().hidden)
+    drawing, panels = plt.subplots(1, 4, figsize=(11.0, 2.9), width_ratios=[1, 1, 1.15, 1], layout="constrained")
+    panels[0].imshow(picture, cmap="gray", vmin=0, vmax=255)
+    panels[0].set_title("one look, 60 % hidden", fontsize=11)
+    _bars(panels[1], before, name, "believed after the look")
+    _hand(panels[2], case, approach, travel)
+    panels[2].set_title("one touch where they differ", fontsize=11)
+    inset = panels[2].inset_axes((0.66, 0.66, 0.34, 0.34))
+    inset.imshow(imprint, cmap="viridis_r")
+    _bars(panels[3], after, name, "believed after the touch")
+    for axes in (panels[0], panels[2], inset):
+        axes.set(xticks=[], yticks=[])
+    shown = {"object": label(name), "set": dataset_text(dataset), "before": f"{100 * before.probabilities[name]:.0f}"}
+    return Figure(drawing, shown | {"after": f"{100 * after.probabilities[name]:.0f}"})
+
+
+def _undecided(results, dataset):
+    """The objects, first those that a look names wrongly and one planned touch rightly."""
+    rows = results.measured(STAGE, dataset, metric="right", perturbation=CLEAN, sight="look", method="planned")
+    right = rows.pivot(index="item", columns="touches", values="value")
+    return (right[TOUCHED] - right[0]).sort_values(ascending=False, kind="stable").index.tolist()
+
+
+def _bars(axes, belief, name, title):
+    """The five likeliest names as bars, the right one in colour."""
+    likely = list(belief.probabilities.items())[:5][::-1]
+    tints = [CYCLE[0] if key == name else GREY for key, _ in likely]
+    axes.barh(range(len(likely)), [100 * share for _, share in likely], color=tints)
+    axes.set_yticks(range(len(likely)), [label(key) for key, _ in likely], fontsize=9)
+    axes.set(xlim=(0, 100), xlabel="%")
+    axes.set_title(title, fontsize=11)
+
+
+def _hand(axes, case, approach, travel):
+    """The whole object as the camera would see it, with the line along which the hand came."""
+    small = replace(case.there, vertices=case.there.vertices / (1.5 * case.library.diameter))
+    view = render(small, CAMERA, size=(300, 300), background="white")
+    axes.imshow(view.rgb)
+    ends = np.stack(
+        [approach.contact(travel), approach.contact(travel) - 0.45 * case.library.diameter * approach.direction]
+    )
+    rows, columns, _ = project(ends / (1.5 * case.library.diameter), CAMERA, (300, 300))
+    arrow = {"color": CYCLE[1], "arrowstyle": "-|>", "lw": 2, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (columns[0], rows[0]), (columns[1], rows[1]), arrowprops=arrow)
+
+
 PAGE = "look_and_touch"
 TABLES = {"look_and_touch": table, "look_and_touch_breaking": breaking_table}
-FIGURES = {"look_and_touch_stability": breaking_figure}
+FIGURES = {"look_and_touch_story": story, "look_and_touch_stability": breaking_figure}
 CHARTS = {"look_and_touch": chart}
