@@ -131,14 +131,13 @@ def test_sizes_count_and_lengths_have_the_unit_of_the_files(know, tmp_path, fold
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:box.stl does not say")
+@pytest.mark.filterwarnings("error:.*which axis points up")
 def test_up_is_the_axis_of_all_files(know, tmp_path):
     for name in ("box", "cone"):  # their files do not say which axis points up
         shape = primitives()[name]
         trimesh.Trimesh(shape.vertices, shape.faces).export(tmp_path / f"{name}.stl")
-    _, messages, _ = know("--up", "-z", name="cone.stl", place=tmp_path)
-    assert "assuming" not in messages
-    with pytest.warns(UserWarning, match="cone.stl does not say which axis points up"):
+    assert "cone, after a look: right" in know("--up", "-z", name="cone.stl", place=tmp_path)[0]
+    with pytest.raises(UserWarning, match="box.stl does not say which axis points up"):
         know(name="cone.stl", place=tmp_path)
 
 
