@@ -151,7 +151,7 @@ def test_up_is_the_axis_of_all_files(know, tmp_path):
         (("--seed", "-1"), "--seed -1: give 0 or more"),
         (("--out", "{folder}"), "is the folder of the meshes: name another one"),
         (("--object", "{folder}/nothing.stl"), "nothing.stl: no such file, give a mesh file, for example one of "),
-        (("--object", "broken.stl"), "--object .*broken.stl: (?!.*broken.stl)"),
+        (("--object", "broken.stl"), r"\A--object [^:]*broken.stl: (?!.*broken.stl)"),
     ],
 )
 def test_what_cannot_be_is_named_with_a_remedy(folder, tmp_path, monkeypatch, options, words):
