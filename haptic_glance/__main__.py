@@ -19,6 +19,7 @@ MESH_COMMANDS = {
     "points": "haptic_glance.cli.points",
     "simplify": "haptic_glance.cli.simplify",
     "touch": "haptic_glance.cli.touch",
+    "know": "haptic_glance.cli.know",
     "studio": "haptic_glance.studio.command",
 }
 SHELL_COMMANDS = {"completion": "haptic_glance.cli.completion"}

@@ -1,18 +1,25 @@
 """One object, looked at and touched until it is known, in simulation."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.views import render
 from haptic_glance.mesh.files import MeshLike
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface
 from haptic_glance.touch.surface import as_surface
 
 from .belief import Belief, Reachable
 from .pressure_array import Approach
+from .sight import SIDE, board
 
 MOST = 10  # touches after which a person would give up
+CAMERA = Viewpoint(0, 35)  # from where the picture is taken
+BOARD = 128  # grey value of the board
+HIDDEN, MOST_HIDDEN = 0.6, 0.95  # shares of the object's pixels behind the board: by default, and at most
 
 
 @dataclass(frozen=True)
@@ -68,3 +75,15 @@ def touch_until_known(
         travel, imprint = approach.feel(surface, random)
         belief = belief.after(approach, travel, imprint)
         yield Step(approach, travel, imprint, belief)
+
+
+def half_hidden(
+    mesh: Mesh, diameter: float, share: float, random: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """(picture (96, 96) in bytes, mask (96, 96) of what is hidden) of a mesh, a share of it behind a grey board.
+
+    diameter: of the largest known object, `Library.diameter`.
+    """
+    view = render(replace(mesh, vertices=mesh.vertices / diameter), CAMERA, size=(SIDE, SIDE))
+    mask = board(view.face >= 0, share, random)
+    return np.where(mask, BOARD, view.rgb.mean(axis=2)).astype(np.uint8), mask

@@ -1,6 +1,7 @@
 """Objects to know: basic shapes, and the meshes of a folder."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,8 @@ from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.lazy import trimesh
 from haptic_glance.mesh import MeshError, normalise, rotate_to_z_up
-from haptic_glance.mesh.files import FORMATS, MeshLike, names_of, with_known_up
+from haptic_glance.mesh.axes import Axis, axis_named
+from haptic_glance.mesh.files import FORMATS, MeshLike, as_stated, names_of, with_known_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import area_share
 
@@ -34,7 +36,9 @@ def primitives() -> dict[str, Mesh]:
     }
 
 
-def known_objects(folder: str | Path, most: int = 60, sized: bool = False) -> tuple[dict[str, Mesh], list[str]]:
+def known_objects(
+    folder: str | Path, most: int = 60, sized: bool = False, up: Axis | None = None
+) -> tuple[dict[str, Mesh], list[str]]:
     """Reads the meshes of a folder.
 
     Parameters
@@ -45,6 +49,8 @@ def known_objects(folder: str | Path, most: int = 60, sized: bool = False) -> tu
         Number of meshes at most, in alphabetical order.
     sized : bool
         Whether the files are in one unit, so that their sizes count. False: the meshes are normalised.
+    up : str or (3,) array_like, optional
+        The axis that points up in all files, as of `load`. None: as each file says, or as its shape suggests.
 
     Returns
     -------
@@ -72,12 +78,20 @@ def known_objects(folder: str | Path, most: int = 60, sized: bool = False) -> tu
     meshes, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
     for path, name in zip(files[:most], names_of(files), strict=False):
         try:
-            mesh = read_mesh(path) if path.suffix == ".npz" else upright_named(path.name, path)
-            area_share(mesh)  # or `learn` would refuse all
-            meshes[name] = mesh if sized else normalise(mesh)
+            meshes[name] = read_object(path, sized, up)
         except (MeshError, MissingExtra, ValueError, KeyError, OSError) as error:
             notes.append(f"{path.name}: {str(error).removeprefix(f'{path}: ')}")
     return meshes, notes
+
+
+def read_object(path: Path, sized: bool = False, up: Axis | None = None) -> Mesh:
+    """One mesh of `known_objects`; an error where the file holds none that can be touched."""
+    if path.suffix == ".npz":
+        mesh = read_mesh(path)
+    else:
+        mesh = upright_named(path.name, path if up is None else replace(as_stated(path), up=axis_named(up)))
+    area_share(mesh)  # or `learn` would refuse all
+    return mesh if sized else normalise(mesh)
 
 
 def _is_another_size(stem, stems):
