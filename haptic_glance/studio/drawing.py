@@ -59,11 +59,11 @@ def grid_html(pressed: np.ndarray, span: tuple[float, float], unit: str, words: 
 
 
 def picture_html(picture: np.ndarray, words: str) -> str:
-    """A picture (h, w, 3) u1, at most 15 em wide, with words below it."""
+    """A picture (h, w, 3) u1, at most 10 em wide, with words below it."""
     return (
         '<div style="padding:0 0.6em 0.6em">'
         f'<img class="picture" alt="{escape(words)}" src="{data_uri(picture)}" '
-        'style="width:100%;max-width:15em;display:block;margin:auto">'
+        'style="width:100%;max-width:10em;display:block;margin:auto">'
         f'<div style="font-size:0.8em;text-align:center">{escape(words)}</div></div>'
     )
 

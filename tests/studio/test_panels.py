@@ -101,14 +101,14 @@ def test_a_peek_and_touches_know_the_mesh_and_come_back_with_the_panel(window):
     do(window, panel.peek)
     assert panel.picture.visible and panel.course.words == "after a peek"
     do(window, panel.touch_next)
-    assert len(panel.course.belief.touches) == 1 and window.scene.has("/know/touched/0")
+    assert len(panel.course.belief.touches) == 1 and window.scene.has("/know/touched/1")
     assert panel.grid.visible and "touch 1" in panel.grid.content
     do(window, panel.touch_on)
     assert panel.about.content.startswith("**knob**, after a peek and ")
     window.choose("Look")
     assert not window.scene.has("/know")
     window.choose("Know")
-    assert window.scene.has("/know/touched/0") and not window.said
+    assert window.scene.has("/know/touched/1") and not window.said
 
 
 def test_another_mesh_on_the_table_starts_again(window, shapes):
@@ -170,8 +170,8 @@ def test_a_peek_and_touches_name_a_cone(library, shapes):
     assert touched.belief.known == "cone" and touched.words == "after a peek and 1 touch"
     again = touched.peek(0.6)  # takes the place of the first peek, and keeps the touch
     fresh = replace(start, peeks=1).peek(0.6).touch(touched.belief.touches[0].approach)
-    assert again.belief.values == pytest.approx(fresh.belief.values, abs=1e-9) and again.words == touched.words
-    assert not np.allclose(again.belief.log_weights, touched.belief.log_weights)
+    assert again.belief.log_weights == pytest.approx(fresh.belief.log_weights) and again.words == touched.words
+    assert (again.peek(0.6).picture != again.picture).any()
     blind = start.touch(start.belief.next_touch())
     assert blind.touch(blind.belief.next_touch()).words == "after 2 touches"
 
@@ -187,10 +187,25 @@ def test_the_cells_of_a_touch_lie_on_the_mesh(library, shapes):
     slope = np.ptp(shapes["cone"].vertices[:, 2]) / np.ptp(shapes["cone"].vertices[:, 0]) * 2
     height = tip[2] - slope * np.linalg.norm(places[:, :2] - tip[:2], axis=1)
     assert np.abs(places[:, 2] - height).max() < 0.03
-    assert felt.pressed[3:5, 3:5].min() > 0.5 and felt.pressed[0, 0] == 0
+    assert felt.pressed[3:5, 3:5].min() > 0.5 and felt.pressed[0, 0] < 0.15
     away = Course(shapes["cone"], library.belief()).touch(library.approach([0.8, 0, 0.9], [0, 0, -1]))
     missed = felt_by(away.belief.touches[0], library)
     assert np.isinf(missed.depths).all() and not missed.pressed.any()
+
+
+def test_a_touch_that_meets_nothing_is_told_and_not_drawn(window):
+    window.choose("Know")
+    until(lambda: window.panel.course is not None and not window.jobs)
+    panel = window.panel
+    do(window, panel.learn)
+    before = panel.course
+    met, missed = (before.belief.library.approach([x, 0, 0.9], [0, 0, -1]) for x in (0, 0.8))
+    window.run("", lambda: panel.advance(before, before.touch(met)))
+    first = panel.course
+    assert panel.grid.visible and window.scene.has("/know/felt/1")
+    window.run("", lambda: panel.advance(first, first.touch(missed)))
+    assert panel.about.content.startswith("Touch 2 met nothing. ") and not panel.grid.visible
+    assert window.scene.has("/know/touched/1") and not window.scene.has("/know/touched/2")
 
 
 def test_a_click_touches_the_place_along_its_normal_and_another_panel_draws_nothing(library, shapes):

@@ -97,6 +97,7 @@ class KnowPanel(Panel):
     def build(self, gui: viser.GuiApi) -> None:
         self.about = gui.add_markdown(ASK)
         self.bars = gui.add_html("", visible=False)
+        self.pose = gui.add_dropdown("How it stands", tuple(POSES), hint="what is known of its pose before a peek")
         self.hidden = gui.add_slider("Hidden, %", 0, 90, 5, 60, hint="of the object's pixels, behind a board")
         buttons = (
             (gui.add_button("Peek", hint="a picture, 35 degrees from above"), self.peek),
@@ -106,7 +107,6 @@ class KnowPanel(Panel):
         )
         self.picture = gui.add_html("", visible=False)
         self.grid = gui.add_html("", visible=False)
-        self.pose = gui.add_dropdown("How it stands", tuple(POSES), hint="what is known of its pose before a peek")
         with gui.add_folder("Known objects", expand_by_default=False):
             self.known = gui.add_markdown("")
             self.basic = gui.add_checkbox("Basic shapes", True)
@@ -199,8 +199,9 @@ class KnowPanel(Panel):
 
         def show(after: Course) -> None:
             self.advance(course, after)
-            touch = after.belief.touches[-1]
-            self.window.scene.face(touch.contact * after.belief.library.diameter, touch.approach.axes[2])
+            if self.grid.visible:  # it met the object
+                touch = after.belief.touches[-1]
+                self.window.scene.face(touch.contact * after.belief.library.diameter, touch.approach.axes[2])
 
         self.work("Touching", lambda _: course.touch(course.belief.next_touch()), show)
 
@@ -233,14 +234,15 @@ class KnowPanel(Panel):
         self.about.content = f"**{escaped(belief.known)}**, {course.words}." if belief.known else unsure
         if course.picture is not None:
             self.picture.content, self.picture.visible = picture_html(course.picture, "the peek"), True
-        for number, touch in enumerate(belief.touches):
-            name, words = f"{TOUCHED}/{number}", f"touch {number + 1}"
-            if scene.has(name):
-                continue
+        met, number = False, len(belief.touches)
+        for k, touch in enumerate(belief.touches, 1):
             felt = felt_by(touch, belief.library, self.window.session.on_table.unit)
-            if np.isinf(felt.depths).all():
-                words += " met nothing"
-            draw_cells(scene, f"{FELT}/{number}", felt)
-            colour = BLUE if touch.approach.line >= 0 else RED
-            scene.markers(name, felt.centre[None], felt.axes[2:], [str(number + 1)], colour, 0.008)
-            self.grid.content, self.grid.visible = grid_html(felt.pressed, felt.span, felt.unit, words), True
+            met = bool(np.isfinite(felt.depths).any())
+            if met and not scene.has(f"{TOUCHED}/{k}"):
+                draw_cells(scene, f"{FELT}/{k}", felt)
+                colour = BLUE if touch.approach.line >= 0 else RED
+                scene.markers(f"{TOUCHED}/{k}", felt.centre[None], felt.axes[2:], [str(k)], colour, 0.008)
+            self.grid.content = grid_html(felt.pressed, felt.span, felt.unit, f"touch {k}")
+        self.grid.visible = met
+        if number and not met:
+            self.about.content = f"Touch {number} met nothing. {self.about.content}"
