@@ -120,6 +120,7 @@ def test_another_mesh_on_the_table_starts_again(window, shapes):
     window.put(Specimen(shapes["torus"], "ring"))
     until(lambda: window.panel.course is not None and not window.jobs)
     course = window.panel.course
+    assert "ring has the shape of torus" in window.panel.known.content
     assert course.words == "" and "ring" in course.belief.library.names and not window.scene.has("/know")
     assert not window.panel.picture.visible and not window.panel.grid.visible
     window.panel.advance(before, before)  # a touch of the old mesh that ends late
@@ -197,7 +198,9 @@ def test_a_touch_that_meets_nothing_is_told_and_not_drawn(window):
     window.choose("Know")
     until(lambda: window.panel.course is not None and not window.jobs)
     panel = window.panel
-    do(window, panel.learn)
+    window.run("", panel.learn)
+    assert panel.course is None and not window.scene.has("/know")
+    until(lambda: not window.jobs)
     before = panel.course
     met, missed = (before.belief.library.approach([x, 0, 0.9], [0, 0, -1]) for x in (0, 0.8))
     window.run("", lambda: panel.advance(before, before.touch(met)))

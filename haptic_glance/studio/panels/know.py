@@ -1,8 +1,9 @@
 """Recognises the mesh on the table: a peek past a board, then touches; bars of belief move with each of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import viser
@@ -31,6 +32,7 @@ AWAY = 0.6  # units from the clicked place, where the hand starts: outside of mo
 CAMERA, SIDE = Viewpoint(0, 35), 96  # of the peek; rows and columns of its picture
 BOARD = (128, 128, 128)  # colour of the board
 POSES = {"turned": "turned", "as learned": "fixed", "anyhow": "any"}
+LIFTED = 0.01  # units above the array: its cells face the camera, and would hide the marker
 DRAWN, FELT, TOUCHED = "/know", "/know/felt", "/know/touched"
 ASK = "Peek at the mesh, click to touch it, or let the planner touch where it learns most."
 
@@ -51,7 +53,7 @@ class Course:
         """The course with a picture in which a board hides a share of the object, in place of an earlier picture."""
         view = render(self.mesh, CAMERA, size=(SIDE, SIDE))
         hidden = board(view.face >= 0, share, rng(self.peeks, "board"))
-        picture = np.where(hidden[..., None], np.uint8(BOARD), view.rgb)
+        picture = np.where(hidden[..., None], np.array(BOARD, np.uint8), view.rgb)
         blind = replace(self.belief, log_weights=self.belief.library.belief().log_weights + self.belief.felt)
         return replace(self, belief=blind.look(picture, CAMERA, hidden), picture=picture, peeks=self.peeks + 1)
 
@@ -142,6 +144,8 @@ class KnowPanel(Panel):
     def learn(self) -> None:
         """Learns the objects in the background, then begins with the mesh on the table."""
         table, settings = self.window.session.on_table, self.window.settings
+        self.window.session.kept.pop(self.title, None)  # a click meanwhile would touch by the old settings
+        self.on_mesh()
         household = HOUSEHOLD if self.household.value else None
         basic, pose = self.basic.value, POSES[self.pose.value]
 
@@ -153,18 +157,15 @@ class KnowPanel(Panel):
 
         self.work("Learning the known objects", work, lambda outcome: self.begin(*outcome))
 
-    def work(self, title, work, receiver):
+    def work(self, title: str, work: Callable[[Report], Any], receiver: Callable[[Any], Any]) -> None:
         """Only what was asked for last counts: a touch must not join a belief that has changed meanwhile."""
         self.window.work(title, work, receiver, slot=self.title)
 
     def begin(self, notes: Sequence[str], library: Library) -> None:
         """The objects are learned: the mesh can be seen and touched."""
-        self.on_mesh()
         self.window.session.kept[self.title] = Course(self.window.session.on_table.mesh, library.belief())
         twins = [f"{late} has the shape of {early}: they stay undecided" for late, early in library.alike.items()]
-        self.known.content = f"{len(library.names)} objects." + "".join(
-            f"\n- {escaped(note)}" for note in notes + twins
-        )
+        self.known.content = f"{len(library.names)} objects." + "".join(f"\n- {escaped(x)}" for x in [*notes, *twins])
         self.draw()
 
     def begun(self) -> Course:
@@ -199,7 +200,7 @@ class KnowPanel(Panel):
 
         def show(after: Course) -> None:
             self.advance(course, after)
-            if self.grid.visible:  # it met the object
+            if self.window.panel is self and self.grid.visible:  # it met the object
                 touch = after.belief.touches[-1]
                 self.window.scene.face(touch.contact * after.belief.library.diameter, touch.approach.axes[2])
 
@@ -240,8 +241,8 @@ class KnowPanel(Panel):
             met = bool(np.isfinite(felt.depths).any())
             if met and not scene.has(f"{TOUCHED}/{k}"):
                 draw_cells(scene, f"{FELT}/{k}", felt)
-                colour = BLUE if touch.approach.line >= 0 else RED
-                scene.markers(f"{TOUCHED}/{k}", felt.centre[None], felt.axes[2:], [str(k)], colour, 0.008)
+                colour, places = BLUE if touch.approach.line >= 0 else RED, felt.centre + LIFTED * felt.axes[2:]
+                scene.markers(f"{TOUCHED}/{k}", places, felt.axes[2:], [str(k)], colour)
             self.grid.content = grid_html(felt.pressed, felt.span, felt.unit, f"touch {k}")
         self.grid.visible = met
         if number and not met:
