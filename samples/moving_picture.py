@@ -10,13 +10,12 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from haptic_glance import find_points, saliency, simplify
-from haptic_glance.base.rng import rng
 from haptic_glance.gallery.demo import sample
-from haptic_glance.know import Exploration, known_objects, learn, place_at
+from haptic_glance.know import Belief, known_objects, learn, stand
 from haptic_glance.lod.mesh_pictures import vivid
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.mesh import Mesh, load, normalise, rotate_to_z_up
-from haptic_glance.touch import Surface
+from haptic_glance.touch import Surface, sensor_normals
 from stages.charts.drawing import picture, visible
 
 OUT = Path(__file__).with_name("moving_picture.webp")
@@ -26,7 +25,8 @@ SIZE, DPI = (7.2, 3.2), 100  # inches of a frame; pixels an inch
 ROWS, ZOOM = 420, (slice(62, 382), slice(50, 370))  # of the mesh's picture, and the part that is shown
 FRAME, HOLD = 90, 1800  # milliseconds of a frame, of the last one of a step
 LEVELS = (2000, 500)
-TOUCHES, SHOWN = 9, 6  # most touches; names in the chart of beliefs
+PLACES, SHOWN = 15, 6  # places that people look at; names in the chart of beliefs
+AWAY, NEAR = 0.8, 0.02  # diameters: where the hand starts from a place, and how near to it it must arrive
 INK, GREY, BLUE, RED = "#222222", "#767676", "#0072B2", "#D81B1B"
 
 
@@ -102,27 +102,28 @@ def touches(film: Film, mesh: Mesh, values: np.ndarray) -> None:
     objects, _ = known_objects(HOUSEHOLD)
     if not objects:  # the dromedary alone would be known before the first touch
         raise SystemExit(f"no meshes in {HOUSEHOLD}: `dvc repro meshes@household` fetches them")
-    library, surface = learn({NAME: mesh, **objects}), Surface(mesh)
-    exploration = Exploration(library, surface, rng(0, NAME))
+    library, there = learn({NAME: mesh, **objects}), stand(mesh)
+    surface, belief = Surface(there), library.belief()
     seen = picture(mesh, vivid(values), viewpoint=view(), rows=ROWS)
-    points = find_points(mesh, count=TOUCHES)
+    points = find_points(mesh, count=PLACES)
     dots: list[tuple] = []
-    for k, vertex in enumerate(points, start=1):
-        face = np.flatnonzero((mesh.faces == vertex).any(axis=1))[:1]
-        place = place_at(surface, mesh.vertices[[vertex]], face)
-        image = exploration.touch(place)
+    for vertex, normal in zip(points, sensor_normals(there, points), strict=True):
+        approach = library.approach(there.vertices[vertex] + AWAY * normal, -normal)
+        travel, imprint = approach.feel(surface)
+        if abs(travel - AWAY) > NEAR:  # the hand meets another part first
+            continue
+        belief, k = belief.after(approach, travel, imprint), len(belief.touches) + 1
         rows, columns = visible(mesh, np.array([vertex]), view(), ROWS)
         dots += [(row, column, str(k)) for row, column in zip(rows, columns, strict=True)]
-        known = exploration.belief.known
 
-        def panel(figure: Figure, image: np.ndarray = image) -> None:
+        def panel(figure: Figure, image: np.ndarray = imprint / approach.array.depth, belief: Belief = belief) -> None:
             show_imprint(figure, image)
-            show_belief(figure, exploration.belief.probabilities)
+            show_belief(figure, belief.probabilities)
 
-        text = f"one of {len(library.names)} objects: a {known}" if known else "a pressure array of 16 x 16 cells"
-        step = f"Known after {k} touches" if known else f"Touch {k}"
-        film.add(seen, step, text, 2 * HOLD if known else 900, panel, dots)
-        if known:
+        text = f"one of {len(library.names)} objects: a {belief.known}" if belief.known else "an array of 8 x 8 cells"
+        step = f"Known after {k} touch{'es' * (k > 1)}" if belief.known else f"Touch {k}"
+        film.add(seen, step, text, 2 * HOLD if belief.known else 900, panel, dots)
+        if belief.known:
             return
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 FIRST = (  # tutorials, and the example that a section begins with; the others follow by name
-    "own_scans", "own_method", "scene_to_gltf", "touch_environment", "thesis_table",
+    "own_scans", "own_method", "robot", "touch_environment", "scene_to_gltf", "thesis_table",
     "saliency", "methods", "soft", "hard", "press", "newtons", "budget",
 )  # fmt: skip
 

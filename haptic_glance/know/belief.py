@@ -20,7 +20,7 @@ from .unknown import NONE
 
 SURE = 0.95  # probability at which an object is known
 MISLED = 0.01  # probability that a picture tells nothing of the object
-LINES, PRESSED_LINES = 128, 32  # along which a next touch is considered, where a table or presses predict it
+LINES, PRESSED_LINES = 384, 32  # along which a next touch is considered, where a table or presses predict it
 NEGLIGIBLE = -40.0  # log weight, relative to the greatest, below which a hypothesis is not predicted any more
 RADIUS = 0.5  # diameters, of the largest object
 FARTHEST = 2.0  # diameters from the origin, where a hand that met an object can be

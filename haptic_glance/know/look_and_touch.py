@@ -54,9 +54,9 @@ def touch_until_known(
     random : numpy.random.Generator, optional
         As of `Approach.feel`.
 
-    Yields
-    ------
-    Step
+    Returns
+    -------
+    iterator of Step
         Each touch, with the belief after it.
 
     Examples

@@ -115,6 +115,11 @@ class Approach:
         """(3,) unit vector along which the hand moves."""
         return -self.axes[2]
 
+    @property
+    def up(self) -> np.ndarray:
+        """(3,) unit vector that is upwards on the array, from its last row to row 0."""
+        return self.axes[1]
+
     def contact(self, travel: float) -> np.ndarray:
         """(3,) where the middle of the array is after a travel, in the unit of the meshes."""
         return self.origin + travel * self.direction

@@ -67,6 +67,31 @@ def similarity(picture: Sketch, views: Sketch, seen: np.ndarray) -> np.ndarray:
     return np.stack([first, second])
 
 
+def board(is_object: np.ndarray, share: float, random: np.random.Generator) -> np.ndarray:
+    """A board with a straight edge at a random angle, which hides a share of an object from the camera.
+
+    Parameters
+    ----------
+    is_object : (h, w) array of bool
+        True at the pixels of the picture that show the object.
+    share : float
+        Share of these pixels that the board hides, from 0 to 1.
+    random : numpy.random.Generator
+        Draws the angle of the edge.
+
+    Returns
+    -------
+    (h, w) array of bool
+        True where the board is. All False where no object is seen.
+    """
+    rows, columns = np.nonzero(is_object)
+    angle = 2 * np.pi * random.random()
+    if share <= 0 or not len(rows):
+        return np.zeros(is_object.shape, dtype=bool)
+    along = np.cos(angle) * np.arange(is_object.shape[1])[None] + np.sin(angle) * np.arange(is_object.shape[0])[:, None]
+    return along > np.quantile(along[rows, columns], 1 - share)
+
+
 def prepared(picture: ArrayLike, hidden: ArrayLike | None) -> tuple[np.ndarray, np.ndarray]:
     """(picture (96, 96) in 0..1, seen (96, 96)) of a picture in bytes, whose middle square is taken.
 

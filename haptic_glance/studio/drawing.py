@@ -58,6 +58,16 @@ def grid_html(pressed: np.ndarray, span: tuple[float, float], unit: str, words: 
     )
 
 
+def picture_html(picture: np.ndarray, words: str) -> str:
+    """A picture (h, w, 3) u1, at most 10 em wide, with words below it."""
+    return (
+        '<div style="padding:0 0.6em 0.6em">'
+        f'<img class="picture" alt="{escape(words)}" src="{data_uri(picture)}" '
+        'style="width:100%;max-width:10em;display:block;margin:auto">'
+        f'<div style="font-size:0.8em;text-align:center">{escape(words)}</div></div>'
+    )
+
+
 def bars_html(probabilities: Mapping[str, float], sure: str) -> str:
     """A bar for each of the likeliest objects, those first; sure: the one that is known, or empty."""
     likeliest = list(probabilities.items())[:BARS]

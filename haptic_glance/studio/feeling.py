@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from haptic_glance.know import place_at
+from haptic_glance.know import Library
+from haptic_glance.know.belief import Touch
 from haptic_glance.touch import Layer, Skin, Surface, distances_at, sensor_axes
 from haptic_glance.touch.force import gaps_at, press_forces
-from haptic_glance.touch.places import Places
+from haptic_glance.touch.places import Places, place_at
 from haptic_glance.touch.press import normalise
 from haptic_glance.touch.quasi_tangent import contour_imprints, quasi_tangent
 from haptic_glance.touch.surface import turned
@@ -117,6 +118,15 @@ def feel_in_pose(surface: Surface, centre: np.ndarray, axes: np.ndarray, sensor:
     else:  # the plate comes from above, and meets what overhangs the place
         depths = gaps_at(surface, *pose, reach, *array)
     return Felt(_pressed(images, sensor), span, name, centre, axes, sensor.pitch, depths[0])
+
+
+def felt_by(touch: Touch, library: Library, unit: float = 1.0) -> Felt:
+    """What a touch of a belief has felt; 0 where the object is below the array's depth. unit: as of `feel`."""
+    array, relief = library.sensor, touch.relief.reshape(library.sensor.cells)
+    imprint, deepest = array.depth * relief, array.depth - 3 * array.relief_noise  # noise lifts a cell that met nothing
+    depths = np.where(imprint < deepest, imprint, np.inf)
+    centre, span = touch.contact * library.diameter, (unit * array.depth, 0.0)
+    return Felt(1 - relief, span, UNIT, centre, touch.approach.axes, array.pitch, depths)
 
 
 def _pressed(images, sensor):

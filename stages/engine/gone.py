@@ -21,11 +21,12 @@ GONE = {
     "household_scenes": f"{HOUSEHOLD} with scene=shelf, table or hall",
     "household_stability": f"{HOUSEHOLD}, whose stage stability measures breaking points",
     # stages, and sections of their settings
-    "front": "use haptic_glance.know.learn with its default settings",
+    "front": "use the stage look_and_touch",
     "attention_checks": "use the stage salient_points on the set gaze",
     "annotations": "use the stage weights, which learns from the marks in data/annotations",
     "coarse_imprints": "use the stage transfer with transfer.coarse_cells",
     "face_needs": "use the stage scene, which counts the faces that a scene needs",
+    "exploration": "use the stage look_and_touch",
     # experiments and other options
     "experiment=scenes": f"{HOUSEHOLD} with scene=shelf, table or hall",
     "experiment=stability": f"{HOUSEHOLD}, whose stage stability measures breaking points",

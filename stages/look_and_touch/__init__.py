@@ -34,7 +34,7 @@ class Params:
             "hidden": [0.7, 0.8, 0.9, 0.95],  # share of the object's pixels
             "darkness": [0.5, 0.8, 0.9, 0.95, 0.98],  # share of the light that is absent
             "noise": [3.0, 6.0, 12.0],  # times the sensor's
-            "position": [0.02, 0.04, 0.08, 0.16],  # diameters
+            "position": [0.03, 0.06, 0.12],  # diameters
             "size": [1.05, 1.1, 1.2, 1.4],  # times the known mesh's
             "coarse_mesh": [2000.0, 500.0, 200.0, 100.0, 50.0],  # faces of the known meshes
         },

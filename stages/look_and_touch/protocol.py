@@ -14,6 +14,7 @@ from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.know import Belief, Library, stand
 from haptic_glance.know.pressure_array import MISSED, feel_lines
+from haptic_glance.know.sight import board
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
@@ -152,16 +153,6 @@ class Case:
             scores[np.linalg.norm(contacts - contacts[line], axis=1) < NEXT] += 5
         scores[done] = np.inf
         return int(scores.argmin())
-
-
-def board(is_object: np.ndarray, share: float, random: np.random.Generator) -> np.ndarray:
-    """(h, w) boolean: a board with a straight edge at a random angle hides a share of an object's pixels (h, w)."""
-    rows, columns = np.nonzero(is_object)
-    angle = 2 * np.pi * random.random()
-    if share <= 0 or not len(rows):
-        return np.zeros(is_object.shape, dtype=bool)
-    along = np.cos(angle) * np.arange(is_object.shape[1])[None] + np.sin(angle) * np.arange(is_object.shape[0])[:, None]
-    return along > np.quantile(along[rows, columns], 1 - share)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from haptic_glance.know import learn, primitives
-from stages.look_and_touch.protocol import CAMERA, POLICIES, Case, Disturbance, board, touch_on
+from haptic_glance.know.sight import board
+from stages.look_and_touch.protocol import CAMERA, POLICIES, Case, Disturbance, touch_on
 
 
 @pytest.fixture(scope="module")

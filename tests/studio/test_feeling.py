@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.know import place_at
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.feeling import (
@@ -17,7 +16,7 @@ from haptic_glance.studio.feeling import (
     turned,
 )
 from haptic_glance.touch import Surface, press, sensor_axes
-from haptic_glance.touch.places import Places
+from haptic_glance.touch.places import Places, place_at
 
 UP = np.array([[0.0, 0.0, 1.0]])
 

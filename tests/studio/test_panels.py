@@ -3,6 +3,7 @@
 import threading
 import time
 from contextlib import suppress
+from dataclasses import replace
 from types import SimpleNamespace
 
 import msgspec
@@ -13,13 +14,15 @@ from viser import _messages as messages
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from haptic_glance.know import Exploration, learn, primitives
+from haptic_glance.know import learn, primitives
 from haptic_glance.lod import write_any
+from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.app import Studio
+from haptic_glance.studio.feeling import felt_by
 from haptic_glance.studio.guard import COOKIE
 from haptic_glance.studio.panels import PANELS
-from haptic_glance.studio.panels.know import KnowPanel, gather
+from haptic_glance.studio.panels.know import BOARD, CAMERA, Course, KnowPanel, gather
 from haptic_glance.studio.session import Session, Settings
 from haptic_glance.studio.specimen import Specimen
 
@@ -84,22 +87,46 @@ def test_a_panel_shows_is_clicked_and_hides_without_a_message(window, title):
     assert not window.said
 
 
-def test_the_planner_knows_the_mesh_and_the_belief_comes_back_with_the_panel(window):
+def do(window, work):
+    """Runs what a button runs, and waits until it is done."""
+    window.run("", work)
+    until(lambda: not window.jobs)
+
+
+def test_a_peek_and_touches_know_the_mesh_and_come_back_with_the_panel(window):
     window.choose("Know")
-    until(lambda: window.panel.exploration is not None and not window.jobs)
-    window.run("", window.panel.touch_next)
-    until(lambda: not window.jobs)
-    assert len(window.panel.exploration.images) and window.scene.has("/know/touched/0")
-    window.run("", window.panel.touch_on)
-    until(lambda: not window.jobs)
-    assert window.panel.about.content.startswith("**knob**, after")
+    until(lambda: window.panel.course is not None and not window.jobs)
+    panel = window.panel
+    do(window, panel.learn)
+    do(window, panel.peek)
+    assert panel.picture.visible and panel.course.words == "after a peek"
+    do(window, panel.touch_next)
+    assert len(panel.course.belief.touches) == 1 and window.scene.has("/know/touched/1")
+    assert panel.grid.visible and "touch 1" in panel.grid.content
+    do(window, panel.touch_on)
+    assert panel.about.content.startswith("**knob**, after a peek and ")
     window.choose("Look")
     assert not window.scene.has("/know")
     window.choose("Know")
-    assert window.scene.has("/know/touched/0") and not window.said
-    window.run("", window.panel.learn)
-    until(lambda: not window.jobs)
-    assert len(window.panel.exploration.images) == 0
+    assert window.scene.has("/know/touched/1") and not window.said
+
+
+def test_another_mesh_on_the_table_starts_again(window, shapes):
+    window.choose("Know")
+    until(lambda: window.panel.course is not None and not window.jobs)
+    do(window, window.panel.peek)
+    do(window, window.panel.touch_next)
+    before, knob = window.panel.course, window.session.specimen
+    window.put(Specimen(shapes["torus"], "ring"))
+    until(lambda: window.panel.course is not None and not window.jobs)
+    course = window.panel.course
+    assert "ring has the shape of torus" in window.panel.known.content
+    assert course.words == "" and "ring" in course.belief.library.names and not window.scene.has("/know")
+    assert not window.panel.picture.visible and not window.panel.grid.visible
+    window.panel.advance(before, before)  # a touch of the old mesh that ends late
+    assert window.panel.course is course
+    window.put(knob)
+    until(lambda: window.panel.course is not None and not window.jobs)
 
 
 @pytest.fixture(scope="module")
@@ -120,13 +147,80 @@ def test_everything_that_was_opened_is_known(tmp_path, shapes):
     assert len(meshes["ball"].faces) == len(shapes["torus"].faces)
 
 
-def test_a_mesh_that_is_no_longer_on_the_table_is_not_touched_and_another_panel_draws_nothing(shapes):
-    library = learn(shapes)
-    old, new = (Exploration(library, shapes["cone"], np.random.default_rng(seed)) for seed in range(2))
-    panel = KnowPanel(SimpleNamespace(session=Session(kept={"Know": new}), panel=None))
-    panel.bars, panel.about = SimpleNamespace(), SimpleNamespace()
-    panel.touch(old, old.candidate(0))
-    assert len(old.images) == len(new.images) == 0
-    panel.touch(new, new.candidate(0))
-    panel.draw()
-    assert len(new.images) == 1 and panel.bars.visible
+@pytest.fixture(scope="module")
+def library(shapes):
+    return learn(shapes)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.6, 0.9])
+def test_the_board_hides_the_asked_share_and_another_peek_moves_it(library, shapes, share):
+    course = Course(shapes["cone"], library.belief()).peek(share)
+    view = render(shapes["cone"], CAMERA, size=(96, 96))
+    is_object = view.face >= 0
+    covered = (course.picture != view.rgb).any(axis=2)
+    assert covered[is_object].mean() == pytest.approx(share, abs=0.03)
+    assert (course.picture[covered] == BOARD).all()
+    assert ((course.peek(share).picture == course.picture).all()) == (share == 0)
+
+
+def test_a_peek_and_touches_name_a_cone(library, shapes):
+    start = Course(shapes["cone"], library.belief())
+    peeked = start.peek(0.6)
+    assert peeked.belief.name == "cone" and (peeked.words, start.words) == ("after a peek", "")
+    touched = peeked.touch(peeked.belief.next_touch())
+    assert touched.belief.known == "cone" and touched.words == "after a peek and 1 touch"
+    again = touched.peek(0.6)  # takes the place of the first peek, and keeps the touch
+    fresh = replace(start, peeks=1).peek(0.6).touch(touched.belief.touches[0].approach)
+    assert again.belief.log_weights == pytest.approx(fresh.belief.log_weights) and again.words == touched.words
+    assert (again.peek(0.6).picture != again.picture).any()
+    blind = start.touch(start.belief.next_touch())
+    assert blind.touch(blind.belief.next_touch()).words == "after 2 touches"
+
+
+def test_the_cells_of_a_touch_lie_on_the_mesh(library, shapes):
+    """Looking down on the tip of a cone, from 0.6 above it: the middle is pressed, and the corners are lower."""
+    tip = shapes["cone"].vertices[shapes["cone"].vertices[:, 2].argmax()]
+    approach = library.approach(tip + [0, 0, 0.6], [0, 0, -1])
+    (touch,) = Course(shapes["cone"], library.belief()).touch(approach).belief.touches
+    felt = felt_by(touch, library, unit=40.0)
+    places, pressed = felt.contacts
+    assert len(places) and felt.span == (pytest.approx(40 * library.sensor.depth), 0.0)
+    slope = np.ptp(shapes["cone"].vertices[:, 2]) / np.ptp(shapes["cone"].vertices[:, 0]) * 2
+    height = tip[2] - slope * np.linalg.norm(places[:, :2] - tip[:2], axis=1)
+    assert np.abs(places[:, 2] - height).max() < 0.03
+    assert felt.pressed[3:5, 3:5].min() > 0.5 and felt.pressed[0, 0] < 0.15
+    away = Course(shapes["cone"], library.belief()).touch(library.approach([0.8, 0, 0.9], [0, 0, -1]))
+    missed = felt_by(away.belief.touches[0], library)
+    assert np.isinf(missed.depths).all() and not missed.pressed.any()
+
+
+def test_a_touch_that_meets_nothing_is_told_and_not_drawn(window):
+    window.choose("Know")
+    until(lambda: window.panel.course is not None and not window.jobs)
+    panel = window.panel
+    window.run("", panel.learn)
+    assert panel.course is None and not window.scene.has("/know")
+    until(lambda: not window.jobs)
+    before = panel.course
+    met, missed = (before.belief.library.approach([x, 0, 0.9], [0, 0, -1]) for x in (0, 0.8))
+    window.run("", lambda: panel.advance(before, before.touch(met)))
+    first = panel.course
+    assert panel.grid.visible and window.scene.has("/know/felt/1")
+    window.run("", lambda: panel.advance(first, first.touch(missed)))
+    assert panel.about.content.startswith("Touch 2 met nothing. ") and not panel.grid.visible
+    assert window.scene.has("/know/touched/1") and not window.scene.has("/know/touched/2")
+
+
+def test_a_click_touches_the_place_along_its_normal_and_another_panel_draws_nothing(library, shapes):
+    table = Specimen(shapes["box"], "box")
+    hit = table.pick(np.array([2.0, 0.1, 0.05]), np.array([-1.0, 0, 0]))
+    session = Session(table, kept={"Know": Course(table.mesh, library.belief())})
+    window = SimpleNamespace(session=session, panel=None, work=lambda _, work, receiver, **__: receiver(work(None)))
+    panel = KnowPanel(window)
+    panel.on_click(hit)
+    (touch,) = panel.course.belief.touches
+    assert touch.contact == pytest.approx(hit.position, abs=0.01) and touch.approach.line == -1
+    assert touch.approach.direction == pytest.approx([-1, 0, 0])
+    session.kept = {}
+    with pytest.raises(ValueError, match="still being learned"):
+        panel.on_click(hit)
