@@ -12,7 +12,7 @@ most touches; `differences` {name: [mean, low, high]} in points, or in touches f
 `reliability`, the largest gap between stated probability and share of right answers, over fifths of the answers;
 `seconds` of a step, of learning and in all. Intervals are 95 %, from 4,000 draws of whole classes.
 With --rotations, 21 of the objects are also touched blind in any rotation, up to ten times: at random, planned, and
-planned where the place is unknown by 3 % and the size by 10 %. `any_rotation` {way: [mean, low, high] for each touch}.
+planned where the place is unknown by 3 % and the size by 10 %. `any_rotation` {way: [mean, low, high] for each touch}. --out writes the same numbers as a table.
 
 examples:
   python -m benchmarks.look_and_touch --meshes psb.zip --json
@@ -32,9 +32,11 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from scipy.spatial.transform import Rotation
 
 from haptic_glance.base import progress
+from haptic_glance.base.files import write_table
 from haptic_glance.base.rng import rng
 from haptic_glance.know import SURE, Library, learn, stand
 from haptic_glance.look.points import find_points
@@ -195,6 +197,29 @@ def _turned(library, name, planned, repeat):
     return right
 
 
+def rows_of(result: dict[str, Any]) -> list[dict[str, Any]]:
+    """The result as rows: what, condition, policy, touches, value, low, high."""
+    rows = []
+    for condition, by_policy in result["right"].items():
+        for policy, values in by_policy.items():
+            common = {"condition": condition, "policy": policy}
+            rows += [
+                {"what": "right", **common, "touches": count, "value": value} for count, value in enumerate(values)
+            ]
+            rows += [
+                {"what": what, **common, "value": result[what][condition][policy]}
+                for what in ("touches_to_sure", "decided", "right_when_sure", "reliability")
+            ]
+    for way, values in result.get("any_rotation", {}).items():
+        for touch, (mean, low, high) in enumerate(values):
+            row = {"what": "any_rotation", "condition": "blind", "policy": way, "touches": touch + 1}
+            rows.append(row | {"value": mean, "low": low, "high": high})
+    for name, (mean, low, high) in result["differences"].items():
+        rows.append({"what": name, "value": mean, "low": low, "high": high})
+    rows += [{"what": what, "value": result[what]} for what in ("objects", "classes", "poses")]
+    return rows
+
+
 def lines_of(result: dict[str, Any]) -> Iterator[str]:
     """The result in words."""
     for condition, by_policy in result["right"].items():
@@ -216,6 +241,7 @@ def main() -> None:
     parser.add_argument("--meshes", type=Path, required=True, help="a ZIP or a folder; its folders are classes")
     parser.add_argument("--poses", type=int, default=5, help="of each object (default 5)")
     parser.add_argument("--rotations", action="store_true", help="also blind, in any rotation (two minutes)")
+    parser.add_argument("--out", type=Path, help="a CSV that is written, too")
     parser.add_argument("--json", action="store_true", help="print one object")
     options = parser.parse_args()
     warnings.simplefilter("ignore")  # equal meshes and guessed axes are part of what is measured
@@ -237,6 +263,8 @@ def main() -> None:
     }  # fmt: skip
     if options.rotations:
         result["any_rotation"] = any_rotation(meshes)
+    if options.out:
+        write_table(options.out, pd.DataFrame(rows_of(result)))
     print(json.dumps(result) if options.json else "\n".join(lines_of(result)))
 
 

@@ -144,13 +144,3 @@ def _resized(values, count):
     low = np.minimum(edges.astype(int), size - 1)
     at = sums[low] + (edges - low)[:, None] * values[low]
     return (np.diff(at, axis=0) * (count / size)).astype(np.float32)
-
-
-def board(is_object: np.ndarray, share: float, random: np.random.Generator) -> np.ndarray:
-    """(h, w) boolean: a board with a straight edge at a random angle hides a share of an object's pixels (h, w)."""
-    rows, columns = np.nonzero(is_object)
-    angle = 2 * np.pi * random.random()
-    if share <= 0 or not len(rows):
-        return np.zeros(is_object.shape, dtype=bool)
-    along = np.cos(angle) * np.arange(is_object.shape[1])[None] + np.sin(angle) * np.arange(is_object.shape[0])[:, None]
-    return along > np.quantile(along[rows, columns], 1 - share)
