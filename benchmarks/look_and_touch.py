@@ -12,7 +12,8 @@ most touches; `differences` {name: [mean, low, high]} in points, or in touches f
 `reliability`, the largest gap between stated probability and share of right answers, over fifths of the answers;
 `seconds` of a step, of learning and in all. Intervals are 95 %, from 4,000 draws of whole classes.
 With --rotations, 21 of the objects are also touched blind in any rotation, up to ten times: at random, planned, and
-planned where the place is unknown by 3 % and the size by 10 %. `any_rotation` {way: [mean, low, high] for each touch}. --out writes the same numbers as a table.
+planned where the place is unknown by 3 % and the size by 10 %. `any_rotation` {way: [mean, low, high] for each touch}.
+--out writes the same numbers as a table.
 
 examples:
   python -m benchmarks.look_and_touch --meshes psb.zip --json
