@@ -71,6 +71,11 @@ class Story:
         return self.steps[-1].belief if self.steps else self.look
 
     @cached_property
+    def shown(self) -> float:
+        """The diameter that the pictures of the page hold: of the largest known object, or of a larger one there."""
+        return max(self.library.diameter, 2 * float(np.linalg.norm(self.there.vertices, axis=1).max()))
+
+    @cached_property
     def verdict(self) -> str:
         """right, wrong, or undecided."""
         answer = self.last.known

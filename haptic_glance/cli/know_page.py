@@ -134,7 +134,7 @@ def hand_svg(story: Story, number: int, step: Step) -> str:
     half = np.array(approach.array.cells[::-1]) * approach.array.pitch / 2
     corners = [place + (a * half[0]) * approach.axes[0] + (b * half[1]) * approach.axes[1]
                for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]  # fmt: skip
-    points = np.array([approach.origin, place, *corners]) / unit
+    points = np.array([approach.origin, place, *corners]) / story.shown
     rows, columns, _ = project(points, camera, (SIDE, SIDE))
     (x0, y0), (x1, y1), *outline = zip(columns.round(1).tolist(), rows.round(1).tolist(), strict=True)
     square = " ".join(f"{x},{y}" for x, y in outline)
@@ -151,7 +151,7 @@ def hand_svg(story: Story, number: int, step: Step) -> str:
 
 def shaded(story: Story, camera: Viewpoint) -> np.ndarray:
     """(320, 320, 3) bytes: the object as it stands, against white."""
-    small = replace(story.there, vertices=story.there.vertices / story.library.diameter)
+    small = replace(story.there, vertices=story.there.vertices / story.shown)
     view = render(small, camera, size=(SIDE, SIDE))
     return np.where((view.face >= 0)[..., None], view.rgb, 255).astype(np.uint8)
 

@@ -61,8 +61,8 @@ class TouchUntilSure(gymnasium.Env):
     Raises
     ------
     ValueError
-        For what `learn` refuses, for a `most` that is no whole number from 1, for a `hidden` out of range, and for
-        another render mode.
+        For what `learn` refuses, for fewer than two objects, for a `most` that is no whole number from 1, for a
+        `hidden` out of range, and for another render mode.
     TypeError
         For meshes that are no mapping, and for names that are no texts.
     MissingExtra
@@ -90,6 +90,8 @@ class TouchUntilSure(gymnasium.Env):
         if hidden is not None and not 0 <= hidden <= MOST_HIDDEN:
             raise ValueError(f"hidden is a share from 0 to {MOST_HIDDEN:g}, or None for no picture, got {hidden}")
         self.library = learn(primitives() if meshes is None else meshes, pose, sensor)
+        if len(self.library.names) < 2:
+            raise ValueError("with one object there is nothing to find out: give two or more")
         self.most, self.hidden, self.render_mode = most, hidden, render_mode
         self.ended = True  # until the first reset
         self.action_space = Discrete(LINES)

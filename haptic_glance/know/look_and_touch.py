@@ -13,6 +13,7 @@ from haptic_glance.touch import Surface
 from haptic_glance.touch.surface import as_surface
 
 from .belief import Belief, Reachable
+from .library import SPAN
 from .pressure_array import Approach
 from .sight import SIDE, board
 
@@ -82,8 +83,12 @@ def half_hidden(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(picture (96, 96) in bytes, mask (96, 96) of what is hidden) of a mesh, a share of it behind a grey board.
 
-    diameter: of the largest known object, `Library.diameter`.
+    diameter: of the largest known object, `Library.diameter`. The picture cuts a larger object off.
     """
-    view = render(replace(mesh, vertices=mesh.vertices / diameter), CAMERA, size=(SIDE, SIDE))
-    mask = board(view.face >= 0, share, random)
-    return np.where(mask, BOARD, view.rgb.mean(axis=2)).astype(np.uint8), mask
+    reach = np.linalg.norm(mesh.vertices[mesh.used], axis=1).max() / diameter
+    frames = int(np.ceil(max(2 * reach / SPAN, 1)))  # what is rendered, since it must hold the whole object
+    wide = render(replace(mesh, vertices=mesh.vertices / (frames * diameter)), CAMERA, size=(frames * SIDE,) * 2)
+    border = (frames - 1) * SIDE // 2
+    middle = slice(border, border + SIDE), slice(border, border + SIDE)
+    mask = board(wide.mask[middle], share, random)
+    return np.where(mask, BOARD, wide.rgb[middle].mean(axis=2)).astype(np.uint8), mask

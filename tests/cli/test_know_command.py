@@ -124,6 +124,10 @@ def test_after_the_most_touches_it_is_undecided(know, monkeypatch):
 def test_sizes_count_and_lengths_have_the_unit_of_the_files(know, tmp_path, folder):
     _, _, page = know("--sized", "--hidden", 0.95, "--seed", 1)
     assert "of the files&#x27; units or more" in page and "diameters or more" not in page
+    larger = Mesh(42 * primitives()["torus"].vertices, primitives()["torus"].faces)  # the balls measure some 33
+    write_any(tmp_path / "larger.obj", larger)
+    printed, _, page = know("--sized", "--hidden", 0.3, name=tmp_path / "larger.obj")
+    assert printed.startswith("look at 70 % of larger: ") and "all of the object, from the same side" in page.lower()
     huge = trimesh.creation.box((200, 200, 200))
     write_any(tmp_path / "huge.obj", Mesh(huge.vertices, huge.faces))
     with pytest.raises(ValueError, match=r"huge.obj: it is [\d.]+ times as large .* or leave out --sized"):

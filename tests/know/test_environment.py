@@ -1,5 +1,7 @@
 """Touch until sure, as an environment of Gymnasium: its checker, its registration, rewards and ends."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -87,6 +89,14 @@ def test_the_board_hides_the_share_and_the_belief_begins_with_the_look(task, bli
     assert not unseen["picture"].any() and unseen["belief"].tolist() == [0.5, 0.5]
 
 
+def test_a_picture_cuts_off_an_object_larger_than_the_known_ones():
+    ball = stand(primitives()["ball"])
+    larger = replace(ball, vertices=1.3 * ball.vertices)
+    shown, wider = (half_hidden(larger, size, 0.0, np.random.default_rng(0))[0] for size in (1.0, 2.0))
+    assert (shown > 0).mean() > 0.95 and not shown[0, 0]  # but for the corners
+    assert (wider > 0).sum() == pytest.approx(np.pi / 4 * (1.3 / 2 / 1.048 * 96) ** 2, rel=0.02)
+
+
 def test_an_observation_tells_what_the_last_touch_felt_along_which_line(blind):
     before, _ = blind.reset(seed=3, options={"name": "box"})
     assert before["travel"] == np.float32(AWAY) and (before["imprint"] == 1).all() and not before["touched"].any()
@@ -160,5 +170,7 @@ def test_bad_input_is_named_and_changes_nothing(task):
     for meshes, words in (([], "be a mapping"), ([*shapes().values()], "be a mapping"), ({1: 0}, "have texts")):
         with pytest.raises(TypeError, match=f"meshes must {words}"):
             TouchUntilSure(meshes)
+    with pytest.raises(ValueError, match="with one object there is nothing to find out: give two or more"):
+        TouchUntilSure({"box": primitives()["box"]})
     with pytest.raises(ValueError, match="unknown option 'nme'"):
         task.reset(options={"nme": "box"})
