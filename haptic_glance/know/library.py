@@ -168,7 +168,8 @@ class _Mesh:
 
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
-        self.content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).digest()
+        colours = b"" if mesh.colors is None else mesh.colors.tobytes()  # which a look sees
+        self.content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes() + colours).digest()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Mesh) and self.content == other.content

@@ -1,10 +1,12 @@
 """What a small picture says: its features, what is hidden, and pictures that cannot be used."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from haptic_glance import Viewpoint, render
-from haptic_glance.know import primitives
+from haptic_glance.know import learn, primitives
 from haptic_glance.know.sight import SIDE, blocks, prepared, similarity, sketch
 
 
@@ -84,3 +86,14 @@ BLACK, GREY = np.zeros((SIDE, SIDE), dtype=np.uint8), np.eye(SIDE, dtype=np.uint
 def test_a_picture_that_tells_nothing_is_named(picture, hidden, words):
     with pytest.raises(ValueError, match=words):
         prepared(picture, hidden)
+
+
+@pytest.mark.filterwarnings("ignore:grey and painted are the same shape")
+def test_two_objects_of_one_shape_are_told_apart_by_their_colours():
+    box = primitives()["box"]
+    colours = np.where(box.vertices[:, :1] > 0, 255, 20).astype(np.uint8).repeat(3, axis=1)
+    shapes, camera = {"grey": box, "painted": replace(box, colors=colours)}, Viewpoint(0, 35)
+    library = learn(shapes)
+    for name, mesh in shapes.items():
+        belief = library.look(render(mesh, camera, size=(SIDE, SIDE)).rgb, camera)
+        assert belief.probabilities[name] > 0.9
