@@ -31,6 +31,11 @@ UNHARMED = {name: entry.unharmed for name, entry in PERTURBATIONS.items()}
 TOUCHED = 1  # touches, of the breaking points
 
 
+def first_set(results: Results) -> str:
+    """The first set with rows of the stage; NotRun where there is none."""
+    return require_rows(results.datasets(STAGE), f"no measurements of {STAGE}", STAGE)[0]
+
+
 def by_class(rows: pd.DataFrame) -> np.ndarray:
     """Means of the objects' values within each class, over which intervals run."""
     return rows.groupby("group")["value"].mean().to_numpy()
@@ -200,7 +205,7 @@ def breaking(frame: pd.DataFrame, objects: int) -> pd.DataFrame:
 
 def breaking_table(results: Results) -> Table:
     """Breaking points of one planned touch, blind and after a look, of the first set."""
-    dataset = results.datasets(STAGE)[0]
+    dataset = first_set(results)
     frame = breaking(disturbed(results, dataset), _objects(results, dataset))
     heads = frame["sight"].map({"blind": "touch alone breaks at", "look": "look and touch break at"})
     return Table(frame, broken(frame, heads, UNHARMED), {"set": dataset_text(dataset), "touched": TOUCHED})
@@ -212,7 +217,7 @@ def _objects(results, dataset):
 
 def breaking_figure(results: Results) -> Figure:
     """Right answers after one planned touch against severity: a panel a perturbation."""
-    dataset = results.datasets(STAGE)[0]
+    dataset = first_set(results)
     frame, names = disturbed(results, dataset), list(PERTURBATIONS)
     drawing, grid = plt.subplots(2, 3, figsize=(9.6, 5.4), sharey=True, layout="constrained")
     words = {"blind": "one planned touch", "look": "a look and one planned touch"}
@@ -238,7 +243,7 @@ def breaking_figure(results: Results) -> Figure:
 
 def story(results: Results) -> Figure:
     """One object that a look leaves open and one planned touch decides: picture, belief, touch, belief."""
-    dataset = results.datasets(STAGE)[0]
+    dataset = first_set(results)
     folder = results.folder("meshes", dataset)
     library = library_of(folder, tuple(read_json(results.folder(STAGE, dataset) / "names.json")))
     for name in _undecided(results, dataset):
