@@ -15,7 +15,7 @@ from stages.report.parts import KINDS, PARTS, Built, page_of
 from stages.report.site import FINDINGS, findings_html, front_main, page_html, questions_html
 
 REPORTS = Path(__file__).parents[2] / "reports"
-ASKED = 9
+ASKED = 10
 NO_CLAIMS = pd.DataFrame(columns=["key", "low", "verdict"])
 
 
