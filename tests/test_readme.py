@@ -4,10 +4,12 @@ import re
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 import trimesh
 
 from haptic_glance.__main__ import MESH_COMMANDS
+from haptic_glance.mesh.mesh import Mesh
 from stages.charts.cells import number_of, rows_of
 from stages.compose import groups
 
@@ -76,9 +78,32 @@ def test_the_python_example_runs(tmp_path, monkeypatch):
     ball.vertices *= [40.0, 28.0, 20.0]
     ball.vertices[:, 2] += 0.005 * ball.vertices[:, 0] ** 2
     ball.export(tmp_path / "scan.stl")
-    ((_, code),) = [block for block in CODE.findall(TEXT) if block[0] == "python"]
+    code, _ = [code for language, code in CODE.findall(TEXT) if language == "python"]
     monkeypatch.chdir(tmp_path)
     names = {}
     exec(code, names)
     assert names["values"].shape == (2562,) and len(names["points"])
     assert len(names["small"].faces) <= 1500 and names["image"].shape == (16, 16)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*up")
+def test_the_robot_of_the_python_example_knows_what_it_touches(tmp_path, monkeypatch):
+    from haptic_glance import Viewpoint, render
+    from haptic_glance.know import stand
+
+    _, code = [code for language, code in CODE.findall(TEXT) if language == "python"]
+    for name, size in (("mug", (0.1, 0.08, 0.12)), ("jug", (0.16, 0.1, 0.2))):
+        trimesh.creation.box(size).export(tmp_path / f"{name}.stl")
+    monkeypatch.chdir(tmp_path)
+    there = stand("jug.stl", turn=25)
+
+    class Hand:
+        def touch(self, origin, direction):
+            return names["library"].approach(origin, direction).feel(there)
+
+    small = Mesh(there.vertices / np.linalg.norm((0.16, 0.1, 0.2)), there.faces)
+    camera = Viewpoint(0, 35)
+    names = {"hand": Hand(), "camera": camera, "picture": render(small, camera, size=(90, 120)).rgb}
+    exec(code, names)
+    assert names["belief"].known == "jug"

@@ -22,8 +22,8 @@ from stages.report.verdict import judge
 ROOT = Path(__file__).parents[2]
 REPORTS = ROOT / "reports"
 FROM_DATA = {  # items that need what stages leave in data/
-    "dataset", "figure_3_3", "figure_3_10", "figure_3_12", "figure_3_13", "figure_3_29", "figure_3_30", "figure_3_34", "look_and_touch_story",
-    "scene", "pipeline", "touch_one_mesh", "imprints", "figure_4_15",
+    "dataset", "figure_3_3", "figure_3_10", "figure_3_12", "figure_3_13", "figure_3_29", "figure_3_30", "figure_3_34",
+    "look_and_touch_story", "scene", "pipeline", "touch_one_mesh", "imprints", "figure_4_15",
 }  # fmt: skip
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 REMEDY = "where this change is wanted, `dvc repro` writes it anew"

@@ -28,7 +28,7 @@ from ..specimen import Hit, Specimen, open_file
 HOUSEHOLD = Path("data") / "household" / "meshes"  # where `make repro` puts them, below the current folder
 MOST = 60  # objects
 TOUCHES = 10  # of the planner at a time, at most
-AWAY = 0.6  # units from the clicked place, where the hand starts: outside of most objects, whose radius is 0.5
+AWAY = 1.0  # units from the clicked place, where the hand starts: outside of an object, whose radius is 0.5
 CAMERA, SIDE = Viewpoint(0, 35), 96  # of the peek; rows and columns of its picture
 BOARD = (128, 128, 128)  # colour of the board
 POSES = {"turned": "turned", "as learned": "fixed", "anyhow": "any"}
