@@ -106,7 +106,7 @@ def learn(
     if sensor is not None and not isinstance(sensor, PressureArray):
         raise TypeError(f"sensor must be a PressureArray, got {sensor!r}")
     for name, tolerance in (("position", position), ("size", size)):
-        if not (np.isscalar(tolerance) and 0 <= tolerance < np.inf):
+        if not (isinstance(tolerance, int | float | np.number) and 0 <= float(tolerance) < np.inf):
             raise ValueError(f"{name} must be a finite tolerance of 0 or more, got {tolerance!r}")
     if not size < 1:
         raise ValueError(f"size is a share below 1 by which objects may be larger or smaller, got {size}")
@@ -220,7 +220,7 @@ def coarse(reliefs: np.ndarray, cells: tuple[int, int]) -> np.ndarray:
         return reliefs
     parts = reliefs.reshape(*reliefs.shape[:-1], rows // 2, 2, columns // 2, 2)
     kind = np.uint16 if reliefs.dtype == np.uint8 else reliefs.dtype
-    sums = sum(parts[..., i, :, j].astype(kind) for i in range(2) for j in range(2))
+    sums = np.sum([parts[..., i, :, j].astype(kind) for i in range(2) for j in range(2)], axis=0, dtype=kind)
     means = sums // 4 if kind == np.uint16 else sums / 4
     return means.astype(reliefs.dtype).reshape(*reliefs.shape[:-1], -1)
 

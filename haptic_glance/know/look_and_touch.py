@@ -7,7 +7,7 @@ import numpy as np
 
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import render
-from haptic_glance.mesh.files import MeshLike
+from haptic_glance.mesh.files import MeshLike, with_known_up
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface
 from haptic_glance.touch.surface import as_surface
@@ -68,7 +68,7 @@ def touch_until_known(
     >>> last.belief.known
     'box'
     """
-    surface = as_surface(mesh)
+    surface = mesh if isinstance(mesh, Surface) else as_surface(with_known_up(mesh))
     for _ in range(most):
         if belief.known:
             return

@@ -4,7 +4,7 @@ A particle filter with resampling and Metropolis moves (Gilks and Berzuini, Foll
 """
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -22,7 +22,7 @@ FIRST, KEPT = 30_000, 4_000  # hypotheses before the first touch at least, and a
 SCARCE = 0.25  # of the hypotheses: effectively fewer are drawn anew
 MOVES = (1.0, 0.3)  # sizes of the moves after that, in turn
 ANGLE, SHARE = 6.0, 0.3  # degrees of a move's rotation; shares of the tolerances
-Evidence = Callable[["Library", Hypotheses, object], np.ndarray]
+Evidence = Callable[["Library", Hypotheses, Any], np.ndarray]
 
 
 def first_particles(library: "Library") -> Hypotheses:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from haptic_glance.base.rng import rng
-from haptic_glance.mesh.files import MeshLike
+from haptic_glance.mesh.files import MeshLike, with_known_up
 from haptic_glance.touch import Surface
 from haptic_glance.touch.distances import check_array
 from haptic_glance.touch.surface import as_surface
@@ -52,7 +52,7 @@ class PressureArray:
         object.__setattr__(self, "cells", cells)
         for name in ("travel_noise", "relief_noise"):
             value = getattr(self, name)
-            if not (np.isscalar(value) and 0 <= value < np.inf):
+            if not (isinstance(value, int | float | np.number) and 0 <= float(value) < np.inf):
                 raise ValueError(f"{name} must be a finite length of 0 or more, got {value!r}")
 
     def scaled(self, factor: float) -> "PressureArray":
@@ -141,7 +141,7 @@ class Approach:
         imprint : (rows, cols) array of float
             How far the surface lies below the array at each cell, from 0 to the array's depth.
         """
-        surface = as_surface(mesh)
+        surface = mesh if isinstance(mesh, Surface) else as_surface(with_known_up(mesh))
         (travel,), (imprint,) = feel_lines(surface, self.origin[None], self.axes[None], self.array)
         random = random or rng(0, (self.origin.round(9).tolist(), self.axes.round(9).tolist()))
         noise = random.normal(size=(1 + imprint.size))

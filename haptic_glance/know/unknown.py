@@ -5,7 +5,7 @@ each is left out in turn, and is then unknown among the others.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
@@ -41,7 +41,7 @@ class Verifier:
         """Probability that the object is known; one half before the first touch."""
         return float(expit(self.log_odds(fit, weight))) if weight > 0 else 0.5
 
-    def log_odds(self, fit: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    def log_odds(self, fit: Any, weight: Any) -> Any:
         """Log odds that the object is known; the arguments broadcast."""
         return self.scale * weight**self.growth * (fit - self.expected) + self.bias
 

@@ -13,7 +13,7 @@ from stages.charts.datasets import dataset_text
 from stages.charts.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results, require_rows
-from stages.charts.tables import everywhere, interval_columns, interval_text, percent, records, within
+from stages.charts.tables import everywhere, grouped, interval_columns, interval_text, percent, records, within
 from stages.engine.statistics import breaking_point, interval
 
 from .measure import CLEAN, DISTURBED, PERTURBATIONS, library_of
@@ -188,7 +188,7 @@ def disturbed(results: Results, dataset: str) -> pd.DataFrame:
 def breaking(frame: pd.DataFrame, objects: int) -> pd.DataFrame:
     """Frame: perturbation, unit, sight, the severity at which half of the lead over guessing is lost, its interval."""
     lines = []
-    for (name, sight), part in frame.groupby(["perturbation", "sight"], sort=False):
+    for (name, sight), part in grouped(frame, ["perturbation", "sight"]):
         clean, harsh = part["accuracy"].iloc[0], part.iloc[1:]
         ends = {
             key: breaking_point(
