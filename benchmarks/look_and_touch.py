@@ -1,4 +1,4 @@
-"""What a look and planned touches tell of known objects: `python -m benchmarks.look_and_touch --meshes ZIP_OR_FOLDER`
+"""Names known objects by a look and planned touches: `python -m benchmarks.look_and_touch --meshes ZIP_OR_FOLDER`
 
 Each mesh is known, and is then there in some poses: turned by a drawn azimuth, a hundredth of its diameter beside its
 place. A camera takes one picture, in which a board hides 60 % of the object. Then a hand touches along lines, up to six
@@ -125,7 +125,7 @@ def reliability(stated: np.ndarray, right: np.ndarray) -> float:
 
 
 def summary(right: Right, stated: Right, classes: Sequence[str]) -> dict[str, Any]:
-    """What --json prints, but for seconds."""
+    """The numbers that --json prints, but for seconds."""
     sure = {cell: to_sure(stated[cell], right[cell]) for cell in right}
     nested = {condition: list(policies) for condition, policies in ROWS.items()}
 

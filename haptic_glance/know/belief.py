@@ -66,7 +66,7 @@ class Belief:
     log_weights : (h,) array of float
         Their log probabilities, to a constant of the touches.
     felt : (h,) array of float
-        What the touches alone contribute to these.
+        The part of these that the touches alone contribute.
     touches : tuple of Touch
         The touches so far.
     """

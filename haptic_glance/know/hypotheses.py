@@ -1,4 +1,4 @@
-"""What an object may be and how it may stand: an object, a rotation, and if they are unknown a shift and a size."""
+"""Hypotheses: an object and its rotation, and a shift and a size where these are unknown."""
 
 from dataclasses import dataclass
 

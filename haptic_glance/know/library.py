@@ -235,7 +235,7 @@ class Library:
     diameter : float
         Of the largest object's bounding sphere, in the unit of the meshes.
     span : float
-        What the rows of a picture span, in the unit of the meshes: 1.048 diameters. The camera looks at the origin.
+        Length of the rows of a picture, in the unit of the meshes: 1.048 diameters. The camera looks at the origin.
     sensor : PressureArray
         The array, in the unit of the meshes.
     """

@@ -71,7 +71,7 @@ def feel_lines(
     array: PressureArray,
     sizes: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """What arrays feel that move from origins (k, 3) against their normals: (travels (k,), imprints (k, rows, cols)).
+    """(travels (k,), imprints (k, rows, cols)) of arrays that move from origins (k, 3) against their normals.
 
     axes (k, 3, 3): rows right, up and normal of each array, the normal against the movement. sizes (k,): of the object
     as shares of the mesh, whose frame the origins are in. A travel is MISSED where nothing is met. An imprint is how

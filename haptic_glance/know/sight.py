@@ -1,4 +1,4 @@
-"""What a small picture says about an object and its pose: gradients and grey values, compared where they are seen.
+"""Features of a small picture: gradients and grey values, compared where nothing hides them.
 
 A picture is compared with rendered views of each known mesh in each pose. Only cells of the picture that nothing hides
 count.
