@@ -10,7 +10,7 @@ from stages.charts.drawing import draw_matrices
 from stages.charts.items import Figure, Table
 from stages.charts.results import NotRun, Results
 from stages.charts.tables import Ranking, grid, grouped, number, percent, with_interval, within
-from stages.transfer.network_rows import PASSES, SPLITS, accuracy, everywhere, mean, seen
+from stages.transfer.network_rows import PASSES, SPLITS, THEIRS, accuracy, everywhere, mean, seen
 
 SENSES = {"vision": "sight", "touch": "touch"}
 ITEMS = {split: words.replace("touches", "items") for split, words in SPLITS.items()}
@@ -104,12 +104,14 @@ def _note(rows: pd.DataFrame, theirs: float) -> str:
 
 
 def figure_5_6(results: Results) -> Figure:
-    """Confusion matrices, senses in columns and splits in rows."""
-    frame = results.measured("transfer", method="hybrid", metric="confusion", mode=MIDDLE)
+    """Confusion matrices on the thesis's classes where they were measured, senses in columns and splits in rows."""
+    dataset = results.printed(THEIRS, "transfer")
+    frame = results.measured("transfer", dataset, method="hybrid", metric="confusion", mode=MIDDLE)
     splits = {(split,): words for split, words in ITEMS.items() if split in set(frame["split"])}
     senses = {sense: f"by {word}" for sense, word in SENSES.items()}
     figure, words = draw_matrices(frame, splits, senses, ["split"], "sense")
-    return Figure(figure, words | {"splits": ", ".join(splits.values())})
+    words |= {"splits": ", ".join(splits.values()), "objects": _objects(frame)}
+    return Figure(figure, words | {"trainings": frame.groupby("split")["repetition"].nunique().max()})
 
 
 NEW_OBJECTS = "new_object_accuracy"

@@ -37,6 +37,7 @@ from stages.transfer.network_rows import (
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 OTHERS = list(PASSES)[1:]
+PIXELS, COST = 224, "milliseconds"  # the side of a picture of the thesis's networks; what it costs
 MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6
 
 
@@ -71,6 +72,7 @@ def networks(results: Results, data: str) -> Table:
             "seconds": runs["seconds"].median(),
         })  # fmt: skip
     frame = pd.DataFrame(lines)
+    frame[COST] = frame["network"].map(picture_milliseconds(results))
     starts = zip(frame["weights"], frame.groupby("network")["pretrained"].transform("first"), strict=True)
     down = {"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)}
     cells = frame.assign(network=frame["network"].map(label), **down)
@@ -81,6 +83,25 @@ def networks(results: Results, data: str) -> Table:
     words |= {"precision": _precisions(frame), "looked": _looked(frame), "guesses": _guesses(frame)}
     heads = _heads(rows)
     return Table(frame, _shown(cells, ["network", *down], heads), words, _ranking(frame, heads))
+
+
+def picture_milliseconds(results: Results) -> dict[str, float]:
+    """Milliseconds of one picture of PIXELS a side through each network on one thread; {} without the benchmark.
+
+    Parameters
+    ----------
+    results : Results
+        The measured rows, with those of `benchmarks.networks`.
+
+    Returns
+    -------
+    dict
+        {network: milliseconds}.
+    """
+    with suppress(NotRun):
+        costs = results.bench("networks")
+        return costs[costs["size"] == PIXELS].set_index("network")["milliseconds"].to_dict()
+    return {}
 
 
 def frozen_layers(results: Results) -> Table:
@@ -164,10 +185,14 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     wide = grid(rows.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
     thesis = rows.groupby(keys, sort=False)["thesis"].max()  # printed beside touches at random alone
     training = rows["training"].where(rows["split"] == "random").groupby([rows[key] for key in keys], sort=False).last()
-    return wide.assign(**{
+    columns = {
         "training touches, %": [percent(share, 1) for share in training],
         "thesis, %": [percent(share, 1) for share in thesis],
-    })  # fmt: skip
+    }
+    if COST in rows and rows[COST].notna().any():
+        costs = rows.groupby(keys, sort=False)[COST].first()
+        columns[f"one picture of {PIXELS} px, ms"] = ["–" if cost != cost else f"{cost:.1f}" for cost in costs]
+    return wide.assign(**columns)
 
 
 def _heads(rows: pd.DataFrame) -> dict[tuple, str]:
