@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.charts.datasets import COLOURED, MENDED_3_2, SECTION_3_2, dataset_text
+from stages.charts.datasets import COLOURED, GABOR_3_2, MENDED_3_2, SECTION_3_2, dataset_text
 from stages.charts.drawing import label
 from stages.charts.items import Table
 from stages.charts.results import NotRun, Results, require_rows
@@ -21,7 +21,7 @@ AREA = {"image": "whole image", "object": "the object"}
 LIKENESS = {"grey_likeness": "in colour: r with itself in grey", "intensity_likeness": "in colour: r with intensity"}
 THESIS = {"one_svm_for_all_objects": "one_for_all", "one_svm_per_object": "one_per_object"}
 KEYS = ["dataset", "area", "training", "validation"]
-FIRST = {name: place for place, name in enumerate((SECTION_3_2, MENDED_3_2, "gaze"))}
+FIRST = {name: place for place, name in enumerate((SECTION_3_2, MENDED_3_2, GABOR_3_2, "gaze"))}
 ORDER = {name: place for place, name in enumerate([*AREA, *TRAINING, *VALIDATION])}
 
 
@@ -71,7 +71,7 @@ def _in_colour(results: Results) -> dict[str, pd.Series]:
 
 
 def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:
-    """Measured rows of the weights of all sets that have them: as printed, mended, then on grey objects with gaze."""
+    """Measured rows of the weights of all sets that have them: the readings of T3.2, then on grey objects with gaze."""
     rows = pd.concat(everywhere(results, "weights", missing, metric=metric).values())
     return rows.sort_values("dataset", key=lambda names: names.map(FIRST).fillna(len(FIRST)), kind="stable")
 
