@@ -3,6 +3,9 @@
 ```{claims} key_one, key_two          claims with their verdict, effect and interval
 ```
 
+```{thesis}                           the conclusions of the thesis, printed beside measured
+```
+
 ```{rows} tables/scene                rows of a table
 :where: matched=error
 :columns: method; faces .0f; 100*held .0f
@@ -19,6 +22,7 @@ meshoptimizer
 
 import re
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import pandas as pd
 from docutils import nodes
@@ -28,6 +32,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from stages.charts.cells import parts_of, rows_of, text_of
 from stages.charts.drawing import label
+from stages.report.claims_page import effect
 from stages.report.verdict import WORDS
 
 from .commands import Command, commands
@@ -38,7 +43,13 @@ SIGNED_ZERO = re.compile(r"-(0(?:\.0+)?)(?![\d.])")
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Adds the directives."""
-    for name, directive in {"claims": Claims, "rows": Rows, "notes": Notes, "artifact": Artifact}.items():
+    for name, directive in {
+        "claims": Claims,
+        "thesis": Thesis,
+        "rows": Rows,
+        "notes": Notes,
+        "artifact": Artifact,
+    }.items():
         app.add_directive(name, directive)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -52,10 +63,21 @@ class Claims(SphinxDirective):
         """A table."""
         lines = []
         for key in self.arguments[0].replace(",", " ").split():
-            rows = rows_of(REPORTS / "claims.csv", f"key={key}")
-            (row,) = rows.to_dict("records")
-            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(rows), row["tested_on"]))
-        return [made_table(("section", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
+            (row,) = rows_of(REPORTS / "claims.csv", f"key={key}").to_dict("records")
+            lines.append((row["section"], row["claim"], verdict(row["verdict"]), measured(row), row["printed"]))
+        return [made_table(("section", "claim", "verdict", "effect [95 %]", "printed"), lines, (8, 36, 14, 22, 20))]
+
+
+class Thesis(SphinxDirective):
+    """What became of the thesis."""
+
+    def run(self) -> list[nodes.Node]:
+        """A table, as on the front page of the site."""
+        lines = [
+            (row["conclusion"], row["printed"], row["measured"], verdict(row["verdict"]), row["why"])
+            for row in rows_of(REPORTS / "thesis.csv").to_dict("records")
+        ]
+        return [made_table(("conclusion", "printed", "measured", "verdict", "why"), lines, (26, 12, 20, 12, 30))]
 
 
 class Rows(SphinxDirective):
@@ -117,16 +139,10 @@ class Artifact(SphinxDirective):
         return nodes.section("", title, *meaning, body, ids=[nodes.make_id(f"claims of {command.name}")])
 
 
-def effect(selected: pd.DataFrame) -> str:
-    """The effect of a claim with its interval and unit, with as many decimals as its ends need."""
-    row = selected.iloc[0]
-    if not row["low"]:
-        return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
-    ends = [abs(float(row[name])) for name in ("low", "high")]
-    places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
-    while places < 6 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
-        places += 1
-    return f"{text_of(selected, f'effect low high +.{places}f')} {row['unit']}"
+def measured(row: dict[str, str]) -> str:
+    """The effect of a claim with its interval and unit."""
+    numbers = {name: float(row[name] or "nan") for name in ("effect", "low", "high")}
+    return effect(SimpleNamespace(unit=row["unit"], **numbers))
 
 
 def shown(row: pd.DataFrame, column: str) -> str:
