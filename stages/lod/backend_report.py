@@ -72,7 +72,7 @@ def backends_table(results: Results) -> Table:
         "infeasible": (cells["outcome"] == "infeasible").sum(), "fitted": FITTED,
     }  # fmt: skip
     # no ranking: time stands against error
-    return Table(frame, _wide(frame), words, answer=ANSWER)
+    return Table(frame, _wide(frame), words, answer=ANSWER, keys=ANSWER[:2])
 
 
 def tried(results: Results) -> pd.DataFrame:

@@ -56,7 +56,7 @@ def _best(frame: pd.DataFrame) -> str:
     return "; ".join(f"{count}: {texts['real', count]} without, {texts['both', count]} with" for count in counts)
 
 
-PAGE = "recorded"
+PAGE = "touch"
 TABLES = {"simulated_to_real": build_table}
 FIGURES = {}
 CHARTS = {}

@@ -43,7 +43,8 @@ def section_5_5_table(results: Results) -> Table:
     gains = [name for name in map(str, text_table) if name.startswith("gain")]
     text_table = text_table.fillna(dict.fromkeys(gains, "–")).fillna("not run")
     # no ranking: size stands against accuracy
-    return Table(frame, text_table, words, answer=[name for name in map(str, text_table) if name not in gains])
+    answer = [name for name in map(str, text_table) if name not in gains]
+    return Table(frame, text_table, words, answer=answer, split="objects", keys=["shared layers", "network"])
 
 
 def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> dict[str, Any]:
