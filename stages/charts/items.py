@@ -95,7 +95,8 @@ class Table(Item):
     @property
     def legend(self) -> str:
         """What bold means; empty where nothing is bold."""
-        return self.best.legend if self.best and any(view.bold.to_numpy().any() for view in self.views) else ""
+        shows_bold = self.best and any(view.bold.to_numpy().any() for view in self.views)
+        return self.best.legend(self.text) if self.best and shows_bold else ""
 
     def write(self, folder: Path) -> None:
         """Writes NAME.csv and NAME.md, and fills the summary's figures in; without them it is left out."""

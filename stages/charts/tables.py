@@ -205,13 +205,14 @@ class Ranking:
 
     by: a column, or several. lowest: whether less is better. among: columns; rows that agree in them are compared with
     each other alone. exempt: names; a row that has one in any of its cells takes no part: a truth, a full model, what
-    the thesis printed.
+    the thesis printed. aside: such rows in words.
     """
 
     by: str | Sequence[str]
     lowest: bool = False
     among: Sequence[str] = ()
     exempt: Collection[str] = (THESIS,)
+    aside: str = ""
 
     @property
     def columns(self) -> list[str]:
@@ -234,12 +235,12 @@ class Ranking:
             marks[column] = (values == top) & (top != groups.transform(worst))
         return marks
 
-    @property
-    def legend(self) -> str:
-        """What bold means, in a line."""
-        end = "lowest" if self.lowest else "highest"
+    def legend(self, heads: Iterable[str]) -> str:
+        """What bold means, in a line, in a table with these columns."""
+        end = f"{'lowest' if self.lowest else 'highest'}{' of ours' if WHOSE in heads else ''}"
         what = f"the {end} of its column" if len(self.columns) > 1 else f"the {end} in the column “{self.columns[0]}”"
-        return f"Bold: {what}{' among rows of the same ' if self.among else ''}{' and '.join(self.among)}."
+        what += f" among rows of the same {' and '.join(self.among)}" if self.among else ""
+        return f"Bold: {what}{', ' if self.aside else ''}{self.aside}."
 
 
 def leading(cell: str) -> float:

@@ -178,6 +178,7 @@ def one_touch(results: Results, group: str, printed: str, variant: str = "plain"
     cells = few_last(frame[frame["classifier"] != "mean_of_all"], "sampling")
     names, classifiers = {"sampling": label}, [f"{label(name)}, %" for name in cells["classifier"].unique()]
     text_table = by_protocol(cells, "sampling", "classifier", names, lambda name: f"{label(name)}, %")
+    text_table = text_table.rename(columns={"sampling": "touched at"})
     words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
     words |= {"fifteen": "" if fifteen_parts else "15 imprints of each object: not run."}
     words |= {"group": results.group_text(group), "not_run": results.left_out(STAGE, group=group, variant=variant)}

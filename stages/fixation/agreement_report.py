@@ -140,8 +140,7 @@ def _saved(maps: dict[str, pd.Series]) -> str:
     for method, pcc in maps.items():
         frozen = f"{method.rpartition('-')[0]}-frozen"
         if frozen != method and frozen in maps and not untrained(method):
-            gain = signed(*interval(pcc - maps[frozen]), places=3)
-            changes.append(f"{network_text(method)} minus frozen: PCC {gain}")
+            changes.append(f"{network_text(method)} minus frozen: PCC {(pcc - maps[frozen]).mean():+.2f}")
     return f"{'; '.join(changes)}." if changes else "No network was fine-tuned here."
 
 

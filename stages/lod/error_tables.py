@@ -180,8 +180,6 @@ COUNTS = ["points", "kept"]  # beside the errors of every detector
 GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", WEIGHTED, f"{WEIGHTED}-adaptive", "VisAttAll", HKS,
           OURS, PLAIN, QSLIM]  # fmt: skip
 THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", WEIGHTED: "ssim", "svm": "svm"}
-BLOCK = ["target", "nothing_shrunk"]
-KEEP_NOTHING = [label(PLAIN), label(QSLIM)]  # what the others are held against
 
 
 def combinations(results: Results) -> Table:
@@ -218,7 +216,7 @@ def every_detector(results: Results) -> Table:
     counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in by_set.items())
     texts, errors = _methods_wide(frame), [ERRORS[METRICS[0]], ERRORS[METRICS[1]], *map(ERRORS.get, LOOKED_AT)]
     answer = ["kept points", "points", ERRORS[METRICS[0]], MINUS, *errors[1:]]
-    best = Ranking(errors, lowest=True, exempt=KEEP_NOTHING)
+    best = Ranking(errors, lowest=True)
     note = shared_notes(__package__, "gaze") if not results.own_meshes else ""
     return Table(frame, texts, {"counts": counts, "gaze": note}, best, answer, split="objects")
 
@@ -258,7 +256,7 @@ def table_3_2(results: Results) -> Table:
     words = {"objects": _objects(frame), "fewest": FEWEST, "beside": "", "printed": ""}
     if not results.own_meshes:
         words |= {"beside": ", beside the thesis", "printed": shared_notes(__package__, "printed_3_2")}
-    return Table(frame, text_table, words, Ranking(errors, True, ["faces"], KEEP_NOTHING), split="objects")
+    return Table(frame, text_table, words, Ranking(errors, True, ["faces"]), split="objects")
 
 
 def _objects(frame: pd.DataFrame) -> str:

@@ -14,7 +14,7 @@ from stages.charts.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results, require_rows
 from stages.charts.tables import Ranking, everywhere, grouped, interval_columns, interval_text, percent, records, within
-from stages.engine.statistics import breaking_point, interval
+from stages.engine.statistics import breaking_point
 
 from .measure import CLEAN, DISTURBED, PERTURBATIONS, library_of
 from .protocol import CAMERA, POLICIES, SIGHTS, Case, Disturbance
@@ -117,11 +117,11 @@ def _unseen(results):
         better = look if look["value"].mean() >= blind["value"].mean() else blind
         name = "the look" if better is look else "the touches"
         gain = both.assign(value=both["value"] - better["value"])
-        mean, low, high = interval(100 * by_class(gain))
+        mean = 100 * by_class(gain).mean()
         texts.append(
             f"{dataset_text(dataset)}: a look {100 * by_class(look).mean():.0f} %, {most:.0f} touches "
             f"{100 * by_class(blind).mean():.0f} %, both {100 * by_class(both).mean():.0f} %, which is "
-            f"{mean:+.0f} [{low:.0f}, {high:.0f}] points beside {name} alone"
+            f"{mean:+.0f} points beside {name} alone"
         )
     return "; ".join(texts) if texts else "no set with classes of three objects or more was measured"
 

@@ -15,8 +15,8 @@ from stages.charts.tables import (
     Ranking,
     beside_thesis,
     grid,
+    number,
     scaled,
-    with_interval,
     with_means,
     with_printed_means,
     within,
@@ -32,7 +32,7 @@ SELECTIONS = {
     "all": "no selection", "selected": "selection", "selected_control": "as many left out at random",
     "selected_training": "selection in training alone",
 }  # fmt: skip
-FIRST = "six"  # of the sets, shown first: as many classes as the thesis has toys
+FIRST = "six_alike"  # of the sets, shown first: as many as the thesis has toys, and touches to remove
 COLUMNS = {"group": "set", "method": "selection"}
 KEYS = ["set", "selection", "classifier"]
 VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_blocks"]
@@ -56,13 +56,13 @@ def table_4_4(results: Results) -> Table:
     by_metric = dict(list(rows.groupby("metric")))
     removals = by_metric["share_similar"].groupby("set")["value"].mean()
     class_lists = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
-    near, far = (interval(by_metric[f"{kind}_correlation"]["value"]) for kind in ("neighbour", "pair"))
+    near, far = (by_metric[f"{kind}_correlation"]["value"].mean() for kind in ("neighbour", "pair"))
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
     optimism = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
     words = {
         "removed": ", ".join(f"{text} {100 * removals.get(name, np.nan):.1f} %" for name, text in CLASSES.items()),
         "four": class_lists.get("four_alike", ""), "six": class_lists.get("six_alike", ""),
-        "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
+        "near": number(near, 2), "far": number(far, 2),
         "knn": optimism["knn"], "least": optimism.min(), "most": optimism.max(),
     }  # fmt: skip
     return Table(frame, text_table, words, Ranking(heads), split="set")
@@ -90,7 +90,7 @@ def _line(scores: dict[tuple, pd.Series], thesis: pd.DataFrame, *key: str) -> tu
     name, selection, classifier = key
     shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
     accuracies = within(scores.get((*key, Split.RANDOM), []), shared)
-    column = f"{name}_{selection}"
+    column = f"{name.partition('_')[0]}_{selection}"  # the thesis has sets of four and of six
     printed = thesis.loc[classifier, column] if column in thesis else np.nan
     return (*key, *accuracies, printed, *(interval(scores.get((*key, split), []))[0] for split in ("folds", "blocks")))
 

@@ -102,7 +102,7 @@ def further_pages(
     link = f'<p><a href="{CLAIM_ROWS}.html">All claims, one by one</a></p>'
     return {
         "thesis": ("The thesis", "Which conclusions of the thesis hold, and what runs as it is printed.",
-                   f"{link}{fidelity}" if fidelity else ""),
+                   f"{link}<h2>Section by section</h2>{fidelity}" if fidelity else ""),
         CLAIM_ROWS: ("Claims", "Each sentence of the thesis, and of this project about its own model, has its verdict "
                      "here.", claims_main(load(), claims, differences, results) if len(claims) else ""),
     }  # fmt: skip
@@ -160,8 +160,8 @@ def topic_main(name: str, results: Results, built: Built, out: Path) -> str:
 def findings(page: str, reports: Path) -> list[str]:
     """The sentences of findings.md on a page, with their figures; without those that lack a figure."""
     text = resources.files(__package__ or "").joinpath("findings.md").read_text(encoding="utf-8")
-    sections = dict(re.findall(r"^# (\w+)\n\n((?:[^#].*\n|\n)+)", text, flags=re.MULTILINE))
-    sentences = []
+    parts = re.split(r"^# (\w+)\n", text, flags=re.MULTILINE)[1:]
+    sections, sentences = dict(zip(parts[::2], parts[1::2], strict=True)), []
     for sentence in filter(None, sections.get(page, "").strip().split("\n\n")):
         with suppress(LookupError):
             sentences.append(filled(" ".join(sentence.split()), reports)[0])
@@ -170,7 +170,7 @@ def findings(page: str, reports: Path) -> list[str]:
 
 def section(item: Table | Figure) -> str:
     """An item without its title, which a figure's caption makes clear."""
-    return f'<section id="{anchor(item)}" aria-label="{escape(item.title)}">{item.html}</section>\n'
+    return f'<section id="{anchor(item)}">{item.html}</section>\n'
 
 
 def opened(item: Table | Figure) -> str:
@@ -250,4 +250,4 @@ def dataset_line(results: Results) -> str:
     try:
         return f"{len(results.objects)} objects of the data set {results.folder('meshes').parent.name}"
     except NotRun:
-        return "no objects yet"
+        return f"the data set {results.sets[0]}"

@@ -328,7 +328,9 @@ def _table(results: Results, rows: pd.DataFrame, beside: Sequence[str], words: d
     cells = pd.DataFrame(lines.values())
     truth_and_peeking = [method_text(name) for name in lines if name == HUMAN or has_seen(name)]
     answer = [name for name in columns if name not in MEANS.values() or name == MEANS[COUNTED]]
-    return Table(frame, cells, words, Ranking(names, exempt=truth_and_peeking), answer)
+    return Table(
+        frame, cells, words, Ranking(names, exempt=truth_and_peeking, aside="the truth and starred rows aside"), answer
+    )
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:

@@ -31,7 +31,7 @@ def build_table(results: Results) -> Table:
     wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
     wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
     words = {"way": _way(*way), "shares": ", ".join(texts), "best": _best(frame)}
-    return Table(frame, wide, words, Ranking(wide.columns[-1]))
+    return Table(frame, wide, words, Ranking(list(wide.columns[1:])))
 
 
 def _accuracies(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
