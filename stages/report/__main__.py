@@ -149,11 +149,11 @@ def remove_older(built: Built, out: Path) -> dict[str, str]:
     kept, written = {}, {path for item in built.items for path in item.paths}
     for kind in KINDS:
         (out / kind).mkdir(parents=True, exist_ok=True)
-        for path in sorted(set((out / kind).glob("*.*")) - written):
+        for path in sorted((out / kind).glob("*.*")):
             name = f"{kind}/{path.stem}"
             if name in built.no_data:
                 kept[name] = built.no_data[name]
-            else:
+            elif path not in written:
                 path.unlink()
     return kept
 

@@ -12,17 +12,20 @@ from urllib.parse import parse_qsl
 import pandas as pd
 import pytest
 import yaml
+from PIL import Image
 
 from haptic_glance.base.files import write_table, write_text
 from stages.charts import items
 from stages.charts.commands import command
 from stages.charts.drawing import save
+from stages.charts.items import MOST_COLUMNS
 from stages.charts.results import NotRun
 from stages.compose import compose
 from stages.engine import statistics
 from stages.engine.settings import load_params
 from stages.report.__main__ import write_report
 from stages.report.claims import load
+from stages.report.topics import TOPICS
 
 pytestmark = pytest.mark.slow
 
@@ -33,7 +36,7 @@ RESAMPLES = statistics.RESAMPLES  # before `few_pixels_and_resamples` lowers it
 ODD = "<b>&qem</b>"
 DRAWN = {"figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen",
          "table_4_1", "touch_one_mesh"}  # fmt: skip
-SERIOUS = ("serious", "critical")
+MOST_INTERVALS = 5  # in the prose of a page
 REPEATED = """document.querySelectorAll('tbody tr:nth-child(n+9), .claims > li:nth-child(n+9)')
   .forEach(item => item.remove())"""  # rows and claims that are made as those before, which take axe a minute
 WATCHED = []  # lists that take the paths opened while they stand here; an audit hook cannot be taken back
@@ -83,7 +86,7 @@ def test_figures_of_what_was_measured_are_drawn_and_say_what_they_show(run):
     assert {path.stem for path in (run.root / "reports/figures").glob("*.png")} >= DRAWN
     text = " ".join(run.pages.values())
     assert "3 for the median object" in text  # the fewest views
-    assert re.search(r'alt="[^"]*ball[^"]*3 numbered places', text)
+    assert re.search(r'alt="[^"]*with numbered places', text)
 
 
 def test_dvc_knows_every_file_that_the_report_opens(run):
@@ -101,8 +104,27 @@ def test_dvc_knows_every_file_that_the_report_opens(run):
 def test_old_results_go_and_those_of_others_and_of_sets_that_are_off_stay(run):
     assert not (run.root / "reports" / OLD).exists() and not (run.root / "reports" / OLD_PAGE).exists()
     assert (run.root / "reports" / OTHERS).exists() and len(run.pages) > 3
-    apart = re.findall(r"<p>Not part of this run: (.*?)\.</p>", " ".join(run.pages.values()))
-    assert any("human gaze" in text for text in apart)
+
+
+def test_a_page_has_few_findings_few_intervals_in_prose_and_no_wide_table(run):
+    for path, text in run.pages.items():
+        if path.stem == "claims":
+            continue
+        assert text.count("<li>", text.find('class="found"'), text.find("</ul>", text.find('class="found"'))) <= 3
+        prose = re.sub(r"<(style|script|table)\b.*?</\1>|<[^>]+>", " ", text, flags=re.DOTALL)
+        assert len(re.findall(r"\[[-−<> \d.,]+\]", prose)) <= MOST_INTERVALS, path.name
+        for table in re.findall(r"<table>.*?</table>", text, flags=re.DOTALL):
+            assert table.count("<th ", 0, table.find("</tr>")) <= MOST_COLUMNS, path.name
+
+
+def test_a_page_begins_with_its_picture_and_shows_its_first_table_before_what_is_folded(run):
+    for name, topic in TOPICS.items():
+        text = run.pages.get(run.root / f"reports/site/{name}.html", "")
+        drawn = [item.replace("/", "-") for item in topic.pictures if f'id="{item.replace("/", "-")}"' in text]
+        if drawn:
+            assert text.find("<section id=") == text.find(f'<section id="{drawn[0]}"')
+        if 'class="item"' in text and "<h2>Tables and charts</h2>" in text:
+            assert text.find("<h2>Tables and charts</h2>") < text.find('class="item"')
 
 
 def test_pages_ask_nothing_of_the_network_and_are_accessible(run):
@@ -130,8 +152,9 @@ def test_links_lead_to_files_and_places_and_every_page_to_every_other(run):
             else:
                 assert not place or f'id="{place}"' in target.read_text(), link
         nav = re.search(r'<nav aria-label="Pages">(.*?)</nav>', text)[1]
-        assert {(path.parent / link).resolve() for link in re.findall(r'href="([^"]+)"', nav)} == set(run.pages)
-        assert nav.count('aria-current="page"') == 1
+        reached = {(path.parent / link).resolve() for link in re.findall(r'href="([^"]+)"', nav)}
+        assert reached == {page for page in run.pages if page.stem != "claims"}
+        assert nav.count('aria-current="page"') == (path.stem != "claims")
 
 
 def test_names_are_escaped(run):
@@ -154,9 +177,11 @@ def test_items_that_lack_their_data_alone_stay(bare, small, capsys):
     stays, goes = ("figures/figure_3_10.png", "tables/dataset.csv"), ("figures/no_name.png", "tables/table_4_1.csv")
     for name in (*stays, *goes):
         write_text(reports / name, "drawn")
+    Image.new("RGB", (4, 4)).save(reports / stays[0])
     write_report(small.read_results(bare))
     assert [(reports / name).exists() for name in (*stays, *goes)] == [True, True, False, False]
     (line,) = (line for line in capsys.readouterr().out.splitlines() if "figure_3_10" in line)
+    assert 'id="figures-figure_3_10"' in (reports / "site/look.html").read_text()
     assert "tables/dataset (meshes)" in line and "figures/figure_3_10 (conspicuity)" in line and "no_name" not in line
 
 
@@ -219,7 +244,7 @@ def test_claims_filter_and_open_to_their_pairs(tab, run):
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
-def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, run, width, scheme):
+def test_pages_fit_their_width_and_axe_finds_nothing(browser, run, width, scheme):
     if axe() is None:
         pytest.skip("no axe-core: `npm install axe-core@4.10.3`")
     for path in run.pages:
@@ -229,7 +254,7 @@ def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, run, width
         tab.evaluate(REPEATED)
         tab.evaluate(axe().read_text(encoding="utf-8"))
         violations = tab.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
-        bad = [(entry["id"], entry["nodes"][0]["html"]) for entry in violations if entry["impact"] in SERIOUS]
+        bad = [(entry["id"], entry["nodes"][0]["html"]) for entry in violations]
         tab.close()
         assert not bad, path.name
 
