@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from html import escape
 from importlib import resources
 from pathlib import Path
@@ -16,49 +15,17 @@ from haptic_glance.base.files import write_text
 from haptic_glance.gallery import viewer
 from haptic_glance.gallery.viewer import as_script
 from stages.charts.cells import CLAIMS as CLAIM_ROWS
-from stages.charts.cells import PREFIXES, filled
+from stages.charts.cells import filled
 from stages.charts.html import folded, image, lacks_cells, prose
 from stages.charts.items import Figure, Table
 from stages.charts.results import NotRun, Results
-from stages.charts.tables import with_interval
 
 from .claims import load
 from .claims_page import claims_main
 from .parts import Built
+from .thesis_page import TITLE, thesis_frame, thesis_html
 from .topics import TOPICS
 
-
-@dataclass(frozen=True)
-class Finding:
-    """A claim that the front page shows.
-
-    verdict: the verdict for which the title is right; with any other verdict, the card shows the claim's own sentence.
-    shown: a key of PREFIXES, the shown form of its effect. unit: of what is shown, with its direction.
-    """
-
-    key: str
-    verdict: str
-    title: str
-    unit: str
-    page: str
-    shown: str = ""
-    places: int = 0
-
-
-FINDINGS = (
-    Finding("glance_over_best_gaze", "supported", "Our glance predicts where people look better than any rival",
-            "NSS more than the best other", "look", places=2),
-    Finding("glance_soft_gaze", "supported", "Saliency as a weight keeps meshes closer where people looked",
-            "% less error where people looked", "simplify", "less:", 1),
-    Finding("glance_over_blind", "supported", "Touch where our glance points beats blind touch",
-            "points of accuracy more than blind touch", "touch"),
-    Finding("keep_metro", "contradicted", "Fails: neighbourhoods kept unchanged raise the error",
-            "times the error of plain simplification", "simplify", "times:", 2),
-    Finding("simulation_helps_5", "contradicted", "Fails: imprints of a simulated skin make real touch harder to tell",
-            "points of accuracy more than without them", "touch"),
-)  # fmt: skip
-THESIS_CARD = """<li><h3>Which sentences of the thesis hold</h3><p>Each conclusion of the thesis is a claim with its
-verdict, its pairs and the command that measures it.</p><p><a href="site/thesis.html">The thesis</a></p></li>"""
 HOME, FOLDER = "index.html", "site"
 MENU = ("look", "simplify", "touch", "know", "thesis", "stability", "speed")
 FIRST = "figures/pipeline"  # the picture of the front page
@@ -71,40 +38,37 @@ fail."""
 
 
 def write_site(
-    results: Results, built: Built, not_run: dict[str, str], claims: tuple[pd.DataFrame, pd.DataFrame],
-    meshes: dict[str, Any] | None, out: Path,
+    results: Results, built: Built, not_run: dict[str, str], claims: pd.DataFrame, meshes: dict[str, Any] | None,
+    out: Path,
 ) -> list[str]:  # fmt: skip
     """Writes OUT/index.html and OUT/site/*.html, and removes older pages; returns the names of the pages of the site.
 
-    not_run: {KIND/NAME: why} of what lacks its measurement. claims: the frames of verdict.tabled. meshes: those that
+    not_run: {KIND/NAME: why} of what lacks its measurement. claims: the frame of `verdict.judge`. meshes: those that
     can be turned.
     """
-    frame, differences = claims
     mains = {name: main for name in TOPICS if (main := topic_main(name, results, built, out))}
     pages = {name: (TOPICS[name].title, TOPICS[name].lead, main) for name, main in mains.items()}
-    pages |= {name: page for name, page in further_pages(results, built, frame, differences).items() if page[2]}
+    pages |= {name: page for name, page in further_pages(built, claims).items() if page[2]}
     titles = {name: pages[name][0] for name in MENU if name in pages}
     for name, (title, lead, main) in pages.items():
         scripts = ["site.js", "claims.js"] if name == CLAIM_ROWS else ["site.js"]
         write_text(out / FOLDER / f"{name}.html", page_html(titles, name, title, lead, main, scripts))
     for path in set((out / FOLDER).glob("*.html")) - {out / FOLDER / f"{name}.html" for name in pages}:
         path.unlink()
-    main = front_main(results, built, not_run, frame, meshes, {name: pages[name] for name in titles})
+    main = front_main(results, built, not_run, meshes, {name: pages[name] for name in titles}, out)
     write_text(out / HOME, page_html(titles, "", "Haptic Glance", LEAD, main, ["viewer.js", "site.js"]))
     return list(titles)
 
 
-def further_pages(
-    results: Results, built: Built, claims: pd.DataFrame, differences: pd.DataFrame
-) -> dict[str, tuple[str, str, str]]:
+def further_pages(built: Built, claims: pd.DataFrame) -> dict[str, tuple[str, str, str]]:
     """{name: (title, lead, main HTML)} of the pages that are about no topic; those without text are left out."""
     fidelity = "".join(opened(item) for item in built.items if item.page == "thesis")
-    link = f'<p><a href="{CLAIM_ROWS}.html">All claims, one by one</a></p>'
+    link = f'<p><a href="../{HOME}#thesis">{TITLE}</a>. <a href="{CLAIM_ROWS}.html">All claims, one by one</a>.</p>'
     return {
         "thesis": ("The thesis", "Which conclusions of the thesis hold, and what runs as it is printed.",
                    f"{link}<h2>Section by section</h2>{fidelity}" if fidelity else ""),
         CLAIM_ROWS: ("Claims", "Each sentence of the thesis, and of this project about its own model, has its verdict "
-                     "here.", claims_main(load(), claims, differences, results) if len(claims) else ""),
+                     "here.", claims_main(load(), claims) if len(claims) else ""),
     }  # fmt: skip
 
 
@@ -185,8 +149,8 @@ def closed(item: Table | Figure) -> str:
 
 
 def front_main(
-    results: Results, built: Built, not_run: dict[str, str], claims: pd.DataFrame, meshes: dict[str, Any] | None,
-    pages: Mapping[str, tuple[str, str, str]],
+    results: Results, built: Built, not_run: dict[str, str], meshes: dict[str, Any] | None,
+    pages: Mapping[str, tuple[str, str, str]], out: Path,
 ) -> str:  # fmt: skip
     """The text of the front page below its head. pages: those of the menu, as `further_pages` has them."""
     by_name = {f"{item.kind}/{item.name}": item for item in built.items}
@@ -206,7 +170,7 @@ def front_main(
             f'<li><h3><a href="{FOLDER}/{name}.html">{title}</a></h3><p>{prose(lead)}</p></li>'
             for name, (title, lead, _) in pages.items()
         ),
-        "findings": "" if results.own_meshes else findings_html(claims),
+        "thesis": fates_html(built, out) if not results.own_meshes else "",
         "viewer": page_file("viewer.html") if meshes else f"<p>not run: {prose(not_run.get('viewer', ''))}</p>",
         "meshes": as_script(meshes) if meshes else "null",
         "not_run": folded(f"{len(not_run | partly)} that were not, or in part", f"<ul>{missing}</ul>") if missing
@@ -215,29 +179,11 @@ def front_main(
     return Template(page_file("front.html")).substitute(words)
 
 
-def findings_html(claims: pd.DataFrame) -> str:
-    """The cards of those FINDINGS that were measured."""
-    rows = {str(row.key): row for row in claims.dropna(subset=["low"]).itertuples()}
-    cards = [card(finding, rows[finding.key]) for finding in FINDINGS if finding.key in rows]
-    if not cards:
-        return ""
-    return (
-        f'<section id="findings"><h2>Five findings</h2><ul class="cards">{"".join(cards)}{THESIS_CARD}</ul></section>\n'
-    )
-
-
-def card(finding: Finding, row: Any) -> str:
-    """One finding with its number, its interval and its links."""
-    title = finding.title if row.verdict == finding.verdict else f"{row.claim} ({row.verdict})"
-    mean, *ends = (PREFIXES[finding.shown](value) for value in (row.effect, row.low, row.high))
-    figure = with_interval(mean, *sorted(ends), places=finding.places)
-    signed = "+" if mean > 0 and finding.shown == "" else ""
-    links = f'<a href="site/claims.html#{finding.key}">The claim</a>, '
-    links += f'<a href="site/{finding.page}.html">{TOPICS[finding.page].title}</a>'
-    return (
-        f'<li><h3>{escape(title)}</h3><p class="figure"><strong>{signed}{figure}</strong> {escape(finding.unit)}</p>'
-        f'<p class="help">{row.pairs} {escape(row.over)}, 95 % interval. {links}</p></li>'
-    )
+def fates_html(built: Built, out: Path) -> str:
+    """What became of the thesis, with links to the tables behind it; empty where nothing was measured."""
+    pages = {f"{item.kind}/{item.name}": f"{FOLDER}/{item.page}.html#{anchor(item)}" for item in built.items}
+    frame = thesis_frame(out)
+    return f"<h2>{TITLE}</h2>\n{thesis_html(frame, lambda see: pages.get(see, f'{see}.md'))}" if len(frame) else ""
 
 
 def anchor(item: Table | Figure) -> str:

@@ -1,5 +1,6 @@
 """What became of the thesis: a row a conclusion, printed beside measured, for the front page, the file and the docs."""
 
+import re
 from collections.abc import Callable
 from html import escape
 from importlib import resources
@@ -35,8 +36,9 @@ def thesis_frame(reports: Path) -> pd.DataFrame:
             continue
         numbers = claim._replace(**{name: float(getattr(claim, name)) for name in ("effect", "low", "high")})
         rows.append({
-            "conclusion": entry["conclusion"], "section": str(entry["section"]), "key": entry["claim"],
-            "printed": entry.get("printed") or str(claim.printed).partition(",")[0],
+            "conclusion": entry["conclusion"], "key": entry["claim"],
+            "section": re.sub(r"(?<![\d.])(\d)", r"T\1", str(entry["section"])),
+            "printed": entry.get("printed") or f"+{str(claim.printed).partition(',')[0]}".replace("+-", "-"),
             "measured": texts.get("measured") or effect(numbers),
             "verdict": claim.verdict, "size": claim.size if claim.size == claim.size else "",
             "why": texts["why"], "see": entry["see"],
@@ -56,7 +58,7 @@ def thesis_text(frame: pd.DataFrame) -> str:
     shown = frame[list(COLUMNS)].copy()
     shown["conclusion"] += " (" + frame["section"] + ")"
     shown["verdict"] = [_word(row) for row in frame.itertuples()]
-    shown["see"] = [f"[{Path(see).name}]({see}.md)" for see in frame["see"]]
+    shown["see"] = [f"[{_name(see)}]({see}.md)" for see in frame["see"]]
     note = f"{NOTE} The verdicts follow from [claims.csv](claims.csv); [claims](claims.md) has all."
     return "\n\n".join((f"# {TITLE}", lead(frame), markdown_table(shown), note))
 
@@ -76,13 +78,18 @@ def _word(row: Any) -> str:
     return f"{row.verdict}, {words.get(row.size, row.size)}" if row.size else row.verdict
 
 
+def _name(see: str) -> str:
+    """`table 3.2` of tables/table_3_2."""
+    return re.sub(r"(?<=\d)_(?=\d)", ".", Path(see).name).replace("_", " ")
+
+
 def _row_html(row: Any, address: Callable[[str], str]) -> str:
     claim = f'<a href="site/claims.html#{row.key}" title="the claim">{escape(_word(row))}</a>'
     cells = {
-        "conclusion": f"{escape(row.conclusion)} <small>T{escape(row.section)}</small>",
+        "conclusion": f"{escape(row.conclusion)} <small>{escape(row.section)}</small>",
         "printed": escape(row.printed), "measured": escape(row.measured),
         "verdict": f'<span class="word {CLASSES[row.verdict]}">{claim}</span>', "why": prose(row.why),
-        "see": f'<a href="{address(row.see)}">{escape(Path(row.see).name.replace("_", " "))}</a>',
+        "see": f'<a href="{address(row.see)}">{escape(_name(row.see))}</a>',
     }  # fmt: skip
     body = "".join(f'<td data-label="{name}">{cells[name]}</td>' for name in COLUMNS[1:])
     return f'<tr><th scope="row">{cells["conclusion"]}</th>{body}</tr>'

@@ -50,8 +50,8 @@ def one(tmp_path):
 
 def test_a_row_has_the_printed_effect_beside_ours_and_those_that_were_not_measured_go(one):
     (row,) = one.itertuples()
-    assert (row.printed, row.measured, row.verdict) == ("12 points", "-7.6 [-11.8, -3.5] points", "contradicted")
-    assert "| contradicted, opposite sign |" in thesis_text(one) and "[table_4_1](tables/table_4_1.md)" in thesis_text(
+    assert (row.printed, row.measured, row.verdict) == ("+12 points", "-7.6 [-11.8, -3.5] points", "contradicted")
+    assert "| contradicted, opposite sign |" in thesis_text(one) and "[table 4.1](tables/table_4_1.md)" in thesis_text(
         one
     )
 
