@@ -163,9 +163,8 @@ def write_claims(claims: pd.DataFrame, out: Path) -> None:
     write_table(out / "claims.csv", claims)
     write_text(out / "claims.md", claims_text(claims))
     fates = thesis_frame(out)
-    if len(fates):
-        write_table(out / "thesis.csv", fates)
-        write_text(out / "thesis.md", thesis_text(fates))
+    write_table(out / "thesis.csv", fates)
+    write_text(out / "thesis.md", thesis_text(fates))
 
 
 def print_summary(

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from html import escape
 from importlib import resources
+from pathlib import Path
 from string import Template
 from typing import Any
 
@@ -80,13 +81,13 @@ def effect(row: Any) -> str:
     return f"{'+' if row.effect > 0 else ''}{mean}{interval} {row.unit}"
 
 
-def claims_main(known: Sequence[Claim], claims: pd.DataFrame) -> str:
-    """The text of the page of claims below its head."""
+def claims_main(known: Sequence[Claim], claims: pd.DataFrame, reports: Path) -> str:
+    """The text of the page of claims below its head; reports: with the measurements that it links."""
     by_key = {claim.key: claim for claim in known}
     parts = []
     for start, title in CHAPTERS.items():
         chapter = claims[claims["section"].str.startswith(start)]
-        items = "".join(_item(row, by_key[str(row.key)], start) for row in chapter.itertuples())
+        items = "".join(_item(row, by_key[str(row.key)], start, reports) for row in chapter.itertuples())
         if items:
             tally = ", ".join(f"{count} {word}" for word, count in counts(chapter).items() if count)
             parts.append(folded(f"{title}: {tally}", f'<ul class="claims">{items}</ul>'))
@@ -100,13 +101,14 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame) -> str:
     return Template((resources.files(__package__ or "") / "page/claims.html").read_text("utf-8")).substitute(words)
 
 
-def _item(row: Any, claim: Claim, chapter: str) -> str:
+def _item(row: Any, claim: Claim, chapter: str, reports: Path) -> str:
     """A claim that opens to its readings, caveats, data and command."""
-    files = [f"{dataset}/{stage}.csv.gz" for stage, dataset in claim.files()] if row.pairs else []
+    files = [f"measurements/{dataset}/{stage}.csv.gz" for stage, dataset in claim.files()]
+    files = [file for file in files if (reports / file).exists()]
     facts = {
         "Other readings": prose(row.readings),
         "Caveat": prose(row.caveat),
-        "Data": " ".join(f'<a href="../measurements/{file}" download>{file}</a>' for file in files) or "not measured",
+        "Data": " ".join(f'<a href="../{file}" download>{file}</a>' for file in files) or "not measured",
         "Pairs": escape(f"{row.pairs} {row.over}" if row.over else ""),
         "Judged again": f"<code>python -m stages.claim {row.key}</code>",
     }

@@ -48,7 +48,7 @@ def write_site(
     """
     mains = {name: main for name in TOPICS if (main := topic_main(name, results, built, out))}
     pages = {name: (TOPICS[name].title, TOPICS[name].lead, main) for name, main in mains.items()}
-    pages |= {name: page for name, page in further_pages(built, claims).items() if page[2]}
+    pages |= {name: page for name, page in further_pages(built, claims, results.reports).items() if page[2]}
     titles = {name: pages[name][0] for name in MENU if name in pages}
     for name, (title, lead, main) in pages.items():
         scripts = ["site.js", "claims.js"] if name == CLAIM_ROWS else ["site.js"]
@@ -60,7 +60,7 @@ def write_site(
     return list(titles)
 
 
-def further_pages(built: Built, claims: pd.DataFrame) -> dict[str, tuple[str, str, str]]:
+def further_pages(built: Built, claims: pd.DataFrame, reports: Path) -> dict[str, tuple[str, str, str]]:
     """{name: (title, lead, main HTML)} of the pages that are about no topic; those without text are left out."""
     fidelity = "".join(opened(item) for item in built.items if item.page == "thesis")
     link = f'<p><a href="../{HOME}#thesis">{TITLE}</a>. <a href="{CLAIM_ROWS}.html">All claims, one by one</a>.</p>'
@@ -68,7 +68,7 @@ def further_pages(built: Built, claims: pd.DataFrame) -> dict[str, tuple[str, st
         "thesis": ("The thesis", "Which conclusions of the thesis hold, and what runs as it is printed.",
                    f"{link}<h2>Section by section</h2>{fidelity}" if fidelity else ""),
         CLAIM_ROWS: ("Claims", "Each sentence of the thesis, and of this project about its own model, has its verdict "
-                     "here.", claims_main(load(), claims) if len(claims) else ""),
+                     "here.", claims_main(load(), claims, reports) if len(claims) else ""),
     }  # fmt: skip
 
 
@@ -183,7 +183,7 @@ def fates_html(built: Built, out: Path) -> str:
     """What became of the thesis, with links to the tables behind it; empty where nothing was measured."""
     pages = {f"{item.kind}/{item.name}": f"{FOLDER}/{item.page}.html#{anchor(item)}" for item in built.items}
     frame = thesis_frame(out)
-    return f"<h2>{TITLE}</h2>\n{thesis_html(frame, lambda see: pages.get(see, f'{see}.md'))}" if len(frame) else ""
+    return f"<h2>{TITLE}</h2>\n{thesis_html(frame, lambda see: pages.get(see, ''))}" if len(frame) else ""
 
 
 def anchor(item: Table | Figure) -> str:

@@ -64,7 +64,7 @@ def thesis_text(frame: pd.DataFrame) -> str:
 
 
 def thesis_html(frame: pd.DataFrame, address: Callable[[str], str]) -> str:
-    """The table for a page. address: from KIND/NAME to where it is shown."""
+    """The table for a page. address: from KIND/NAME to where it is shown, if it is."""
     head = "".join(f'<th scope="col">{name}</th>' for name in COLUMNS)
     rows = "".join(_row_html(row, address) for row in frame.itertuples())
     table = f'<table class="fate"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
@@ -89,7 +89,7 @@ def _row_html(row: Any, address: Callable[[str], str]) -> str:
         "conclusion": f"{escape(row.conclusion)} <small>{escape(row.section)}</small>",
         "printed": escape(row.printed), "measured": escape(row.measured),
         "verdict": f'<span class="word {CLASSES[row.verdict]}">{claim}</span>', "why": prose(row.why),
-        "see": f'<a href="{address(row.see)}">{escape(_name(row.see))}</a>',
+        "see": f'<a href="{link}">{escape(_name(row.see))}</a>' if (link := address(row.see)) else "",
     }  # fmt: skip
     body = "".join(f'<td data-label="{name}">{cells[name]}</td>' for name in COLUMNS[1:])
     return f'<tr><th scope="row">{cells["conclusion"]}</th>{body}</tr>'

@@ -1,4 +1,4 @@
-"""Parts of the pages: tables and charts with their numbers, and cards of findings; some of them in a browser."""
+"""Parts of the pages: tables and charts with their numbers; some of them in a browser."""
 
 from pathlib import Path
 
@@ -9,11 +9,8 @@ from stages.charts.html import frame_html, item_html, prose
 from stages.charts.items import Table
 from stages.charts.tables import Ranking
 from stages.report.parts import KINDS, PARTS, Built
-from stages.report.site import FINDINGS, MENU, findings_html, front_main, page_html
+from stages.report.site import MENU, front_main, page_html
 from stages.report.topics import TOPICS
-
-REPORTS = Path(__file__).parents[2] / "reports"
-NO_CLAIMS = pd.DataFrame(columns=["key", "low", "verdict"])
 
 
 def show(tab, tmp_path, main):
@@ -62,34 +59,9 @@ def test_a_click_on_a_head_sorts_by_number_both_ways_and_gaps_stay_below(tab, tm
 @pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
 def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole, small, bare):
     table = Table(pd.DataFrame({"x": [cell]}), name="gaps", kind="tables", page="none", paths=[Path("tables/t.csv")])
-    page = front_main(small.read_results(bare), Built([table]), {}, NO_CLAIMS, None, {})
+    page = front_main(small.read_results(bare), Built([table]), {}, None, {}, bare / "reports")
     assert ("Everything that this report knows was measured" in page) == whole
     assert ("<code>tables/gaps</code>: in part" in page) != whole
-
-
-def of_claim(finding, effect=10.0, low=5.0, high=15.0):
-    """The claims of a single finding with its verdict."""
-    verdict = "supported" if low > 0 else "contradicted" if high < 0 else "open"
-    row = {"key": finding.key, "claim": "The sentence.", "verdict": verdict, "effect": effect, "low": low, "high": high}
-    return pd.DataFrame([row | {"pairs": 2, "over": "objects", "section": "ours", "of": ""}])
-
-
-def test_findings_have_the_stored_verdicts_and_two_of_them_fail():
-    stored = pd.read_csv(REPORTS / "claims.csv").set_index("key")["verdict"]
-    assert [stored[finding.key] for finding in FINDINGS] == [finding.verdict for finding in FINDINGS]
-    assert {finding.page for finding in FINDINGS} <= TOPICS.keys()
-    assert sum(finding.verdict != "supported" for finding in FINDINGS) >= 2
-
-
-def test_a_card_has_its_number_and_gives_way_to_the_claim_where_a_run_does_not_bear_it_out():
-    text = findings_html(of_claim(FINDINGS[0], 1.0, 0.5, 1.5))
-    assert FINDINGS[0].title in text and "+1.00 [0.50, 1.50]" in text
-    assert f'href="site/claims.html#{FINDINGS[0].key}"' in text
-    text = findings_html(of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
-    assert FINDINGS[0].title not in text and "The sentence. (open)" in text
-    turned = next(finding for finding in FINDINGS if finding.shown == "times:")  # its ends change places
-    assert "3.00 [1.00, 4.00]" in findings_html(of_claim(turned, -100.0, -120.0, 0.0))
-    assert findings_html(NO_CLAIMS) == ""
 
 
 def test_topics_name_items_that_exist_and_each_once_and_are_in_the_menu():
