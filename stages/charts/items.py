@@ -96,7 +96,7 @@ class Table(Item):
     def legend(self) -> str:
         """What bold means; empty where nothing is bold."""
         shows_bold = self.best and any(view.bold.to_numpy().any() for view in self.views)
-        return self.best.legend(self.text) if self.best and shows_bold else ""
+        return self.best.legend(map(str, self.text)) if self.best and shows_bold else ""
 
     def write(self, folder: Path) -> None:
         """Writes NAME.csv and NAME.md, and fills the summary's figures in; without them it is left out."""

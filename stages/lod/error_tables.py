@@ -285,7 +285,7 @@ def _view(frame: pd.DataFrame) -> pd.Series:
 def _blocks_wide(frame: pd.DataFrame) -> pd.DataFrame:
     """A row a view, face count and method, most faces first; for each error the difference and the thesis's beside."""
     keys = ["view", "target", "method"]
-    cells = frame.assign(view=pd.Categorical(_view(frame), dict.fromkeys(_view(frame))))
+    cells = frame.assign(view=pd.Categorical(_view(frame), list(dict.fromkeys(_view(frame)))))
     orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED}
     cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
     parts = {}
