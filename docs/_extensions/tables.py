@@ -64,8 +64,10 @@ class Claims(SphinxDirective):
         lines = []
         for key in self.arguments[0].replace(",", " ").split():
             (row,) = rows_of(REPORTS / "claims.csv", f"key={key}").to_dict("records")
-            lines.append((row["section"], row["claim"], verdict(row["verdict"]), measured(row), row["printed"]))
-        return [made_table(("section", "claim", "verdict", "effect [95 %]", "printed"), lines, (8, 36, 14, 22, 20))]
+            cells = (verdict(row["verdict"]), measured(row), row["printed"], row["size"])
+            lines.append((row["section"], row["claim"], *cells))
+        head = ("section", "claim", "verdict", "effect [95 %]", "printed", "size")
+        return [made_table(head, lines, (8, 34, 13, 20, 15, 10))]
 
 
 class Thesis(SphinxDirective):
@@ -73,11 +75,13 @@ class Thesis(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """A table, as on the front page of the site."""
-        lines = [
-            (row["conclusion"], row["printed"], row["measured"], verdict(row["verdict"]), row["why"])
-            for row in rows_of(REPORTS / "thesis.csv").to_dict("records")
-        ]
-        return [made_table(("conclusion", "printed", "measured", "verdict", "why"), lines, (26, 12, 20, 12, 30))]
+        lines = []
+        for row in rows_of(REPORTS / "thesis.csv").to_dict("records"):
+            conclusion = f"{row['conclusion']} ({row['section']})"
+            cells = (row["printed"], row["measured"], verdict(row["verdict"]), row["size"], row["why"])
+            lines.append((conclusion, *cells))
+        head = ("conclusion", "printed", "measured", "verdict", "size", "why")
+        return [made_table(head, lines, (26, 11, 19, 11, 8, 25))]
 
 
 class Rows(SphinxDirective):
