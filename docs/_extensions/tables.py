@@ -12,10 +12,6 @@
 :titles: way; faces per frame; frames within the tolerance, %
 ```
 
-```{notes} tables/backends            the notes below a table that contain a text
-meshoptimizer
-```
-
 ```{artifact}                         every claim, by the command that tests it again, with its minutes
 ```
 """
@@ -47,7 +43,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
         "claims": Claims,
         "thesis": Thesis,
         "rows": Rows,
-        "notes": Notes,
         "artifact": Artifact,
     }.items():
         app.add_directive(name, directive)
@@ -104,21 +99,6 @@ class Rows(SphinxDirective):
         if not lines:
             raise self.error(f"{file} has no row with {where or 'these names'}")
         return [made_table([text.strip() for text in self.options["titles"].split(";")], lines)]
-
-
-class Notes(SphinxDirective):
-    """Notes of a table, in its own words."""
-
-    required_arguments, has_content = 1, True
-
-    def run(self) -> list[nodes.Node]:
-        """A quotation of the notes that contain the text, of which there must be one or more."""
-        path, text = REPORTS / f"{self.arguments[0]}.md", " ".join(self.content)
-        lines = path.read_text(encoding="utf-8").splitlines()
-        notes = [line.removeprefix("- ") for line in lines if line.startswith("- ") and text in line]
-        if not notes:
-            raise self.error(f"{path.name} has no note with {text!r}")
-        return [nodes.block_quote("", *(nodes.paragraph("", note) for note in notes))]
 
 
 class Artifact(SphinxDirective):
