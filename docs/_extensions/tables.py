@@ -34,6 +34,7 @@ from stages.report.verdict import WORDS
 from .commands import Command, commands
 from .measured import REPORTS
 
+KINDS = {"claims": "claim", "thesis": "conclusion"}  # kind of a table -> the column that marks it
 SIGNED_ZERO = re.compile(r"-(0(?:\.0+)?)(?![\d.])")
 
 
@@ -166,7 +167,7 @@ def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]],
     head = list(head)
     group = nodes.tgroup("", *(nodes.colspec("", colwidth=w) for w in widths or [1] * len(head)), cols=len(head))
     group += [nodes.thead("", made_row(head)), nodes.tbody("", *(made_row(line) for line in lines))]
-    kinds = ["measured-table", *(["claims-table"] if "claim" in head else [])]
+    kinds = ["measured-table", *(f"{kind}-table" for kind, column in KINDS.items() if column in head)]
     return nodes.table("", group, classes=kinds)
 
 
