@@ -68,8 +68,11 @@ def differing(row: dict[str, Any], reference: dict[str, Any]) -> str:
     moved = []
     for name in COMPARED:
         new, old = row.get(name, math.nan), reference.get(name, math.nan)
-        texts = isinstance(new, str) or isinstance(old, str)
-        if new != old if texts else not (math.isclose(new, old, rel_tol=DIGITS) or (new != new and old != old)):
+        if isinstance(new, str) or isinstance(old, str):
+            same = new == old
+        else:
+            same = math.isclose(new, old, rel_tol=DIGITS) or (new != new and old != old)
+        if not same:
             moved.append(f"{name} {new}, in reports/claims.csv {old}")
     return ", ".join(moved)
 

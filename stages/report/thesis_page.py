@@ -5,6 +5,7 @@ from collections.abc import Callable
 from html import escape
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
@@ -30,17 +31,17 @@ def thesis_frame(reports: Path) -> pd.DataFrame:
     rows = []
     for entry in yaml.safe_load((resources.files(__package__ or "") / "page/thesis.yaml").read_text("utf-8")):
         try:
-            (claim,) = rows_of(reports / "claims.csv", f"key={entry['claim']}").replace("", float("nan")).itertuples()
+            (claim,) = rows_of(reports / "claims.csv", f"key={entry['claim']}").to_dict("records")
             texts = {name: filled(entry[name], reports)[0] for name in ("measured", "why") if name in entry}
         except (LookupError, ValueError):
             continue
-        numbers = claim._replace(**{name: float(getattr(claim, name)) for name in ("effect", "low", "high")})
+        numbers = {name: float(claim[name] or "nan") for name in ("effect", "low", "high")}
         rows.append({
             "conclusion": entry["conclusion"], "key": entry["claim"],
             "section": re.sub(r"(?<![\d.])(\d)", r"T\1", str(entry["section"])),
-            "printed": entry.get("printed") or f"+{str(claim.printed).partition(',')[0]}".replace("+-", "-"),
-            "measured": texts.get("measured") or effect(numbers),
-            "verdict": claim.verdict, "size": claim.size if claim.size == claim.size else "",
+            "printed": entry.get("printed") or f"+{claim['printed'].partition(',')[0]}".replace("+-", "-"),
+            "measured": texts.get("measured") or effect(SimpleNamespace(**numbers, unit=claim["unit"])),
+            "verdict": claim["verdict"], "size": claim["size"],
             "why": texts["why"], "see": entry["see"],
         })  # fmt: skip
     return pd.DataFrame(rows, columns=[*COLUMNS, "section", "key", "size"])
