@@ -49,7 +49,7 @@ html_css_files = ["style.css"]
 html_js_files = ["names.js"]
 html_show_search_summary = False  # it would fetch each page, which a browser refuses to pages of file://
 html_show_sourcelink = html_copy_source = False
-ALONE = "index first_steps glossary judging design comparison artifact settings"  # no pages beside them
+ALONE = "index first_steps thesis glossary judging design comparison artifact settings"  # no pages beside them
 html_sidebars = {name: [] for name in ALONE.split()}
 html_theme_options = {
     "header_links_before_dropdown": 5,

@@ -3,14 +3,13 @@
 ```{claims} key_one, key_two          claims with their verdict, effect and interval
 ```
 
+```{thesis}                           the conclusions of the thesis, printed beside measured
+```
+
 ```{rows} tables/scene                rows of a table
 :where: matched=error
 :columns: method; faces .0f; 100*held .0f
 :titles: way; faces per frame; frames within the tolerance, %
-```
-
-```{notes} tables/backends            the notes below a table that contain a text
-meshoptimizer
 ```
 
 ```{artifact}                         every claim, by the command that tests it again, with its minutes
@@ -19,6 +18,7 @@ meshoptimizer
 
 import re
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import pandas as pd
 from docutils import nodes
@@ -28,17 +28,24 @@ from sphinx.util.docutils import SphinxDirective
 
 from stages.charts.cells import parts_of, rows_of, text_of
 from stages.charts.drawing import label
+from stages.report.claims_page import effect
 from stages.report.verdict import WORDS
 
 from .commands import Command, commands
 from .measured import REPORTS
 
+KINDS = {"claims": "claim", "thesis": "conclusion"}  # kind of a table -> the column that marks it
 SIGNED_ZERO = re.compile(r"-(0(?:\.0+)?)(?![\d.])")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Adds the directives."""
-    for name, directive in {"claims": Claims, "rows": Rows, "notes": Notes, "artifact": Artifact}.items():
+    for name, directive in {
+        "claims": Claims,
+        "thesis": Thesis,
+        "rows": Rows,
+        "artifact": Artifact,
+    }.items():
         app.add_directive(name, directive)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -52,10 +59,25 @@ class Claims(SphinxDirective):
         """A table."""
         lines = []
         for key in self.arguments[0].replace(",", " ").split():
-            rows = rows_of(REPORTS / "claims.csv", f"key={key}")
-            (row,) = rows.to_dict("records")
-            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(rows), row["tested_on"]))
-        return [made_table(("section", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
+            (row,) = rows_of(REPORTS / "claims.csv", f"key={key}").to_dict("records")
+            cells = (verdict(row["verdict"]), measured(row), row["printed"], row["size"])
+            lines.append((row["section"], row["claim"], *cells))
+        head = ("section", "claim", "verdict", "effect [95 %]", "printed", "size")
+        return [made_table(head, lines, (8, 34, 13, 20, 15, 10))]
+
+
+class Thesis(SphinxDirective):
+    """What became of the thesis."""
+
+    def run(self) -> list[nodes.Node]:
+        """A table, as on the front page of the site."""
+        lines = []
+        for row in rows_of(REPORTS / "thesis.csv").to_dict("records"):
+            conclusion = f"{row['conclusion']} ({row['section']})"
+            cells = (row["printed"], row["measured"], verdict(row["verdict"]), row["size"], row["why"])
+            lines.append((conclusion, *cells))
+        head = ("conclusion", "printed", "measured", "verdict", "size", "why")
+        return [made_table(head, lines, (26, 11, 19, 11, 8, 25))]
 
 
 class Rows(SphinxDirective):
@@ -80,21 +102,6 @@ class Rows(SphinxDirective):
         return [made_table([text.strip() for text in self.options["titles"].split(";")], lines)]
 
 
-class Notes(SphinxDirective):
-    """Notes of a table, in its own words."""
-
-    required_arguments, has_content = 1, True
-
-    def run(self) -> list[nodes.Node]:
-        """A quotation of the notes that contain the text, of which there must be one or more."""
-        path, text = REPORTS / f"{self.arguments[0]}.md", " ".join(self.content)
-        lines = path.read_text(encoding="utf-8").splitlines()
-        notes = [line.removeprefix("- ") for line in lines if line.startswith("- ") and text in line]
-        if not notes:
-            raise self.error(f"{path.name} has no note with {text!r}")
-        return [nodes.block_quote("", *(nodes.paragraph("", note) for note in notes))]
-
-
 class Artifact(SphinxDirective):
     """For each command the claims that it tests, and how long it computed."""
 
@@ -117,16 +124,10 @@ class Artifact(SphinxDirective):
         return nodes.section("", title, *meaning, body, ids=[nodes.make_id(f"claims of {command.name}")])
 
 
-def effect(selected: pd.DataFrame) -> str:
-    """The effect of a claim with its interval and unit, with as many decimals as its ends need."""
-    row = selected.iloc[0]
-    if not row["low"]:
-        return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
-    ends = [abs(float(row[name])) for name in ("low", "high")]
-    places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
-    while places < 6 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
-        places += 1
-    return f"{text_of(selected, f'effect low high +.{places}f')} {row['unit']}"
+def measured(row: dict[str, str]) -> str:
+    """The effect of a claim with its interval and unit."""
+    numbers = {name: float(row[name] or "nan") for name in ("effect", "low", "high")}
+    return effect(SimpleNamespace(unit=row["unit"], **numbers))
 
 
 def shown(row: pd.DataFrame, column: str) -> str:
@@ -166,7 +167,7 @@ def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]],
     head = list(head)
     group = nodes.tgroup("", *(nodes.colspec("", colwidth=w) for w in widths or [1] * len(head)), cols=len(head))
     group += [nodes.thead("", made_row(head)), nodes.tbody("", *(made_row(line) for line in lines))]
-    kinds = ["measured-table", *(["claims-table"] if "claim" in head else [])]
+    kinds = ["measured-table", *(f"{kind}-table" for kind, column in KINDS.items() if column in head)]
     return nodes.table("", group, classes=kinds)
 
 

@@ -66,7 +66,7 @@ attended, blind = (
 )
 differences = 100 * (attended - blind)
 mean, low, high = interval(differences, shared=shared_by(Split.RANDOM))
-word = verdict(low, high, "points of accuracy")
+word = verdict(low, high, "points")
 print(f"attended minus blind, kNN: {mean:+.1f} [{low:.1f}, {high:.1f}] points: {word}")
 
 plt.figure(figsize=(6, 2.2), layout="constrained")

@@ -22,7 +22,7 @@ PLACE = re.compile(r"\{(\S+) ((?:[^:{}]|:(?! ))*): ([^{}]+)\}")
 PAIR = re.compile(r"(\w+)(!?=)(.*?)(?=\s+\w+!?=|\s*$)")
 REQUEST = re.compile(r"(.+?)(?: ([+,]*\.\d+[fg]))?")  # columns and words, format
 CLAIMS = "claims"  # reports/claims.csv; all others are KIND/NAME
-QUALIFIED = ("depends on the reading", "not testable")  # verdicts without which a figure of a claim would mislead
+QUALIFIED = ("not testable",)  # verdicts without which a figure of a claim would mislead
 ROWS = "rows"  # in place of columns: how many rows there are
 ENDS = {"highest": pd.Series.idxmax, "lowest": pd.Series.idxmin}  # in place of a column: picks a row by the one named
 PREFIXES: dict[str, Callable[[float], float]] = {  # before a column's name -> what is shown of its number

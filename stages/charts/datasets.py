@@ -5,6 +5,7 @@ SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_
 SETS_3_1 = SECTION_3_1, "princeton_3_1"  # the protocol of T3.1 on objects of our own and on published ones
 FOUR_3_1 = "household_3_1_four"  # from the four principal viewpoints of T3.1.2
 MENDED_3_2 = "gaze_3_2_mended"  # T3.2 with mended formulas
+GABOR_3_2 = "gaze_3_2_gabor"  # T3.2 with Gabor kernels of sum zero
 GREY_3_1 = "gaze_3_1"  # T3.1 on grey meshes with human gaze
 SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets", "catalogue_4_2_sets"  # random sets of six objects
 SUMS_4_2 = "household_4_2_sums", "princeton_4_2_sums"
@@ -17,6 +18,7 @@ DATASETS = {
     FOUR_3_1: "household as in T3.1, four viewpoints",
     GREY_3_1: "meshes with human gaze as in T3.1",
     SECTION_3_2: "meshes with human gaze as in T3.2", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
+    GABOR_3_2: "meshes with human gaze as in T3.2, Gabor without its mean",
     SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
     SETS_4_2[1]: "random sets of psb as in T4.2", SETS_4_2[2]: "random sets of furniture as in T4.2",
     SUMS_4_2[0]: "random sets of household shapes as in T4.2, sums of maps",

@@ -3,11 +3,11 @@
 import base64
 import io
 import re
-from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from PIL import Image
 
@@ -16,25 +16,31 @@ from .tables import is_numeric
 
 WIDEST = 900  # pixels of a picture on the page
 LONG_TEXT = 40  # characters of a cell from which its column is wide
+MOST_VIEWS = 3  # folded views of a table beside each other; more are folded together
 LONG = 30  # rows after which a table scrolls in its own box
 UP = "../"  # from a page of reports/site to reports/
 
 
 def item_html(item: Table | Figure) -> str:
-    """A section with links to its files: a table, its summary and notes, or a picture and its caption."""
+    """A table with its summary and notes, or a picture with its caption; and links to its files."""
     if isinstance(item, Table):
         notes = "".join(f"<li>{prose(note)}</li>" for note in item.notes)
         body = f'<p class="summary">{prose(item.summary)}</p>' if item.summary else ""
-        body += frame_html(item.first, item.title, bold=item.best_rows)
-        if len(item.first.columns) < len(item.text.columns):
-            whole = frame_html(item.text, f"All columns: {item.title}", bold=item.best_rows)
-            body += folded(f"All {len(item.text.columns)} columns", whole)
+        first, *others = item.views
+        body += f"<h4>{escape(first.title)}</h4>" if first.title else ""
+        body += frame_html(first.text, item.title, first.bold)
+        body += f'<p class="help">{escape(item.legend)}</p>' if item.legend else ""
+        further = "".join(
+            folded(escape(view.title), frame_html(view.text, f"{item.title}, {view.title}", view.bold))
+            for view in others
+        )
+        body += folded(f"{len(others)} further tables", further) if len(others) > MOST_VIEWS else further
         body += folded("How to read it", f"<ul>{notes}</ul>") if notes else ""
         body += f"<p>{links(item.paths[:1])}</p>"
     else:
         caption = f"<figcaption>{prose(item.caption)} {links(item.paths)}</figcaption>"
         body = f"<figure>{box('wide', item.title, image(item))}{caption}</figure>"
-    return f'<section id="{item.kind}-{item.name}"><h3>{escape(item.title)}</h3>{body}</section>\n'
+    return body
 
 
 def image(item: Figure, widest: int = WIDEST) -> str:
@@ -68,18 +74,20 @@ def box(classes: str, title: str, body: str) -> str:
     return f'<div class="{classes}" tabindex="0" role="region" aria-label="{escape(title)}">{body}</div>'
 
 
-def frame_html(frame: pd.DataFrame, title: str, bold: Iterable[bool] = ()) -> str:
-    """A table in its own box. bold: of each row whether it is the best."""
+def frame_html(frame: pd.DataFrame, title: str, bold: pd.DataFrame | None = None) -> str:
+    """A table in its own box. bold: of each cell whether it is the best."""
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
     right |= {c: ' class="long"' for c in frame.columns if frame[c].map(str).map(len).max() > LONG_TEXT}
     head = "".join(f'<th scope="col"{right.get(c, "")}>{escape(str(c))}</th>' for c in frame.columns)
 
-    def cell(column: Any, text: Any) -> str:
-        return f"<td{right.get(column, '')}>{prose(str(text))}</td>"
+    def cell(column: Any, text: Any, best: bool) -> str:
+        shown = f"<b>{prose(str(text))}</b>" if best else prose(str(text))
+        return f"<td{right.get(column, '')}>{shown}</td>"
 
-    rows = ("".join(cell(*item) for item in row.items()) for row in frame.to_dict("records"))
-    kinds = [' class="best"' if row else "" for row in bold] or [""] * len(frame)
-    body = "".join(f"<tr{kind}>{row}</tr>" for kind, row in zip(kinds, rows, strict=True))
+    marks = np.zeros(frame.shape, dtype=bool) if bold is None else bold.to_numpy()
+    rows = zip(frame.itertuples(index=False), marks, strict=True)
+    lines = ("".join(map(cell, frame.columns, cells, best)) for cells, best in rows)
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
     inner = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     return box("scroll tall" if len(frame) > LONG else "scroll", title, inner)
 

@@ -3,9 +3,8 @@
 STAGE/report.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
 is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
 notes. The section of a figure or chart is `Alt: text for a blind reader`, then the caption. The code fills in `{word}`.
-An empty note is left out, and a note of several lines becomes several notes. STAGE/findings.md holds the findings of a
-stage, with figures from any table or claim; a paragraph with a missing figure is left out. A `Kept` figure of a data
-set outside the default run stays in the repository, with its words in NAME.json.
+An empty note is left out, and a note of several lines becomes several notes. A `Kept` figure of a data set outside the
+default run stays in the repository, with its words in NAME.json.
 """
 
 import re
@@ -16,9 +15,8 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
@@ -28,6 +26,8 @@ from stages.charts.results import NotRun, Results, require_file
 from .cells import filled
 from .drawing import save
 from .tables import Ranking, as_text, markdown_table
+
+MOST_COLUMNS = 8  # of a table on a page
 
 
 @dataclass(eq=False, kw_only=True)
@@ -51,8 +51,9 @@ class Item:
 class Table(Item):
     """frame: tidy numbers, for the CSV; shown: the table for readers, the same or pivoted; words: for its prose.
 
-    best: the ranking of its rows, None if no rows compete. answer: the columns of `shown` that answer its question, all
-    if empty; the other columns follow them. summary: the finding in one sentence.
+    best: the ranking of its cells, None if none compete. split: a column of `shown`, such as the data set; each of its
+    values has a view of its own. answer: the columns that answer the table's question, all if empty; further views have
+    the others, each behind the columns `keys`, by default the first. summary: the finding in one sentence.
     """
 
     frame: pd.DataFrame
@@ -60,6 +61,8 @@ class Table(Item):
     words: dict[str, Any] = field(default_factory=dict)
     best: Ranking | None = None
     answer: Sequence[str] = ()
+    split: str = ""
+    keys: Sequence[str] = ()
     summary: str = ""
     notes: list[str] = field(default_factory=list)
 
@@ -69,14 +72,31 @@ class Table(Item):
         return as_text(self.frame if self.shown is None else self.shown)
 
     @property
-    def first(self) -> pd.DataFrame:
-        """The columns of `text` that answer the table's question."""
-        return self.text[[*self.answer] or [*self.text]]
+    def views(self) -> list["View"]:
+        """The table as it is shown: the first view answers its question, the others are folded."""
+        text = self.text
+        columns = [name for name in text if name != self.split]
+        answer = [name for name in self.answer if name in columns] or columns
+        keys = list(self.keys) or answer[:1]
+        others = [name for name in columns if name not in answer]
+        step = MOST_COLUMNS - len(keys)
+        parts = [answer, *([*keys, *others[start : start + step]] for start in range(0, len(others), step))]
+        views = []
+        for value in dict.fromkeys(text[self.split]) if self.split else [""]:
+            rows = text[text[self.split] == value] if self.split else text
+            bold = self.best.best(rows) if self.best else pd.DataFrame(False, rows.index, rows.columns)
+            for part in parts:
+                title = ", ".join(filter(None, (value, "" if part is answer else "further columns")))
+                shown = [name for name in part if not self.split or (rows[name] != "–").any()]
+                if part is answer or len(shown) > len(keys):
+                    views.append(View(title, rows[shown], bold[shown]))
+        return views
 
     @property
-    def best_rows(self) -> np.ndarray:
-        """(rows,) boolean: the best row, and those that are shown as equal to it."""
-        return self.best.best(self.text) if self.best else np.zeros(len(self.text), dtype=bool)
+    def legend(self) -> str:
+        """What bold means; empty where nothing is bold."""
+        shows_bold = self.best and any(view.bold.to_numpy().any() for view in self.views)
+        return self.best.legend(map(str, self.text)) if self.best and shows_bold else ""
 
     def write(self, folder: Path) -> None:
         """Writes NAME.csv and NAME.md, and fills the summary's figures in; without them it is left out."""
@@ -94,13 +114,26 @@ class Table(Item):
         yield f"# {self.title}"
         if self.summary:
             yield self.summary
-        yield markdown_table(self.first, self.best_rows)
-        remaining = len(self.text.columns) - len(self.first.columns)
-        notes = [f"{remaining} more columns, on the site; their numbers are in {self.name}.csv."] if remaining else []
-        notes = [*notes, *self.notes]
-        if notes:
-            note_list = "\n".join(f"- {note}" for note in notes)
-            yield f"<details><summary>How to read it</summary>\n\n{note_list}\n\n</details>"
+        first, *others = self.views
+        yield from filter(None, (f"## {first.title}" if first.title else "", markdown_table(first.text, first.bold)))
+        if self.legend:
+            yield self.legend
+        for view in others:
+            yield _folded(view.title, markdown_table(view.text, view.bold))
+        if self.notes:
+            yield _folded("How to read it", "\n".join(f"- {note}" for note in self.notes))
+
+
+class View(NamedTuple):
+    """A part of a table: its title, its cells as strings, and of each whether it stands in bold."""
+
+    title: str
+    text: pd.DataFrame
+    bold: pd.DataFrame
+
+
+def _folded(summary: str, text: str) -> str:
+    return f"<details><summary>{summary}</summary>\n\n{text}\n\n</details>"
 
 
 @dataclass(eq=False)
@@ -146,17 +179,6 @@ def shared_notes(package: str | None, name: str) -> str:
     """Notes that several tables of a topic share, a line each, to be a word of theirs: the section `# shared/NAME`."""
     _, text = _sections(package or "")[f"shared/{name}"]
     return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
-
-
-def findings(part: ModuleType, reports: Path) -> list[str]:
-    """The paragraphs of TOPIC/findings.md, in Markdown, with their figures; without those that lack a figure."""
-    file = resources.files(part.__package__ or "") / "findings.md"
-    text = file.read_text(encoding="utf-8") if file.is_file() else ""
-    paragraphs = []
-    for paragraph in filter(None, text.strip().split("\n\n")):
-        with suppress(LookupError):
-            paragraphs.append(filled(_joined(paragraph), reports)[0])
-    return paragraphs
 
 
 @cache

@@ -32,7 +32,7 @@ CERTAINLY = "on the front in 95 % of resamples"
 ALPHA = {ON: 0.8, PERHAPS: 0.6, OFF: 0.4}  # of intervals
 RIMS = {name: {"mec": INK if name == ON else "white", "mew": 1.2 if name == ON else 0.8} for name in ALPHA}
 WIDE = 76  # letters of a line of a title
-LISTED = 8  # names of the front that a caption lists at most
+LISTED = 8  # names of the front that a text for the blind lists at most
 FEW = 12  # choices that are all named where there is room; of more only the front, where legends tell the others
 
 
@@ -145,16 +145,13 @@ def pareto_chart(
             place_names(
                 axes, point_names, rows[["cost_ratio", quality]].to_numpy(), lines(rows, certain, "cost_ratio", quality)
             )
-    names, maybe = _listed(certain), _listed(rows.loc[rows["on_front"] == PERHAPS].sort_values("cost_ratio"))
-    noise_text = f"; the costs vary by {100 * np.mean(noise):.2g} %" if clock else ""
+    names = _listed(certain)
     first = f"{unit:.3g} s in the median case ({clock})" if clock else f"{unit:,.0f} {cost_name}"
     words = {
         "title": title,
         "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {names}.",
-        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. On the line, with a dark rim: the "
-        "choices that no other beats in at least 95 % of the resamples (of the units behind the "
-        f"intervals{noise_text}): {names}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
-        "Bars: 95 % intervals.",
+        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. Line: choices that no other beats in "
+        f"95 % of the resamples. Cost 1 is {reference}, {first}. Bars: 95 % intervals.",
     }
     return Figure(drawing, words, rows)
 

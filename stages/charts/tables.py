@@ -1,8 +1,8 @@
 """Tables of the report: rows of measurements become cells, grids with the thesis's numbers, and Markdown.
 
 A cell is `mean [low, high]`, rounded for a reader; a cell without a measurement says "not run". `Ranking` finds the
-best row by the numbers that are shown, so that rows shown as equal are equally good. `scaled` selects the rows of one
-scaling of the samples (T4.2.4), `with_means` adds means over the classifiers with and without the SVM.
+best cells by the numbers that are shown, so that cells shown as equal are equally good. `scaled` selects the rows of
+one scaling of the samples (T4.2.4), `with_means` adds means over the classifiers with and without the SVM.
 """
 
 import re
@@ -24,6 +24,7 @@ READINGS = {  # beside ours, TRAINING
     MIN_MAX: "all data from 0 to 1",
 }  # fmt: skip
 CLASSIFIERS = ("knn", "svm", "decision_tree", "naive_bayes", "deep_learning")  # the thesis's order, reversed
+WHOSE, OURS, THESIS = "numbers of", "ours", "the thesis"  # a column of tables beside the thesis's, and its values
 MEANS = {"mean_of_all": CLASSIFIERS, "mean_without_svm": tuple(name for name in CLASSIFIERS if name != "svm")}
 
 
@@ -95,18 +96,17 @@ def grid(
     names: Mapping[str, Callable[[Any], Any]] | None = None,
     head: Callable[[Any], str] = str,
     places: int = 0,
-    printed: str = "",
 ) -> pd.DataFrame:
     """Cells pivoted for a reader: `62 [57, 67]`, shares in per cent, in the order of the cells.
 
     cells: one row each, with the columns `down` and `across`, `accuracy` with `low` and `high`. names: how a value of a
-    column `down` is said; head: how one of `across` is. A cell that is absent is "not run"; in rows whose first value
-    is `printed`, a dash.
+    column `down` is said; head: how one of `across` is. A cell that is absent is "not run"; in rows of the THESIS, a
+    dash.
     """
     down = [down] if isinstance(down, str) else list(down)
     wide = cells.assign(text=cell_texts(cells, places)).pivot(index=down, columns=across, values="text")
     wide = wide.reindex(index=cells.set_index(down).index.unique(), columns=cells[across].unique())
-    gaps = pd.Series(np.where(wide.index.get_level_values(0) == printed, "–", "not run"), wide.index)
+    gaps = pd.Series(np.where((wide.index.to_frame() == THESIS).any(axis=1), "–", "not run"), wide.index)
     wide = wide.apply(lambda column: column.fillna(gaps)).rename(columns=head).rename_axis(columns=None).reset_index()
     return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
 
@@ -117,20 +117,15 @@ def cell_texts(cells: pd.DataFrame, places: int = 0) -> list[str]:
     return [with_interval(*share, scale=100, places=places) for share in shares]
 
 
-def blocks(
-    cells: pd.DataFrame, down: Sequence[str], across: str, below: Mapping[str, Callable[[str], str]]
-) -> pd.DataFrame:
-    """Cells of `grid`, and below them one block of rows for each further column.
+def beside_thesis(cells: pd.DataFrame, down: Sequence[str]) -> pd.DataFrame:
+    """Cells of `grid` with a column WHOSE: ours, and behind each row of the columns `down` the thesis's, if it has one.
 
-    below: {column: function from a value of the first column of `down` to the name of its block}. If several cells
-    share a place, such as the thesis's beside two protocols, the first stays.
+    cells: with a column `thesis`, which is empty where the thesis prints nothing.
     """
-    parts, key = [cells], down[0]
-    for column, say in below.items():
-        block = cells.dropna(subset=[column])
-        block = block.assign(accuracy=block[column], low=np.nan, high=np.nan, **{key: block[key].map(say)})
-        parts.append(block.drop_duplicates([*down, across]))
-    return pd.concat(parts, ignore_index=True)
+    cells = cells.assign(**{WHOSE: OURS}, place=cells.groupby(list(down), sort=False).ngroup())
+    printed = cells.dropna(subset=["thesis"])
+    printed = printed.assign(accuracy=printed["thesis"], low=np.nan, high=np.nan, **{WHOSE: THESIS})
+    return pd.concat([cells, printed]).sort_values("place", kind="stable", ignore_index=True)
 
 
 def percent(share: float, places: int = 0) -> str:
@@ -180,16 +175,20 @@ def as_text(frame: pd.DataFrame) -> pd.DataFrame:
     return frame.map(number)
 
 
-def markdown_table(frame: pd.DataFrame, bold: Iterable[bool] = ()) -> str:
-    """A GitHub table of a frame of strings; columns of numbers stand to the right. bold: of each row whether it is."""
-    marks = ["**" if row else "" for row in bold] or [""] * len(frame)
+def markdown_table(frame: pd.DataFrame, bold: pd.DataFrame | None = None) -> str:
+    """A GitHub table of a frame of strings; columns of numbers stand to the right. bold: of each cell whether it is."""
+    marks = np.zeros(frame.shape, dtype=bool) if bold is None else bold.to_numpy()
     rows = [
-        [f"{mark}{text}{mark}" if (text := str(cell).replace("|", r"\|")) else "" for cell in row]
-        for mark, row in zip(marks, frame.itertuples(index=False), strict=True)
+        [f"**{text}**" if mark else text for text, mark in zip(_escaped(cells), line, strict=True)]
+        for cells, line in zip(frame.itertuples(index=False), marks, strict=True)
     ]
     rules = ["---:" if is_numeric(frame[column]) else "---" for column in frame.columns]
     lines = [[str(column) for column in frame.columns], rules, *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _escaped(cells: Iterable[Any]) -> list[str]:
+    return [str(cell).replace("|", r"\|") for cell in cells]
 
 
 def is_numeric(column: pd.Series) -> bool:
@@ -202,29 +201,46 @@ FIRST = re.compile(r"[+<]?\s*([-−]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?)")  # numb
 
 @dataclass(frozen=True)
 class Ranking:
-    """The column of the shown frame that ranks a table.
+    """The columns of the shown frame whose best cells stand in bold.
 
-    lowest: whether less is better. among: columns; rows that agree in them are compared with each other alone. exempt:
-    names; a row that has one in any of its cells takes no part: a truth, a full model, what the thesis printed.
+    by: a column, or several. lowest: whether less is better. among: columns; rows that agree in them are compared with
+    each other alone. exempt: names; a row that has one in any of its cells takes no part: a truth, a full model, what
+    the thesis printed. aside: such rows in words.
     """
 
-    by: str
+    by: str | Sequence[str]
     lowest: bool = False
     among: Sequence[str] = ()
-    exempt: Collection[str] = ()
+    exempt: Collection[str] = (THESIS,)
+    aside: str = ""
 
-    def best(self, text: pd.DataFrame) -> np.ndarray:
-        """(rows,) boolean of a frame of strings: the best, with those that are shown as equal to it; none if all are.
+    @property
+    def columns(self) -> list[str]:
+        """The columns `by`."""
+        return [self.by] if isinstance(self.by, str) else list(self.by)
 
-        None either where the column was not run.
+    def best(self, text: pd.DataFrame) -> pd.DataFrame:
+        """Of each cell of a frame of strings whether it is the best, or shown as equal to it.
+
+        None of a column is where all are equal, or where the column was not run.
         """
-        if self.by not in text:
-            return np.zeros(len(text), dtype=bool)
-        values = text[self.by].map(leading).mask(text.isin(list(self.exempt)).any(axis=1))
-        groups = values.groupby([text[column] for column in self.among] or np.zeros(len(text)), sort=False)
+        marks = pd.DataFrame(False, text.index, text.columns)
+        aside = text.isin(list(self.exempt)).any(axis=1)
+        keys: Any = [text[column] for column in self.among] or np.zeros(len(text))
         best, worst = ("min", "max") if self.lowest else ("max", "min")
-        top = groups.transform(best)
-        return ((values == top) & (top != groups.transform(worst))).to_numpy()
+        for column in filter(text.columns.__contains__, self.columns):
+            values = text[column].map(leading).mask(aside)
+            groups = values.groupby(keys, sort=False)
+            top = groups.transform(best)
+            marks[column] = (values == top) & (top != groups.transform(worst))
+        return marks
+
+    def legend(self, heads: Iterable[str]) -> str:
+        """What bold means, in a line, in a table with these columns."""
+        end = f"{'lowest' if self.lowest else 'highest'}{' of ours' if WHOSE in heads else ''}"
+        what = f"the {end} of its column" if len(self.columns) > 1 else f"the {end} in the column “{self.columns[0]}”"
+        what += f" among rows of the same {' and '.join(self.among)}" if self.among else ""
+        return f"Bold: {what}{', ' if self.aside else ''}{self.aside}."
 
 
 def leading(cell: str) -> float:

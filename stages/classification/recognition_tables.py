@@ -5,7 +5,7 @@ their accuracies. `METHODS` maps the thesis's samplings to methods.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -26,8 +26,9 @@ from stages.charts.tables import (
     CLASSIFIERS,
     MEANS,
     READINGS,
+    WHOSE,
     Ranking,
-    blocks,
+    beside_thesis,
     everywhere,
     grid,
     grouped,
@@ -124,10 +125,31 @@ def fifteen(variant: str) -> str:
     return "first_15" if variant == "plain" else f"first_15_{variant}"
 
 
-def sampling_text(name: str) -> str:
-    """A sampling in words; `, 15 imprints` stays behind it."""
-    base, comma, suffix = name.partition(", ")
-    return label(base) + comma + suffix
+FEW = ", 15 imprints"  # behind a sampling or a classifier: with the first 15 imprints of each object alone
+
+
+def few_last(frame: pd.DataFrame, column: str) -> pd.DataFrame:
+    """The frame with FEW behind the protocol, no longer behind the names of a column."""
+    few = frame[column].str.endswith(FEW)
+    protocols = frame["protocol"] + np.where(few, FEW, "")
+    return frame.assign(**{column: frame[column].str.removesuffix(FEW)}, protocol=protocols)
+
+
+def by_protocol(
+    cells: pd.DataFrame, down: str, across: str, names: dict[str, Callable], head: Callable[[Any], str]
+) -> pd.DataFrame:
+    """The grid of each protocol, the thesis's rows behind ours; unseen regions are protocols of their own.
+
+    The protocol as printed comes first: with 15 imprints, over random sets of objects.
+    """
+    regions = cells[~cells["protocol"].str.contains(": ")].dropna(subset=["accuracy_regions"])
+    regions = regions.assign(accuracy=regions["accuracy_regions"], low=np.nan, high=np.nan, thesis=np.nan)
+    cells = pd.concat([cells, regions.assign(protocol=regions["protocol"] + ", unseen regions")], ignore_index=True)
+    place = cells["protocol"].map(
+        lambda name: (": " in name, "unseen" in name, "sets" not in name, not name.endswith(FEW))
+    )
+    cells = cells.assign(place=place).sort_values("place", kind="stable", ignore_index=True)
+    return grid(beside_thesis(cells, ["protocol", down]), ["protocol", down, WHOSE], across, names, head)
 
 
 FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV
@@ -139,36 +161,28 @@ WAYS = {
 }  # fmt: skip
 MIXED = ["_mixed", "first_15_mixed"]
 KEYS = ["sampling", "way", "classifier", "touches"]
-DOWN, THESIS = ["protocol", "sampling"], "the thesis"
-BELOW = {"accuracy_regions": "{}, unseen regions".format, "thesis": lambda protocol: THESIS}
-RANKING = Ranking("kNN, %", among=["protocol"], exempt=[THESIS])
 
 
-def beside_thesis(results: Results, group: str, printed: str, variant: str = "plain") -> Table:
-    """The Table of one group of objects beside the thesis's, by protocol; below, samplings of this project alone.
-
-    Then the readings of the scale of the samples, each as a protocol.
-    """
+def one_touch(results: Results, group: str, printed: str, variant: str = "plain") -> Table:
+    """The Table of one group of objects beside the thesis's, by protocol and by reading of the samples' scale."""
     thesis = with_printed_means(results.thesis(printed).set_index("sampling").T).T
     parts, fifteen_parts = [], []
     for protocol in protocols(results, on_sets=True, group=group, variant=variant):
         parts.append(_cells(protocol, thesis, whole=not parts))
     with suppress(NotRun):
         for protocol in protocols(results, on_sets=True, group=group, variant=fifteen(variant)):
-            fifteen_parts.append(_cells(protocol, thesis, ", 15 imprints"))
+            fifteen_parts.append(_cells(protocol, thesis, FEW))
     scaled = [_cells(entry, thesis) for entry in readings(results, group=group, variant=variant)]
     frame = pd.concat([*parts, *fifteen_parts]).sort_values("protocol", kind="stable")
     frame = pd.concat([frame, *scaled], ignore_index=True)
-    once = frame.assign(thesis=frame["thesis"].mask(frame["sampling"].str.contains(", ")))  # not beside 15 imprints too
-    once["accuracy_regions"] = once["accuracy_regions"].mask(once["protocol"].str.contains(": "))
-    text_table = grid(
-        blocks(once, DOWN, "classifier", BELOW), DOWN, "classifier",
-        names={"sampling": sampling_text}, head=lambda name: f"{label(name)}, %",
-    )  # fmt: skip
+    cells = few_last(frame[frame["classifier"] != "mean_of_all"], "sampling")
+    names, classifiers = {"sampling": label}, [f"{label(name)}, %" for name in cells["classifier"].unique()]
+    text_table = by_protocol(cells, "sampling", "classifier", names, lambda name: f"{label(name)}, %")
+    text_table = text_table.rename(columns={"sampling": "touched at"})
     words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
-    words |= {"fifteen": shared_notes(__package__, "fifteen") if fifteen_parts else "15 imprints per object: not run."}
+    words |= {"fifteen": "" if fifteen_parts else "15 imprints of each object: not run."}
     words |= {"group": results.group_text(group), "not_run": results.left_out(STAGE, group=group, variant=variant)}
-    return Table(frame, text_table, words, RANKING)
+    return Table(frame, text_table, words, Ranking(classifiers), split="protocol")
 
 
 def readings(results: Results, **where: Any) -> Iterator[Protocol]:
@@ -204,9 +218,9 @@ def added(classifiers: pd.Series) -> list[str]:
     return sorted({*classifiers.dropna()} - {*CLASSIFIERS, *MEANS})
 
 
-table_4_1 = partial(beside_thesis, group="six", printed="table_4_1_six_virtual_objects")
-table_4_2 = partial(beside_thesis, group="four", printed="table_4_2_four_virtual_objects")
-table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_with_locations", variant="locations")
+table_4_1 = partial(one_touch, group="six", printed="table_4_1_six_virtual_objects")
+table_4_2 = partial(one_touch, group="four", printed="table_4_2_four_virtual_objects")
+table_4_5 = partial(one_touch, group="six", printed="table_4_5_six_objects_with_locations", variant="locations")
 
 
 def recognition(results: Results) -> Table:
@@ -223,7 +237,7 @@ def recognition(results: Results) -> Table:
         names={"group": results.group_text, "split": lambda name: Split(name).words, "sampling": label},
     ).rename(columns={"split": "tested on", "sampling": "places"})  # fmt: skip
     words = {"not_run": results.left_out(STAGE, variant="plain")}
-    return Table(frame[[*keys, *ends]], text_table, words, Ranking(RANKING.by, among=["group", "tested on"]))
+    return Table(frame[[*keys, *ends]], text_table, words, Ranking("kNN, %", among=["tested on"]), split="group")
 
 
 def table_4_6(results: Results) -> Table:
@@ -238,16 +252,16 @@ def table_4_6(results: Results) -> Table:
     scaled = frame["protocol"].str.contains(": ")
     plain = frame["best"] & (frame["way"] == "") & ~scaled
     is_judged = (scaled | frame["way"].isin(MIXED)) & frame["best"] & frame["classifier"].isin(JUDGED)
-    samplings = frame["sampling"].map(label).mask(frame["best"], "")
-    words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), samplings, strict=True)
-    names = pd.Series([", ".join(filter(None, parts)) for parts in words])
-    labelled = frame.assign(name=names)
-    down, extras = ["protocol", "name"], labelled[~plain & (is_judged | (frame["classifier"].isin(FURTHER) & ~scaled))]
-    cells = pd.concat([blocks(labelled[plain], down, "touches", BELOW), extras])
-    wide = grid(cells, down, "touches", head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %", printed=THESIS)
-    wide = wide.rename(columns={"name": "classifier"})
-    ranking = Ranking(wide.columns[-1], among=["protocol"], exempt=[THESIS])
-    return Table(frame, wide, {"group": results.group_text("six")}, ranking)
+    extra = ~plain & (is_judged | (frame["classifier"].isin(FURTHER) & ~scaled))
+    ways = zip(
+        frame["protocol"], frame["way"].map(WAYS), frame["sampling"].map(label).mask(frame["best"], ""), strict=True
+    )
+    cells = frame.assign(protocol=[", ".join(filter(None, parts)) for parts in ways])[plain | extra]
+    cells = cells.assign(accuracy_regions=cells["accuracy_regions"].where(plain))
+    heads = {count: f"{count} touch{'es' if count > 1 else ''}, %" for count in sorted(frame["touches"].unique())}
+    wide = by_protocol(cells, "classifier", "touches", {"classifier": label}, heads.__getitem__)
+    words = {"group": results.group_text("six")}
+    return Table(frame, wide, words, Ranking([*heads.values()]), split="protocol")
 
 
 def _by_touches(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
@@ -288,19 +302,18 @@ def table_4_3(results: Results) -> Table:
     frame = pd.concat(
         [_selections(version, thesis) for version in versions if version.dataset in selected], ignore_index=True
     )
-    down, few_of = ["protocol", "classifier"], frame["classifier"].str.contains(", ")
-    cells = frame.assign(thesis=frame["thesis"].mask(few_of))
-    cells = cells.assign(head=cells["objects"] + ", " + cells["selection"].map(SELECTIONS))
-    cells, names = blocks(cells, down, "head", {"thesis": lambda protocol: THESIS}), {"classifier": sampling_text}
-    text_table = grid(cells, down, "head", names, head=lambda name: f"{name}, %", printed=THESIS)
+    cells = few_last(frame, "classifier")
+    cells = cells.assign(protocol=cells["objects"] + " objects, " + cells["protocol"], accuracy_regions=np.nan)
+    heads = {way: f"{words}, %" for way, words in SELECTIONS.items()}
+    text_table = by_protocol(cells, "classifier", "selection", {"classifier": label}, heads.__getitem__)
     words = {"not_run": results.left_out(STAGE, variant=[*SELECTIONS, *fifteen_ways])}
-    return Table(frame, text_table, words, Ranking("six, no selection, %", among=["protocol"], exempt=[THESIS]))
+    return Table(frame, text_table, words, Ranking([*heads.values()]), split="protocol")
 
 
 def _selections(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
     """Accuracies of one protocol at its model's points by classifier, group and way to select, with the thesis's."""
     rows, cells = protocol.rows[protocol.rows["method"] == protocol.best], []
-    for suffix, name, group, way in product(("", ", 15 imprints"), thesis.index, rows["group"].unique(), SELECTIONS):
+    for suffix, name, group, way in product(("", FEW), thesis.index, rows["group"].unique(), SELECTIONS):
         variant = fifteen(way) if suffix else way
         trials = rows[(rows["classifier"] == name) & (rows["group"] == group) & (rows["variant"] == variant)]
         recall = trials[(trials["split"] == Split.RANDOM) & (trials["metric"] == "recall")]["value"].mean()
@@ -319,11 +332,11 @@ def section_4_2_4(results: Results) -> Table:
         _shares(protocol, thesis) for protocol in protocols(results, group="six", metric="similar_share")
     ], ignore_index=True)  # fmt: skip
     text_table = frame[["protocol", "of"]].assign(
-        name=frame["name"].where(frame["of"] == "object", frame["name"].map(sampling_text))
+        name=frame["name"].where(frame["of"] == "object", frame["name"].map(label))
     )
     for column, head in (("all", "ours, all, %"), ("first_15", "ours, first 15, %"), ("thesis", "thesis, %")):
         text_table[head] = 100 * frame[column]
-    return Table(frame, text_table)  # no ranking: a share of alike imprints is neither good nor bad
+    return Table(frame, text_table, split="protocol")  # no ranking: a share of alike imprints is neither good nor bad
 
 
 def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:

@@ -59,7 +59,7 @@ def pipeline(results: Results) -> Figure:
     names = [label(method).partition(" (")[0].replace(" ", "\n") for method in places]
     panels[4].set_xticks(list(places.values()), names, fontsize=9)
     panels[4].set_title(f"kNN, one touch, {classes} objects", fontsize=9.5, fontweight="normal", color=GREY, pad=4)
-    return Figure(figure, {"name": name, "classes": classes}, dpi=120)
+    return Figure(figure, dpi=120)
 
 
 def _accuracy(results: Results) -> tuple[pd.DataFrame, int]:
@@ -88,9 +88,7 @@ def imprints(results: Results) -> Figure:
         block[0, 0].set_title(f"{label(method)}, first {TOUCHES} points", pad=6)
     for axes, name in zip(grid[:, 0], names, strict=True):
         axes.set_ylabel(name, rotation=0, ha="right", va="center", labelpad=8)
-    rows, columns = results.by_method("imprints", read_images, names[0])[methods[0]].shape[1:]
-    words = {"names": ", ".join(names), "methods": " beside ".join(map(label, methods))}
-    return Figure(figure, words | {"rows": rows, "columns": columns})
+    return Figure(figure)
 
 
 def _draw_imprint(axes: Axes, image: np.ndarray | None) -> None:
@@ -116,9 +114,7 @@ def touch_one_mesh(results: Results) -> Figure:
         draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
         if own_meshes:
             part.suptitle(name, fontweight="bold", y=0.995)
-    title = "Where to touch, and what is felt there" if own_meshes else "Touching one mesh"
-    words = {"title": title, "name": ", ".join(names), "count": most_points, "rows": CELLS[0], "columns": CELLS[1]}
-    return Figure(figure, words | {"pitch": PITCH}, dpi=110)
+    return Figure(figure, dpi=110)
 
 
 def draw_bars(

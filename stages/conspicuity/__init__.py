@@ -53,8 +53,8 @@ class Params:
     )
     formulas: str = setting(
         "ours",
-        "ours, printed (exactly as in the thesis) or mended (printed without its two errors); printed and "
-        "mended need background: kept",
+        "ours, printed (as in the thesis), mended (printed without its two errors) or zero_mean (printed, with Gabor "
+        "kernels of sum zero); all but ours need background: kept",
         names=_formulas,
     )
     compare_background: bool = setting(

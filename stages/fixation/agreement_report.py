@@ -8,7 +8,7 @@ quantiles by `below`.
 
 from collections.abc import Callable, Collection, Iterator
 from functools import partial
-from itertools import product, starmap
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -48,7 +48,6 @@ METRICS = {"pcc": "PCC", "pcc_masked": "PCC, the thesis's way", "nss": "NSS", "a
            "distance_mean": "distance, mean of pairs, %", "half_share": "half of it on, %"}  # fmt: skip
 RANGES = {"half_share": (0, 100), "pcc": (-1, 1), "pcc_masked": (-1, 1), "nss": (-np.inf, np.inf), "auc": (0, 1)}
 OPPONENTS = {"weights": "random weights", "prior": "centre prior", "lee": "mesh saliency"}
-SPLITS = {"views": "known objects", "objects": "objects never seen"}
 REFERENCE = "mobilenet_v2-frozen"
 ENDS = ("", "_low", "_high")  # of the columns of what a detector has more than an opponent
 
@@ -60,14 +59,14 @@ def build(results: Results) -> Table:
     rows = results.rows("fixation").reindex(columns=["method", "task", "value", "note"])
     absent_rows = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])  # networks as a whole
     words = {
-        "accuracy": "\n".join(filter(None, starmap(_accuracy, truths.items()))),
         "no_people": no_people(truths).strip(),
         "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent_rows)),
     }
     text_table = _wide(frame)
-    minor_columns = [METRICS[name] for name in ("pcc_masked", *list(METRICS)[4:])] + ["it − mesh saliency, PCC"]
-    answer = [name for name in map(str, text_table) if name not in minor_columns]
-    return Table(frame, text_table, words, Ranking("PCC", among=["truth"]), answer)
+    gains = [f"it − {OPPONENTS[name]}, PCC" for name in ("weights", "lee")]
+    answer = ["detector", *(METRICS[name] for name in ("pcc_masked", "pcc", "nss", "auc")), *gains, "seconds"]
+    best = Ranking([METRICS[name] for name in ("pcc_masked", "pcc", "nss", "auc")])
+    return Table(frame, text_table, words, best, answer, split="truth")
 
 
 def _lines(source: str, rows: pd.DataFrame) -> Iterator[dict[str, Any]]:
@@ -96,18 +95,6 @@ def _gains(table: pd.DataFrame, name: Detector) -> dict[str, float]:
         if rival in table and rival != name:
             gains |= zip((f"over_{key}{end}" for end in ENDS), interval(table[name] - table[rival]), strict=True)
     return gains
-
-
-def _accuracy(source: str, rows: pd.DataFrame) -> str:
-    """How well the heads know their tasks: of known objects from new directions, and of objects never seen."""
-    wide = rows.pivot_table(index=["method", "split"], columns="metric", values="value")
-    shares = (100 * wide.reindex(columns=["accuracy", "chance"])).dropna().to_dict("index")
-    lines = []
-    for method in networks(rows):
-        parts = [f"{words} {share['accuracy']:.0f} (most frequent class {share['chance']:.0f})"
-                 for split, words in SPLITS.items() if (share := shares.get((method, split)))]  # fmt: skip
-        lines += [f"{network_text(method)}: {', '.join(parts)}"] if parts else []
-    return f"Classes named right on {source}, %, mean of the tasks: {'; '.join(lines)}." if lines else ""
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
@@ -153,8 +140,7 @@ def _saved(maps: dict[str, pd.Series]) -> str:
     for method, pcc in maps.items():
         frozen = f"{method.rpartition('-')[0]}-frozen"
         if frozen != method and frozen in maps and not untrained(method):
-            gain = signed(*interval(pcc - maps[frozen]), places=3)
-            changes.append(f"{network_text(method)} minus frozen: PCC {gain}")
+            changes.append(f"{network_text(method)} minus frozen: PCC {(pcc - maps[frozen]).mean():+.2f}")
     return f"{'; '.join(changes)}." if changes else "No network was fine-tuned here."
 
 

@@ -1,7 +1,7 @@
 """T figures 3.29, 3.30 and 3.34: where networks look, on this run's objects and on meshes with human gaze."""
 
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 
@@ -33,7 +33,6 @@ from stages.salient_points.measure import read_saliency
 
 ROWS, SMALL = 420, 260  # pixels a side of a picture; of the small ones of figure 3.34
 MOST_TAUGHT = ("last_block", "finetuned", "frozen")  # modes of networks that learned, the thesis's first
-FROZEN = "Networks are frozen, with new heads; the thesis trains them."
 VEIL = 0.72  # of a map's colour over the picture
 Images = Mapping[str, Sequence[np.ndarray]]
 Views = dict[str, list[dict[str, np.ndarray]]]
@@ -53,22 +52,22 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
 
 def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
     """Draws where a network looks for the object itself, from three sides."""
-    mesh, _, maps, words = _look(results, dataset)
+    mesh, _, maps, name = _look(results, dataset)
     by_method = {method: views for method, views in maps.items() if ITSELF in views[0]}
-    require_rows(by_method, f"no network named {words['name']} itself", "fixation", runnable=False)
+    require_rows(by_method, f"no network named {name} itself", "fixation", runnable=False)
     renders = [picture(mesh, viewpoint=viewpoint, rows=ROWS) for viewpoint in VIEWPOINTS]
     images = {
         network_text(method): [_veiled(render, layers[ITSELF]) for render, layers in zip(renders, views, strict=True)]
         for method, views in by_method.items()
     }
     figure = _panels(images, 1.9, [0.93, 0.15, 0.014, 0.7], "over its maximum")
-    return Figure(figure, words | {"task": label(ITSELF), "networks": "; ".join(images), "taught": _taught(by_method)})
+    return Figure(figure)
 
 
 def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
     """Draws where a network looks on one object in each of its tasks."""
-    mesh, visible, maps, words = _look(results, dataset)
-    require_rows(maps, f"no network looked at {words['name']}", "fixation", runnable=False)
+    mesh, visible, maps, name = _look(results, dataset)
+    require_rows(maps, f"no network looked at {name}", "fixation", runnable=False)
     view = int((visible @ mesh.vertex_areas).argmax())  # what shows most of the object
     render = picture(mesh, viewpoint=VIEWPOINTS[view], rows=ROWS)
     images, layers = {}, {}
@@ -77,8 +76,7 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
         layers["fused (EWIGC)"] = _fused(views[view])
         images[network_text(method)] = [_veiled(render, layer) for layer in layers.values()]
     figure = _panels(images, 1.6, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum", list(layers))
-    more_words = {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images), "taught": _taught(maps)}
-    return Figure(figure, words | more_words, dpi=95)
+    return Figure(figure, dpi=95)
 
 
 def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
@@ -108,28 +106,19 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
         pictures = (picture(mesh, vivid(values.astype(float)), rows=SMALL) for values in columns.values())
         images[name] = [squared(image)[0] for image in pictures]
     figure = _panels(images, 1.6, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile", list(columns), (9, 10))
-    words = {
-        "names": ", ".join(names),
-        "columns": ", ".join(title.replace("\n", " ").replace(", ", " ") for title in columns),
-        "taught": _taught(methods),
-        "marks": " Marks: by a vision model, no human subjects; spread along the surface."
-        if "marks" in columns
-        else "",
-    }
-    return Figure(figure, words, dpi=115)
+    return Figure(figure, dpi=115)
 
 
-def _look(results: Results, dataset: str | None) -> tuple[Mesh, np.ndarray, Views, dict[str, str]]:
-    """(mesh, visible (3, n), {method: for each view {task: (ROWS, ROWS) map}}, words) of the first object of a set.
+def _look(results: Results, dataset: str | None) -> tuple[Mesh, np.ndarray, Views, str]:
+    """(mesh, visible (3, n), {method: for each view {task: (ROWS, ROWS) map}}, name) of the first object of a set.
 
-    visible: the vertices that each view sees. words: its name, and the sizes of the maps as the networks gave them.
+    visible: the vertices that each view sees.
     """
     name = _ready(results, dataset)[0]
     arrays, tasks = stored(results, name, dataset), results.rows("fixation", dataset, metric="class")["task"].unique()
     cams = {method: arrays[f"{method}.maps"] for method in _networks(arrays, "maps")}
-    maps = {name: [dict(zip(tasks, large(view, name), strict=True)) for view in views] for name, views in cams.items()}
-    sizes = " or ".join(f"{rows} x {columns}" for rows, columns in sorted({views.shape[2:] for views in cams.values()}))
-    return results.mesh(name, dataset), arrays["visible"], maps, {"name": name, "sizes": sizes}
+    maps = {key: [dict(zip(tasks, large(view, key), strict=True)) for view in views] for key, views in cams.items()}
+    return results.mesh(name, dataset), arrays["visible"], maps, name
 
 
 def _ready(results: Results, dataset: str | None) -> list[str]:
@@ -144,11 +133,6 @@ def _networks(arrays: dict[str, np.ndarray], suffix: str) -> list[str]:
     networks = dict.fromkeys(key.rpartition("-")[0] for key in arrays if key.endswith(f".{suffix}"))
     groups = ([f"{base}-{mode}" for mode in MOST_TAUGHT if f"{base}-{mode}.{suffix}" in arrays] for base in networks)
     return [methods[0] for methods in groups if methods]
-
-
-def _taught(methods: Iterable[str]) -> str:
-    """A sentence that no network was trained as the thesis's are, where that is so."""
-    return f" {FROZEN}" if not any(method.endswith(MOST_TAUGHT[:2]) for method in methods) else ""
 
 
 def large(cams: np.ndarray, method: str) -> np.ndarray:

@@ -4,7 +4,7 @@ from functools import partial
 
 from . import agreement_report, attention_pictures
 
-PAGE = "fixation"
+PAGE = "look"
 
 TABLES = {"fixation": agreement_report.build}
 FIGURES = {

@@ -3,7 +3,7 @@
 `growth` fits a backend's time by a power of n, or of n log n, with its interval.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
@@ -62,17 +62,15 @@ def backends_table(results: Results) -> Table:
     frame = summarised(rows, fitted=True)
     cells = rows.drop_duplicates(CELL)
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
-    lines = [_sentence(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
         "measured": shared_notes(__package__, "timed"),
-        "findings": "\n".join([*lines, *against_meshoptimizer(rows)]),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
         "infeasible": (cells["outcome"] == "infeasible").sum(), "fitted": FITTED,
     }  # fmt: skip
     # no ranking: time stands against error
-    return Table(frame, _wide(frame), words, answer=ANSWER)
+    return Table(frame, _wide(frame), words, answer=ANSWER, keys=ANSWER[:2])
 
 
 def tried(results: Results) -> pd.DataFrame:
@@ -113,17 +111,6 @@ def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
     return pd.DataFrame(lines).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
 
 
-def _sentence(row) -> str:
-    peer, faster = label(REFERENCE), (1 / row.time_ratio, 1 / row.time_high, 1 / row.time_low)
-    error = row.error_ratio, row.error_low, row.error_high
-    power = row.loglinear_power, row.loglinear_low, row.loglinear_high
-    return (
-        f"{label(OURS)}, {'points' if row.with_points else 'nothing'} kept: {with_interval(*faster)} times as fast as "
-        f"{peer}. Its Metro error is {with_interval(*error)} times {peer}'s. Its time grows as (n log n)^p, p = "
-        f"{with_interval(*power, places=2)}."
-    )
-
-
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
     def texts(name: str, middle: str = "ratio", places: int | None = None) -> list[str]:
         rows = frame[[f"{name}_{middle}", f"{name}_low", f"{name}_high"]].itertuples(index=False)
@@ -139,21 +126,6 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
         **{f"growth: p of {title}": texts(shape, "power", 2) for shape, title in GROWTHS.items()},
         "meshes": frame["meshes"],
     })  # fmt: skip
-
-
-OTHER = "meshoptimizer"
-
-
-def against_meshoptimizer(rows: pd.DataFrame) -> Iterator[str]:
-    """A sentence a task, of the rows of bench/simplification.csv.gz; none where not measured."""
-    for with_points, group in rows[rows["outcome"] == "reached"].groupby("with_points"):
-        if OTHER in set(group["backend"]):
-            pairs = group.pivot(index=CELL, columns="backend", values=["metro_mean", "seconds"])
-            error, time = (over_meshes(pairs[value][OURS] / pairs[value][OTHER]) for value in ("metro_mean", "seconds"))
-            yield (
-                f"{label(OURS)}, {'points' if with_points else 'nothing'} kept: {with_interval(*error)} times "
-                f"{label(OTHER)}'s Metro error. It takes {with_interval(*time)} times its time."
-            )
 
 
 def over_meshes(ratios: pd.Series) -> tuple[float, float, float]:

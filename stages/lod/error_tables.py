@@ -17,7 +17,7 @@ from stages.charts.datasets import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, 
 from stages.charts.drawing import WAYS, label
 from stages.charts.items import Table, shared_notes
 from stages.charts.results import OWN_FOLDER, NotRun, Results, require_rows
-from stages.charts.tables import Ranking, grouped, means, number, over_items, with_interval, within
+from stages.charts.tables import Ranking, grouped, means, number, over_items, records, with_interval, within
 from stages.engine.measurements import either
 from stages.engine.statistics import interval
 
@@ -29,6 +29,8 @@ ERRORS = {  # metric -> name, with its unit
 }  # fmt: skip
 UNITS = {metric: 100 if name.endswith("%") else 1 for metric, name in ERRORS.items()}  # factors to the unit
 METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
+LOOKED_AT = ("salient_error", "gaze_error")  # weighed by where our model looks, and people
+MINUS = "minus plain QEM"
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
@@ -97,10 +99,21 @@ def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFram
     return table.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
 
 
-def cell(row: Any) -> str:
-    """`1.2 [1.1, 1.3] +`: an error with its interval, + or – where it differs from plain QEM beyond chance."""
-    mark = " +" if row.over_plain_low > 0 else " –" if row.over_plain_high < 0 else ""
-    return with_interval(row.mean, row.low, row.high, UNITS[row.metric]) + mark
+def error_text(row: Any) -> str:
+    """An error with its interval."""
+    return with_interval(row.mean, row.low, row.high, UNITS[row.metric])
+
+
+def over_plain(rows: pd.DataFrame) -> pd.Series:
+    """The difference of the first errors of METRICS from plain QEM, with its interval; a dash where there is none."""
+    texts = [
+        ("+" if row.over_plain > 0 else "")
+        + with_interval(row.over_plain, row.over_plain_low, row.over_plain_high, UNITS[row.metric])
+        if row.over_plain == row.over_plain and row.over_plain
+        else "–"
+        for row in records(rows)
+    ]
+    return pd.Series(texts, rows.index)
 
 
 def size(target: str) -> tuple[bool, float]:
@@ -167,8 +180,6 @@ COUNTS = ["points", "kept"]  # beside the errors of every detector
 GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", WEIGHTED, f"{WEIGHTED}-adaptive", "VisAttAll", HKS,
           OURS, PLAIN, QSLIM]  # fmt: skip
 THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", WEIGHTED: "ssim", "svm": "svm"}
-BLOCK = ["target", "nothing_shrunk"]
-KEEP_NOTHING = [label(PLAIN), label(QSLIM)]  # what the others are held against
 
 
 def combinations(results: Results) -> Table:
@@ -203,13 +214,11 @@ def every_detector(results: Results) -> Table:
     frame = pd.concat(parts, names=["data", None]).reset_index("data")
     frame.insert(3, "objects", frame.pop("objects"))
     counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in by_set.items())
-    texts, answer = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
-    answer = [
-        name for name in map(str, texts) if name in answer or name in COUNTS or name.startswith(ERRORS["gaze_error"])
-    ]
-    best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
-    marks = shared_notes(__package__, "own_detectors" if results.own_meshes else "detectors")
-    return Table(frame, texts, {"counts": counts, "marks": marks}, best, ["kept points", *answer])
+    texts, errors = _methods_wide(frame), [ERRORS[METRICS[0]], ERRORS[METRICS[1]], *map(ERRORS.get, LOOKED_AT)]
+    answer = ["kept points", "points", ERRORS[METRICS[0]], MINUS, *errors[1:]]
+    best = Ranking(errors, lowest=True)
+    note = shared_notes(__package__, "gaze") if not results.own_meshes else ""
+    return Table(frame, texts, {"counts": counts, "gaze": note}, best, answer, split="objects")
 
 
 def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
@@ -222,14 +231,14 @@ def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _methods_wide(frame: pd.DataFrame) -> pd.DataFrame:
-    first = frame["data"] == frame["data"].iloc[0]
-    cells = frame[first | frame["metric"].isin([*METRICS, "gaze_error"])]  # of the further data sets these alone
-    cells = cells.sort_values("metric", key=lambda metric: metric.isin(ERRORS), kind="stable")  # the counts come first
-    texts = [cell(row) if row.metric in ERRORS else f"{row.mean:.1f}" for row in cells.itertuples()]
-    names = cells["metric"].replace(ERRORS)
-    heads = names.where(cells["data"] == frame["data"].iloc[0], names + ", " + cells["data"])
-    table = wide(cells.assign(text=texts, head=heads), "method", "head")
-    return table.loc[ordered(table.index)].rename(short).reset_index(names="kept points")
+    """A row a data set and method, with each error, and the difference of the first from plain QEM."""
+    texts = [error_text(row) if row.metric in ERRORS else f"{row.mean:.1f}" for row in records(frame)]
+    cells = frame.assign(text=texts, head=frame["metric"].replace(ERRORS))
+    cells = cells.sort_values("metric", key=lambda metric: metric.isin(ERRORS), kind="stable")
+    table = wide(cells, ["data", "method"], "head")
+    table.insert(0, MINUS, over_plain(frame[frame["metric"] == METRICS[0]].set_index(["data", "method"])))
+    table = table.reindex(list(frame[["data", "method"]].drop_duplicates().itertuples(index=False, name=None)))
+    return table.rename(short, level="method").reset_index(names=["objects", "kept points"])
 
 
 def table_3_2(results: Results) -> Table:
@@ -243,21 +252,17 @@ def table_3_2(results: Results) -> Table:
     thesis = thesis[:0] if results.own_meshes else thesis
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
-    orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED, "metric": METRICS}
-    cells = frame.assign(
-        block=frame["target"].map(target_text) + np.where(frame["nothing_shrunk"], ", nothing shrunk", "")
-    )
-    cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
-    counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
-    objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
-    object_sets = "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
-    text_table = _blocks_wide(cells)
-    answer = [name for name in map(str, text_table) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
-    best = Ranking(next(name for name in answer[2:] if not name.endswith("thesis")), True, ["target"], KEEP_NOTHING)
-    words = {"objects": object_sets, "fewest": FEWEST, "beside": "", "printed": ""}
+    text_table, errors = _blocks_wide(frame), [ERRORS[name] for name in METRICS]
+    words = {"objects": _objects(frame), "fewest": FEWEST, "beside": "", "printed": ""}
     if not results.own_meshes:
         words |= {"beside": ", beside the thesis", "printed": shared_notes(__package__, "printed_3_2")}
-    return Table(frame, text_table, words, best, answer)
+    return Table(frame, text_table, words, Ranking(errors, True, ["faces"]), split="objects")
+
+
+def _objects(frame: pd.DataFrame) -> str:
+    """The least and the most objects of each view of table 3.2."""
+    counts = frame.groupby(_view(frame), sort=False)["objects"].agg(["min", "max"])
+    return "; ".join(f"{row.Index}: {' to '.join(map(str, sorted({row.min, row.max})))}" for row in records(counts))
 
 
 def _parts(by_set: Mapping[str, pd.DataFrame]) -> Iterator[pd.DataFrame]:
@@ -272,19 +277,25 @@ def _parts(by_set: Mapping[str, pd.DataFrame]) -> Iterator[pd.DataFrame]:
             total = len(rows)
 
 
-def _blocks_wide(cells: pd.DataFrame) -> pd.DataFrame:
-    """A row a block and method, most faces first; for each metric the set as printed, the thesis's, the other sets.
+def _view(frame: pd.DataFrame) -> pd.Series:
+    """The data set of each row, and whether no neighbourhood shrank on its objects."""
+    return frame["data"] + np.where(frame["nothing_shrunk"], ", nothing shrunk", "")
 
-    The thesis's stand there if it has any of them.
-    """
-    printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
-    printed["text"] = (printed["metric"].map(UNITS).astype(float) * printed["thesis"]).map(number)
-    parts = [printed] if printed["thesis"].notna().any() else []
-    cells = pd.concat([cells.assign(text=[cell(row) for row in cells.itertuples()]), *parts])
-    cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
-    cells["head"] = cells["metric"].map(ERRORS).astype(str) + ", " + cells["data"]
-    cells["kept points"] = cells["method"].map(label)
-    table = wide(cells, ["block", "kept points"], "head")
-    sets = sorted(cells["data"].unique(), key=[dataset_text(SECTION_3_2), "thesis"].__contains__, reverse=True)
-    table = table[[f"{ERRORS[metric]}, {data}" for metric in METRICS for data in sets]]
-    return table.reset_index(names=["target", "kept points"])
+
+def _blocks_wide(frame: pd.DataFrame) -> pd.DataFrame:
+    """A row a view, face count and method, most faces first; for each error the difference and the thesis's beside."""
+    keys = ["view", "target", "method"]
+    cells = frame.assign(view=pd.Categorical(_view(frame), list(dict.fromkeys(_view(frame)))))
+    orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED}
+    cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
+    parts = {}
+    for metric in METRICS:
+        rows = cells[cells["metric"] == metric].sort_values(keys).set_index(keys)
+        name = ERRORS[metric].removesuffix(", %")
+        parts[ERRORS[metric]] = pd.Series([error_text(row) for row in records(rows)], rows.index)
+        parts[f"{name} {MINUS}"] = over_plain(rows)
+        if frame["thesis"].notna().any():
+            parts[f"{name}, thesis, %"] = (UNITS[metric] * rows["thesis"]).map(number)
+    table = pd.DataFrame(parts).reset_index().astype({name: str for name in keys})
+    table = table.assign(target=table["target"].map(target_text), method=table["method"].map(label)).fillna("–")
+    return table.rename(columns={"view": "objects", "target": "faces", "method": "kept points"})

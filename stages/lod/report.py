@@ -7,7 +7,7 @@ from stages.charts.items import as_printed
 
 from . import backend_report, error_figures, error_tables, level_pictures
 
-PAGE = "meshes"
+PAGE = "simplify"
 TABLES = {
     "table_3_1_5_combinations": error_tables.combinations,
     "lod_detectors": error_tables.every_detector,

@@ -13,8 +13,8 @@ from stages.charts.datasets import dataset_text
 from stages.charts.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.charts.items import Figure, Table
 from stages.charts.results import Results, require_rows
-from stages.charts.tables import everywhere, grouped, interval_columns, interval_text, percent, records, within
-from stages.engine.statistics import breaking_point, interval
+from stages.charts.tables import Ranking, everywhere, grouped, interval_columns, interval_text, percent, records, within
+from stages.engine.statistics import breaking_point
 
 from .measure import CLEAN, DISTURBED, PERTURBATIONS, library_of
 from .protocol import CAMERA, POLICIES, SIGHTS, Case, Disturbance
@@ -63,7 +63,9 @@ def table(results: Results) -> Table:
     ])  # fmt: skip
     counts = results_of_sets(results)
     words = {"sets": counts, "reliable": _reliable(results), "unseen": _unseen(results)}
-    return Table(frame, text_table, words)
+    rights = [f"right after {count}, %" for count in SHOWN]
+    answer = ["seen before", "touched", *rights[:3], "touches until sure", "sure, %", "right when sure, %"]
+    return Table(frame, text_table, words, Ranking(rights), answer, split="objects", keys=answer[:2])
 
 
 def _line(rows):
@@ -115,11 +117,11 @@ def _unseen(results):
         better = look if look["value"].mean() >= blind["value"].mean() else blind
         name = "the look" if better is look else "the touches"
         gain = both.assign(value=both["value"] - better["value"])
-        mean, low, high = interval(100 * by_class(gain))
+        mean = 100 * by_class(gain).mean()
         texts.append(
             f"{dataset_text(dataset)}: a look {100 * by_class(look).mean():.0f} %, {most:.0f} touches "
             f"{100 * by_class(blind).mean():.0f} %, both {100 * by_class(both).mean():.0f} %, which is "
-            f"{mean:+.0f} [{low:.0f}, {high:.0f}] points beside {name} alone"
+            f"{mean:+.0f} points beside {name} alone"
         )
     return "; ".join(texts) if texts else "no set with classes of three objects or more was measured"
 
@@ -266,8 +268,7 @@ def story(results: Results) -> Figure:
     _bars(panels[3], after, name, "believed after the touch")
     for axes in (panels[0], panels[2], inset):
         axes.set(xticks=[], yticks=[])
-    shown = {"object": label(name), "set": dataset_text(dataset), "before": f"{100 * before.probabilities[name]:.0f}"}
-    return Figure(drawing, shown | {"after": f"{100 * after.probabilities[name]:.0f}"})
+    return Figure(drawing)
 
 
 def _undecided(results, dataset):
@@ -300,7 +301,7 @@ def _hand(axes, case, approach, travel):
     axes.annotate("", (columns[0], rows[0]), (columns[1], rows[1]), arrowprops=arrow)
 
 
-PAGE = "look_and_touch"
+PAGE = "know"
 TABLES = {"look_and_touch": table, "look_and_touch_breaking": breaking_table}
 FIGURES = {"look_and_touch_story": story, "look_and_touch_stability": breaking_figure}
 CHARTS = {"look_and_touch": chart}

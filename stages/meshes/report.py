@@ -17,7 +17,7 @@ def objects_table(results: Results) -> Table:
     return Table(frame, text_table, words)  # no ranking: objects do not compete
 
 
-PAGE = "meshes"
+PAGE = "simplify"
 TABLES = {
     "dataset": objects_table,
 }

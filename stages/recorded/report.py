@@ -11,11 +11,12 @@ from stages.charts.items import Table
 from stages.charts.results import Results
 from stages.charts.tables import (
     READINGS,
+    WHOSE,
     Ranking,
-    blocks,
+    beside_thesis,
     grid,
+    number,
     scaled,
-    with_interval,
     with_means,
     with_printed_means,
     within,
@@ -31,7 +32,7 @@ SELECTIONS = {
     "all": "no selection", "selected": "selection", "selected_control": "as many left out at random",
     "selected_training": "selection in training alone",
 }  # fmt: skip
-PRINTED = {name: f"the thesis, {name} toys" for name in ("four", "six")}
+FIRST = "six_alike"  # of the sets, shown first: as many as the thesis has toys, and touches to remove
 COLUMNS = {"group": "set", "method": "selection"}
 KEYS = ["set", "selection", "classifier"]
 VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_blocks"]
@@ -48,21 +49,23 @@ def table_4_4(results: Results) -> Table:
         columns=[*KEYS, *VALUES],
     )
     names = {"set": lambda name: CLASSES.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
-    cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
-    text_table = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
+    cells = frame[frame["classifier"] != "mean_of_all"]
+    cells = cells.sort_values("set", key=lambda names: names != FIRST, kind="stable", ignore_index=True)
+    cells, heads = beside_thesis(cells, KEYS[:2]), [f"{label(name)}, %" for name in cells["classifier"].unique()]
+    text_table = grid(cells, [*KEYS[:2], WHOSE], KEYS[2], names, lambda name: f"{label(name)}, %")
     by_metric = dict(list(rows.groupby("metric")))
     removals = by_metric["share_similar"].groupby("set")["value"].mean()
     class_lists = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
-    near, far = (interval(by_metric[f"{kind}_correlation"]["value"]) for kind in ("neighbour", "pair"))
+    near, far = (by_metric[f"{kind}_correlation"]["value"].mean() for kind in ("neighbour", "pair"))
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
     optimism = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
     words = {
         "removed": ", ".join(f"{text} {100 * removals.get(name, np.nan):.1f} %" for name, text in CLASSES.items()),
         "four": class_lists.get("four_alike", ""), "six": class_lists.get("six_alike", ""),
-        "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
+        "near": number(near, 2), "far": number(far, 2),
         "knn": optimism["knn"], "least": optimism.min(), "most": optimism.max(),
     }  # fmt: skip
-    return Table(frame, text_table, words, Ranking("kNN, %", among=["set"], exempt=PRINTED.values()))
+    return Table(frame, text_table, words, Ranking(heads), split="set")
 
 
 def _scores(rows: pd.DataFrame) -> dict[tuple, pd.Series]:
@@ -87,12 +90,12 @@ def _line(scores: dict[tuple, pd.Series], thesis: pd.DataFrame, *key: str) -> tu
     name, selection, classifier = key
     shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
     accuracies = within(scores.get((*key, Split.RANDOM), []), shared)
-    column = f"{name}_{selection}"
+    column = f"{name.partition('_')[0]}_{selection}"  # the thesis has sets of four and of six
     printed = thesis.loc[classifier, column] if column in thesis else np.nan
     return (*key, *accuracies, printed, *(interval(scores.get((*key, split), []))[0] for split in ("folds", "blocks")))
 
 
-PAGE = "recorded"
+PAGE = "touch"
 TABLES = {
     "table_4_4": table_4_4,
 }

@@ -147,7 +147,7 @@ def build(results: Results) -> Table:
     ]
     table = pd.DataFrame(lines)
     answer = [name for name in map(str, table) if name not in ("guessing, %", "over")]
-    return Table(frame, table, best=Ranking("accuracy, %", among=["data", "split"]), answer=answer)
+    return Table(frame, table, best=Ranking("accuracy, %", among=["split"]), answer=answer, split="data")
 
 
 def printed(data: str, thesis: str, results: Results) -> Table:
@@ -208,7 +208,7 @@ def _draw(axes: Axes, frame: pd.DataFrame) -> None:
     place_names(axes, names, frame[["cost", "accuracy"]].to_numpy(), lines(frame, front, "cost", "accuracy"))
 
 
-PAGE = "recorded"
+PAGE = "know"
 TABLES = {
     "real_networks": build,
     "table_5_1": partial(printed, "vt60", "table_5_1_vt60_bathtip"),

@@ -1,9 +1,8 @@
 """Writes the report: tables beside the thesis's, claims, figures, charts of accuracy against cost, and the pages.
 
 Reads reports/measurements/SET/STAGE.csv.gz, data/ and data/reference/thesis/*.csv. Writes reports/tables,
-reports/figures, reports/tradeoff, reports/claims.md and .csv with the differences behind them in
-reports/claims/differences.csv.gz, reports/index.html with reports/site, and reports/metrics/report.json. A table
-without measurements is listed as not run, with the command that measures it.
+reports/figures, reports/tradeoff, claims.md and .csv, thesis.md and .csv, reports/index.html with reports/site, and
+reports/metrics/report.json. A table without measurements is listed as not run, with the command that measures it.
 
 `python -m stages.report lod imprints` draws the parts of these stages alone, and leaves claims and pages as they are.
 """
@@ -22,23 +21,23 @@ import pandas as pd
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import replace_folder, write_json, write_table, write_text
 from stages.charts.results import Results
-from stages.charts.tables import as_text, markdown_table
 from stages.engine.measurements import Measurements
 from stages.engine.parallel import parallel_map
 from stages.engine.settings import Workspace, check_clone, nearest
 
 from . import Params
 from .claims import load
-from .claims_page import claims_shown
+from .claims_page import claims_text, counts
 from .headlines import HEADLINES_FILE, write_headlines
 from .own_page import write_own_page
 from .parts import KINDS, PARTS, Built, build_part
-from .site import page_file, write_site
-from .verdict import counted, counts, judged
+from .site import write_site
+from .thesis_page import thesis_frame, thesis_text
+from .verdict import judge
 from .viewer import viewer_or_reason
 
-FOLDERS = (*KINDS, "claims", "site")
-OUTPUTS = (*FOLDERS, "claims.md", "claims.csv", "index.html", HEADLINES_FILE)
+FOLDERS = (*KINDS, "site")
+OUTPUTS = (*FOLDERS, "claims.md", "claims.csv", "thesis.md", "thesis.csv", "index.html", HEADLINES_FILE)
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 
 
@@ -113,7 +112,7 @@ def write_then_swap(reports: Path, out: Path) -> Iterator[Path]:
 
 def build(results: Results, out: Path) -> dict[str, Any]:
     """Writes the report below `out`; returns its metrics."""
-    built, (claims, differences), meshes = build_parallel(results)
+    built, claims, meshes = build_parallel(results)
     kept = remove_older(built, out)
     not_run = dict(built.not_run)
     if results.own_meshes:  # what would need other data sets is left out
@@ -121,9 +120,9 @@ def build(results: Results, out: Path) -> dict[str, Any]:
         not_run["what needs other data sets"] = OWN_NOTE
     elif isinstance(meshes, str):
         not_run["viewer"] = meshes
-    write_claims(claims, differences, out)
+    write_claims(claims, out)
     write_headlines(out, None if results.own_meshes else counts(claims))
-    pages = write_site(results, built, not_run, (claims, differences), None if isinstance(meshes, str) else meshes, out)
+    pages = write_site(results, built, not_run, claims, None if isinstance(meshes, str) else meshes, out)
     if results.own_meshes:
         write_own_page(results, pages, out)
     totals = {kind: sum(item.kind == kind for item in built.items) for kind in KINDS}
@@ -131,12 +130,12 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     return {"claims": counts(claims), **totals, "not_run": len(not_run)}
 
 
-def build_parallel(results: Results) -> tuple[Built, tuple[pd.DataFrame, pd.DataFrame], dict[str, Any] | str]:
-    """Builds the parts of all stages, side by side: (their items, the frames of `judged`, the meshes of the viewer)."""
+def build_parallel(results: Results) -> tuple[Built, pd.DataFrame, dict[str, Any] | str]:
+    """Builds the parts of all stages, side by side: (their items, the frame of `judge`, the meshes of the viewer)."""
     where = dict(results.workspace.parallel)
     if where.get("backend") == "dask":  # the files that a part reads are here alone
         where["backend"] = "loky"
-    jobs = [partial(judged, load(), Measurements(results.reports)), partial(viewer_or_reason, results)]
+    jobs = [partial(judge, load(), Measurements(results.reports)), partial(viewer_or_reason, results)]
     jobs += [partial(build_part, part, results) for part in PARTS.values()]
     claims, meshes, *parts = parallel_map(call, jobs, "report", **where)
     return sum(parts, Built()), claims, meshes
@@ -150,23 +149,22 @@ def remove_older(built: Built, out: Path) -> dict[str, str]:
     kept, written = {}, {path for item in built.items for path in item.paths}
     for kind in KINDS:
         (out / kind).mkdir(parents=True, exist_ok=True)
-        for path in sorted(set((out / kind).glob("*.*")) - written):
+        for path in sorted((out / kind).glob("*.*")):
             name = f"{kind}/{path.stem}"
             if name in built.no_data:
                 kept[name] = built.no_data[name]
-            else:
+            elif path not in written:
                 path.unlink()
     return kept
 
 
-def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> None:
-    """Writes claims.csv, claims.md and the differences behind the verdicts."""
+def write_claims(claims: pd.DataFrame, out: Path) -> None:
+    """Writes claims.csv and claims.md, and what became of the thesis: thesis.csv and thesis.md."""
     write_table(out / "claims.csv", claims)
-    write_table(out / "claims/differences.csv.gz", differences)
-    table = markdown_table(as_text(claims_shown(claims)))
-    note = page_file("claims_note.md").strip()
-    parts = ("# Claims of the thesis, tested", note, counted(claims), table)
-    write_text(out / "claims.md", "\n\n".join(parts))
+    write_text(out / "claims.md", claims_text(claims))
+    fates = thesis_frame(out)
+    write_table(out / "thesis.csv", fates)
+    write_text(out / "thesis.md", thesis_text(fates))
 
 
 def print_summary(

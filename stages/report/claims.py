@@ -4,23 +4,20 @@
 """
 
 import difflib
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from fractions import Fraction
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from stages.charts.datasets import dataset_text
-from stages.charts.numbers import number
 from stages.engine.measurements import listed
 
 FOLDER = Path(__file__).resolve().parents[2] / "conf/claims"
-WORDS_FILE = "words.yaml"
-POINTS = "points of accuracy"
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean
+PRINTED = re.compile(r"(?P<number>[+-]?[\d.]+) (?P<unit>[^,]+)(?:, (?P<source>.+))?")
 
 
 class ClaimError(ValueError):
@@ -42,15 +39,14 @@ class Pick:
 
 @dataclass(frozen=True)
 class Reading:
-    """Another reasonable reading of an ambiguous protocol.
+    """Another reasonable reading of an ambiguous protocol, in which the word may differ.
 
     name: the reading in words. changes: the fields of the claim that differ; where, first and second are merged into
-    those of the claim. literal: whether this reading follows a printed formula to the letter and the claim does not.
+    those of the claim.
     """
 
     name: str
     changes: Mapping[str, Any]
-    literal: bool = False
 
     def of(self, claim: "Claim") -> "Claim":
         """The claim in this reading."""
@@ -66,16 +62,18 @@ class Claim:
     """One testable sentence: the paired differences of two sides of the rows of a stage, positive as it is claimed.
 
     section: of the thesis, as T4.2.4, or "ours". sets: the data sets of the rows, whose effects are pooled. first,
-    second: the rows of each side, of another set where a side names a `dataset`; second may be a number (before
-    scaling) or none. where: what both have in common. over: columns whose combinations are the pairs, the outermost
-    unit of the analysis first (stages.engine.rows). within: columns that are matched too, before the differences of a
-    pair are averaged. relative: differences as shares of the mean of both sides. mean_of: the side ("first" or
-    "second") that counts by the mean of all its rows. contrast: two selections; the difference under the first minus
-    that under the second. scale, then margin: from differences to `unit`. statistic: a name of
-    stages.report.statistics. shared: test over training share of repeated splits of the same data, for the interval;
-    of each set where they differ. readings: other readings, in which the verdict must hold too. checked: whether rows
-    that stages.report.validity refuses are out. ties: whether two equal meshes are a result and not an invalid pair.
-    of: key of the claim whose sentence this one tests elsewhere. note: words behind all others. place: file and line.
+    second: the rows of each side, of another stage or set where a side names `stage` or `dataset`; second may be a
+    number (before scaling) or none. where: what both have in common. over: columns whose combinations are the pairs,
+    the outermost unit of the analysis first (stages.engine.rows); none for a single number, such as a file's size,
+    which has no interval. within: columns that are matched too, before the differences of a pair are averaged.
+    relative: differences as shares of the mean of both sides. mean_of: the side ("first" or "second") that counts by
+    the mean of all its rows. contrast: two selections; the difference under the first minus that under the second.
+    scale: from differences to `unit`. margin: what the second side may be ahead by. same: whether the sentence says
+    that both sides differ by the margin at most. statistic: a name of stages.report.statistics. shared: test over
+    training share of repeated splits of the same data, for the interval; of each set where they differ. ties: whether
+    two equal meshes are a result. printed: the effect in the thesis with its unit and source, as in
+    `15.68 points, table 4.9`. says_nothing: why the printed run itself says nothing. caveat: a clause on what limits
+    the test. readings: other readings. place: file and line.
     """
 
     key: str
@@ -83,6 +81,7 @@ class Claim:
     sentence: str
     stage: str
     sets: tuple[str, ...]
+    unit: str
     where: Side
     first: Side
     second: Side | float | None = None
@@ -91,34 +90,40 @@ class Claim:
     within: tuple[str, ...] = ()
     relative: bool = False
     mean_of: str = ""
-    statistic: str = "difference"
     scale: float = 100.0
     margin: float = 0.0
-    unit: str = POINTS
+    same: bool = False
+    statistic: str = "difference"
     shared: float | Mapping[str, float] = 0.0
-    readings: tuple[Reading, ...] = ()
-    checked: bool = True
     ties: bool = False
-    of: str = ""
-    note: str = ""
+    printed: str = ""
+    says_nothing: str = ""
+    caveat: str = ""
+    readings: tuple[Reading, ...] = ()
     place: str = ""
 
     @property
-    def other(self) -> Side:
-        """The second side; ValueError where that is a number, or none."""
-        if not isinstance(self.second, Mapping):
-            raise ValueError(f"claim {self.key} has no second side")
-        return self.second
+    def printed_effect(self) -> float | None:
+        """The printed number, in the claim's unit."""
+        match = PRINTED.fullmatch(self.printed)
+        return float(match["number"]) if match else None
 
     def share(self, dataset: str) -> float:
         """`shared` on one set."""
         return self.shared.get(dataset, 0.0) if isinstance(self.shared, Mapping) else self.shared
 
-    def sets_read(self) -> list[str]:
-        """The data sets whose rows the claim compares."""
-        named = [str(side["dataset"]) for side in (self.first, self.second)
-                 if isinstance(side, Mapping) and "dataset" in side]  # fmt: skip
-        return list(dict.fromkeys(named or self.sets))
+    def sides(self) -> list[Side]:
+        """Its sides that select rows."""
+        return [side for side in (self.first, self.second) if isinstance(side, Mapping)]
+
+    def files(self) -> list[tuple[str, str]]:
+        """(stage, set) of the rows that the claim compares."""
+        found = [
+            (str(side.get("stage", self.stage)), str(side.get("dataset", name)))
+            for name in self.sets
+            for side in self.sides()
+        ]
+        return list(dict.fromkeys(found))
 
 
 SIDES = ("where", "first", "second")
@@ -131,13 +136,10 @@ def load(folder: Path = FOLDER) -> list[Claim]:
     """The claims of all YAML files of a folder; ClaimError for one that is wrong."""
     claims: dict[str, Claim] = {}
     for path in sorted(folder.glob("*.yaml")):
-        for claim in _read(path) if path.name != WORDS_FILE else ():
+        for claim in _read(path):
             if claim.key in claims:
                 raise ClaimError(f"{claim.place}: {claim.key} is the key of {claims[claim.key].place}, too")
             claims[claim.key] = claim
-    for claim in claims.values():
-        if claim.of and claim.of not in claims:
-            raise ClaimError(f"{claim.place}: {claim.key} is `of` {claim.of}, which is no claim")
     if not claims:
         raise ClaimError(f"no claims in {folder}")
     return list(claims.values())
@@ -160,35 +162,39 @@ def _read(path: Path) -> list[Claim]:
 
 
 def _claim(entry: dict[str, Any], content: dict[str, Any], place: str) -> Claim:
-    readings = content.get("readings", {})
     entry = {"where": {}, "first": {}, **content.get("defaults", {}).get(entry.get("stage"), {}), **entry}
-    place_of = f"{place} ({entry.get('key', 'no key')})"
-    _known(entry, FIELDS, place_of)
-    if absent := [name for name in REQUIRED if name not in entry]:
-        raise ClaimError(f"{place_of}: no {' and no '.join(absent)}")
-    own = []
-    for reading in entry.get("readings", ()):
-        if isinstance(reading, str):
-            _known([reading], readings, place_of)
-            reading = {"name": reading, **readings[reading]}
-        name, literal = reading.get("name", ""), reading.get("literal", False)
-        changes = {field: value for field, value in reading.items() if field not in ("name", "literal")}
-        _known(changes, FIELDS, place_of)
-        own.append(Reading(name, _values(changes, place_of), literal))
-    values = _values({name: value for name, value in entry.items() if name != "readings"}, place_of)
-    claim = Claim(**values, readings=tuple(own), place=place)
+    name = f"{place} ({entry.get('key', 'no key')})"
+    _known(entry, FIELDS, name)
+    if absent := [field for field in REQUIRED if field not in entry]:
+        raise ClaimError(f"{name}: no {' and no '.join(absent)}")
+    readings = tuple(_reading(reading, content.get("readings", {}), name) for reading in entry.pop("readings", ()))
+    claim = Claim(**_values(entry, name), readings=readings, place=name)
     if claim.section != "ours" and not claim.section.startswith("T"):
-        raise ClaimError(f"{place_of}: section {claim.section} is neither `ours` nor one of the thesis, as T4.2.4")
-    for variant in (claim, *(reading.of(claim) for reading in own)):
-        for name in variant.sets:
-            if not (FOLDER.parent / f"data/{name}.yaml").exists():
-                raise ClaimError(f"{place_of}: set {name} is not in conf/data")
-    if not (FOLDER.parents[1] / "stages" / claim.stage / "__init__.py").exists():
-        raise ClaimError(f"{place_of}: stage {claim.stage} is not in stages/")
+        raise ClaimError(f"{name}: section {claim.section} is neither `ours` nor one of the thesis, as T4.2.4")
+    match = PRINTED.fullmatch(claim.printed)
+    if claim.printed and (match is None or match["unit"] != claim.unit):
+        raise ClaimError(
+            f"{name}: printed is `{claim.printed}`; write the number with the unit of the claim, `{claim.unit}`"
+        )
+    for variant in (claim, *(reading.of(claim) for reading in readings)):
+        for stage, dataset in variant.files():
+            if not (FOLDER.parent / f"data/{dataset}.yaml").exists():
+                raise ClaimError(f"{name}: set {dataset} is not in conf/data")
+            if not (FOLDER.parents[1] / "stages" / stage / "__init__.py").exists():
+                raise ClaimError(f"{name}: stage {stage} is not in stages/")
     return claim
 
 
-def _known(names: Any, known: Any, place: str) -> None:
+def _reading(reading: Any, known: Mapping[str, Any], place: str) -> Reading:
+    if isinstance(reading, str):
+        _known([reading], known, place)
+        reading = {"name": reading, **known[reading]}
+    changes = {field: value for field, value in reading.items() if field != "name"}
+    _known(changes, FIELDS, place)
+    return Reading(reading.get("name", ""), _values(changes, place))
+
+
+def _known(names: Iterable[Any], known: Iterable[Any], place: str) -> None:
     for name in names:
         if name not in known:
             close = difflib.get_close_matches(str(name), list(map(str, known)), 1)
@@ -204,22 +210,19 @@ def _values(entry: dict[str, Any], place: str) -> dict[str, Any]:
         values[name] = _side(values[name], place)
     if "contrast" in values:
         values["contrast"] = tuple(_side(side, place) for side in values["contrast"])
-    if "shared" in values:
-        shared = values["shared"]
-        is_each = isinstance(shared, dict)
-        values["shared"] = {name: _share(value) for name, value in shared.items()} if is_each else _share(shared)
-    return values
-
-
-def _share(value: Any) -> float:
-    """A share, which may be written as 3/7."""
-    return float(Fraction(value)) if isinstance(value, str) else float(value)
+    if isinstance(shared := values.get("shared", 0.0), dict):
+        values["shared"] = {name: float(Fraction(value)) for name, value in shared.items()}
+    else:
+        values["shared"] = float(Fraction(shared))  # which may be written as 3/7
+    return values if "shared" in entry else {name: value for name, value in values.items() if name != "shared"}
 
 
 def _side(side: Any, place: str) -> Any:
-    if not isinstance(side, dict):
-        return side
-    return {column: _value(value, f"{place}, {column}") for column, value in side.items()}
+    return (
+        {column: _value(value, f"{place}, {column}") for column, value in side.items()}
+        if isinstance(side, dict)
+        else side
+    )
 
 
 def _value(value: Any, place: str) -> Any:
@@ -228,59 +231,3 @@ def _value(value: Any, place: str) -> Any:
         names = value.get("lowest", value.get("highest"))
         return Pick(() if names == "all" else tuple(names or ()), "lowest" in value, tuple(value.get("but", ())))
     return tuple(value) if isinstance(value, list) else value
-
-
-class Words:
-    """Words for the columns and values of claims; those that the file of words lacks are their own names."""
-
-    NAMES = ("method", "classifier", "network", "metric")  # columns whose values say what they are
-
-    def __init__(self, path: Path = FOLDER / WORDS_FILE) -> None:
-        self.path = path
-
-    @cached_property
-    def by_column(self) -> dict[str, dict[Any, str]]:
-        """{column: {value: words}}."""
-        return yaml.load(self.path.read_text(encoding="utf-8"), yaml.CSafeLoader)
-
-    def over(self, column: str) -> str:
-        """The pairs by a column."""
-        return self.by_column["over"].get(column, column)
-
-    def tested_on(self, claim: Claim, sets: Sequence[str]) -> str:
-        """`household, kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
-        shared = [self._value(column, value) for column, value in claim.where.items()]
-        parts = [" and ".join(map(dataset_text, sets)), *shared, self._sides(claim), claim.note]
-        return ", ".join(part.rstrip(",") for part in parts if part)
-
-    def _sides(self, claim: Claim) -> str:
-        text = self._side(claim.first)
-        if claim.second:
-            if isinstance(claim.second, Mapping):
-                second = self._side(claim.second) or _metric(claim, claim.second)
-            else:
-                second = number(claim.scale * claim.second)
-            text = f"{text or _metric(claim, claim.first)} minus {second}"
-        if claim.contrast:
-            text = f"{text}: {' minus '.join(map(self._side, claim.contrast))}"
-        return text + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
-
-    def _side(self, side: Side) -> str:
-        return " ".join(filter(None, (self._value(column, value) for column, value in side.items())))
-
-    def _value(self, column: str, value: Any) -> str:
-        if isinstance(value, Pick):
-            names = ", ".join(self._value(column, name) for name in value.names) or "the others"
-            return f"the {'lowest' if value.lowest else 'highest'} of {names}"
-        if isinstance(value, tuple):
-            return f"mean of {', '.join(self._value(column, part) for part in value)}"
-        if value is None:
-            return ""
-        if column == "dataset":
-            return dataset_text(str(value))
-        words = str(value).replace("_", " ") if column in self.NAMES else f"{column} {value}"
-        return self.by_column.get(column, {}).get(value, words)
-
-
-def _metric(claim: Claim, side: Side) -> str:
-    return str({**claim.where, **side}.get("metric", "value")).replace("_", " ")

@@ -1,148 +1,120 @@
-"""The claims of the report as a table and as a page.
-
-The page begins with the verdicts by chapter; each number is a link to its sentences. Below, each sentence has its
-verdict, effect, data sets and command.
-"""
+"""The claims of the report as a file of tables and as a page: sentence, verdict, measured, printed, and its limits."""
 
 from collections.abc import Sequence
 from html import escape
 from importlib import resources
+from pathlib import Path
 from string import Template
 from typing import Any
 
 import pandas as pd
 
-from haptic_glance.gallery.viewer import as_script
-from stages.charts.commands import command
-from stages.charts.datasets import dataset_text
-from stages.charts.html import box, folded, prose
-from stages.charts.numbers import with_interval
-from stages.charts.results import Results
+from stages.charts.html import folded, prose
+from stages.charts.tables import as_text, markdown_table
 
 from .claims import Claim
-from .verdict import counted, over_text, sentences, sets_text
+from .verdict import WORDS
 
-# Verdict -> class in the style sheet.
-CLASSES = {
-    "supported": "yes", "contradicted": "no",
-    **dict.fromkeys(("no difference", "mixed", "depends on the reading", "not testable", "open"), "open"),
-}  # fmt: skip
+CLASSES = dict(zip(WORDS, ("yes", "no", "open", "open", "open"), strict=True))  # verdict -> class in the style sheet
 CHAPTERS = {  # start of a claim's section -> what it is about
-    "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",
-    "T6": "chapter 6: proposals for future work", "ours": "this project's own",
+    "T3": "Chapter 3: looking, and simplified meshes", "T4": "Chapter 4: touching",
+    "T5": "Chapter 5: from sight to touch", "T6": "Section 6.3: proposals", "ours": "This project's own",
 }  # fmt: skip
-KINDS = {"sentence": "sentences, each once", "elsewhere": "a sentence tested elsewhere"}
+SIZES = ("as printed", "smaller", "larger", "opposite")
 
 
-def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
-    """The frame of claims as a person reads it; the last column is what `python -m stages.claim` takes."""
-    text_table = claims[["section", "verdict", "claim"]].copy()
-    text_table["effect"] = [effect(row) for row in claims.itertuples()]
-    text_table["holds"] = claims["holds"]
-    text_table["tested on"] = claims["tested_on"]
-    text_table["on each set"] = [sets_text(row) for row in claims.itertuples()]
-    text_table["readings"] = claims["readings"]
-    text_table["invalid"] = claims["validity"]
-    text_table["tests elsewhere"] = claims["of"]
-    text_table["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
-    text_table["key"] = claims["key"]
-    return text_table
+def counts(claims: pd.DataFrame) -> dict[str, int]:
+    """{word: how many claims there are of it} in a frame of `verdict.judge`."""
+    return {word: list(claims["verdict"]).count(word) for word in WORDS}
+
+
+def of_thesis(claims: pd.DataFrame) -> pd.DataFrame:
+    """The rows of the sentences of the thesis."""
+    return claims[claims["section"] != "ours"]
+
+
+def counted(claims: pd.DataFrame) -> str:
+    """How many verdicts of each word there are, and how many printed effects came out as printed."""
+    thesis = of_thesis(claims)
+    sentences = []
+    for name, frame in {"thesis": thesis, "project": claims.drop(thesis.index)}.items():
+        words = ", ".join(f"{count} {word}" for word, count in counts(frame).items() if count) or "none"
+        sentences.append(f"Sentences of the {name} ({len(frame)}): {words}.")
+    sizes = {name: int((thesis["size"] == name).sum()) for name in SIZES}
+    printed = ", ".join(f"{count} {name}" for name, count in sizes.items() if count)
+    return " ".join([*sentences, f"Effects with a printed number ({sum(sizes.values())}): {printed or 'none'}."])
+
+
+def claims_text(claims: pd.DataFrame) -> str:
+    """The file claims.md: a table a chapter."""
+    parts = ["# Claims, tested", note(), counted(claims)]
+    for start, title in CHAPTERS.items():
+        chapter = claims[claims["section"].str.startswith(start)]
+        if len(chapter):
+            shown = pd.DataFrame({
+                "sentence": [f"{row.claim} ({row.section})" if start != "ours" else row.claim
+                             for row in chapter.itertuples()],
+                "verdict": chapter["verdict"], "measured": [effect(row) for row in chapter.itertuples()],
+                "printed": chapter["printed"], "size": chapter["size"], "readings": chapter["readings"],
+                "caveat": chapter["caveat"], "key": chapter["key"],
+            })  # fmt: skip
+            parts.append(f"## {title}\n\n{markdown_table(as_text(shown))}")
+    return "\n\n".join(parts)
+
+
+def note() -> str:
+    """The words before the claims."""
+    return (resources.files(__package__ or "") / "page/claims_note.md").read_text("utf-8").strip()
 
 
 def effect(row: Any) -> str:
     """`+3.1 [1.0, 5.2] points`, or a dash; no brackets where the interval is unknown."""
     if row.effect != row.effect:
         return "–"
-    return f"{'+' if row.effect > 0 else ''}{with_interval(row.effect, row.low, row.high)} {row.unit}"
+    has_ends = row.low == row.low
+    ends = [row.low, row.high] if has_ends else [row.effect]
+    places = 0 if max(map(abs, ends)) >= 100 else 1 if max(map(abs, ends)) >= 1 else 2
+    while places < 6 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
+        places += 1
+    mean, *shown = (f"{value:z.{places}f}" for value in (row.effect, *ends))
+    interval = f" [{', '.join(shown)}]" if has_ends else ""
+    return f"{'+' if row.effect > 0 else ''}{mean}{interval} {row.unit}"
 
 
-def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
-    """The text of the page below its head. claims, differences: the results of `judged`."""
+def claims_main(known: Sequence[Claim], claims: pd.DataFrame, reports: Path) -> str:
+    """The text of the page of claims below its head; reports: with the measurements that it links."""
     by_key = {claim.key: claim for claim in known}
-    items, values = [], {name: {} for name in ("chapter", "verdict", "set")} | {"kind": KINDS}
-    for row in claims.itertuples():
-        claim = by_key[str(row.key)]
-        sets = claim.sets_read()
-        chapter = chapter_of(str(row.section))
-        values["chapter"][chapter] = CHAPTERS.get(chapter, chapter)
-        values["verdict"][str(row.verdict).replace(" ", "-")] = str(row.verdict)
-        values["set"] |= {name: dataset_text(name) for name in sets}
-        rerun = command(results.workspace.root / "conf", claim.stage, sets)
-        files = [name for name in sets if name in results.datasets(claim.stage)]
-        items.append(_claim_html(row, claim, sets, files, chapter, rerun))
-    pairs = {
-        key: frame[["pair", "difference"]].to_numpy().tolist() for key, frame in differences.groupby("key", sort=False)
-    }
+    parts = []
+    for start, title in CHAPTERS.items():
+        chapter = claims[claims["section"].str.startswith(start)]
+        items = "".join(_item(row, by_key[str(row.key)], start, reports) for row in chapter.itertuples())
+        if items:
+            tally = ", ".join(f"{count} {word}" for word, count in counts(chapter).items() if count)
+            parts.append(folded(f"{title}: {tally}", f'<ul class="claims">{items}</ul>'))
     words = {
-        "holds": what_holds(sentences(claims)),
         "counted": escape(counted(claims)),
-        **{f"{name}s": _options(choices) for name, choices in values.items()},
-        "claims": "".join(items),
-        "pairs": as_script(pairs),
+        "note": "".join(f"<p>{prose(text)}</p>" for text in note().split("\n\n")),
+        "verdicts": "".join(f"<option>{word}</option>" for word in WORDS),
+        "sizes": "".join(f"<option>{size}</option>" for size in SIZES),
+        "chapters": "".join(parts),
     }
-    return Template(resources.files(__package__ or "").joinpath("page/claims.html").read_text("utf-8")).substitute(
-        words
-    )
+    return Template((resources.files(__package__ or "") / "page/claims.html").read_text("utf-8")).substitute(words)
 
 
-def chapter_of(section: str) -> str:
-    """The key of CHAPTERS that a section belongs to, else the section."""
-    return next((start for start in CHAPTERS if section.startswith(start)), section)
-
-
-def what_holds(once: pd.DataFrame) -> str:
-    """A table of sentences by chapter and verdict, each number a link to its sentences. once: as `sentences`."""
-    chapters = pd.Series([chapter_of(str(section)) for section in once["section"]], dtype=object)
-    words = [word for word in CLASSES if (once["verdict"] == word).any()]
-    masks = {"sentences": once["verdict"].notna(), **{word: once["verdict"] == word for word in words}}
-
-    def cell(chapter: str, word: str) -> str:
-        count = ((chapters == chapter) & masks[word]).sum()
-        verdict = "" if word == "sentences" else f"&amp;verdict={word.replace(' ', '-')}"
-        link = f'<a href="#kind=sentence&amp;chapter={chapter}{verdict}">{count}</a>' if count else "0"
-        return f'<td class="number">{link}</td>'
-
-    head = "".join(f'<th scope="col" class="number">{word}</th>' for word in masks)
-    rows = "".join(
-        f'<tr><th scope="row">{escape(CHAPTERS.get(chapter, chapter))}</th>'
-        f"{''.join(cell(chapter, word) for word in masks)}</tr>"
-        for chapter in dict.fromkeys([*CHAPTERS, *chapters])
-        if (chapters == chapter).any()
-    )
-    title = "What holds of the thesis"
-    body = f'<table><thead><tr><th scope="col">chapter</th>{head}</tr></thead><tbody>{rows}</tbody></table>'
-    return f"<h2>{title}</h2>{box('scroll', title, body)}"
-
-
-def _claim_html(
-    row: Any, claim: Claim, sets: Sequence[str], files: Sequence[str], chapter: str, command: str
-) -> str:  # fmt: skip
-    """A claim that opens to what it was tested on, its data and its command; a script adds its pairs."""
-    links = " ".join(
-        f'<a href="../measurements/{name}/{claim.stage}.csv.gz" download>{name}/{claim.stage}.csv.gz</a>'
-        for name in files
-    )
+def _item(row: Any, claim: Claim, chapter: str, reports: Path) -> str:
+    """A claim that opens to its readings, caveats, data and command."""
+    files = [f"measurements/{dataset}/{stage}.csv.gz" for stage, dataset in claim.files()]
+    files = [file for file in files if (reports / file).exists()]
     facts = {
-        "Tested on": prose(row.tested_on),
-        "On each set": prose(sets_text(row)),
-        "Tests elsewhere": prose(f"`{row.of}`" if row.of else ""),
-        "Readings": prose(row.readings),
-        "Invalid": prose(row.validity),
-        "Data": links if row.pairs else "not measured",
-        "Holds among the claims of its chapter": row.holds,
-        "Judged again from its rows": f"<code>python -m stages.claim {row.key}</code>",
-        "Measured again": command and f"<code>{escape(command)}</code>",
+        "Other readings": prose(row.readings),
+        "Caveat": prose(row.caveat),
+        "Data": " ".join(f'<a href="../{file}" download>{file}</a>' for file in files) or "not measured",
+        "Pairs": escape(f"{row.pairs} {row.over}" if row.over else ""),
+        "Judged again": f"<code>python -m stages.claim {row.key}</code>",
     }
     terms = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
-    pair_text = escape(over_text(row)) if row.pairs else "none"
-    details = f'<dl>{terms}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{pair_text}</dd></dl>'
-    badge = f'<span class="word {CLASSES[row.verdict]}">{row.verdict}</span>'
-    key = f" · <code>{row.key}</code>" if row.of else ""  # other claims have the same sentence
-    summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}{key}</small>"
-    marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'
-    marks += f' data-kind="{"elsewhere" if row.of else "sentence"}"'
-    return f'<li id="{row.key}" {marks}>{folded(summary, details)}</li>\n'
-
-
-def _options(choices: dict[str, str]) -> str:
-    return "".join(f'<option value="{escape(value)}">{escape(text)}</option>' for value, text in choices.items())
+    printed = f" · printed {escape(row.printed)}: {row.size}" if row.size else ""
+    summary = f'<span class="word {CLASSES[row.verdict]}">{row.verdict}</span> {escape(row.claim)} '
+    summary += f"<small>{escape(row.section)} · {escape(effect(row))}{printed}</small>"
+    marks = f'data-chapter="{chapter}" data-verdict="{row.verdict}" data-size="{row.size}"'
+    return f'<li id="{row.key}" {marks}>{folded(summary, f"<dl>{terms}</dl>")}</li>\n'

@@ -23,7 +23,7 @@ def build(results: Results) -> Table:
     return Table(frame, text_table.rename(columns=HEADS), words)  # no ranking: sections do not compete
 
 
-PAGE = "fidelity"
+PAGE = "thesis"
 TABLES = {"fidelity": build}
 FIGURES = {}
 CHARTS = {}

@@ -23,6 +23,8 @@ from stages.imprints.imprints import read_imprints
 from stages.lod.levels import levels_of
 from stages.salient_points.measure import read_points, read_saliency
 
+from .topics import TOPICS
+
 MODEL, COUNT = "glance", 6  # whose places and levels are shown, else those of the first method; and how many places
 UNITS = "units of the object's diameter"
 
@@ -37,7 +39,7 @@ def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
             exhibits.append(exhibit_of(results, name, out / "site" / name))
         except NotRun as error:
             missing[name] = str(error)
-    links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
+    links = " ".join(f'<a href="site/{page}.html">{TOPICS[page].title}</a>' for page in pages)
     section = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
     folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
     text = build_page("Your meshes", exhibits, missing, [f"haptic-glance gallery {shlex.quote(folder)}"], out, section)

@@ -1,200 +1,155 @@
-"""Paired differences of a claim: rows of its two sides, the pairs that both have, and the pairs that are invalid."""
+"""Paired differences of a claim on one data set: rows of its two sides, and the pairs in which the run says nothing."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import pandas as pd
 
 from stages.engine.measurements import Measurements, Missing, either, listed
 
 from .claims import Claim, Pick, Side
-from .validity import CHECKS, SAME, causes
 
-TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
-
-
-def difference(results: Measurements, claim: Claim) -> pd.Series:
-    """First side minus second, with all that the fields of a Claim say."""
-    parts = [_difference(results, claim, where) for where in claim.contrast or ({},)]
-    return parts[0] - parts[1] if claim.contrast else parts[0]
+NO_POINT, SAME, ALL_KEPT = "no point found", "both sides are the same mesh", "nothing was left out"
+PLAIN = ("qem", "qslim")  # methods of the stage lod that keep no points; a name with -soft weighs the error instead
 
 
-def side(
-    results: Measurements, claim: Claim, selection: Side, other: Side | float | None, extra: Side | None = None
-) -> pd.Series:
-    """Values of one side, indexed by over and within; of several named values the mean of those measured.
+@dataclass
+class Pairs:
+    """The differences of a claim on one set, before scaling, indexed by its `over`.
 
-    other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
+    count: all pairs. silent: the cause of each pair in which the run says nothing. ringless: the share of the meshes
+    that keep less than one ring of faces, NaN where nothing is kept.
     """
-    part = _side_rows(results, claim, selection, other, extra)
-    if not part.keys:
-        return part.rows["value"]
-    values = part.means
-    if part.several:
-        cells = part.rows.groupby([*part.keys, *part.several], sort=False)["value"].mean()
-        values = cells.unstack(part.several, sort=False).dropna().mean(axis=1)
-    return values if part.invalid.empty else values.drop(part.invalid.index, errors="ignore")
 
-
-def invalid_pairs(rows: pd.DataFrame, reasons: pd.Series, keys: Sequence[str]) -> pd.Series:
-    """Causes of the pairs with an invalid row, indexed by the columns `keys`; reasons: as in `SideRows`."""
-    bad = reasons[reasons != ""]
-    return bad if bad.empty else bad.groupby([rows[key] for key in keys], sort=False).first()
-
-
-def reasons_of(results: Measurements, claim: Claim, rows: pd.DataFrame) -> pd.Series:
-    """The cause why a row is invalid, empty text for a valid row; no rows where a claim is not checked."""
-    if not claim.checked or claim.stage not in CHECKS:
-        return pd.Series(dtype=object)
-    return causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
-
-
-def invalid(results: Measurements, claim: Claim) -> tuple[pd.Series, int]:
-    """(the cause of each invalid pair, number of all pairs) of a claim on one set, before a unit's pairs are averaged.
-
-    The number is 0 where no pair is invalid. A statistic of its own pairs by object and target, as
-    stages.report.meshes.claims does.
-    """
-    if not claim.checked or claim.stage not in CHECKS:
-        return pd.Series(dtype=object), 0
-    keys = [*claim.over, *claim.within]
-    if claim.statistic != "difference":
-        keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
-    named_sides = {"first": claim.first, "second": claim.second}  # a side that counts by its mean has no pairs
-    sides = [side for name, side in named_sides.items() if isinstance(side, Mapping) and name != claim.mean_of]
-    contrasts: list[tuple[list[pd.DataFrame], pd.Series]] = []
-    for extra in claim.contrast or ({},):
-        side_rows = [_side_rows(results, claim, selection, sides[1 - k] if len(sides) > 1 else None, extra)
-                 for k, selection in enumerate(sides)]  # fmt: skip
-        parts = [part.rows for part in side_rows]
-        bad = [part.invalid if part.keys == keys else invalid_pairs(part.rows, part.reasons, keys)
-               for part in side_rows]  # fmt: skip
-        if len(parts) > 1 and claim.statistic == "difference" and claim.stage == "lod":
-            first, second = (part.means for part in side_rows)
-            pair_means = both_sides(first, second)
-            bad.append(pd.Series(SAME, index=pair_means.index[_same_mesh(claim, pair_means)], dtype=object))
-        bad = [causes for causes in bad if len(causes)]
-        contrasts.append((parts, pd.concat(bad) if bad else pd.Series(dtype=object)))
-    if all(bad.empty for _, bad in contrasts):
-        return pd.Series(dtype=object), 0
-    common = [set.intersection(*(_pairs(part, keys) for part in parts)) for parts, _ in contrasts]
-    valid = (bad[~bad.index.duplicated()] for _, bad in contrasts)
-    pair_causes = [bad[[pair in pairs for pair in bad.index]] for pairs, bad in zip(common, valid, strict=True)]
-    return pd.concat(pair_causes), sum(map(len, common))
-
-
-def _pairs(rows: pd.DataFrame, keys: list[str]) -> set:
-    """The combinations of the columns, as an index of these columns has them: bare values of a single column."""
-    return set(rows[keys[0]]) if len(keys) == 1 else set(zip(*(rows[key] for key in keys), strict=True))
-
-
-def both_sides(first: pd.Series, second: pd.Series) -> pd.DataFrame:
-    """Columns first and second of the pairs that both sides have, in the order of the first side."""
-    if first.index.equals(second.index):
-        return pd.DataFrame({"first": first.array, "second": second.array}, index=first.index)
-    places = second.index.get_indexer(first.index)
-    has_both = places >= 0
-    columns = {"first": first.array[has_both], "second": second.array[places[has_both]]}
-    return pd.DataFrame(columns, index=first.index[has_both])
-
-
-def _same_mesh(claim: Claim, joined: pd.DataFrame) -> pd.Series:
-    """(pairs,) whether two simplifications have errors that are equal to the last digit, and not zero."""
-    if claim.stage != "lod" or not claim.checked or claim.ties:
-        return pd.Series(False, index=joined.index)
-    return (joined["first"] == joined["second"]) & (joined["first"] > 0)
+    differences: pd.Series
+    count: int = 0
+    silent: Counter[str] = field(default_factory=Counter)
+    ringless: float = float("nan")
 
 
 @dataclass(frozen=True)
 class SideRows:
-    """The rows of one side of a claim; several: the columns over whose several values the side is a mean.
+    """The values of one side by pair, the cause of each silent pair, and the rings of its meshes."""
 
-    keys: the columns that name a pair. reasons: the cause why a row is invalid, empty text for a valid row; empty where
-    a claim is not checked.
+    values: pd.Series
+    silent: pd.Series
+    rings: pd.Series
+
+
+def difference(measurements: Measurements, claim: Claim, dataset: str) -> Pairs:
+    """First side minus second, with all that the fields of a Claim say; Missing where no pair is left."""
+    parts = [_difference(measurements, claim, dataset, where) for where in claim.contrast or ({},)]
+    if not claim.contrast:
+        return parts[0]
+    differences = parts[0].differences - parts[1].differences
+    return Pairs(differences, parts[0].count + parts[1].count, parts[0].silent + parts[1].silent, parts[0].ringless)
+
+
+def _difference(measurements: Measurements, claim: Claim, dataset: str, extra: Side) -> Pairs:
+    second = claim.second
+    if second is None or isinstance(second, int | float):
+        one = side_rows(measurements, claim, dataset, claim.first, extra=extra)
+        values = one.values - (second or 0)
+        return _found(claim, one.values.drop(one.silent.index, errors="ignore").index, values, [one], Counter())
+    chosen = {"first": (claim.first, second), "second": (second, claim.first)}
+    sides = {
+        name: side_rows(measurements, claim, dataset, *pair, extra)
+        for name, pair in chosen.items() if name != claim.mean_of
+    }  # fmt: skip
+    joined = pd.concat({name: side.values for name, side in sides.items()}, axis=1, join="inner")
+    if claim.mean_of:
+        joined[claim.mean_of] = selected(measurements, claim, dataset, *chosen[claim.mean_of], extra)[0]["value"].mean()
+    same = pd.Series(False, index=joined.index)
+    if claim.stage == "lod" and not claim.ties:  # errors that are equal to the last digit, and not zero
+        same = (joined["first"] == joined["second"]) & (joined["first"] > 0)
+    values = joined["first"] - joined["second"]
+    if claim.relative:
+        middle = (joined["first"] + joined["second"]) / 2
+        values /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
+    names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, second))
+    require_rows(values, f"no pairs of {names}")
+    return _found(claim, same.index[~same], values, [*sides.values()], Counter({SAME: int(same.sum())}))
+
+
+def _found(claim: Claim, told: pd.Index, values: pd.Series, sides: Sequence[SideRows], silent: Counter[str]) -> Pairs:
+    """The Pairs of some values; told: the pairs that are no ties."""
+    causes = pd.concat([side.silent for side in sides])
+    causes = causes[causes.index.isin(values.index)]
+    causes = causes[~causes.index.duplicated()]
+    valid = values[values.index.isin(told) & ~values.index.isin(causes.index)]
+    rings = pd.concat([side.rings for side in sides]).dropna()
+    differences = valid if len(valid) else values
+    if claim.within:
+        differences = differences.groupby(level=list(range(len(claim.over))), sort=False).mean()
+    silent = +(silent + Counter(causes))
+    return Pairs(differences, len(values), silent, float((rings < 1).mean()) if len(rings) else float("nan"))
+
+
+def side_rows(
+    measurements: Measurements, claim: Claim, dataset: str, selection: Side, other: Side | float | None = None,
+    extra: Side | None = None,
+) -> SideRows:  # fmt: skip
+    """The values of one side, indexed by over and within; of several named values the mean where all were measured.
+
+    other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
-
-    rows: pd.DataFrame
-    keys: list[str]
-    several: list[str]
-    reasons: pd.Series
-
-    @cached_property
-    def means(self) -> pd.Series:
-        """The mean value of each pair."""
-        return self.rows.groupby(self.keys, sort=False)["value"].mean()
-
-    @cached_property
-    def invalid(self) -> pd.Series:
-        """The cause of each invalid pair."""
-        return invalid_pairs(self.rows, self.reasons, self.keys)
-
-
-def _side_rows(
-    results: Measurements, claim: Claim, selection: Side, other: Side | float | None, extra: Side | None
-) -> SideRows:
-    """The SideRows of a selection, which the check of a claim and its difference both ask for."""
-    where = {**claim.where, **(extra or {}), **selection}
-    dataset = str(where.pop("dataset", claim.sets[0]))
-    keys = (*claim.over, *claim.within)
-    query = (claim.stage, dataset, keys, claim.checked, repr(where), repr(other))
-    return results.cached_recently(query, lambda: _select(results, claim, where, dataset, other))
-
-
-def _select(
-    results: Measurements, claim: Claim, where: dict[str, object], dataset: str, other: Side | float | None
-) -> SideRows:
-    picks = {column: value for column, value in where.items() if isinstance(value, Pick)}
-    plain = {column: value for column, value in where.items() if column not in picks}
-    rows = results.measured(claim.stage, dataset, **plain)
-    for column, value in picks.items():
-        parts = [rows]
-        if claim.contrast:  # one method in both parts, by what the contrast is of
-            parts = [results.measured(claim.stage, dataset, **{**plain, **part}) for part in claim.contrast]
-        valid = [_mostly_valid(part, column, reasons_of(results, claim, part)) for part in parts]
-        try:
-            choice = _picked(valid, claim, column, value, other)
-        except Missing:
-            choice = _picked(parts, claim, column, value, other)
-        rows = rows[rows[column] == choice]
+    rows, where = selected(measurements, claim, dataset, selection, other, extra)
     keys = [*claim.over, *claim.within]
+    if not keys:
+        value = pd.Series([rows["value"].mean()], name="value")
+        return SideRows(value, pd.Series(dtype=object), pd.Series(dtype=float))
     for column in keys:
         if column not in rows:
             raise Missing(f"no column {column} in the rows of {claim.stage}", claim.stage)
-    several = [k for k, v in where.items() if k not in keys and isinstance(v, tuple)]
-    return SideRows(rows, keys, several, reasons_of(results, claim, rows))
-
-
-def _difference(results: Measurements, claim: Claim, extra: Side) -> pd.Series:
-    if isinstance(claim.second, int | float):
-        values = side(results, claim, claim.first, None, extra) - claim.second
+    several = [column for column, value in where.items() if column not in keys and isinstance(value, tuple)]
+    if several:
+        cells = rows.groupby([*keys, *several], sort=False)["value"].mean()
+        values = cells.unstack(several, sort=False).dropna().mean(axis=1)
     else:
-        pooled = replace(claim, over=(), within=())  # all rows of a side, also those about no unit
-        first, second = (
-            side(results, pooled if claim.mean_of == name else claim, selection, other, extra)
-            for name, selection, other in (("first", claim.first, claim.other), ("second", claim.other, claim.first))
-        )
-        if claim.mean_of:
-            values = first.mean() - second if claim.mean_of == "first" else first - second.mean()
-        else:
-            side_values = both_sides(first, second)
-            is_same = _same_mesh(claim, side_values)
-            side_values = side_values[~is_same] if is_same.any() else side_values
-            names = " and ".join(" ".join(map(either, columns.values())) for columns in (claim.first, claim.other))
-            require_rows(side_values, f"no pairs of {names}")
-            values = side_values["first"] - side_values["second"]
-            if claim.relative:
-                middle = (side_values["first"] + side_values["second"]) / 2
-                values /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
-    return values.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else values
+        values = rows.groupby(keys, sort=False)["value"].mean()
+    causes = silent_rows(measurements, claim, rows)
+    bad = causes[causes != ""]
+    silent = bad.groupby([rows[key] for key in keys], sort=False).first() if len(bad) else bad
+    rings = rows.loc[_keeps(rows), "rings"] if claim.stage == "lod" and "rings" in rows else pd.Series(dtype=float)
+    return SideRows(values, silent, rings.astype(float))
 
 
-def _mostly_valid(rows: pd.DataFrame, column: str, reasons: pd.Series) -> pd.DataFrame:
-    """The valid rows of the values of a column that have enough of them: refused rows make no method the best."""
-    if reasons.empty:
-        return rows
-    refused = (reasons != "").groupby(rows[column]).transform("mean")
-    return rows[(reasons == "") & (refused <= TOO_MANY)]
+def selected(
+    measurements: Measurements, claim: Claim, dataset: str, selection: Side, other: Side | float | None = None,
+    extra: Side | None = None,
+) -> tuple[pd.DataFrame, dict[str, object]]:  # fmt: skip
+    """(the measured rows of a side, with its picks made; the columns and values that select them)."""
+    where = {**claim.where, **(extra or {}), **selection}
+    where.pop("column", None)
+    stage, name = str(where.pop("stage", claim.stage)), str(where.pop("dataset", dataset))
+    plain = {column: value for column, value in where.items() if not isinstance(value, Pick)}
+    rows = measurements.measured(stage, name, **plain)
+    for column, pick in where.items():
+        if isinstance(pick, Pick):
+            parts = [rows]
+            if claim.contrast:  # one method in both parts, by what the contrast is of
+                parts = [measurements.measured(stage, name, **{**plain, **part}) for part in claim.contrast]
+            rows = rows[rows[column] == _picked(parts, claim, column, pick, other)]
+    return rows, where
+
+
+def silent_rows(measurements: Measurements, claim: Claim, rows: pd.DataFrame) -> pd.Series:
+    """(n,) the cause why a row says nothing, else empty text: its method found no point, or left no touch out."""
+    causes = pd.Series("", index=rows.index, dtype=object)
+    if claim.stage == "lod" and "points" in rows:
+        causes[_keeps(rows) & (rows["points"] == 0)] = NO_POINT
+    if claim.stage == "recorded" and {"train", "test"} <= set(rows) and rows["method"].str.startswith("selected").any():
+        size = rows["train"] + rows["test"]
+        whole = measurements.rows(claim.stage, str(rows["dataset"].iloc[0]), method="all")
+        counts = (whole["train"] + whole["test"]).groupby(whole["group"]).max()
+        causes[rows["method"].str.startswith("selected") & (size == rows["group"].map(counts))] = ALL_KEPT
+    return causes
+
+
+def _keeps(rows: pd.DataFrame) -> pd.Series:
+    """(n,) whether a method of the stage lod keeps neighbourhoods."""
+    return ~rows["method"].isin(PLAIN) & ~rows["method"].str.endswith("-soft")
 
 
 def _picked(parts: Sequence[pd.DataFrame], claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:

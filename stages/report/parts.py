@@ -29,6 +29,7 @@ from stages.views import report as views
 from stages.weights import report as weights
 
 from . import fidelity_table
+from .topics import page_of
 
 PARTS: dict[str, ModuleType] = {
     "views": views,
@@ -79,16 +80,32 @@ def build_part(part: ModuleType, results: Results, kinds: Iterable[str] = KINDS)
             try:
                 item = build_item(part, kind, name, results)
             except NotRun as missing:
-                if results.concerns(missing):
-                    built.not_run[f"{kind}/{name}"] = str(missing)
-                    if isinstance(missing, NoData):
-                        built.no_data[f"{kind}/{name}"] = missing.stage
-                continue
+                if not results.concerns(missing):
+                    continue
+                built.not_run[f"{kind}/{name}"] = str(missing)
+                if not isinstance(missing, NoData):
+                    continue
+                built.no_data[f"{kind}/{name}"] = missing.stage
+                if (item := earlier(part, kind, name, results)) is None:
+                    continue
             item.html = item_html(item)
             if isinstance(item, Figure):
                 item.drawing = Drawing()  # its pictures would fill the memory, and travel between processes
             built.items.append(item)
     return built
+
+
+def earlier(part: ModuleType, kind: str, name: str, results: Results) -> Figure | None:
+    """A figure as an earlier run drew it, where its words need no data; None where there is none."""
+    path = results.out / kind / f"{name}.png"
+    if kind != "figures" or results.own_meshes or not path.exists():
+        return None
+    item = Figure(Drawing(), kind=kind, page=page_of(part.PAGE, f"{kind}/{name}"), paths=[path])
+    try:
+        add_words(item, part, kind, name)
+    except KeyError:
+        return None
+    return item
 
 
 def build_item(part: ModuleType, kind: str, name: str, results: Results) -> Table | Figure:
@@ -97,11 +114,6 @@ def build_item(part: ModuleType, kind: str, name: str, results: Results) -> Tabl
     with plt.rc_context(SETTINGS):
         item = getattr(part, KINDS[kind])[name](results)
         add_words(item, part, kind, name)
-        item.kind, item.page, item.sets = kind, page_of(part), results.in_order(results.read)
+        item.kind, item.page, item.sets = kind, page_of(part.PAGE, f"{kind}/{name}"), results.in_order(results.read)
         item.write(results.out / kind)
     return item
-
-
-def page_of(part: ModuleType) -> str:
-    """The name of the page that a part is shown on."""
-    return part.PAGE

@@ -61,26 +61,24 @@ def figure_3_3(results: Results) -> Figure:
     """Saliency and regions of interest, without and with the colour channels."""
     names = results.choose(results.settings.figure_objects, 4, stage="conspicuity")
     figure, grid = plt.subplots(len(names), 5, figsize=(9.2, 1.9 * len(names)), squeeze=False)
-    shares = [f"{name} {100 * _regions(results, name, row):.0f} %" for name, row in zip(names, grid, strict=True)]
+    for name, row in zip(names, grid, strict=True):
+        _regions(results, name, row)
     name_panels(grid, ["", "without colour", "regions", "with colour", "regions"])
     for axes in grid.flat:
         axes.set(xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
     figure.subplots_adjust(wspace=0.04, hspace=0.04)
-    return Figure(
-        figure, {"objects": ", ".join(names), "colour": " and ".join(map(label, COLOUR)), "shares": ", ".join(shares)}
-    )
+    return Figure(figure)
 
 
-def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
-    """Draws one object; returns the share of the regions without colour that stay regions with it."""
+def _regions(results: Results, name: str, row: Sequence[Axes]) -> None:
+    """Draws one object."""
     maps, masks, viewpoints, channels = maps_of(results, name, COMBINATIONS["VisAttAll"])
     view = _nearest(viewpoints, masks, range(len(viewpoints)))
     mask, part = masks[view], _window(masks[view], square=True)
     render = _render(results.mesh(name), viewpoints[view], mask)[part]
     row[0].imshow(render)
     row[0].set_ylabel(name)
-    regions = []
     for left, right, left_out in ((row[1], row[2], COLOUR), (row[3], row[4], ())):
         channel_maps = zip(channels, maps[view], strict=True)
         saliency = fuse({channel: values for channel, values in channel_maps if channel not in left_out})
@@ -88,8 +86,6 @@ def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
         left.imshow(np.where(mask, saliency, np.nan)[part], cmap=MAP, vmin=0, vmax=saliency[mask].max())
         right.imshow(np.where(region[part][..., None], render, FADED + (1 - FADED) * render))
         right.contour(region[part], [0.5], colors=[RED], linewidths=0.9)
-        regions.append(region)
-    return (regions[0] & regions[1]).sum() / max(regions[0].sum(), 1)
 
 
 def figure_3_10(results: Results) -> Figure:
@@ -115,8 +111,7 @@ def figure_3_10(results: Results) -> Figure:
     figure.subplots_adjust(wspace=0.04, hspace=0.12)
     bar = figure.colorbar(grid[0, 1].images[0], ax=grid, shrink=0.75, pad=0.02, aspect=30)
     bar.set_label("conspicuity, over the map's largest")
-    where = {"azimuth": viewpoint.azimuth, "elevation": viewpoint.elevation}
-    return Figure(figure, {"name": name, "channels": ", ".join(map(label, channels)), **where})
+    return Figure(figure)
 
 
 def figure_3_12(results: Results) -> Figure:
@@ -137,7 +132,7 @@ def figure_3_12(results: Results) -> Figure:
         show(row[-1], mesh, vivid(ground_truth["density"]), points=ground_truth["points"])
     name_panels(grid, [*map(label, methods), "ground truth"], names)
     colour_bar(figure, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile")
-    return Figure(figure, {"objects": ", ".join(names), "methods": ", ".join(map(label, methods))})
+    return Figure(figure)
 
 
 def figure_3_13(results: Results) -> Figure:
@@ -159,20 +154,16 @@ def figure_3_13(results: Results) -> Figure:
     grid[0].plot(across, down, "o", color=RED, ms=4.2, mec="white", mew=0.8)
     binary = np.where(mask, np.where(truth, 0.1, 0.85), 1.0)  # greys: salient, the rest of the object, background
     grid[1].imshow(binary[part], cmap="gray", vmin=0, vmax=1)
-    right = []
     for axes, machine in zip(grid[2:], machines, strict=True):
         answer = np.full(mask.shape, np.nan)
         answer[mask] = next(iter(svms[machine].values())).predict(maps[view][:, mask].T)
         axes.imshow(answer[part], cmap=MAP, vmin=0, vmax=1)
         axes.contour(np.nan_to_num(answer)[part], [0.5], colors=[RED], linewidths=0.9)
-        correct = (answer > 0.5) == truth
-        share = np.mean([correct[mask & (truth == kind)].mean() for kind in (True, False)])
-        right.append(f"{label(machine)} {100 * share:.0f} %")
     name_panels(grid[None], [f"{name}, {len(down)} points", "binarised ground truth", *map(label, machines)])
     for axes in grid:
         axes.set_axis_off()
     figure.colorbar(grid[2].images[0], ax=grid, shrink=0.8, pad=0.015, aspect=18).set_label("the SVM's answer")
-    return Figure(figure, {"name": name, "right": "; ".join(right)})
+    return Figure(figure)
 
 
 def _nearest(viewpoints: Sequence[Viewpoint], masks: np.ndarray, among: Iterable[int]) -> int:
@@ -287,7 +278,6 @@ MARKED = "household"  # the data set whose marks come with the project
 MEANS = {
     "cc": "CC", "sim": "SIM", "kl": "KL", COUNTED: "points", "fne@0.05": "FNE", "fpe@0.05": "FPE", "wme@0.05": "WME",
 }  # fmt: skip
-NAMED = 5  # methods that a sentence names at most
 PEEKED = {"guided_ssim": "guided_ssim+seen", "guided_ed": "guided_ed+seen", "svm": "svm+object"}
 
 
@@ -322,7 +312,7 @@ def _table(results: Results, rows: pd.DataFrame, beside: Sequence[str], words: d
         cost = attention_seconds(results, rows["dataset"].iloc[0])
     frame = agreement(rows, [*ALONE, *beside])
     names, lines = list(ALONE.values()), {}
-    columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside)]
+    columns = ["method", *names, *(f"glance minus it, {name}" for name in names), *map(MEANS.get, beside)]
     columns += ["seconds"] if cost else []
     for row in records(frame.reindex(columns=frame.columns.union(GAIN))):
         line = lines.setdefault(row.method, dict.fromkeys(columns, "–"))
@@ -332,50 +322,25 @@ def _table(results: Results, rows: pd.DataFrame, beside: Sequence[str], words: d
         elif row.mean == row.mean:
             line[MEANS[row.metric]] = f"{row.mean:.{1 if row.metric == COUNTED else 2}f}"
         if row.gain == row.gain:
-            line[f"ours − it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
-    findings = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
+            line[f"glance minus it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
+    findings = "\n".join([*_ours_and_rivals(rows), *_peeking(rows)])
     words = words | {"findings": findings, "reading": shared_notes(__package__, "reading")}
     cells = pd.DataFrame(lines.values())
     truth_and_peeking = [method_text(name) for name in lines if name == HUMAN or has_seen(name)]
     answer = [name for name in columns if name not in MEANS.values() or name == MEANS[COUNTED]]
-    return Table(frame, cells, words, Ranking("NSS", exempt=truth_and_peeking), answer)
+    return Table(
+        frame, cells, words, Ranking(names, exempt=truth_and_peeking, aside="the truth and starred rows aside"), answer
+    )
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
-    """The place of ours, and the rivals that it does not beat beyond chance."""
-    table = scores(rows, "nss")
-    if OURS not in table:
-        return
-    first = f"{label(OURS)}: NSS {with_interval(*interval(table[OURS]), places=2)}"
-    if HUMAN in table:
-        first += f"; {label(HUMAN)}, spread as smoothly, has {table[HUMAN].mean():.2f}"
-    yield f"{first}."
-    best = next(iter(rivals(rows, "nss")), None)
-    if best is None:
-        return
-    gains = [f"{name} {signed(*interval(difference(rows, metric, OURS, best)))}" for metric, name in ALONE.items()]
-    yield f"The best other method that has not seen the object is {label(best)}: ours − it {_and(gains)}."
+    """How many rivals ours beats beyond chance, by each of ALONE."""
     for metric, name in ALONE.items():
-        table, methods = scores(rows, metric), rivals(rows, metric)
-        left = [label(rival) for rival in methods if not interval(table[OURS] - table[rival])[1] > 0]
-        labels = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
-        yield (
-            f"In {name} ours is higher than {len(methods) - len(left)} of the {len(methods)} others that have not seen "
-            "the object, with an interval that excludes zero" + (f"; not than {_and(labels)}." if left else ".")
-        )
-
-
-def _learned(rows: pd.DataFrame) -> Iterator[str]:
-    """The gain of more channels with equal weights over the classical model, and of learned weights over equal ones."""
-    base = "equal" if "equal" in scores(rows, "nss") else THESIS
-    for pair in ((THESIS, CLASSICAL), ("equal", CLASSICAL), ("guided_ssim", base), ("guided_ed", base)):
-        with suppress(NotRun):
-            gains = []
-            for metric, name in ALONE.items():
-                mean, low, high = interval(difference(rows, metric, *pair))
-                word = "higher" if low > 0 else "lower" if high < 0 else "not told apart"
-                gains.append(f"{name} {signed(mean, low, high, places=3)} ({word})")
-            yield f"{' − '.join(map(label, pair))}: {_and(gains)}."
+        table = scores(rows, metric)
+        methods = rivals(rows, metric) if OURS in table else []
+        beaten = sum(interval(table[OURS] - table[rival])[1] > 0 for rival in methods)
+        if methods:
+            yield f"By {name} the glance beats {beaten} of {len(methods)} methods that have not seen the object."
 
 
 def _peeking(rows: pd.DataFrame) -> Iterator[str]:
@@ -383,17 +348,12 @@ def _peeking(rows: pd.DataFrame) -> Iterator[str]:
     gains = []
     for clean, peeked in PEEKED.items():
         with suppress(NotRun):
-            gains.append(f"{label(clean)} {signed(*interval(difference(rows, 'nss', peeked, clean)))}")
+            gains.append(f"{label(clean)} {interval(difference(rows, 'nss', peeked, clean))[0]:+.2f}")
     if gains:
-        text = "* has seen the object: the method learned from the object's own truth, too. Gain in NSS: "
-        yield f"{text}{'; '.join(gains)}."
+        yield f"A star: the method has learned from this object, too. That adds, in NSS: {'; '.join(gains)}."
 
 
-def _and(parts: list[str]) -> str:
-    return " and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else "".join(parts)
-
-
-PAGE = "attention"
+PAGE = "look"
 TABLES = {
     "attention_gaze": against_gaze,
     "attention_clouds": against_clouds,

@@ -29,7 +29,6 @@ COLOURS = {
 }  # fmt: skip
 UNITS = {"pixels": "pixels", "ssim": "1 − SSIM"}
 OURS = "ours"
-UNIFORM = ("uniform", "uniform_size")
 
 
 def scene_rows(results: Results, **where: Any) -> tuple[pd.DataFrame, str, float, str]:
@@ -51,27 +50,6 @@ def savings(rows: pd.DataFrame) -> pd.DataFrame:
     return saved.assign(rival=saved["metric"].str.removeprefix("saved_"), text=text)
 
 
-def left_of(saved: pd.DataFrame) -> str:
-    """How much of `savings` at an equal error is left at an equal displacement; empty where that is not measured."""
-    shares = {key: list(values) for key, values in saved.groupby(["rival", "matched"])["value"]}
-    pairs = {name: (shares[name, "error"], shares[name, "displacement"]) for name in UNIFORM
-             if {(name, "error"), (name, "displacement")} <= set(shares)}  # fmt: skip
-    if not pairs:
-        return ""
-    equal, spread = (np.mean(np.concatenate(amounts)) for amounts in zip(*pairs.values(), strict=True))
-    part = "most" if spread < equal / 2 else "part"
-    outcome = "the saving is no smaller" if spread >= equal else f"{part} of the saving vanishes"
-    texts = [
-        f"{_range(amounts)} instead of {_range(base)} against {NAMES[name]}" for name, (base, amounts) in pairs.items()
-    ]
-    return f" At an equal mean displacement of all pixels {outcome}: {'; '.join(texts)}."
-
-
-def _range(shares: list[float]) -> str:
-    """Shares as percent: 12 %, or 3 to 40 %."""
-    return " to ".join(dict.fromkeys(f"{round(100 * share):d}" for share in (min(shares), max(shares)))) + " %"
-
-
 EQUAL_IN = {"": "", "error": "mean frame error", "displacement": "mean displacement", "held": "every frame holds",
            "asked": "nothing: as it answers"}  # fmt: skip
 COLUMNS = {
@@ -80,8 +58,7 @@ COLUMNS = {
     "salient_displacement": "where one looks, px", "ssim_error": "1 − SSIM of the frames", "step_worst": "worst jump",
     "planning_ms": "planning, ms a frame",
 }  # fmt: skip
-SHOWN = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"), ("uniform_size", "displacement"),
-        ("uniform", "held")]  # fmt: skip
+ANSWER, SAVED = ("faces", "error", "error_worst", "held", "displacement_mean"), "faces that ours saves, %"
 EQUAL = {"": "", "displacement": "mean displacement", "error": "worst object's error"}  # of the chart
 REFERENCE = "full"
 
@@ -93,10 +70,9 @@ def scene_table(results: Results) -> Table:
     wide["seconds"] = rows.groupby(["method", "matched"])["seconds"].max()
     wide, saved = wide[wide["faces"].notna()], savings(rows)
     text = {(row.rival, row.matched): row.text for row in records(saved)}
-    parts = [f"{text[key]} % against {NAMES[key[0]]} ({EQUAL_IN[key[1]]})" for key in SHOWN if key in text]
     text_table = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
     text_table = text_table.assign(held=text_table["held"].map(percent)).map(number).rename(columns=COLUMNS)
-    text_table["faces that ours saves, %"] = [text.get(key, "–") for key in wide.index]
+    text_table[SAVED] = [text.get(key, "–") for key in wide.index]
     text_table = text_table.assign(seconds=wide["seconds"].map(number)).replace({"0.000": "0"})
     text_table = text_table.rename(NAMES, level="method").rename(EQUAL_IN, level="matched")
     text_table = text_table.rename_axis(["levels chosen by", "equal to ours in"]).reset_index()
@@ -104,11 +80,10 @@ def scene_table(results: Results) -> Table:
     words = {
         "scene": scene,
         "tolerance": amount(tolerance, unit),
-        "saved": f"{NAMES[OURS].capitalize()} saves {'; '.join(parts)}." if parts else "",
-        "left": left_of(saved),
         "noted": "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in records(notes)),
     }
-    return Table(wide.reset_index(), text_table, words)
+    answer = ["levels chosen by", "equal to ours in", *(COLUMNS[name] for name in ANSWER), SAVED]
+    return Table(wide.reset_index(), text_table, words, answer=answer, keys=answer[:2])
 
 
 def chart(results: Results) -> Figure:
@@ -179,7 +154,9 @@ def counts_table(results: Results) -> Table:
     wide = wide.loc[[key for key in pd.MultiIndex.from_product([CONDITIONS, MODELS]) if key in wide.index]]
     wide = wide.rename(CONDITIONS, level="condition").rename(MODELS, level="method")
     text_table = wide.rename_axis(["asked about", "model"]).reset_index()
-    return Table(rows, text_table, {"costs": "; ".join(texts) or "not measured"})
+    answer = ["asked about", "model", "off by (half)", *(METRICS[name][0] for name in ("within", "excess", "waste"))]
+    words = {"costs": "; ".join(texts) or "not measured"}
+    return Table(rows, text_table, words, answer=answer, keys=answer[:2])
 
 
 def _measured(results: Results, conditions: list[str]) -> pd.DataFrame:
@@ -222,8 +199,7 @@ def frames(results: Results) -> Figure:
             axes.spines[:].set_visible(False)
         line[0].set_ylabel(f"frame {frame}")
     _charts(charts, rows, tolerance, unit)
-    words = {"scene": scene, "methods": ", ".join(NAMES[method] for method in methods), "brightest": f"{brightest:g}"}
-    return Figure(figure, words, dpi=110)
+    return Figure(figure, dpi=110)
 
 
 def _box(picture: np.ndarray) -> tuple[slice, slice]:
@@ -254,7 +230,7 @@ def _charts(figure: SubFigure, rows: pd.DataFrame, tolerance: float, unit: str) 
     figure.legend(handles, names, fontsize=9, labelcolor=INK, ncols=len(names), loc="lower center")
 
 
-PAGE = "scene"
+PAGE = "simplify"
 TABLES = {
     "scene": scene_table,
     "face_counts": counts_table,

@@ -19,10 +19,9 @@ from stages.charts.drawing import CYCLE, INK, PALE, VIEWPOINT, draw_matrices, la
 from stages.charts.items import Figure, Table, as_printed
 from stages.charts.pareto import pareto_chart
 from stages.charts.results import NotRun, Results, require_rows
-from stages.charts.tables import Ranking, blocks, everywhere, grid, percent, records, within
+from stages.charts.tables import WHOSE, Ranking, beside_thesis, everywhere, grid, percent, records, within
 from stages.contours.contours import Sequences, read_sequences
 
-KEYS = ["objects", "split", "classifier"]
 THESIS_WORDS = {
     ("cnn_images", "conv1"): "kernel 5, 5, 5; padding 2, 2, 2; stride 2, 2, 5; 8 filters",
     ("cnn_images", "norm"): "batch normalisation",
@@ -37,7 +36,6 @@ THESIS_WORDS = {
     ("cnn_normals", "fc2"): "ReLU",
     ("cnn_normals", "scores"): "softmax",
 }
-PRINTED = "the thesis"
 NETWORKS = {"cnn_images": "3D, images (4.7)", "cnn_normals": "1D, normals (4.8)"}
 
 
@@ -73,15 +71,18 @@ def table_4_9(results: Results) -> Table:
                 "seconds": runs.loc[(runs["split"] == split) & (runs["metric"] == "accuracy"), "seconds"].median(),
             })  # fmt: skip
     frame = pd.DataFrame(lines)
-    names = {"objects": dataset_text, "split": SPLITS.get, "classifier": CLASSIFIERS.get}
-    cells = blocks(frame, KEYS, "strategy", {"thesis": lambda objects: PRINTED})
-    text_table = grid(cells, KEYS, "strategy", names, lambda name: f"{label(name)}, %", places=1, printed=PRINTED)
+    cells = frame.assign(tested=frame["objects"].map(dataset_text) + ", " + frame["split"].map(SPLITS))
+    cells = cells.sort_values("objects", key=lambda names: names != THESIS_CLASSES, kind="stable", ignore_index=True)
+    down, heads = ["tested", "classifier", WHOSE], [f"{label(name)}, %" for name in frame["strategy"].unique()]
+    text_table = grid(
+        beside_thesis(cells, down[:-1]), down, "strategy", {"classifier": CLASSIFIERS.get},
+        lambda name: f"{label(name)}, %", places=1,
+    )  # fmt: skip
     sizes = frame.groupby("objects", sort=False)[["sequences", "chance"]].max()
     count_text = ", ".join(f"{int(row.sequences):,} ({dataset_text(row.Index)})" for row in records(sizes))
     chance = ", ".join(f"{dataset_text(row.Index)} {percent(row.chance, 1)} %" for row in records(sizes))
     words = {"not_run": results.left_out(STAGE), "counted": count_text, "chance": chance, "trained": trained(results)}
-    best = Ranking(f"{label(GUIDED)}, %", among=["objects", "split"], exempt=[PRINTED])
-    return Table(frame, text_table, words, best)
+    return Table(frame, text_table, words, Ranking(heads), split="tested")
 
 
 def trained(results: Results) -> str:
@@ -170,7 +171,7 @@ def figure_4_15(results: Results) -> Figure:
     axes.grid(axis="y")
     axes.set_ylabel("normal", labelpad=0)
     axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 0.98))
-    return Figure(figure, {"name": label(name), "strategy": label(strategy), "count": FRAMES, "frames": len(normals)})
+    return Figure(figure)
 
 
 def followed(mesh: Mesh, pair: np.ndarray) -> SectionCurve:
@@ -297,7 +298,7 @@ def chart(results: Results) -> Figure:
     )  # fmt: skip
 
 
-PAGE = "sequences"
+PAGE = "know"
 TABLES = {
     "table_4_7": table_4_7,
     "table_4_9": table_4_9,

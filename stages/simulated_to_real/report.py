@@ -31,7 +31,7 @@ def build_table(results: Results) -> Table:
     wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
     wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
     words = {"way": _way(*way), "shares": ", ".join(texts), "best": _best(frame)}
-    return Table(frame, wide, words, Ranking(wide.columns[-1]))
+    return Table(frame, wide, words, Ranking(list(wide.columns[1:])))
 
 
 def _accuracies(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -56,7 +56,7 @@ def _best(frame: pd.DataFrame) -> str:
     return "; ".join(f"{count}: {texts['real', count]} without, {texts['both', count]} with" for count in counts)
 
 
-PAGE = "recorded"
+PAGE = "touch"
 TABLES = {"simulated_to_real": build_table}
 FIGURES = {}
 CHARTS = {}

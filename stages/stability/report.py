@@ -40,7 +40,8 @@ def points_table(results: Results) -> Table:
     text_table["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
     names = list(dict.fromkeys(points["item"]))
     words = {"objects": ", ".join(names), "count": len(names), "not_run": results.left_out(STAGE)}
-    return Table(frame, text_table, words)
+    answer = [name for name in map(str, text_table) if name != "chance, %"]
+    return Table(frame, text_table, words, answer=answer)
 
 
 def points_figure(results: Results) -> Figure:

@@ -5,6 +5,7 @@ and for the layers that must learn. `build` changes one thing at a time to find 
 chance on a 16 x 16 array in T table 5.3.
 """
 
+from collections.abc import Iterable
 from contextlib import suppress
 from itertools import product
 from typing import Any
@@ -37,6 +38,7 @@ from stages.transfer.network_rows import (
 
 CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
 OTHERS = list(PASSES)[1:]
+PRINTED_SET = "princeton_six"
 MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6
 
 
@@ -79,8 +81,23 @@ def networks(results: Results, data: str) -> Table:
     ]
     words = {"networks": shared_notes(__package__, "networks"), "not_run": "\n".join(notes)}
     words |= {"precision": _precisions(frame), "looked": _looked(frame), "guesses": _guesses(frame)}
-    heads = _heads(rows)
-    return Table(frame, _shown(cells, ["network", *down], heads), words, _ranking(frame, heads))
+    heads = [f"{words}, %" for words in SPLITS.values()]
+    text_table = pd.concat(
+        _of_set(cells[cells["objects"] == name], ["network", *down], heads) for name in by_print(sources)
+    )
+    return Table(frame, text_table, words, Ranking(heads), split="objects")
+
+
+def by_print(sources: Iterable[str]) -> list[str]:
+    """The data sets, that with the thesis's classes first."""
+    return sorted(sources, key=lambda name: name != PRINTED_SET)
+
+
+def _of_set(cells: pd.DataFrame, down: list[str], heads: list[str]) -> pd.DataFrame:
+    """`_shown` of one data set."""
+    name = cells["objects"].iloc[0]
+    table = _shown(cells, down, dict(zip(((name, split) for split in SPLITS), heads, strict=True)))
+    return table.assign(objects=dataset_text(name))
 
 
 def frozen_layers(results: Results) -> Table:
@@ -97,9 +114,10 @@ def frozen_layers(results: Results) -> Table:
         group = of_passes(rows[(rows["dataset"] == source) & (rows["split"] == split)])
         line |= accuracy(runs, split) | _other_passes(cases, groups, trained, split)
         lines.append(line | {"thesis": printed if split == "random" else np.nan, "seen": seen(group)})
-    frame, heads = pd.DataFrame(lines), _heads(rows)
-    text_table = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"], heads)
-    return Table(frame, text_table, {"looked": _looked(frame)}, _ranking(frame, heads))
+    frame, heads = pd.DataFrame(lines), [f"{words}, %" for words in SPLITS.values()]
+    cells, sources = frame.rename(columns={"frozen_layers": "frozen layers"}), by_print(frame["objects"].unique())
+    text_table = pd.concat(_of_set(cells[cells["objects"] == name], ["frozen layers"], heads) for name in sources)
+    return Table(frame, text_table, {"looked": _looked(frame)}, Ranking(heads), split="objects")
 
 
 def _trained(results: Results, keys: list[str], **where: str) -> dict[tuple, pd.DataFrame]:
@@ -170,25 +188,8 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     })  # fmt: skip
 
 
-def _heads(rows: pd.DataFrame) -> dict[tuple, str]:
-    """{(set, split): head of its column}: with the pixels a side, and the most repetitions of a training."""
-    trained, heads = of_passes(rows, *PASSES), {}
-    for source, split in product(dict.fromkeys(trained["dataset"]), SPLITS):
-        runs = trained[(trained["dataset"] == source) & (trained["split"] == split)]
-        sizes = " and ".join(f"{pixels:.0f}" for pixels in sorted(runs["size"].dropna().unique()))
-        count = runs.groupby(["method", "weights", "mode", "passes"])["repetition"].nunique().max()
-        ends = f", {sizes} px, {count} {'folds' if split == 'objects' else 'splits'}" if len(runs) else ""
-        heads[source, split] = f"{dataset_text(source)}, {SPLITS[split]}{ends}, %"
-    return heads
-
-
 def _head(cells: pd.DataFrame) -> pd.Series:
     return cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS)
-
-
-def _ranking(cells: pd.DataFrame, heads: dict[Any, str]) -> Ranking:
-    """By the column of most measured rows."""
-    return Ranking(heads[cells.groupby(["objects", "split"])["accuracy"].count().idxmax()])
 
 
 def _looked(cells: pd.DataFrame) -> str:

@@ -5,7 +5,7 @@ from functools import partial
 from . import hybrid_report, network_figures, network_tables
 from .network_rows import COARSE, FINE
 
-PAGE = "transfer"
+PAGE = "know"
 TABLES = {
     "table_5_3": partial(network_tables.networks, data=COARSE),
     "table_5_4": partial(network_tables.networks, data=FINE),

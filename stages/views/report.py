@@ -37,7 +37,7 @@ def views_seen(results: Results) -> Figure:
     return Figure(figure, words | {"enough": ENOUGH, "fewest": fewest})
 
 
-PAGE = "attention"
+PAGE = "look"
 TABLES = {}
 FIGURES = {
     "views_seen": views_seen,

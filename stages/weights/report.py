@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.charts.datasets import COLOURED, MENDED_3_2, SECTION_3_2, dataset_text
+from stages.charts.datasets import GABOR_3_2, MENDED_3_2, SECTION_3_2, dataset_text
 from stages.charts.drawing import label
 from stages.charts.items import Table
 from stages.charts.results import NotRun, Results, require_rows
@@ -18,10 +18,9 @@ PRINTED = {"ssim": "guided_ssim", "one_minus_ed": "guided_ed"}  # columns of the
 TRAINING = {"one_for_all": "one for all", "one_per_object": "one per object", "one_per_viewpoint": "one per viewpoint"}
 VALIDATION = {"pixels": "random pixels", "views": "whole views", "objects": "whole objects"}
 AREA = {"image": "whole image", "object": "the object"}
-LIKENESS = {"grey_likeness": "in colour: r with itself in grey", "intensity_likeness": "in colour: r with intensity"}
 THESIS = {"one_svm_for_all_objects": "one_for_all", "one_svm_per_object": "one_per_object"}
 KEYS = ["dataset", "area", "training", "validation"]
-FIRST = {name: place for place, name in enumerate((SECTION_3_2, MENDED_3_2, "gaze"))}
+FIRST = {name: place for place, name in enumerate((SECTION_3_2, MENDED_3_2, GABOR_3_2, "gaze"))}
 ORDER = {name: place for place, name in enumerate([*AREA, *TRAINING, *VALIDATION])}
 
 
@@ -36,42 +35,27 @@ def table_3_1(results: Results) -> Table:
     thesis = results.thesis("table_3_1_channel_weights").set_index("channel").rename(columns=PRINTED)
     thesis = thesis[list(PRINTED.values())]
     frame = frame.merge(thesis.reset_index().melt("channel", var_name="method", value_name="thesis"), how="left")
-    text = [with_interval(*mean, places=2) for mean in frame[MEAN].itertuples(index=False)]
-    wide = frame.assign(text=text).pivot(index="channel", columns=["method", "dataset"], values="text")
-    wide = wide.reindex(thesis.index).fillna("not run")
-    text_table = pd.DataFrame(index=thesis.index)
+    tops = ", ".join(f"{label(channel)} by {KINDS[str(method)]}" for method, channel in thesis.idxmax().items())
+    table, heads = _wide(frame), [f"{kind}, ours" for kind in KINDS.values()]
+    return Table(frame, table, {"tops": tops, "ranks": _ranks(frame)}, Ranking(heads), split="objects")
+
+
+def _wide(frame: pd.DataFrame) -> pd.DataFrame:
+    """A row a data set and channel, each likeness beside the thesis's."""
+    parts = {}
     for method, kind in KINDS.items():
-        if method in thesis:
-            text_table[f"{kind}: thesis"] = thesis[method].map(number)
-        for dataset, objects in frame.groupby("dataset")["objects"].max().items():
-            text_table[_head(kind, str(dataset), objects)] = wide.get((method, dataset), "not run")
-    with suppress(NotRun):
-        text_table = text_table.assign(**_in_colour(results)).fillna("–")
-    tops = ", ".join(f"{label(channel)} in {KINDS[str(method)]}" for method, channel in thesis.idxmax().items())
-    first = frame[frame["dataset"] == frame["dataset"].iloc[0]].drop_duplicates("method")
-    heads = [_head(KINDS[row.method], row.dataset, row.objects) for row in records(first)]
-    answer = [name for name in map(str, text_table) if ": thesis" in name or name in heads or name in LIKENESS.values()]
-    text_table = text_table.rename(index=label).reset_index()
-    best = Ranking(min(heads, key=list(text_table).index))
-    return Table(frame, text_table, {"tops": tops, "ranks": _ranks(frame)}, best, ["channel", *answer])
-
-
-def _head(kind: str, dataset: str, objects: int) -> str:
-    return f"{kind}: {dataset_text(dataset)} ({objects})"
-
-
-def _in_colour(results: Results) -> dict[str, pd.Series]:
-    """Columns of table 3.1: what hues change in a channel's map, mean over the coloured objects."""
-    rows = results.measured("conspicuity", COLOURED, metric=list(LIKENESS))
-    return {
-        name: rows[rows["metric"] == metric].groupby("method")["value"]
-        .agg(lambda values: with_interval(*interval(values), places=2))
-        for metric, name in LIKENESS.items()
-    }  # fmt: skip
+        rows = frame[frame["method"] == method].set_index(["dataset", "channel"])
+        if rows["thesis"].notna().any():
+            parts[f"{kind}, thesis"] = rows["thesis"].map(number)
+        means = rows[MEAN].itertuples(index=False)
+        parts[f"{kind}, ours"] = pd.Series([with_interval(*mean, places=2) for mean in means], rows.index)
+    table, order = pd.DataFrame(parts).fillna("not run"), frame[["dataset", "channel"]].drop_duplicates()
+    table = table.reindex(list(order.itertuples(index=False, name=None))).rename(label, level="channel")
+    return table.rename(dataset_text, level="dataset").reset_index(names=["objects", "channel"])
 
 
 def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:
-    """Measured rows of the weights of all sets that have them: as printed, mended, then on grey objects with gaze."""
+    """Measured rows of the weights of all sets that have them: the readings of T3.2, then on grey objects with gaze."""
     rows = pd.concat(everywhere(results, "weights", missing, metric=metric).values())
     return rows.sort_values("dataset", key=lambda names: names.map(FIRST).fillna(len(FIRST)), kind="stable")
 
@@ -100,10 +84,7 @@ def _ranks(frame: pd.DataFrame) -> str:
     ranks = []
     for (dataset, method), group in grouped(frame.dropna(subset=["thesis"]), ["dataset", "method"]):
         rank = group["mean"].corr(group["thesis"], method="spearman")
-        best = group.set_index("channel")["mean"].idxmax()
-        ranks.append(
-            f"{KINDS[method]}, {dataset_text(dataset)}: {label(best)} comes first, rank correlation {rank:.2f}"
-        )
+        ranks.append(f"{KINDS[method]}, {dataset_text(dataset)} {rank:.2f}")
     return "; ".join(ranks)
 
 
@@ -127,9 +108,8 @@ def section_3_2_3(results: Results) -> Table:
     with suppress(NotRun):
         findings += _spread_of_gains(_gaze_first(results, "information_gain", "no information gain was measured"))
     text_table = pd.DataFrame(map(_shown, records(frame)))
-    return Table(
-        frame, text_table, {"findings": "\n".join(findings)}
-    )  # no ranking: the ways to test differ, not the SVMs
+    # no ranking: the ways to test differ, not the SVMs
+    return Table(frame, text_table, {"findings": "\n".join(findings)}, split="truth")
 
 
 def _spread_of_gains(rows: pd.DataFrame) -> list[str]:
@@ -137,14 +117,12 @@ def _spread_of_gains(rows: pd.DataFrame) -> list[str]:
     sentences = []
     for dataset, part in rows[rows["area"] == "image"].groupby("dataset", sort=False):
         gains = part.pivot(index="item", columns="channel", values="value")
-        none = (gains["symmetry"] == 0).sum()
         shares = (gains.std() / gains.mean()).dropna()
         others = shares.drop("symmetry")
         sentences.append(
-            f"{dataset_text(str(dataset))}, whole image: the information gain of symmetry deviates by "
-            f"{percent(shares['symmetry'], 0)} % of its mean between objects, that of the other channels by "
-            f"{percent(others.min(), 0)} to {percent(others.max(), 0)} %; symmetry has no gain on {none} of "
-            f"{len(gains)} objects."
+            f"{dataset_text(str(dataset))}: the information gain of symmetry deviates by "
+            f"{percent(shares['symmetry'], 0)} % of its mean, that of other channels by {percent(others.min(), 0)} to "
+            f"{percent(others.max(), 0)} %."
         )
     return sentences
 
@@ -163,7 +141,7 @@ def _shown(row: Any) -> dict[str, str | int]:
     }  # fmt: skip
 
 
-PAGE = "attention"
+PAGE = "look"
 TABLES = {
     "table_3_1": table_3_1,
     "section_3_2_3": section_3_2_3,

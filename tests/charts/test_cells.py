@@ -13,7 +13,7 @@ def reports(tmp_path):
     frame = pd.DataFrame({"method": ["one", "two", "two"], "note": ["", "", "x"], "mean": [1234.5, 0.5, None]})
     write_table(tmp_path / "tables/rates.csv", frame.assign(low=[1000.0, 0.25, 0], high=[2000.0, 0.75, 1]))
     claims = {"key": ["kept", "read", "untested"], "effect": -100.0, "low": -120.0, "high": 0.0}
-    claims["verdict"] = ["contradicted", "depends on the reading", "not testable"]
+    claims["verdict"] = ["contradicted", "open", "not testable"]
     write_table(tmp_path / "claims.csv", pd.DataFrame(claims))
     signs = {
         "kind": ["none of both", "open", "tiny"],
@@ -33,7 +33,7 @@ def reports(tmp_path):
     ("tables/rates method=two note=: 1-mean", "0.500"),
     ("claims key=kept: times:effect times:low times:high .2f", "3.00 [1.00, 4.00]"),
     ("claims key=kept: -effect", "100"),
-    ("claims key=read: effect low high", "-100 [-120, 0] (depends on the reading)"),
+    ("claims key=read: effect low high", "-100 [-120, 0]"),
     ("claims key=untested: effect low high more|less .0f",
      "neither more nor less beyond chance (-100 [-120, 0]) (not testable)"),
     ("tables/rates method=o*: mean", "1,234"),

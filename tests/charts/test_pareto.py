@@ -75,7 +75,7 @@ def test_the_cost_axis_has_seconds_of_a_named_clock_and_a_long_front_is_told_by_
     figure.drawing.draw_without_rendering()
     assert above.get_xlim() == pytest.approx((2 * low, 2 * high))  # the reference takes two seconds
     many = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
-    caption = pareto_chart(many, "mean", reference="n3", **words | {"clock": ""}).words["caption"]
+    caption = pareto_chart(many, "mean", reference="n3", **words | {"clock": ""}).words["alt"]
     assert "12, from n0 to n11" in caption and "n5" not in caption
 
 

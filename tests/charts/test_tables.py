@@ -1,14 +1,16 @@
-"""Tables: how they are written, their cells and their best row."""
+"""Tables: how they are written, their views, their cells and the best of them."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from stages.charts.items import Table
+from stages.charts.items import MOST_COLUMNS, Table
 from stages.charts.tables import (
+    THESIS,
+    WHOSE,
     Ranking,
     as_text,
-    blocks,
+    beside_thesis,
     grid,
     is_numeric,
     leading,
@@ -68,15 +70,14 @@ def test_grid_keeps_the_order_of_the_cells_and_says_what_is_absent():
     assert shown["svm"].tolist() == ["70.0", "not run"] and shown["knn"][1] == "10.0 [0.0, 20.0]"
 
 
-def test_blocks_hold_one_number_a_cell_and_each_printed_figure_once():
-    frame = pd.concat([cells().assign(of="one"), cells().assign(of="two")])
-    down = ["of", "sampling"]
-    shown = grid(
-        blocks(frame, down, "classifier", {"thesis": lambda of: "printed"}), down, "classifier", printed="printed"
-    )
-    assert shown["of"].tolist() == ["one", "one", "two", "two", "printed", "printed"]
-    assert shown["knn"].tolist()[-2:] == ["55", "30"] and shown["svm"].tolist()[-2:] == ["–", "–"]
-    assert shown["svm"].tolist()[:2] == ["70", "not run"]
+def test_the_thesis_stands_behind_each_row_that_it_prints():
+    frame = pd.concat([cells().assign(of="one"), cells().assign(of="two", thesis=np.nan)])
+    down = ["of", "sampling", WHOSE]
+    shown = grid(beside_thesis(frame, down[:-1]), down, "classifier")
+    assert shown[WHOSE].tolist() == ["ours", THESIS, "ours", THESIS, "ours", "ours"]
+    assert shown["of"].tolist() == ["one"] * 4 + ["two"] * 2
+    assert shown["knn"].tolist()[:4] == ["50 [40, 60]", "55", "10 [0, 20]", "30"]
+    assert shown["svm"].tolist() == ["70", "–", "not run", "–", "70", "not run"]
 
 
 def test_means_cut_the_interval_at_what_is_possible():
@@ -100,9 +101,36 @@ SHOWN = pd.DataFrame({
     (Ranking("NSS", among=["set"], exempt=["truth"]), [2, 4, 5]), (Ranking("gone"), []),
     (Ranking("NSS", exempt=["truth", "x", "z"], among=["set"]), []),  # the best of one is none
 ])  # fmt: skip
-def test_the_best_rows_are_by_what_is_shown_and_a_truth_takes_no_part(best, rows):
+def test_the_best_cells_are_by_what_is_shown_and_a_truth_takes_no_part(best, rows):
     shown = pd.concat([SHOWN, SHOWN.tail(1).assign(NSS="0.40")], ignore_index=True)
-    assert best.best(shown).tolist() == [number in rows for number in range(len(shown))]
+    marks = best.best(shown)
+    assert marks.any(axis=1).tolist() == [number in rows for number in range(len(shown))]
+    assert set(marks.columns[marks.any()]) <= {best.by}
+
+
+def test_each_column_of_a_ranking_has_its_best_and_a_line_says_what_bold_means():
+    marks = Ranking(["NSS", "seconds"]).best(SHOWN)
+    assert marks["NSS"].tolist().index(True) == 0 and marks["seconds"].tolist().index(True) == 1
+    assert Ranking("NSS").legend(SHOWN) == "Bold: the highest in the column “NSS”."
+    several = Ranking(["a", "b"], lowest=True, among=["set"], aside="QEM aside")
+    assert several.legend([WHOSE]) == "Bold: the lowest of ours of its column among rows of the same set, QEM aside."
+
+
+def test_views_split_by_value_and_put_what_answers_first():
+    table = Table(SHOWN, best=Ranking("NSS"), split="set", answer=["method", "NSS"])
+    views = table.views
+    assert [view.title for view in views] == ["a", "a, further columns", "b", "b, further columns"]
+    assert [list(view.text) for view in views[:2]] == [["method", "NSS"], ["method", "seconds"]]
+    assert [view.bold["NSS"].tolist() for view in views[::2]] == [[True, False, False], [False, False, False]]
+
+
+def test_no_view_is_wider_than_a_page():
+    frame = pd.DataFrame({f"c{number}": ["1", "2"] for number in range(20)})
+    views = Table(frame, answer=["c0", "c1", "c2"], keys=["c0", "c1"]).views
+    assert [len(view.text.columns) for view in views] == [3, 8, 8, 7] and MOST_COLUMNS == 8
+    assert all(list(view.text)[:2] == ["c0", "c1"] for view in views)
+    shown = [name for view in views for name in list(view.text)[2:]]
+    assert sorted(shown) == sorted(frame.columns[2:])
 
 
 @pytest.mark.parametrize(
@@ -121,5 +149,5 @@ def test_the_bold_moves_with_the_numbers(tmp_path):
         table.write(tmp_path)
         return [line for line in (tmp_path / "t.md").read_text().splitlines() if "**" in line]
 
-    assert bold(frame) == ["| **y** | **2** | **n** |"]
-    assert bold(frame.assign(NSS=[3.0, 2.0])) == ["| **x** | **3** |  |"]
+    assert bold(frame) == ["| y | **2** | n |"]
+    assert bold(frame.assign(NSS=[3.0, 2.0])) == ["| x | **3** |  |"]

@@ -10,6 +10,7 @@ import pytest
 
 from stages.charts.datasets import SETS_4_2
 from stages.charts.results import NotRun
+from stages.charts.tables import THESIS, WHOSE
 from stages.classification import report as touch
 from stages.classification.recognition_tables import (
     COMMON,
@@ -73,7 +74,7 @@ table = partial(build_item, touch, "tables")
 @pytest.mark.slow
 def test_a_run_of_random_sets_alone_has_the_tables_of_sets_and_says_that_the_others_are_not_run(measure):
     results = measure("classification", drawn(SETS_4_2[0]).replace({"method": {"VisAttAll": "glance"}}))
-    assert table("table_4_1", results).shown["protocol"].iloc[0] == "as printed, 6 random sets"
+    assert table("table_4_1", results).shown["protocol"].iloc[0] == "as printed, 6 random sets, 15 imprints"
     for name in ("table_4_3", "section_4_2_4"):
         with pytest.raises(NotRun):
             table(name, results)
@@ -143,10 +144,10 @@ def test_table_maps_the_methods_and_says_what_was_not_run(root, results, small):
     assert cell.loc[("itti", "knn"), "accuracy"] == pytest.approx(0.5, abs=0.02)
     assert np.isnan(cell.loc[("glance", "knn"), "thesis"])
     assert np.isnan(cell.loc[("heat_kernel", "knn"), "accuracy"])
-    shown = built.shown.set_index("sampling")
+    shown = built.shown.set_index("touched at")
     ours, printed = (cells for _, cells in shown.loc["heat kernel signature"].iterrows())
-    assert (ours.drop("protocol") == "not run").all()
-    assert printed["protocol"] == "the thesis" and printed["kNN, %"] == "59"
+    assert (ours.drop(["protocol", WHOSE]) == "not run").all()
+    assert printed[WHOSE] == THESIS and printed["kNN, %"] == "59"
     assert built.title.startswith("Table 4.1: recognising six objects by")
     small.write_set(root, "six", 4)
     assert table("table_4_1", results).title.startswith("Table 4.1: recognising 4 objects (group six) by")

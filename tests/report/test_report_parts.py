@@ -31,7 +31,7 @@ def test_a_topic_without_measurements_names_what_is_missing_of_each_item(topic, 
 def test_every_claim_is_open_without_measurements(empty):
     table = judge(load(), Measurements(empty.reports))
     assert table["key"].is_unique and set(table["verdict"]) == {"open"} and not table["pairs"].any()
-    assert table["tested_on"].str.startswith("not run: no measurements of ").all()
+    assert table["caveat"].str.startswith("not run: no measurements of ").all()
 
 
 @pytest.mark.slow

@@ -9,17 +9,20 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Drawing
 
-from haptic_glance.base.files import read_json, write_table
+from haptic_glance.base.files import read_json
 from stages.charts import items
 from stages.charts.cells import CLAIMS, PLACE, filled
-from stages.charts.items import Figure, Table, add_words, findings
+from stages.charts.items import Figure, Table, add_words
 from stages.report import parts
 from stages.report.headlines import write_headlines
 from stages.report.parts import Built
-from stages.report.site import page_main
+from stages.report.site import findings, topic_main
+from stages.report.topics import TOPICS
 
 REPORTS = Path(__file__).parents[2] / "reports"
-LONGEST = 200  # letters of a table's sentence
+MOST_FINDINGS, MOST_WORDS, LONGEST_NOTE = 3, 25, 60  # of a page; of a sentence; of a note, in words
+FINDINGS = re.split(r"^# (\w+)\n", (Path(parts.__file__).parent / "findings.md").read_text(), flags=re.MULTILINE)[1:]
+BY_PAGE = {page: text.strip().split("\n\n") for page, text in zip(FINDINGS[::2], FINDINGS[1::2], strict=True)}
 SETTINGS = (  # the numbers that a finding may have of its own
     r"\b\d+ x \d+\b", r"\b(?:19|20)\d\d\b", r"\bT\d+(?:\.\d+)*", r"\bSection \d+(?:\.\d+)*", r"\b\d+ degrees\b",
     r"\b[Ll]ayers \d+ to \d+\b", r"\bnoise of [\d.]+ % of the diagonal", r"\b(?:VGG|ResNet|MobileNetV)\d+\b",
@@ -40,9 +43,6 @@ shows.
 
 The caption of {count}.
 """
-FINDINGS = (
-    "Without a figure,\nit stays.\n\nIt has {tables/t method=one: mean}.\n\nIt has {tables/t method=two:\nmean}.\n"
-)
 
 
 class Anything(dict):
@@ -52,6 +52,11 @@ class Anything(dict):
         return 0
 
 
+def words_of(text):
+    """How many words a text has; a number with its interval is one, a place in it too."""
+    return len(re.sub(r" ?\[[^]]*\]", "", PLACE.sub("x", text)).split())
+
+
 def typed(text):
     """The numbers of a text that are neither places nor settings."""
     return re.findall(r"\d+", re.sub("|".join(SETTINGS), "", PLACE.sub("", text)))
@@ -59,15 +64,13 @@ def typed(text):
 
 @pytest.fixture
 def topic(tmp_path, monkeypatch):
-    """A part with two items, which found three things, one of them in a table of one row."""
+    """A part with two items."""
     package = tmp_path / "a_stage"
     package.mkdir()
     (package / "__init__.py").touch()
-    (package / "report.py").write_text('PAGE = "attention"\n')
+    (package / "report.py").write_text('PAGE = "look"\n')
     (package / "report.md").write_text(PROSE)
-    (package / "findings.md").write_text(FINDINGS)
     monkeypatch.syspath_prepend(tmp_path)
-    write_table(tmp_path / "tables/t.csv", pd.DataFrame({"method": ["one"], "mean": [2.5]}))
     items._sections.cache_clear()
     yield importlib.import_module("a_stage.report")
     for name in ("a_stage.report", "a_stage"):
@@ -119,7 +122,8 @@ def test_each_table_has_a_sentence_with_a_figure_of_its_own(part):
             continue  # it is still to be written
         text, sources = filled(item.summary, REPORTS)
         assert f"tables/{name}" in [source for source, _ in sources]
-        assert len(text) <= LONGEST and text[0].isupper() and text.endswith(".") and re.search(r"\d", text)
+        assert words_of(text) <= MOST_WORDS and text[0].isupper() and text.endswith(".") and re.search(r"\d", text)
+        assert "[" not in text, text
         assert not re.search(r"\d \.|\{|\}|\bnan\b|_", text), text
 
 
@@ -134,28 +138,35 @@ def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path, met
 
 
 @pytest.mark.parametrize("part", parts.PARTS.values(), ids=parts.PARTS)
-def test_a_finding_has_all_its_figures_and_no_number_of_its_own(part):
-    """A row that is gone would leave the paragraph out without a word."""
-    file = Path(part.__file__).parent / "findings.md"
-    for text in file.read_text().strip().split("\n\n") if file.exists() else ():
-        text = " ".join(text.split())
-        if not all((REPORTS / f"{name}.csv").exists() for name, _, _ in PLACE.findall(text)):
-            continue  # a table is still to be written
+def test_notes_are_short(part):
+    text = (Path(part.__file__).parent / "report.md").read_text()
+    for section in re.split(r"^# .*$", text, flags=re.MULTILINE):
+        for note in re.split(r"^- ", section, flags=re.MULTILINE)[1:]:
+            assert words_of(note) <= LONGEST_NOTE, note
+            sentences = re.split(r"[.;:]\s+", re.sub(r"\beq\. ", "eq ", note))
+            assert all(words_of(sentence) <= MOST_WORDS for sentence in sentences), note
+
+
+@pytest.mark.parametrize("page", BY_PAGE)
+def test_a_page_has_at_most_three_short_findings_with_all_their_figures_and_no_number_of_their_own(page):
+    """A row that is gone would leave the sentence out without a word."""
+    assert page in TOPICS and 1 <= len(BY_PAGE[page]) <= MOST_FINDINGS
+    for text in (" ".join(text.split()) for text in BY_PAGE[page]):
         prose, sources = filled(text, REPORTS)
+        assert words_of(prose) <= MOST_WORDS and prose.count("[") <= 1 and len(sources) == 1, prose
         assert not typed(text) and not re.search(r"\{|\}|\bnan\b|_", prose), prose
-        assert all(name in MADE or name == CLAIMS or name.startswith("bench/") for name, _ in sources)
+        assert sources[0][0] in MADE or sources[0][0] == CLAIMS
 
 
 @pytest.mark.parametrize("of_folder", [False, True])
-def test_a_paragraph_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(
-    topic, tmp_path, of_folder, small, bare, monkeypatch
+def test_a_finding_that_lacks_its_row_is_left_out_and_so_are_all_of_ones_own_meshes(
+    tmp_path, of_folder, small, bare, monkeypatch
 ):
-    assert findings(topic, tmp_path) == ["Without a figure, it stays.", "It has 2.50."]
-    monkeypatch.setattr("stages.report.site.PARTS", {"one": topic})
+    assert findings("look", REPORTS) and findings("look", tmp_path) == [] and findings("gone", REPORTS) == []
     monkeypatch.setattr("stages.charts.results.Results.own_meshes", of_folder)
-    item = Table(pd.DataFrame(), title="T", kind="tables", page="attention", paths=[Path("tables/t.csv")])
-    text = page_main("attention", small.read_results(bare), Built([item]), tmp_path)
-    assert ("<p>It has 2.50.</p>" in text) == ("What was found" in text) == (not of_folder)
+    item = Table(pd.DataFrame(), title="T", name="t", kind="tables", page="look", paths=[Path("tables/t.csv")])
+    text = topic_main("look", small.read_results(bare), Built([item]), REPORTS)
+    assert ("What was found" in text) == (not of_folder) and 'id="tables-t"' in text
 
 
 def test_headlines_on_a_folder_of_meshes_count_no_claims(tmp_path):

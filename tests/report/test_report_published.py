@@ -10,6 +10,7 @@ import pytest
 from haptic_glance.base.files import write_table
 from stages.charts import items
 from stages.charts.drawing import SETTINGS, plt
+from stages.charts.items import MOST_COLUMNS, Table
 from stages.charts.results import Results
 from stages.engine.measurements import Measurements
 from stages.engine.settings import Workspace
@@ -70,6 +71,8 @@ def assert_items_unchanged(kind, results, topic):
     built = build_part(topic, results, [kind])
     lacking = {name.partition("/")[2] for name in built.not_run}
     assert lacking <= FROM_DATA, f"{built.not_run} is no longer built; {REMEDY}"
+    for view in (view for item in built.items if isinstance(item, Table) for view in item.views):
+        assert len(view.text.columns) <= MOST_COLUMNS
     for path in (path for item in built.items for path in item.paths if path.suffix in (".csv", ".md")):
         name = path.relative_to(results.out)
         assert (REPORTS / name).exists(), f"reports/{name} is not published; {REMEDY}"

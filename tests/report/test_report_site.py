@@ -1,27 +1,21 @@
-"""Parts of the pages: tables and charts with their numbers, findings and questions; some of them in a browser."""
+"""Parts of the pages: tables and charts with their numbers; some of them in a browser."""
 
-import re
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from stages.charts.cells import CLAIMS as OF_CLAIMS
 from stages.charts.html import frame_html, item_html, prose
 from stages.charts.items import Table
 from stages.charts.tables import Ranking
-from stages.report.claims import load
-from stages.report.parts import KINDS, PARTS, Built, page_of
-from stages.report.site import FINDINGS, findings_html, front_main, page_html, questions_html
-
-REPORTS = Path(__file__).parents[2] / "reports"
-ASKED = 10
-NO_CLAIMS = pd.DataFrame(columns=["key", "low", "verdict"])
+from stages.report.parts import KINDS, PARTS, Built
+from stages.report.site import MENU, front_main, page_html
+from stages.report.topics import TOPICS
 
 
 def show(tab, tmp_path, main):
     """Opens a page of the site with this text."""
-    (tmp_path / "page.html").write_text(page_html([], "", "", main, ["site.js"]), encoding="utf-8")
+    (tmp_path / "page.html").write_text(page_html({}, "", "Page", "", main, ["site.js"]), encoding="utf-8")
     tab.goto((tmp_path / "page.html").as_uri())
 
 
@@ -43,8 +37,9 @@ def test_columns_that_do_not_answer_the_question_can_be_unfolded():
     frame = pd.DataFrame({"name": ["a", "b"], "score": [1, 2], "detail": [3, 4]})
     table = Table(frame, paths=[Path("tables/t.csv")], best=Ranking("score"), answer=["name", "score"])
     shown, _, hidden = item_html(table).partition("<details>")
-    assert "detail" not in shown and "All 3 columns" in hidden and "detail" in hidden
-    assert '<tr class="best"><td>b</td>' in shown and shown.count('class="best"') == hidden.count('class="best"') == 1
+    assert "detail" not in shown and "further columns" in hidden and "detail" in hidden
+    assert '<td class="number"><b>2</b></td>' in shown and shown.count("<b>") == 1
+    assert "Bold: the highest in the column “score”." in shown
 
 
 @pytest.mark.slow
@@ -64,47 +59,14 @@ def test_a_click_on_a_head_sorts_by_number_both_ways_and_gaps_stay_below(tab, tm
 @pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
 def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole, small, bare):
     table = Table(pd.DataFrame({"x": [cell]}), name="gaps", kind="tables", page="none", paths=[Path("tables/t.csv")])
-    page = front_main(small.read_results(bare), Built([table]), {}, NO_CLAIMS, None, {}, bare / "reports")
+    page = front_main(small.read_results(bare), Built([table]), {}, None, {}, bare / "reports")
     assert ("Everything that this report knows was measured" in page) == whole
     assert ("<code>tables/gaps</code>: in part" in page) != whole
 
 
-def of_claim(finding, effect=10.0, low=5.0, high=15.0):
-    """The claims of a single finding with its verdict."""
-    verdict = "supported" if low > 0 else "contradicted" if high < 0 else "open"
-    row = {"key": finding.key, "claim": "The sentence.", "verdict": verdict, "effect": effect, "low": low, "high": high}
-    return pd.DataFrame([row | {"pairs": 2, "over": "objects", "section": "ours", "of": ""}])
-
-
-def test_findings_have_the_stored_verdicts_and_two_of_them_fail():
-    stored = pd.read_csv(REPORTS / "claims.csv").set_index("key")["verdict"]
-    assert [stored[finding.key] for finding in FINDINGS] == [finding.verdict for finding in FINDINGS]
-    assert {finding.page for finding in FINDINGS} <= {page_of(part) for part in PARTS.values()}
-    assert sum(finding.verdict != "supported" for finding in FINDINGS) >= 2
-
-
-def test_a_card_has_its_number_and_gives_way_to_the_claim_where_a_run_does_not_bear_it_out():
-    text = findings_html(of_claim(FINDINGS[0], 1.0, 0.5, 1.5))
-    assert FINDINGS[0].title in text and "+1.00 [0.50, 1.50]" in text
-    assert f'href="site/claims.html#{FINDINGS[0].key}"' in text
-    text = findings_html(of_claim(FINDINGS[0], 0.0, -0.5, 0.5))
-    assert FINDINGS[0].title not in text and "The sentence. (open)" in text
-    turned = next(finding for finding in FINDINGS if finding.shown == "times:")  # its ends change places
-    assert "3.00 [1.00, 4.00]" in findings_html(of_claim(turned, -100.0, -120.0, 0.0))
-    assert findings_html(NO_CLAIMS) == ""
-
-
-def test_ten_questions_are_answered_from_what_the_repository_holds(tmp_path):
-    names = {
-        f"{kind}/{name}" for topic in PARTS.values() for kind, held in KINDS.items() for name in getattr(topic, held)
-    }
-    keys = {f"key={claim.key}" for claim in load()}
-
-    def address(source, where):
-        assert source in names or (source == OF_CLAIMS and where in keys)
-        return source
-
-    answers = re.findall("<h3>.*?</h3><p>(.*?)</p>", questions_html(REPORTS, address))
-    assert len(answers) == ASKED
-    assert all(re.search(r"\d", answer) and "{" not in answer for answer in answers)
-    assert questions_html(tmp_path, address) == ""  # without measurements
+def test_topics_name_items_that_exist_and_each_once_and_are_in_the_menu():
+    made = {f"{kind}/{name}" for part in PARTS.values() for kind, held in KINDS.items() for name in getattr(part, held)}
+    placed = [item for topic in TOPICS.values() for item in (*topic.shown, *topic.folded)]
+    assert len(placed) == len(set(placed)) and {*placed} <= made
+    assert {picture for topic in TOPICS.values() for picture in topic.pictures} <= made
+    assert {part.PAGE for part in PARTS.values()} <= {*MENU} and {*TOPICS, "thesis"} == {*MENU}

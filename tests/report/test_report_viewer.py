@@ -160,7 +160,7 @@ def opened(browser, results, tmp_path, width):
     front = Template(page_file("front.html"))
     parts = {"meshes": as_script(pack_viewer(results)), "viewer": page_file("viewer.html")}
     main = front.substitute(dict.fromkeys(front.get_identifiers(), "") | parts)
-    (tmp_path / "page.html").write_text(page_html([], "", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
+    (tmp_path / "page.html").write_text(page_html({}, "", "Page", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
     tab = browser.new_page(viewport={"width": width, "height": 900})
     viewer = Page(tab)
     tab.goto((tmp_path / "page.html").as_uri())

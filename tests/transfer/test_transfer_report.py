@@ -108,4 +108,4 @@ def test_the_smallest_network_that_is_enough_is_named(measure):
     results = measure("recorded_networks", pd.DataFrame(entries), "pressure_images")
     results = measure("bench/networks", pd.DataFrame(costs), results=results)
     made = build_item(recorded_topic, "tradeoff", "network_sizes", results)
-    assert "best on average is MobileNetV2." in made.caption
+    assert "points of the best is MobileNetV2." in made.caption

@@ -73,8 +73,8 @@ def conspicuity(
         for comparison. The two maps of OpenCV use the image as rendered in either case.
     symmetry : {"perceived", "strongest"}
         `perceived`: only symmetries that people see. `strongest`: the best plane and axis of each object, however weak.
-    formulas : {"ours", "printed", "mended"}
-        `printed` and `mended` are the thesis's formulas to the letter, and need the background
+    formulas : {"ours", "printed", "mended", "zero_mean"}
+        All but `ours` are readings of the thesis's formulas, and need the background
         (`haptic_glance.look.channels.printed`).
 
     Returns

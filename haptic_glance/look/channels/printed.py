@@ -1,10 +1,12 @@
 """The formulas of T3.1.1 and T3.2 to the letter: the whole picture on its background, and N with all local maxima.
 
-The other modules of this package hold our own formulas. Two readings of the letter are here:
+The other modules of this package hold our own formulas. Three readings of the letter are here:
 
 - `printed`: N multiplies by (M - m)^2, where m is the mean of all local maxima, the highest included. T eq. 3.3 and 3.4
   subtract the surround's G - R from the centre's R - G, so that red amid red responds.
 - `mended`: m is the mean of all other maxima, and the surround's R - G is subtracted, as T [41] means both.
+- `zero_mean`: as `printed`, with Gabor kernels of sum zero. A plain Gabor kernel keeps 6 % of its envelope's sum, so that
+  it responds to plain brightness. T names Gabor pyramids and prints no kernel.
 
 N first scales a map to 0..1, as in T [41]: the units of the maps differ, and T states no other scale. A sum of N is
 divided by the number of its terms, so that each map lies in 0..1. The scale of a map changes nothing in it.
@@ -12,6 +14,7 @@ T prints no parameters of the Gabor filters, the Laplacian and the median filter
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -35,7 +38,7 @@ from .texture import (
 )
 
 kernel = cached_njit()
-OURS, PRINTED, MENDED = FORMULAS = ("ours", "printed", "mended")
+OURS, PRINTED, MENDED, ZERO_MEAN = FORMULAS = ("ours", "printed", "mended", "zero_mean")
 STORED = 2  # the scale of a map of a whole picture, a quarter of its size
 Levels = dict[int, np.ndarray]
 Channel = Callable[[Mesh, View, bool], np.ndarray]
@@ -74,10 +77,10 @@ def intensity(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
     return centre_surround(pyramid(_intensity(view)), mended)
 
 
-def orientation(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+def orientation(_mesh: Mesh, view: View, mended: bool, zero_mean: bool = False) -> np.ndarray:
     """T eq. 3.2, with the magnitude of the even and the odd response."""
-    levels = pyramid(_intensity(view))
-    responses = [{scale: gabor(level, angle) for scale, level in levels.items() if scale > 1} for angle in ANGLES]
+    levels = {scale: level for scale, level in pyramid(_intensity(view)).items() if scale > 1}
+    responses = [{scale: gabor(level, angle, zero_mean) for scale, level in levels.items()} for angle in ANGLES]
     return np.mean([normalise(centre_surround(response, mended), mended) for response in responses], axis=0)
 
 
@@ -115,10 +118,17 @@ def edge(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
     return _stored(np.abs(laplacian_of_gaussian(_luminance(view), sigma)), mended)
 
 
-def gabor(image: np.ndarray, angle: float) -> np.ndarray:
-    """(h, w) f4: magnitude of the plain even and odd Gabor responses of an image at an angle in degrees."""
+def gabor(image: np.ndarray, angle: float, zero_mean: bool) -> np.ndarray:
+    """(h, w) f4: magnitude of the even and odd Gabor responses of an image at an angle in degrees.
+
+    With `zero_mean`, the envelope is subtracted from the kernels in the share that makes their sums zero.
+    """
     _, envelope, wave = gabor_grid(angle)
-    wave = (envelope * wave / envelope.sum()).astype(np.complex64)
+    envelope = envelope / envelope.sum()
+    wave = envelope * wave
+    if zero_mean:
+        wave -= envelope * wave.sum()
+    wave = wave.astype(np.complex64)
     return magnitude(image, (wave.real.copy(), wave.imag.copy()))
 
 
@@ -153,12 +163,13 @@ def _moved(counts, terms, level, step):
 
 
 def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str, Channel]:
-    """The channels by name, functions of (mesh, view, filled), with the formulas `printed` or `mended`.
+    """The channels by name, functions of (mesh, view, filled), with formulas of this module.
 
     Of a channel of the surface T prints no formula but C = N(map).
     """
     mended = formulas == MENDED
-    printed = {name: _of_picture(PICTURE[name], mended) for name in channels if name in PICTURE}
+    picture = PICTURE | {"orientation": partial(orientation, zero_mean=formulas == ZERO_MEAN)}
+    printed = {name: _of_picture(picture[name], mended) for name in channels if name in picture}
     return {
         **channels,
         **printed,
