@@ -57,6 +57,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, simplificati
 	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
 	OMP_NUM_THREADS=1 python -m benchmarks.up_axis
 	OMP_NUM_THREADS=1 python -m benchmarks.deep_gaze
+	OMP_NUM_THREADS=1 python -m benchmarks.flip $(psb)
 	python -m benchmarks.pipeline
 
 lock: ## pin in constraints.txt all that pyproject.toml asks for

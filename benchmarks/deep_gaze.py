@@ -111,8 +111,8 @@ def left_out(method: str, objects: Mapping[tuple[str, str], Gaze], names: list[s
     return {item: dict(zip(names, weights.tolist(), strict=True)) for item, weights in learned.items()}
 
 
-def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]]:
-    """(rows of METRICS of the objects, each left out; the weights learned from all)."""
+def features_of(method: str, objects: Mapping) -> tuple[dict[tuple[str, str], Gaze], list[str]]:
+    """({object: its Gaze}, names of the features) of objects {(set, name): (mesh, GroundTruth)}."""
     seen, names = {}, []
     for item, (mesh, truth) in progress(objects.items(), f"features of {method}"):
         samples = samples_of_mesh(mesh)
@@ -122,7 +122,12 @@ def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]
             np.bincount(samples.tree.query(mesh.vertices)[1], truth.amounts, len(samples.areas)),
         )
         seen[item] = Gaze(np.stack([*features.values()], axis=1).astype(np.float32), gaze / gaze.sum(), samples.areas)
-    weights, rows = left_out(method, seen, names), []
+    return seen, names
+
+
+def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]]:
+    """(rows of METRICS of the objects, each left out; the weights learned from all)."""
+    weights, rows = left_out(method, *features_of(method, objects)), []
     detector = GlanceDetector(method, FEATURES[method])
     for item, (mesh, truth) in progress(objects.items(), f"saliency of {method}"):
         with Stopwatch() as watch:

@@ -31,6 +31,7 @@ from haptic_glance.look.views import TWELVE, render
 from haptic_glance.mesh.mesh import Mesh
 
 LUMA = np.array([[0.299, 0.587, 0.114]])  # ITU-R BT.601
+EDGE = WINDOW // 2  # pixels from the border within which SSIM's window is not whole
 
 
 class Analysis(NamedTuple):
@@ -64,7 +65,8 @@ def perceptual(
     dict of str to float
         `ssim`, 1 minus the structural similarity (T [63]), and `dlap` and `dnor`, the distances in the Laplacian and in
         the normalised Laplacian domain (T [225]); each is 0 for equal pictures. All are over the whole pictures, as in
-        the thesis: the empty background counts as equal, so that a value is also a share of the picture.
+        the thesis: the empty background counts as equal, so that a value is also a share of the picture. `ssim` leaves
+        out the border of 5 pixels, where its window is not whole.
 
     Raises
     ------
@@ -194,14 +196,36 @@ KERNELS = [_kernel(*weights) for weights in NEIGHBOURS]
 def ssim_error(
     reference: np.ndarray, picture: np.ndarray, moments: tuple[np.ndarray, np.ndarray] | None = None
 ) -> float:
-    """1 - SSIM of two pictures (rows, columns), 0 to 255, averaged over every pixel of the picture.
+    """1 - SSIM of two pictures, averaged over the pixels whose window lies wholly in the picture.
 
-    moments: haptic_glance.base.similarity.local_moments(reference), where the reference serves many comparisons.
+    The border of 5 pixels is left out, as in scikit-image's structural_similarity and in MATLAB's ssim.
+
+    Parameters
+    ----------
+    reference, picture : (rows, columns) f8
+        Brightness, 0 to 255.
+    moments : tuple of two (rows, columns) f8, optional
+        haptic_glance.base.similarity.local_moments(reference), where the reference serves many comparisons.
+
+    Returns
+    -------
+    float
+        0 for equal pictures.
+
+    Raises
+    ------
+    ValueError
+        For a picture smaller than the window.
     """
+    if min(reference.shape) < WINDOW:
+        raise ValueError(f"a picture of {reference.shape} is smaller than the window of {WINDOW} pixels")
     top, bottom, left, right = _content_box(reference, picture)
     inside = slice(top, bottom), slice(left, right)
     cropped = None if moments is None else (moments[0][inside].copy(), moments[1][inside].copy())  # compiled for rows
-    return float((1 - ssim_map(reference[inside], picture[inside], cropped)).sum() / reference.size)
+    differences = 1 - ssim_map(reference[inside], picture[inside], cropped)
+    rows, columns = reference.shape
+    whole = differences[max(EDGE - top, 0) : rows - EDGE - top, max(EDGE - left, 0) : columns - EDGE - left]
+    return float(whole.sum() / ((rows - 2 * EDGE) * (columns - 2 * EDGE)))
 
 
 def _content_box(reference, picture):

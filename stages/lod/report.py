@@ -5,13 +5,14 @@ from functools import partial
 from stages.charts.datasets import SECTION_3_1, SECTION_3_2
 from stages.charts.items import as_printed
 
-from . import backend_report, error_figures, error_tables, level_pictures
+from . import backend_report, error_figures, error_tables, flip_report, level_pictures
 
 PAGE = "simplify"
 TABLES = {
     "table_3_1_5_combinations": error_tables.combinations,
     "lod_detectors": error_tables.every_detector,
     "table_3_2": error_tables.table_3_2,
+    "flip": flip_report.flip_table,
     "backends": backend_report.backends_table,
 }
 FIGURES = {

@@ -29,7 +29,7 @@ TOPICS = {
         "Simplify",
         "Fewer faces, but not where people look: which error that costs, and how many faces a scene needs.",
         ("figures/figure_3_8", "figures/figure_3_5"),
-        ("tables/table_3_2", "tables/scene"),
+        ("tables/table_3_2", "tables/flip", "tables/scene"),
     ),
     "touch": Topic(
         "Touch",

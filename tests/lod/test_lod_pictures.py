@@ -30,18 +30,29 @@ def test_errors_are_means_over_the_views():
     assert alone[0]["ssim"] == ssim_error(reference[0], other[0]) > 0
 
 
-@pytest.mark.parametrize("corner", [(2, 5), (38, 55), (58, 95)])
-def test_the_box_changes_nothing(corner):
+@pytest.mark.parametrize("corner", [(2, 5), (30, 50), (58, 95), (0, 50)])
+def test_ssim_error_is_that_of_scikit_image_near_the_border_and_in_the_middle(corner):
     reference, other = np.zeros((90, 120)), np.zeros((90, 120))
     noise, (row, column) = np.random.default_rng(0).uniform(1, 255, (30, 20)), corner
     reference[row + 2 : row + 32, column - 5 : column + 15] = noise
     other[row : row + 30, column : column + 20] = noise[::-1]
-    _, whole = structural_similarity(
-        reference, other, win_size=11, gaussian_weights=True, sigma=1.5, use_sample_covariance=False,
-        data_range=255, full=True,
-    )  # fmt: skip
-    assert ssim_error(reference, other) == pytest.approx(1 - whole.mean(), rel=1e-9)
-    assert ssim_error(reference, other, local_moments(reference)) == pytest.approx(1 - whole.mean(), rel=1e-9)
+    expected = 1 - structural_similarity(
+        reference, other, gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=255
+    )
+    assert ssim_error(reference, other) == pytest.approx(expected, rel=1e-9)
+    assert ssim_error(reference, other, local_moments(reference)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_ssim_error_leaves_the_border_out_and_needs_one_whole_window():
+    reference, other = np.zeros((40, 50)), np.zeros((40, 50))
+    other[0, :], other[:, -1] = 255, 255
+    inside = 1 - structural_similarity(
+        reference, other, gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=255
+    )
+    assert ssim_error(reference, other) == pytest.approx(inside, rel=1e-9) and inside > 0
+    assert 0 < ssim_error(np.zeros((11, 11)), np.full((11, 11), 9.0)) < 1
+    with pytest.raises(ValueError, match="window of 11"):
+        ssim_error(np.zeros((10, 50)), np.zeros((10, 50)))
 
 
 def test_constant_shift_has_the_published_value():

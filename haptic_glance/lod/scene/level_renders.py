@@ -124,7 +124,7 @@ def picture(frames: "Frames", frame: int, levels: Sequence[Level], only: int | N
 
 
 def picture_error(frames: "Frames", frame: int, levels: Sequence[Level]) -> float:
-    """1 - SSIM of the whole frame (Wang et al. 2004, T [63]) against the full one."""
+    """1 - SSIM of a frame (Wang et al. 2004, T [63]) against the full one; the border of 5 pixels is left out."""
     return ssim_error(picture(frames, frame, frames.full), picture(frames, frame, levels))
 
 
@@ -139,7 +139,10 @@ def structure_lost(frames: "Frames", frame: int, item: int, first: Level, second
 
 
 def structures_lost(frames: "Frames", frame: int, levels: Sequence[Level]) -> np.ndarray:
-    """(o,) mean of 1 - SSIM against the full frame, over the pixels that show each object in either picture."""
+    """(o,) mean of 1 - SSIM against the full frame, over the pixels that show each object in either picture.
+
+    Pixels at the border of the screen count: their window sees the picture mirrored there.
+    """
     before, after = picture(frames, frame, frames.full), picture(frames, frame, levels)
     owners = [frames.owners(frame, side) for side in (frames.full, levels)]
     regions = [np.flatnonzero((owners[0] == item) | (owners[1] == item)) for item in range(len(levels))]
