@@ -51,8 +51,8 @@ def _line(rows: pd.DataFrame, name: str, share: float, method: str) -> dict[str,
     """The cells of one method; a dash where an error was not measured."""
     line = {"objects": _set_text(name), "faces": f"{share:.0%}".replace("%", " %"), "method": METHODS[method]}
     for error, title in ERRORS.items():
-        known = (method, error) in rows.index
-        line[title] = signed(*rows.loc[(method, error), ["difference", "low", "high"]], places=1) if known else "–"
+        ends = rows[rows.index == (method, error)][["difference", "low", "high"]].to_numpy(float).ravel().tolist()
+        line[title] = signed(*ends, places=1) if ends else "–"
     return line | {"meshes": f"{rows.loc[(method, 'flip'), 'meshes']:.0f}"}
 
 

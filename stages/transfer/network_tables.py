@@ -120,7 +120,8 @@ def picture_milliseconds(results: Results) -> dict[str, float]:
     """
     with suppress(NotRun):
         costs = results.bench("networks")
-        return costs[costs["size"] == PIXELS].set_index("network")["milliseconds"].to_dict()
+        costs = costs[costs["size"] == PIXELS]
+        return dict(zip(costs["network"], costs["milliseconds"], strict=True))
     return {}
 
 

@@ -5,7 +5,6 @@ import math
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 from scipy import ndimage
 
 from haptic_glance.look.camera import Viewpoint
@@ -22,7 +21,7 @@ PAIRS = [(c, c + delta) for c in (2, 3, 4) for delta in (3, 4)]
 
 
 def smaller(image):
-    """The next level of a dyadic Gaussian pyramid: a Gaussian of one pixel, sampled to 4 deviations; not the binomial."""
+    """The next level of a dyadic pyramid, with a Gaussian of one pixel to 4 deviations; not the binomial."""
     return ndimage.gaussian_filter(np.asarray(image, dtype=np.float64), 1, mode="nearest")[::2, ::2]
 
 

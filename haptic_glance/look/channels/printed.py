@@ -5,8 +5,8 @@ The other modules of this package hold our own formulas. Three readings of the l
 - `printed`: N multiplies by (M - m)^2, where m is the mean of all local maxima, the highest included. T eq. 3.3 and 3.4
   subtract the surround's G - R from the centre's R - G, so that red amid red responds.
 - `mended`: m is the mean of all other maxima, and the surround's R - G is subtracted, as T [41] means both.
-- `zero_mean`: as `printed`, with Gabor kernels of sum zero. A plain Gabor kernel keeps 6 % of its envelope's sum, so that
-  it responds to plain brightness. T names Gabor pyramids and prints no kernel.
+- `zero_mean`: as `printed`, with Gabor kernels of sum zero. A plain Gabor kernel keeps 6 % of its envelope's sum, so
+  that it responds to plain brightness. T names Gabor pyramids and prints no kernel.
 
 N first scales a map to 0..1, as in T [41]: the units of the maps differ, and T states no other scale. A sum of N is
 divided by the number of its terms, so that each map lies in 0..1. The scale of a map changes nothing in it.
