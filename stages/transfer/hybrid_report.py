@@ -111,8 +111,7 @@ def figure_5_6(results: Results) -> Figure:
     splits = {(split,): words for split, words in ITEMS.items() if split in set(frame["split"])}
     senses = {sense: f"by {word}" for sense, word in SENSES.items()}
     figure, words = draw_matrices(frame, splits, senses, ["split"], "sense")
-    words |= {"splits": ", ".join(splits.values()), "objects": _objects(frame)}
-    return Figure(figure, words | {"trainings": frame.groupby("split")["repetition"].nunique().max()})
+    return Figure(figure, words | {"splits": ", ".join(splits.values()), "objects": _objects(frame)})
 
 
 NEW_OBJECTS = "new_object_accuracy"
