@@ -115,7 +115,8 @@ def as_text(row: dict[str, Any]) -> str:
         lines[1] += f": {row['effect']:+.3g}{interval} {row['unit']}, {units}"
     lines += [f"  {name}: {row[name]}" for name in ("printed", "size", "caveat") if name in row]
     for name, (*word, mean, low, high) in row["effects"].items():
-        lines.append(f"  {name}: {' '.join([*word, f'{mean:+.3g} [{low:.3g}, {high:.3g}]'])}")
+        interval = "" if math.isnan(low) else f" [{low:.3g}, {high:.3g}]"
+        lines.append(f"  {name}: {' '.join([*word, f'{mean:+.3g}{interval}'])}")
     lines += [f"    {pair:32} {value:+.4g}" for pair, value in row["differences"].items()]
     return "\n".join([*lines, *(f"  rows: {file}" for file in row["rows"]), f"  measure anew: {row['command']}", ""])
 

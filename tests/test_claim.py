@@ -37,6 +37,13 @@ def test_a_verdict_that_is_not_the_committed_one_is_named(monkeypatch, capsys):
     assert "31 objects" in captured.out and "measure anew" in captured.out
 
 
+@pytest.mark.slow
+def test_the_size_of_a_file_has_no_interval(capsys):
+    assert run(["hybrid_smaller"]) == 0
+    text = capsys.readouterr().out
+    assert "a single number" in text and "princeton_six: +1.43\n" in text
+
+
 @pytest.fixture
 def clone(tmp_path, monkeypatch):
     """A folder with the committed claims, and rows of lod that may be changed; the current folder."""
